@@ -1,0 +1,56 @@
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "client/cli/commands.h"
+#include "client/lib/mesh_stream.h"
+#include "core/mesh.h"
+
+namespace papilio::client {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json describe(const std::string& path) {
+  BuildReport report;
+  const Mesh mesh = build_mesh(load_triangles(path), &report);
+  const Topology& topology = mesh.topology;
+  const Box box = bounding_box(mesh.positions);
+  const auto triple = [](Vec3f p) { return ordered_json{p.x, p.y, p.z}; };
+  return {{"file", path},
+          {"bytes", std::filesystem::file_size(path)},
+          {"vertices", topology.vertex_count},
+          {"faces", topology.face_count()},
+          {"edges", topology.edge_count()},
+          {"euler_characteristic", topology.euler_characteristic()},
+          {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0},
+          {"boundary_edges", report.boundary_edges},
+          {"non_manifold_edges", report.non_manifold_edges},
+          {"misoriented_edges", report.misoriented_edges},
+          {"pinched_vertices", report.pinched_vertices},
+          {"welded_points", report.welded_points},
+          {"isolated_points", report.isolated_points},
+          {"degenerate_faces", report.degenerate_faces},
+          {"repeated_faces", report.repeated_faces},
+          {"box", {{"min", triple(box.min)}, {"max", triple(box.max)}, {"diagonal", box.diagonal()}}}};
+}
+
+void print(const ordered_json& value, const std::string& name) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) print(inner, name.empty() ? key : name + "." + key);
+    return;
+  }
+  std::cout << name << std::string(name.size() < 24 ? 24 - name.size() : 1, ' ')
+            << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+}
+
+}  // namespace
+
+void info_command(const InfoFlags& flags) {
+  const ordered_json description = describe(flags.input);
+  if (flags.json)
+    std::cout << description.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  else
+    print(description, "");
+}
+
+}  // namespace papilio::client

@@ -1,0 +1,145 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+#include "client/cli/commands.h"
+#include "core/error.h"
+#include "proto/problem.h"
+
+using namespace papilio;
+using namespace papilio::client;
+
+namespace {
+
+enum ExitStatus { success = 0, failed = 1, usage = 2 };
+
+constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl)";
+
+/// Values of the table's parameters by name, as they were typed; empty where they were not given.
+using TypedParameters = std::map<std::string, std::string>;
+
+/// The table's parameters whose names begin with `prefix` as flags under their own names: --levels,
+/// --view.eye.
+void add_parameters(CLI::App& command, TypedParameters& typed, std::string_view prefix) {
+  for (const proto::ParameterInfo& parameter : proto::parameter_table()) {
+    if (!parameter.name.starts_with(prefix)) continue;
+    const std::string name(parameter.name);
+    const std::string description = std::string(parameter.description) + " (" +
+                                    proto::describe_range(parameter) + "; default " +
+                                    proto::describe_default(parameter) + ")";
+    command.add_option("--" + name, typed[name], description)->type_name("")->group("Parameters");
+  }
+}
+
+proto::Parameters parse_parameters(const CLI::App& command, const TypedParameters& typed) {
+  proto::QueryFields fields;
+  for (const auto& [name, value] : typed)
+    if (command.count("--" + name) > 0) fields.emplace_back(name, value);
+  return proto::parse_query(fields);
+}
+
+void add_refine(CLI::App& app) {
+  auto flags = std::make_shared<RefineFlags>();
+  auto typed = std::make_shared<TypedParameters>();
+  CLI::App* command = app.add_subcommand("refine", "Refine a mesh, or every mesh in a folder");
+  command->add_option("input", flags->input, "Mesh file (.drc .obj .ply .off .stl) or folder")->required();
+  command
+      ->add_option("-o,--output", flags->output, "File whose extension names its kind, folder, or - (Draco)")
+      ->required();
+  command->add_option("--server", flags->server, "Refine there instead of here: http://host:port");
+  command->add_option("--to", flags->to, "Kind of the results of a folder")
+      ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl"}))
+      ->capture_default_str();
+  command->add_option("--jobs", flags->jobs, "Meshes of a folder refined at once")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "Statistics as JSON on standard output");
+  add_parameters(*command, *typed, "");
+  command->callback([flags, typed, command] {
+    flags->parameters = parse_parameters(*command, *typed);
+    refine_command(*flags);
+  });
+}
+
+void add_info(CLI::App& app) {
+  auto flags = std::make_shared<InfoFlags>();
+  CLI::App* command = app.add_subcommand("info", "Say what is in a mesh file");
+  command->add_option("input", flags->input, mesh_file)->required();
+  command->add_flag("--json", flags->json, "As JSON");
+  command->callback([flags] { info_command(*flags); });
+}
+
+void add_convert(CLI::App& app) {
+  auto flags = std::make_shared<ConvertFlags>();
+  auto typed = std::make_shared<TypedParameters>();
+  CLI::App* command = app.add_subcommand("convert", "Turn a mesh file into another kind");
+  command->add_option("input", flags->input, mesh_file)->required();
+  command->add_option("output", flags->output, "Mesh file; its extension names its kind")->required();
+  command->add_flag("--exact", flags->exact, "To .drc: keep positions to the bit instead of quantising them");
+  add_parameters(*command, *typed, "output.");
+  command->callback([flags, typed, command] {
+    flags->options = parse_parameters(*command, *typed).output;
+    convert_command(*flags);
+  });
+}
+
+void add_compare(CLI::App& app) {
+  auto flags = std::make_shared<CompareFlags>();
+  CLI::App* command = app.add_subcommand("compare", "Distances between two surfaces");
+  command->add_option("a", flags->a, mesh_file)->required();
+  command->add_option("b", flags->b, mesh_file)->required();
+  command
+      ->add_option("--samples", flags->options.samples,
+                   "Points sampled on each surface, besides its vertices")
+      ->check(CLI::Range(size_t{0}, size_t{100'000'000}))
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "As JSON");
+  command->callback([flags] { compare_command(*flags); });
+}
+
+void add_parameters_command(CLI::App& app) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command =
+      app.add_subcommand("parameters", "Print the table of refinement parameters as Markdown");
+  command->add_flag("--json", *json, "As JSON");
+  command->callback(
+      [json] { std::cout << (*json ? proto::parameters_json() + "\n" : proto::parameters_markdown()); });
+}
+
+int complain(const std::string& what, ExitStatus status) {
+  std::cerr << "papilio: " << what << '\n';
+  return status;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"papilio: refines triangle meshes where they are curved, visible and large on screen."};
+  app.set_version_flag("--version", "papilio " PAPILIO_VERSION);
+  app.require_subcommand(1);
+  add_refine(app);
+  add_info(app);
+  add_convert(app);
+  add_compare(app);
+  add_parameters_command(app);
+  try {
+    app.parse(argc, argv);
+    return success;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? success : usage;
+  } catch (const UsageError& error) {
+    return complain(error.what(), usage);
+  } catch (const proto::Problem& problem) {
+    return complain(problem.what(), problem.status() == 400 ? usage : failed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return complain("There is not enough memory.", failed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), failed);
+  }
+}

@@ -1,0 +1,140 @@
+#include "client/lib/remote.h"
+
+#include <httplib.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "proto/problem.h"
+#include "proto/text.h"
+
+namespace papilio::client {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* draco_type = "application/x-draco";
+constexpr uint64_t longest_part = 4ULL << 30;
+
+/// The server's problem document as an exception; other answers as they are.
+ServerError error_from(int status, const std::string& body) {
+  const json document = json::parse(body, nullptr, false);
+  if (!document.is_object() || !document.contains("detail") || !document["detail"].is_string())
+    return {status, "", "The server answered with status " + std::to_string(status) + " and no explanation."};
+  std::string text = document["detail"];
+  if (document.contains("request_id") && document["request_id"].is_string())
+    text += " (request " + document["request_id"].get<std::string>() + ")";
+  const std::string code = document.contains("code") && document["code"].is_string() ? document["code"] : "";
+  return {status, code, text};
+}
+
+ServerError no_answer(const std::string& origin, httplib::Error error) {
+  return {0, "",
+          "No answer from " + origin + " (" + httplib::to_string(error) +
+              "). Is papilio-server running there, and is the address right?"};
+}
+
+httplib::Client connect(const std::string& origin) {
+  httplib::Client client(origin);
+  client.set_connection_timeout(10);
+  client.set_read_timeout(600);
+  client.set_write_timeout(60);
+  client.set_tcp_nodelay(true);
+  return client;
+}
+
+uint64_t count_of(const std::string& header) {
+  return static_cast<uint64_t>(proto::parse_number(header).value_or(0));
+}
+
+/// decode;dur=1.2, refine;dur=3.4, encode;dur=5.6
+double stage_time(const std::string& server_timing, const std::string& stage) {
+  const size_t found = server_timing.find(stage + ";dur=");
+  if (found == std::string::npos) return 0;
+  const size_t begin = found + stage.size() + 5;
+  const size_t end = server_timing.find_first_of(",; ", begin);
+  return proto::parse_number(std::string_view(server_timing).substr(begin, end - begin)).value_or(0);
+}
+
+proto::Statistics statistics_from(const httplib::Headers& headers) {
+  const auto field = [&](const char* name) {
+    const auto found = headers.find(name);
+    return found == headers.end() ? std::string() : found->second;
+  };
+  proto::Statistics statistics;
+  statistics.vertices = count_of(field("Papilio-Vertices"));
+  statistics.faces = count_of(field("Papilio-Faces"));
+  statistics.level = static_cast<int>(count_of(field("Papilio-Levels")));
+  statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
+  const std::string timing = field("Server-Timing");
+  statistics.times = {stage_time(timing, "decode"), stage_time(timing, "refine"),
+                      stage_time(timing, "encode")};
+  return statistics;
+}
+
+}  // namespace
+
+Remote::Remote(const std::string& url) {
+  static const std::regex form(R"((https?://[^/?#\s]+)(/[^?#\s]*)?)");
+  std::smatch match;
+  if (!std::regex_match(url, match, form))
+    throw std::invalid_argument("The server must be a URL such as http://localhost:8080, not " +
+                                proto::quote(url) + ".");
+  origin_ = match[1];
+  prefix_ = match[2];
+  while (prefix_.ends_with('/')) prefix_.pop_back();
+}
+
+proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
+  httplib::Client client = connect(origin_);
+  const std::string path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
+  const auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
+  if (!answer) throw no_answer(origin_, answer.error());
+  if (answer->status != 200) throw error_from(answer->status, answer->body);
+  return {answer->body, statistics_from(answer->headers)};
+}
+
+void Remote::refine_levels(std::string_view draco, const proto::Parameters& parameters,
+                           const std::function<void(const proto::Part&)>& on_part) const {
+  httplib::Request request;
+  request.method = "POST";
+  request.path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
+  request.headers = {{"Accept", "multipart/mixed"}, {"Content-Type", draco_type}};
+  request.body = std::string(draco);
+
+  int status = 0;
+  std::string refusal;
+  std::optional<ServerError> failure;
+  std::optional<proto::MultipartReader> reader;
+  const auto take_part = [&](const proto::Part& part) {
+    if (part.header("Content-Type") == "application/problem+json")
+      failure = error_from(status, part.body);
+    else
+      on_part(part);
+  };
+  request.response_handler = [&](const httplib::Response& response) {
+    status = response.status;
+    if (status == 200) reader.emplace(response.get_header_value("Content-Type"), longest_part, take_part);
+    return true;
+  };
+  request.content_receiver = [&](const char* data, size_t size, uint64_t, uint64_t) {
+    if (reader)
+      reader->feed({data, size});
+    else
+      refusal.append(data, size);
+    return true;
+  };
+
+  httplib::Client client = connect(origin_);
+  try {
+    const auto answer = client.send(request);
+    if (!answer) throw no_answer(origin_, answer.error());
+    if (status != 200) throw error_from(status, refusal);
+    if (failure) throw *failure;
+    reader->finish();
+  } catch (const proto::Problem& problem) {  // of the reader
+    throw ServerError(status, "", problem.what());
+  }
+}
+
+}  // namespace papilio::client

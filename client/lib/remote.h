@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "proto/multipart.h"
+#include "proto/parameters.h"
+#include "proto/refinement.h"
+
+namespace papilio::client {
+
+/// A server did not do what was asked: `what()` has its words, or why it could not be reached.
+class ServerError : public std::runtime_error {
+ public:
+  ServerError(int status, std::string code, const std::string& what)
+      : std::runtime_error(what), status_(status), code_(std::move(code)) {}
+  [[nodiscard]] int status() const { return status_; }  ///< HTTP status; 0 when there was no answer
+  [[nodiscard]] const std::string& code() const {
+    return code_;
+  }  ///< public code of the problem, "" when unknown
+
+ private:
+  int status_;
+  std::string code_;
+};
+
+/// A Papilio server. One object may be used by one thread at a time.
+class Remote {
+ public:
+  /// `url`: "http://host:port", optionally with a path in front of /v1. Throws std::invalid_argument when it
+  /// is not a URL.
+  explicit Remote(const std::string& url);
+
+  /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. Throws `ServerError`.
+  [[nodiscard]] proto::EncodedLevel refine(std::string_view draco, const proto::Parameters& parameters) const;
+
+  /// The same level by level: `on_part` is called for each part as it arrives, meshes first, the JSON summary
+  /// last. Throws `ServerError`, also for a problem that comes in the middle.
+  void refine_levels(std::string_view draco, const proto::Parameters& parameters,
+                     const std::function<void(const proto::Part&)>& on_part) const;
+
+ private:
+  std::string origin_;  ///< "http://host:port"
+  std::string prefix_;  ///< path without a slash at its end
+};
+
+}  // namespace papilio::client

@@ -1,0 +1,114 @@
+#include "client/mesh_file/mesh_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "client/mesh_file/formats.h"
+
+namespace papilio::client {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Format>, 5> kExtensions{{
+    {".drc", Format::drc},
+    {".obj", Format::obj},
+    {".ply", Format::ply},
+    {".off", Format::off},
+    {".stl", Format::stl},
+}};
+
+std::logic_error draco_is_elsewhere() {
+  return std::logic_error("drc is read and written by papilio::proto");
+}
+
+TriangleMesh parse(Format format, std::string_view bytes) {
+  switch (format) {
+    case Format::obj:
+      return parse_obj(bytes);
+    case Format::ply:
+      return parse_ply(bytes);
+    case Format::off:
+      return parse_off(bytes);
+    case Format::stl:
+      return parse_stl(bytes);
+    case Format::drc:
+      break;
+  }
+  throw draco_is_elsewhere();
+}
+
+std::string to_bytes(Format format, const TriangleMesh& mesh) {
+  switch (format) {
+    case Format::obj:
+      return format_obj(mesh);
+    case Format::ply:
+      return format_ply(mesh);
+    case Format::off:
+      return format_off(mesh);
+    case Format::stl:
+      return format_stl(mesh);
+    case Format::drc:
+      break;
+  }
+  throw draco_is_elsewhere();
+}
+
+/// The number of triangles before the first that names a vertex that does not exist; all of them if none
+/// does.
+size_t count_sound(const TriangleMesh& mesh) {
+  const auto is_broken = [count = mesh.positions.size()](const Triangle& triangle) {
+    return std::ranges::any_of(triangle, [count](uint32_t vertex) { return vertex >= count; });
+  };
+  return static_cast<size_t>(std::ranges::find_if(mesh.triangles, is_broken) - mesh.triangles.begin());
+}
+
+std::string describe_broken(const TriangleMesh& mesh, size_t index) {
+  return "triangle " + std::to_string(index) + " (the first is 0) names vertex " +
+         std::to_string(std::ranges::max(mesh.triangles[index])) + " (the first is 0), but there are " +
+         std::to_string(mesh.positions.size()) + " vertices";
+}
+
+}  // namespace
+
+Format format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [known, format] : kExtensions)
+    if (extension == known) return format;
+  const std::string found =
+      extension.empty() ? "has no extension" : "'" + path.extension().string() + "' is not a known extension";
+  throw FileError(path, found + "; use one of .drc, .obj, .ply, .off, .stl");
+}
+
+TriangleMesh read_triangles(const std::filesystem::path& path, Format format) {
+  if (format == Format::drc) throw draco_is_elsewhere();
+  const std::string bytes = read_bytes(path, kMaxFileBytes);
+  if (bytes.empty()) throw FileError(path, "is empty; export the mesh again");
+  try {
+    TriangleMesh mesh = parse(format, bytes);
+    if (mesh.triangles.empty()) throw ParseError("holds no triangles");
+    if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
+      throw ParseError(describe_broken(mesh, sound));
+    return mesh;
+  } catch (const ParseError& error) {
+    throw FileError(
+        path, std::string(error.what()) + "; export the mesh again, or check that the extension is right");
+  }
+}
+
+void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh) {
+  if (format == Format::drc) throw draco_is_elsewhere();
+  if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
+    throw std::invalid_argument(describe_broken(mesh, sound));
+  // PLY's indices are signed in most readers, STL's count has 32 bits.
+  constexpr size_t kMost = std::numeric_limits<int32_t>::max();
+  if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)
+    throw FileError(path, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
+  write_atomically(path, to_bytes(format, mesh));
+}
+
+}  // namespace papilio::client

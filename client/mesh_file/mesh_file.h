@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+
+#include "client/mesh_file/file_bytes.h"
+#include "core/triangle_mesh.h"
+
+namespace papilio::client {
+
+/// The kinds of mesh files, by what their names end in.
+enum class Format { drc, obj, ply, off, stl };
+
+/// By the extension, in upper or lower case. Throws `FileError` that names the extension and those that are
+/// known.
+[[nodiscard]] Format format_of(const std::filesystem::path& path);
+
+/// The largest file that is read: 4 GiB.
+inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
+
+/// Positions and triangles as they stand in the file: repeated, degenerate and non-manifold faces are kept,
+/// unused positions too. Polygons become fans around their first corner; polygons of one or two corners,
+/// which OFF and PLY allow, are left out. Normals, colours, texture coordinates and materials are not read.
+/// STL has no shared vertices: three new positions for each triangle. Coordinates that are NaN or infinite
+/// are passed on.
+///
+/// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
+/// one tell), names a vertex that does not exist, has a coordinate too large for a float, or holds no
+/// triangle; and `std::logic_error` for `Format::drc`, whose bytes are read by `proto`. Memory stays within a
+/// small multiple of the file's size, whatever counts the file declares. Any number of threads may call it.
+[[nodiscard]] TriangleMesh read_triangles(const std::filesystem::path& path, Format format);
+
+/// Writes through `write_atomically`. OBJ and OFF as text, in the shortest digits that give back the same
+/// float; PLY and STL binary, little-endian. Positions survive to the bit in all four; STL loses what is
+/// shared between triangles, and gives degenerate ones a zero normal.
+///
+/// Throws `FileError` if it cannot be written; `std::invalid_argument` if a triangle names a vertex that does
+/// not exist; `std::logic_error` for `Format::drc`.
+void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh);
+
+}  // namespace papilio::client

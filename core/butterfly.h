@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh.h"
+#include "split_plan.h"
+
+namespace papilio {
+
+/// Positions of the new vertices of all target edges, by the Modified Butterfly scheme (weights and sources:
+/// stencil.h).
+///
+/// `positions` [V] are those of the level, `w` is the free parameter of the ten-point rule (0: eight points).
+/// Returns [plan.count()], in the plan's order. Each result depends on its stencil alone, to the bit: not on
+/// what else is a target, nor on which half-edge stands for the edge (from `stencil::harmonic_valence` on,
+/// also on which half-edge of the ring has the lowest number). O(F + total valence). Instantiated for float
+/// (the product) and double (checking the arithmetic).
+template <class Real>
+[[nodiscard]] std::vector<Vec3T<Real>> butterfly(const Topology& topology,
+                                                 const std::vector<Vec3T<Real>>& positions,
+                                                 const SplitPlan& plan, Real w = 0);
+
+}  // namespace papilio

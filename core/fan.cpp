@@ -1,0 +1,77 @@
+#include "fan.h"
+
+#include "stencil.h"
+
+namespace papilio {
+namespace {
+
+/// The next spoke clockwise, `none` across a curve.
+uint32_t clockwise(const Topology& mesh, uint32_t h) {
+  return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]);
+}
+
+/// The next spoke counter-clockwise, `none` across a curve.
+uint32_t counter_clockwise(const Topology& mesh, uint32_t h) {
+  const uint32_t incoming = Topology::previous(h);
+  return mesh.is_curve(incoming) ? none : mesh.twin[incoming];
+}
+
+bool is_regular(const Fan& fan) {
+  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles);
+}
+
+/// Marks the vertices whose one fan is closed with six faces: no curve, not pinched, six corners.
+std::vector<bool> find_plainly_regular(const Topology& mesh) {
+  std::vector<uint8_t> corners(mesh.vertex_count, 0);
+  constexpr uint8_t irregular = stencil::regular_valence + 1;
+  for (uint32_t v : mesh.origin)
+    if (corners[v] < irregular) ++corners[v];
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+    if (mesh.kind[e] == EdgeKind::smooth) continue;
+    corners[mesh.origin[mesh.half_edge[e]]] = irregular;
+    corners[mesh.tip(mesh.half_edge[e])] = irregular;
+  }
+  for (uint32_t v : mesh.pinched) corners[v] = irregular;
+  std::vector<bool> regular(mesh.vertex_count);
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v) regular[v] = corners[v] == stencil::regular_valence;
+  return regular;
+}
+
+}  // namespace
+
+void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
+  uint32_t first = h;
+  fan.closed = false;
+  for (uint32_t s = clockwise(mesh, h); s != none; s = clockwise(mesh, s)) {
+    first = s;
+    if (s == h) {
+      fan.closed = true;
+      break;
+    }
+  }
+  fan.centre = mesh.origin[h];
+  fan.spokes.clear();
+  fan.ring.clear();
+  uint32_t last = first;
+  uint32_t s = first;
+  do {
+    fan.spokes.push_back(s);
+    fan.ring.push_back(mesh.tip(s));
+    last = s;
+    s = counter_clockwise(mesh, s);
+  } while (s != none && s != first);
+  if (!fan.closed) fan.ring.push_back(mesh.apex(last));
+}
+
+void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit) {
+  const std::vector<bool> regular = find_plainly_regular(mesh);
+  std::vector<bool> visited(mesh.half_edge_count());
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    if (regular[mesh.origin[h]] || visited[h]) continue;
+    collect_fan(mesh, h, fan);
+    for (uint32_t s : fan.spokes) visited[s] = true;
+    if (!is_regular(fan)) visit();
+  }
+}
+
+}  // namespace papilio

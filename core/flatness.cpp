@@ -1,0 +1,66 @@
+#include "flatness.h"
+
+#include "curve.h"
+#include "normals.h"
+
+namespace papilio {
+namespace {
+
+/// Cosine of the turn from a to b to c; 1 where a piece has no length.
+double cosine_of_turn(Vec3f a, Vec3f b, Vec3f c) {
+  const Vec3d u = to_double(b) - to_double(a);
+  const Vec3d v = to_double(c) - to_double(b);
+  const double size = length(u) * length(v);
+  return size > 0 ? dot(u, v) / size : 1;
+}
+
+bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double threshold) {
+  const Vec3f a = mesh.positions[mesh.topology.origin[h]];
+  const Vec3f b = mesh.positions[mesh.topology.tip(h)];
+  const uint32_t before = curves.before(h);
+  if (before != none && cosine_of_turn(mesh.positions[before], a, b) < threshold) return true;
+  const uint32_t after = curves.after(h);
+  return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold;
+}
+
+}  // namespace
+
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold,
+                      EdgeMarks& marks) {
+  const Topology& topology = mesh.topology;
+  const CurveNeighbours curves(topology);
+  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+    const uint32_t h = topology.half_edge[e];
+    const uint32_t t = topology.twin[h];
+    if (t == none) {
+      if (turns(mesh, curves, h, threshold)) marks[e] = 1;
+      continue;
+    }
+    const Vec3f n1 = normals[Topology::face(h)];
+    const Vec3f n2 = normals[Topology::face(t)];
+    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold) marks[e] = 1;
+  }
+}
+
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
+  if (growth == Growth::off) return;
+  const EdgeMarks seeds = marks;
+  if (growth == Growth::faces) {
+    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+      if (seeds[mesh.edge[h]] == 0) continue;
+      marks[mesh.edge[Topology::next(h)]] = 1;
+      marks[mesh.edge[Topology::previous(h)]] = 1;
+    }
+    return;
+  }
+  std::vector<bool> touched(mesh.vertex_count);
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+    if (seeds[e] == 0) continue;
+    touched[mesh.origin[mesh.half_edge[e]]] = true;
+    touched[mesh.tip(mesh.half_edge[e])] = true;
+  }
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e)
+    if (touched[mesh.origin[mesh.half_edge[e]]] || touched[mesh.tip(mesh.half_edge[e])]) marks[e] = 1;
+}
+
+}  // namespace papilio

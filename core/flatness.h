@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh.h"
+#include "split_plan.h"
+
+namespace papilio {
+
+/// Marks the edges that are not flat, the paper's section 3.1.1: those of two faces whose unit normals have
+/// n1.n2 < `threshold`. A boundary or shared edge has no such product: it is marked when the curve turns by
+/// more than acos(threshold) at one of its ends. An edge at a face without area is not marked on that face's
+/// account. Shapes: normals [F], marks [E], only ever set.
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold,
+                      EdgeMarks& marks);
+
+/// How far marks spread, the paper's section 3.1.2.
+enum class Growth {
+  off = 0,
+  faces = 1,     ///< to the other edges of the two faces at a marked edge
+  vertices = 2,  ///< to all edges at the two ends of a marked edge
+};
+
+/// Marks the 1-neighbouring edges of each marked edge (one step: new marks do not spread again). Marks [E].
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks);
+
+}  // namespace papilio

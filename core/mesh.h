@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "triangle_mesh.h"
+
+// The half-edge mesh that every step of the core works on: flat arrays, no pointers, no hash once it is
+// built.
+//
+// Face f owns half-edges 3f, 3f+1, 3f+2; half-edge h runs from origin(h) to origin(next(h)) with the face on
+// its left (counter-clockwise seen from outside). Vertices are positions: points that share one are one
+// vertex. A vertex may carry several fans of faces (a pinched vertex); rules that look at a vertex's ring
+// walk the fan of the half-edge at hand, so each fan is a vertex of its own to them.
+
+namespace papilio {
+
+inline constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+
+/// What an edge is to the subdivision rules. All but `smooth` are curves: rings end there, and the edge
+/// itself is split by the rule along the curve.
+enum class EdgeKind : uint8_t {
+  smooth,    ///< two faces, wound alike
+  boundary,  ///< one face
+  shared,    ///< three faces or more, or two wound against each other: a boundary of every face at it
+  crease,    ///< two faces, kept sharp
+};
+
+/// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices.
+struct Topology {
+  uint32_t vertex_count = 0;
+  std::vector<uint32_t> origin;  ///< [H] vertex that the half-edge leaves
+  std::vector<uint32_t>
+      twin;  ///< [H] the half-edge running the other way, `none` at boundary and shared edges
+  std::vector<uint32_t>
+      edge;  ///< [H] edge of the half-edge; all half-edges between two vertices have the same
+  std::vector<uint32_t> half_edge;  ///< [E] one half-edge of each edge
+  std::vector<EdgeKind> kind;       ///< [E]
+  std::vector<uint32_t>
+      pinched;  ///< vertices with more than one fan, in ascending order; levels inherit them
+
+  [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }
+  [[nodiscard]] uint32_t edge_count() const { return static_cast<uint32_t>(half_edge.size()); }
+  [[nodiscard]] uint32_t half_edge_count() const { return static_cast<uint32_t>(origin.size()); }
+
+  static uint32_t face(uint32_t h) { return h / 3; }
+  static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static uint32_t previous(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  [[nodiscard]] uint32_t tip(uint32_t h) const { return origin[next(h)]; }
+  /// The vertex of h's face that h does not touch.
+  [[nodiscard]] uint32_t apex(uint32_t h) const { return origin[previous(h)]; }
+  [[nodiscard]] bool is_curve(uint32_t h) const { return kind[edge[h]] != EdgeKind::smooth; }
+  /// Vertices less edges plus faces.
+  [[nodiscard]] int64_t euler_characteristic() const {
+    return int64_t{vertex_count} - int64_t{edge_count()} + int64_t{face_count()};
+  }
+};
+
+/// A mesh: connectivity and one position a vertex.
+struct Mesh {
+  Topology topology;
+  std::vector<Vec3f> positions;  ///< [V]
+
+  /// Copies the faces and positions out.
+  [[nodiscard]] TriangleMesh triangles() const;
+};
+
+/// What was found in the triangles, and what was done about it.
+struct BuildReport {
+  uint32_t welded_points = 0;     ///< points dropped because an earlier one has the same position
+  uint32_t isolated_points = 0;   ///< positions that no face uses, dropped
+  uint32_t degenerate_faces = 0;  ///< faces with two equal positions, dropped
+  uint32_t repeated_faces = 0;    ///< faces with the vertices and orientation of an earlier one, dropped
+  uint32_t boundary_edges = 0;
+  uint32_t non_manifold_edges = 0;  ///< edges with three faces or more
+  uint32_t misoriented_edges = 0;   ///< edges whose two faces run along them in the same direction
+  uint32_t pinched_vertices = 0;    ///< vertices at which several fans of faces touch
+};
+
+/// Largest magnitude of a coordinate, so that no later sum or square overflows.
+inline constexpr float coordinate_limit = 1e18F;
+
+/// Most faces that any level may have: half-edges are counted in 32 bits.
+inline constexpr uint64_t face_count_limit = 1ULL << 30;
+
+/// Builds the mesh: welds points of equal position (to the bit, but -0 = 0), numbers vertices in the order in
+/// which the faces name them, drops what cannot be refined and counts it. Face order is kept. O(n log n) at
+/// worst. Throws `Error`: index_out_of_range, not_finite (NaN, infinite or beyond `coordinate_limit`),
+/// no_faces.
+[[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr);
+
+/// An axis-parallel box. Of no points: `min` above `max`.
+struct Box {
+  Vec3f min, max;
+  [[nodiscard]] double diagonal() const;
+};
+[[nodiscard]] Box bounding_box(const std::vector<Vec3f>& positions);
+
+}  // namespace papilio

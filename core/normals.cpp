@@ -1,0 +1,39 @@
+#include "normals.h"
+
+namespace papilio {
+namespace {
+
+/// Normal of face f, its length twice the face's area.
+Vec3d area_normal(const Mesh& mesh, uint32_t f) {
+  const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
+  const Vec3d a = to_double(mesh.positions[corner[0]]);
+  return cross(to_double(mesh.positions[corner[1]]) - a, to_double(mesh.positions[corner[2]]) - a);
+}
+
+}  // namespace
+
+std::vector<Vec3f> face_normals(const Mesh& mesh) {
+  std::vector<Vec3f> normals(mesh.topology.face_count());
+  for (uint32_t f = 0; f < normals.size(); ++f) {
+    const Vec3d n = area_normal(mesh, f);
+    const double size = length(n);
+    if (size > 0) normals[f] = to_float((1 / size) * n);
+  }
+  return normals;
+}
+
+std::vector<Vec3f> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3d> sums(mesh.topology.vertex_count);
+  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+    const Vec3d n = area_normal(mesh, f);
+    for (uint32_t i = 0; i < 3; ++i) sums[mesh.topology.origin[3 * f + i]] += n;
+  }
+  std::vector<Vec3f> normals(sums.size());
+  for (size_t v = 0; v < sums.size(); ++v) {
+    const double size = length(sums[v]);
+    normals[v] = size > 0 ? to_float((1 / size) * sums[v]) : Vec3f{0, 0, 1};
+  }
+  return normals;
+}
+
+}  // namespace papilio

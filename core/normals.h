@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh.h"
+
+namespace papilio {
+
+/// Unit normal of each face [F]; zero for a face without area, which has none. Computed in double, so that
+/// neither tiny nor large meshes lose theirs.
+[[nodiscard]] std::vector<Vec3f> face_normals(const Mesh& mesh);
+
+/// Unit normal of each vertex [V]: its faces' normals weighted by area; (0, 0, 1) where they cancel out or
+/// there are none.
+[[nodiscard]] std::vector<Vec3f> vertex_normals(const Mesh& mesh);
+
+[[nodiscard]] inline bool has_normal(Vec3f n) { return n != Vec3f{}; }
+
+}  // namespace papilio

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "mesh.h"
+
+namespace papilio {
+
+/// How one face is cut. Local vertices: 0, 1, 2 are the face's corners, 3 + i the new vertex of its edge i,
+/// from corner i to corner (i + 1) % 3. Child half-edges are numbered 3c + s: side s of child c.
+struct SplitPattern {
+  uint8_t children = 0;
+  std::array<std::array<uint8_t, 3>, 4> corner{};  ///< [child][side] local vertex the side leaves
+  /// [child half-edge] the child half-edge on the other side, where that is inside the face; else `outside`.
+  std::array<uint8_t, 12> inner_twin{};
+  /// [child half-edge] number of its edge among those inside the face; where outside, 2i + 0 for the first
+  /// half (or the whole) of edge i, 2i + 1 for the second half.
+  std::array<uint8_t, 12> edge{};
+  /// [2i + half] the child half-edge that is the first half (or the whole) or the second half of edge i.
+  std::array<uint8_t, 6> outer{};
+
+  static constexpr uint8_t outside = 255;
+};
+
+/// The pattern of a face: `mask` has bit i set where edge i is a target; `second_diagonal` chooses the cut of
+/// the quadrangle that two target edges leave. There edges i and j = (i + 1) % 3 are targets, and the first
+/// diagonal runs from corner i to the vertex of edge j, the second from the vertex of edge i to corner (j +
+/// 1) % 3.
+[[nodiscard]] const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
+
+/// For a mask with two targets: edge i as above.
+[[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) {
+  return mask == 3 ? 0 : mask == 6 ? 1 : 2;
+}
+
+}  // namespace papilio

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh.h"
+#include "split_plan.h"
+
+namespace papilio {
+
+enum class Projection { perspective, orthographic };
+
+/// Where the mesh is seen from, in its own coordinates.
+struct View {
+  Vec3d eye{0, 0, 3};
+  Vec3d target{0, 0, 0};
+  Vec3d up{0, 1, 0};
+  double fov_y = 45;                          ///< vertical field of view in degrees, 0 < fov_y < 180
+  std::array<double, 2> viewport{1280, 720};  ///< width and height in pixels
+  double near = 0;  ///< distance of the near plane; 0: a thousandth of the distance from eye to target
+  double edge_pixels = 10;  ///< an edge that looks shorter than this stays whole; 0 turns the criterion off
+  /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
+  Projection projection = Projection::perspective;
+};
+
+/// The view made ready for questions. Throws `Error` bad_option, naming the field ("view.up"), when the view
+/// does not define a picture.
+class Camera {
+ public:
+  explicit Camera(const View& view);
+
+  /// True when the sphere round `centre` lies outside of one of the five planes (four sides, near):
+  /// section 3.2.1.
+  [[nodiscard]] bool is_outside(Vec3d centre, double radius) const;
+  /// True when a face with unit normal `normal`, `point` being on it, is turned away from the viewer:
+  /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
+  /// perspective.
+  [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const;
+  /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
+  [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
+
+ private:
+  struct Plane {
+    Vec3d normal;   ///< unit, inward
+    double offset;  ///< a point p is inside when normal.p >= offset
+  };
+  [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
+
+  bool perspective_;
+  Vec3d eye_, right_, up_, forward_;
+  double near_;
+  double pixels_per_unit_;  ///< at distance 1 (perspective) or at any (orthographic)
+  std::array<Plane, 5> planes_;
+};
+
+/// Unmarks the edges that the view does not need, the paper's section 3.2: those all of whose faces have all
+/// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are
+/// turned away (so edges on the silhouette stay; a face without normal is never away), those that look
+/// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
+void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera,
+                  double edge_pixels, EdgeMarks& marks);
+
+}  // namespace papilio

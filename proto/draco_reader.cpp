@@ -1,0 +1,79 @@
+#include "proto/draco_reader.h"
+
+#include <draco/compression/decode.h>
+
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+#include "proto/draco_header.h"
+#include "proto/problem.h"
+
+namespace papilio::proto {
+namespace {
+
+std::unique_ptr<draco::Mesh> decode(std::string_view bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  try {
+    draco::Decoder decoder;
+    auto result = decoder.DecodeMeshFromBuffer(&buffer);
+    if (result.ok()) return std::move(result).value();
+  } catch (const std::bad_alloc&) {  // a damaged stream asks for absurd sizes
+  } catch (const std::length_error&) {
+  }
+  throw Problem(Code::mesh_not_draco,
+                "The Draco stream is damaged or cut short. Send the whole file, or encode the mesh again.");
+}
+
+const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
+  if (mesh.NumNamedAttributes(draco::GeometryAttribute::POSITION) != 1)
+    throw Problem(Code::mesh_unsupported,
+                  "The mesh must have exactly one POSITION attribute. Encode it again.");
+  const draco::PointAttribute& attribute = *mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  if (attribute.num_components() != 3 || attribute.data_type() != draco::DT_FLOAT32)
+    throw Problem(Code::mesh_unsupported, "POSITION must be three 32-bit floats. Encode the mesh again.");
+  return attribute;
+}
+
+void require_decoded(uint64_t count, uint64_t limit, const char* what) {
+  if (count > limit)
+    throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what +
+                                            "; the limit is " + std::to_string(limit) +
+                                            ". Send a coarser mesh.");
+}
+
+}  // namespace
+
+TriangleMesh read_draco(std::string_view bytes, const Limits& limits) {
+  (void)read_draco_header(bytes, limits);
+  const std::unique_ptr<draco::Mesh> mesh = decode(bytes);
+  require_decoded(mesh->num_faces(), limits.max_input_faces, "faces");
+  // A point for every corner is the most that seams can make of a mesh.
+  require_decoded(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
+  if (mesh->num_faces() == 0)
+    throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
+
+  const draco::PointAttribute& attribute = position_attribute(*mesh);
+  TriangleMesh out;
+  out.positions.resize(mesh->num_points());
+  for (draco::PointIndex p(0); p < mesh->num_points(); ++p) {
+    const draco::AttributeValueIndex value = attribute.mapped_index(p);
+    if (value.value() >= attribute.size())
+      throw Problem(Code::mesh_unusable, "The mesh has a point without a position. Encode it again.");
+    attribute.GetValue(value, &out.positions[p.value()]);
+  }
+  out.triangles.resize(mesh->num_faces());
+  for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const uint32_t p = mesh->face(f)[corner].value();
+      if (p >= mesh->num_points())
+        throw Problem(Code::mesh_unusable, "Face " + std::to_string(f.value()) +
+                                               " names a point that does not exist. Encode the mesh again.");
+      out.triangles[f.value()][corner] = p;
+    }
+  }
+  return out;
+}
+
+}  // namespace papilio::proto

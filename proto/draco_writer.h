@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace papilio::proto {
+
+/// The cube in whose grid positions are quantised. It comes from the coarse mesh alone, so that a vertex
+/// stays where it is from level to level and from view to view.
+struct QuantizationBox {
+  Vec3f origin;     ///< lowest corner
+  float range = 0;  ///< edge length
+};
+
+/// The bounding box's longest side, padded by an eighth on both sides since the surface swells, round the
+/// box's centre. (What swells further still is encoded right: Draco's grid goes on beyond the cube.)
+[[nodiscard]] QuantizationBox quantization_box(const std::vector<Vec3f>& coarse);
+
+struct OutputOptions {
+  int position_bits = 14;  ///< 8..16, bits of a coordinate
+  int speed = 7;           ///< 0..10, Draco's encoding speed: 0 smallest, 10 fastest
+  bool normals = false;    ///< adds unit normals of the vertices, at 10 bits
+};
+
+/// Encodes the mesh as a Draco 2.2 edgebreaker stream. The mesh must have faces; positions must be finite.
+/// Throws std::runtime_error with Draco's words when it refuses.
+[[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box,
+                                      const OutputOptions& options);
+
+/// Encodes triangles as they are, positions to the bit: what the client sends of a mesh that is not Draco
+/// yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws `Error` as
+/// `build_mesh`.
+[[nodiscard]] std::string write_draco_exact(const TriangleMesh& mesh);
+
+}  // namespace papilio::proto

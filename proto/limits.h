@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace papilio::proto {
+
+/// What one request may cost. Each is checked before the work that it bounds.
+struct Limits {
+  uint64_t max_input_faces = 2'000'000;     ///< declared and decoded faces of a mesh: 413
+  uint64_t max_input_vertices = 2'000'000;  ///< declared and decoded vertices (points) of a mesh: 413
+  uint64_t max_output_faces = 8'000'000;    ///< faces of any level, predicted and actual: 507
+};
+
+}  // namespace papilio::proto

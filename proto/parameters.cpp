@@ -1,0 +1,270 @@
+#include "proto/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "proto/problem.h"
+#include "proto/text.h"
+#include "proto/url.h"
+
+namespace papilio::proto {
+namespace {
+
+using nlohmann::json;
+
+constexpr size_t longest_json = 64 << 10;
+
+/// Reads into one Parameters; knows which names have come already.
+class Reader {
+ public:
+  void set(const ParameterInfo& info, const std::vector<double>& values) {
+    if (!given_.insert(info.name).second) refuse(info, "is given twice; give it once");
+    info.set(parameters_, values);
+  }
+
+  Parameters finish() {
+    try {
+      check_options(parameters_.options);
+    } catch (const Error& error) {
+      throw Problem(error);
+    }
+    return parameters_;
+  }
+
+  [[noreturn]] static void refuse(const ParameterInfo& info, const std::string& why) {
+    throw Problem(Code::bad_parameter, std::string(info.name) + " " + why + ".", std::string(info.name));
+  }
+
+ private:
+  Parameters parameters_;
+  std::set<std::string_view> given_;
+};
+
+const ParameterInfo& find(const std::string& name) {
+  const auto table = parameter_table();
+  const auto row = std::ranges::find(table, name, &ParameterInfo::name);
+  if (row != table.end()) return *row;
+  std::string known;
+  for (const ParameterInfo& info : table) append_item(known, ", ", info.name);
+  throw Problem(Code::unknown_parameter,
+                "There is no parameter " + quote(name) + ". There are: " + known + ".", shorten(name));
+}
+
+std::string what_it_takes(const ParameterInfo& info) { return "must be " + describe_range(info); }
+
+void check_numbers(const ParameterInfo& info, const std::vector<double>& values, const std::string& given) {
+  const auto good = [&](double v) {
+    return v >= info.min && v <= info.max && (info.type != ParameterType::integer || v == std::floor(v));
+  };
+  if (values.size() < info.least || values.size() > info.most || !std::ranges::all_of(values, good))
+    Reader::refuse(info, what_it_takes(info) + ", not " + given);
+}
+
+std::vector<double> choose(const ParameterInfo& info, const std::string& text) {
+  const auto index = [&](const auto& names) -> std::vector<double> {
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end()) Reader::refuse(info, what_it_takes(info) + ", not " + quote(text));
+    return {static_cast<double>(found - names.begin())};
+  };
+  static const std::vector<std::string_view> booleans{"false", "true"};
+  return index(info.type == ParameterType::boolean ? booleans : info.choices);
+}
+
+std::vector<double> parse_text(const ParameterInfo& info, const std::string& text) {
+  if (info.type == ParameterType::boolean || info.type == ParameterType::choice) return choose(info, text);
+  std::vector<double> values;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t comma = std::min(text.find(',', begin), text.size());
+    const std::optional<double> value = parse_number(std::string_view(text).substr(begin, comma - begin));
+    if (!value) Reader::refuse(info, what_it_takes(info) + ", not " + quote(text));
+    values.push_back(*value);
+    begin = comma + 1;
+  }
+  check_numbers(info, values, quote(text));
+  return values;
+}
+
+std::vector<double> parse_json_value(const ParameterInfo& info, const json& value) {
+  const auto given = [&] { return shorten(value.dump(-1, ' ', false, json::error_handler_t::replace)); };
+  switch (info.type) {
+    case ParameterType::boolean:
+      if (!value.is_boolean()) break;
+      return {value.get<bool>() ? 1.0 : 0.0};
+    case ParameterType::choice:
+      if (!value.is_string()) break;
+      return choose(info, value.get<std::string>());
+    case ParameterType::integer:
+    case ParameterType::number:
+      if (!value.is_number()) break;
+      check_numbers(info, {value.get<double>()}, given());
+      return {value.get<double>()};
+    case ParameterType::numbers: {
+      if (!value.is_array() || !std::ranges::all_of(value, [](const json& v) { return v.is_number(); }))
+        break;
+      const auto values = value.get<std::vector<double>>();
+      check_numbers(info, values, given());
+      return values;
+    }
+  }
+  Reader::refuse(info, what_it_takes(info) + (info.type == ParameterType::numbers ? " in an array" : "") +
+                           ", not " + given());
+}
+
+bool is_group(const std::string& name) {
+  return std::ranges::any_of(parameter_table(),
+                             [&](const ParameterInfo& info) { return info.name.starts_with(name + "."); });
+}
+
+void read_object(Reader& reader, const json& object, const std::string& prefix) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = prefix + key;
+    if (prefix.empty() && is_group(name)) {
+      if (!value.is_object())
+        throw Problem(Code::bad_parameter, name + " must be an object, such as {\"" + name + "\": {...}}.",
+                      name);
+      read_object(reader, value, name + ".");
+    } else if (prefix.empty() && key.find('.') != std::string::npos) {
+      throw Problem(Code::unknown_parameter,
+                    "In JSON, nest instead of writing dots: " + quote(name) +
+                        " is {\"view\": {...}} or {\"output\": {...}}.",
+                    name);
+    } else {
+      const ParameterInfo& info = find(name);
+      reader.set(info, parse_json_value(info, value));
+    }
+  }
+}
+
+/// Parses, refusing a key that comes twice in one object (the library would keep the last one and lose the
+/// other).
+json parse_document(std::string_view text) {
+  std::vector<std::set<std::string>> keys;
+  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) keys.emplace_back();
+    if (event == json::parse_event_t::object_end) keys.pop_back();
+    if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw Problem(Code::bad_parameter, quote(parsed.get<std::string>()) + " is given twice; give it once.",
+                    parsed.get<std::string>());
+    return true;
+  };
+  try {
+    return json::parse(text, watch);
+  } catch (const json::parse_error& error) {
+    throw Problem(Code::bad_request,
+                  "The parameters are not JSON; the fault is at byte " + std::to_string(error.byte) + ".");
+  }
+}
+
+std::string value_text(const ParameterInfo& info, const std::vector<double>& values) {
+  if (info.type == ParameterType::boolean) return values[0] != 0 ? "true" : "false";
+  if (info.type == ParameterType::choice) return std::string(info.choices[static_cast<size_t>(values[0])]);
+  std::string text;
+  for (double v : values) append_item(text, ",", format_number(v));
+  return text;
+}
+
+}  // namespace
+
+bool operator==(const Parameters& a, const Parameters& b) {
+  return a.options.view.has_value() == b.options.view.has_value() &&
+         std::ranges::all_of(parameter_table(),
+                             [&](const ParameterInfo& info) { return info.get(a) == info.get(b); });
+}
+
+Parameters parse_query(const QueryFields& fields) {
+  Reader reader;
+  for (const auto& [name, text] : fields) {
+    const ParameterInfo& info = find(name);
+    reader.set(info, parse_text(info, text));
+  }
+  return reader.finish();
+}
+
+Parameters parse_json(std::string_view text) {
+  if (text.size() > longest_json)
+    throw Problem(Code::body_too_large,
+                  "The parameters are longer than 65536 bytes. Send only parameters there.");
+  const json document = parse_document(text);
+  if (!document.is_object())
+    throw Problem(Code::bad_request, "The parameters must be one JSON object, such as {\"levels\": 2}.");
+  Reader reader;
+  read_object(reader, document, "");
+  return reader.finish();
+}
+
+QueryFields to_fields(const Parameters& parameters) {
+  static const Parameters defaults;
+  QueryFields fields;
+  bool view_shown = false;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::vector<double> values = info.get(parameters);
+    // A view of defaults is still a view: its eye stands for it.
+    const bool names_view = info.name.starts_with("view.") && parameters.options.view && !view_shown;
+    if (values == info.get(defaults) && !names_view) continue;
+    view_shown = view_shown || info.name.starts_with("view.");
+    fields.emplace_back(info.name, value_text(info, values));
+  }
+  return fields;
+}
+
+std::string to_query(const Parameters& parameters) { return join_query(to_fields(parameters)); }
+
+std::string describe_range(const ParameterInfo& info) {
+  if (info.type == ParameterType::boolean) return "true or false";
+  if (info.type == ParameterType::choice) {
+    std::string text;
+    for (std::string_view choice : info.choices) append_item(text, " or ", choice);
+    return text;
+  }
+  const std::string range = "in " + format_number(info.min) + ".." + format_number(info.max);
+  if (info.type == ParameterType::integer) return "an integer " + range;
+  if (info.type == ParameterType::number) return "a number " + range;
+  const std::string count = info.least == info.most
+                                ? std::to_string(info.least)
+                                : std::to_string(info.least) + " to " + std::to_string(info.most);
+  return count + " numbers " + range;
+}
+
+std::string describe_default(const ParameterInfo& info) {
+  return info.default_text.empty() ? value_text(info, info.get(Parameters{}))
+                                   : std::string(info.default_text);
+}
+
+std::string parameters_markdown() {
+  std::string text = "| parameter | takes | default | what it does |\n|---|---|---|---|\n";
+  for (const ParameterInfo& info : parameter_table()) {
+    text += "| `" + std::string(info.name) + "` | " + describe_range(info) +
+            (info.unit.empty() ? "" : ", " + std::string(info.unit)) + " | " + describe_default(info) +
+            " | " + std::string(info.description) + " |\n";
+  }
+  return text;
+}
+
+std::string parameters_json() {
+  static constexpr std::array types{"integer", "number", "numbers", "boolean", "choice"};
+  auto rows = nlohmann::ordered_json::array();
+  for (const ParameterInfo& info : parameter_table()) {
+    nlohmann::ordered_json row{{"name", info.name}, {"type", types.at(static_cast<size_t>(info.type))}};
+    if (info.type == ParameterType::choice) {
+      row["choices"] = info.choices;
+    } else if (info.type != ParameterType::boolean) {
+      row["min"] = info.min;
+      row["max"] = info.max;
+    }
+    if (info.type == ParameterType::numbers) {
+      row["least"] = info.least;
+      row["most"] = info.most;
+    }
+    if (!info.unit.empty()) row["unit"] = info.unit;
+    row["default"] = describe_default(info);
+    row["description"] = info.description;
+    rows.push_back(std::move(row));
+  }
+  return rows.dump(2);
+}
+
+}  // namespace papilio::proto

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/refine.h"
+#include "proto/limits.h"
+#include "proto/parameters.h"
+
+// The whole way from a Draco mesh to a refined Draco mesh. Server and client both go it, so local and remote
+// results are the same bytes.
+
+namespace papilio::proto {
+
+/// Milliseconds spent in each stage so far.
+struct StageTimes {
+  double decode = 0, refine = 0, encode = 0;
+};
+
+/// What is known of a mesh on its way out.
+struct Statistics {
+  int level = 0;  ///< 0: the coarse mesh
+  uint64_t vertices = 0, faces = 0;
+  std::optional<StopReason> stop_reason;  ///< known with the last level
+  StageTimes times;
+};
+
+/// A mesh and its statistics.
+struct EncodedLevel {
+  std::string draco;
+  Statistics statistics;
+};
+
+/// How the caller takes part; both may be empty.
+struct RefinementHooks {
+  /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
+  /// to stop.
+  std::function<void(const EncodedLevel&)> on_level{};
+  std::function<bool()> cancelled{};  ///< asked between steps
+};
+
+/// One refinement: decoded and checked when it is made, carried out by `run`.
+class Refinement {
+ public:
+  /// Throws `Problem`, also where it is certain from the start that the result would pass a limit.
+  Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
+
+  [[nodiscard]] uint32_t coarse_faces() const { return coarse_.topology.face_count(); }
+  [[nodiscard]] uint32_t coarse_vertices() const { return coarse_.topology.vertex_count; }
+
+  /// Refines and encodes; call once. Returns the last level. Throws `Problem`, and what the hooks throw.
+  [[nodiscard]] EncodedLevel run(const RefinementHooks& hooks = {});
+
+ private:
+  EncodedLevel run_core(const RefinementHooks& hooks);
+
+  Options options_;
+  OutputOptions output_;
+  Mesh coarse_;
+  StageTimes times_;
+};
+
+/// "converged", "levels".
+[[nodiscard]] std::string_view stop_reason_name(StopReason reason);
+/// The other way round; nothing for any other text.
+[[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
+
+/// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason and Server-Timing.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(
+    const Statistics& statistics);
+/// The same as a JSON object: vertices, faces, levels, stop_reason, milliseconds {decode, refine, encode}.
+[[nodiscard]] std::string statistics_json(const Statistics& statistics);
+
+}  // namespace papilio::proto

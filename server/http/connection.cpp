@@ -1,0 +1,164 @@
+#include "server/http/connection.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "proto/problem.h"
+
+namespace papilio::server {
+namespace {
+
+using proto::Code;
+using proto::Problem;
+using std::chrono::milliseconds;
+
+constexpr size_t receive_bytes = 64 << 10;
+constexpr uint64_t least_bytes_a_second = 1 << 10;
+constexpr milliseconds give_up_interval{200};
+constexpr std::chrono::seconds longest_linger{2};
+
+std::string peer_address(int fd) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getpeername(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) return {};
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const void* number = address.ss_family == AF_INET6
+                           ? static_cast<const void*>(&reinterpret_cast<sockaddr_in6*>(&address)->sin6_addr)
+                           : &reinterpret_cast<sockaddr_in*>(&address)->sin_addr;
+  return ::inet_ntop(address.ss_family, number, text.data(), text.size()) ? text.data() : "";
+}
+
+}  // namespace
+
+Connection::Connection(int fd, std::chrono::seconds read_wait, std::chrono::seconds write_wait)
+    : fd_(fd), read_wait_(read_wait), write_wait_(write_wait), remote_address_(peer_address(fd)) {}
+
+Connection::~Connection() { ::close(fd_); }
+
+bool Connection::wait(short events, Clock::time_point deadline) const {
+  for (;;) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
+    pollfd one{fd_, events, 0};
+    const int ready = ::poll(&one, 1, static_cast<int>(std::max(left, milliseconds(0)).count()));
+    if (ready > 0) return true;
+    if (ready == 0 || errno != EINTR) return false;
+  }
+}
+
+Connection::Received Connection::receive(Clock::time_point deadline) {
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  const size_t held = buffer_.size();
+  while (wait(POLLIN, deadline)) {
+    buffer_.resize(held + receive_bytes);
+    const ssize_t count = ::recv(fd_, buffer_.data() + held, receive_bytes, MSG_DONTWAIT);
+    buffer_.resize(held + static_cast<size_t>(std::max<ssize_t>(count, 0)));
+    if (count > 0) return Received::bytes;
+    if (count == 0 || (errno != EAGAIN && errno != EINTR)) return Received::closed;
+  }
+  return Received::timeout;
+}
+
+bool Connection::wait_for_request(std::chrono::seconds idle, const std::function<bool()>& give_up) {
+  const auto deadline = Clock::now() + idle;
+  while (!has_buffered()) {
+    const auto now = Clock::now();
+    if (now >= deadline || give_up()) return false;
+    if (receive(std::min(deadline, now + give_up_interval)) == Received::closed) return false;
+  }
+  return true;
+}
+
+std::string Connection::read_head(size_t limit) {
+  const auto deadline = Clock::now() + read_wait_;
+  // An empty line before the request is a client's slip after the last body; RFC 9112 asks to pass over it.
+  if (buffer_.compare(begin_, 2, "\r\n") == 0) begin_ += 2;
+  size_t length = 0;
+  for (;;) {
+    const std::string_view held = std::string_view(buffer_).substr(begin_);
+    for (; length < std::min(held.size(), limit); ++length) {
+      if (held[length] != '\n') continue;
+      if (length == 0 || held[length - 1] != '\r')
+        throw Problem(Code::bad_request, "Every line of a request's head must end in CR LF.");
+      if (held.substr(0, length + 1).ends_with("\r\n\r\n")) {
+        std::string head(held.substr(0, length + 1));
+        consume(head.size());
+        return head;
+      }
+    }
+    if (length == limit)
+      throw Problem(Code::headers_too_large, "The request line and the header fields may have " +
+                                                 std::to_string(limit) + " bytes together.");
+    const Received received = receive(deadline);
+    if (received == Received::closed) return {};
+    if (received == Received::timeout)
+      throw Problem(Code::request_timeout, "The request's head did not arrive in " +
+                                               std::to_string(read_wait_.count()) + " seconds.");
+  }
+}
+
+void Connection::begin_body() {
+  body_deadline_ = Clock::now() + read_wait_;
+  body_stretch_ = 0;
+}
+
+std::string_view Connection::peek() {
+  if (!has_buffered()) {
+    const Received received = receive(body_deadline_);
+    if (received == Received::closed)
+      throw Problem(Code::bad_request, "The body ended before its declared end.");
+    if (received == Received::timeout)
+      throw Problem(Code::request_timeout, "The body stalled: it must bring at least " +
+                                               std::to_string(least_bytes_a_second) + " bytes a second.");
+    body_stretch_ += buffer_.size() - begin_;
+    if (body_stretch_ >= least_bytes_a_second * static_cast<uint64_t>(read_wait_.count())) begin_body();
+  }
+  return std::string_view(buffer_).substr(begin_);
+}
+
+void Connection::consume(size_t count) {
+  begin_ += count;
+  bytes_in_ += count;
+}
+
+bool Connection::write(std::string_view bytes, bool more) {
+  while (!bytes.empty() && !broken_) {
+    const int flags = MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0);
+    const ssize_t count = ::send(fd_, bytes.data(), bytes.size(), flags);
+    if (count > 0) {
+      bytes.remove_prefix(static_cast<size_t>(count));
+      bytes_out_ += static_cast<uint64_t>(count);
+    } else if (errno == EAGAIN) {
+      broken_ = !wait(POLLOUT, Clock::now() + write_wait_);
+    } else if (errno != EINTR) {
+      broken_ = true;
+    }
+  }
+  return !broken_;
+}
+
+bool Connection::peer_gone() const {
+  pollfd one{fd_, POLLRDHUP, 0};
+  return broken_ || (::poll(&one, 1, 0) > 0 && (one.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0);
+}
+
+void Connection::linger() {
+  if (broken_) return;
+  ::shutdown(fd_, SHUT_WR);
+  const auto deadline = Clock::now() + std::min(read_wait_, longest_linger);
+  do {
+    buffer_.clear();
+    begin_ = 0;
+  } while (Clock::now() < deadline && receive(deadline) == Received::bytes);
+}
+
+void Connection::abort() { ::shutdown(fd_, SHUT_RDWR); }
+
+}  // namespace papilio::server

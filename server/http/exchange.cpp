@@ -1,0 +1,51 @@
+#include "server/http/exchange.h"
+
+#include <stdexcept>
+
+#include "server/http/form.h"
+#include "server/http/request_id.h"
+
+namespace papilio::server {
+
+bool Exchange::receive() {
+  id_ = request_id({});
+  const std::string text = connection_.read_head(options_.max_header_bytes);
+  if (text.empty()) return false;
+  parse_head(text, head_);
+  id_ = request_id(head_.field("X-Request-Id"));
+  framing_ = framing_of(head_);
+  body_.emplace(connection_, framing_, options_.max_body_bytes);
+  return true;
+}
+
+void Exchange::refuse_unreadable() const {
+  server::refuse_unreadable(head_, framing_, options_.max_body_bytes);
+}
+
+bool Exchange::may_keep_alive() const {
+  return body_ && body_->complete() && head_.minor_version == 1 && !head_.lists("Connection", "close");
+}
+
+std::string Exchange::content_type() const {
+  const std::string value = head_.field("Content-Type");
+  return lower_case(trimmed(std::string_view(value).substr(0, value.find(';'))));
+}
+
+Body Exchange::read_body() {
+  if (body_taken_) throw std::logic_error("a request's body was read twice");
+  body_taken_ = true;
+  // Asked for only now, so that a handler which refuses saves the client the upload.
+  const bool client_waits = head_.minor_version == 1 && head_.lists("Expect", "100-continue");
+  if (client_waits && !body_->complete() && !connection_.has_buffered())
+    connection_.write("HTTP/1.1 100 Continue\r\n\r\n");
+  Body body;
+  body.bytes = body_->read();
+  body.size = body.bytes.size();
+  if (content_type() == "multipart/form-data") {
+    body.parts = parse_form(head_.field("Content-Type"), body.bytes);
+    body.bytes = {};
+  }
+  return body;
+}
+
+}  // namespace papilio::server

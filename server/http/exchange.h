@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/http/body.h"
+#include "server/http/connection.h"
+#include "server/http/head.h"
+#include "server/http/http.h"
+
+namespace papilio::server {
+
+/// One request on its connection, as the handlers see it.
+class Exchange final : public Request {
+ public:
+  Exchange(Connection& connection, const HttpOptions& options) : connection_(connection), options_(options) {}
+
+  /// Reads and parses the head. False when the client closed before its end. Throws `Problem`.
+  bool receive();
+  /// Refuses a body that would not be read. Throws `Problem`.
+  void refuse_unreadable() const;
+  /// True when the next bytes of the connection begin another request, and the client wants to send one.
+  /// False for as long as any of this one's are left: they would be executed as a request.
+  [[nodiscard]] bool may_keep_alive() const;
+  [[nodiscard]] const Head& head() const { return head_; }
+
+  [[nodiscard]] const std::string& method() const override { return head_.method; }
+  [[nodiscard]] const std::string& path() const override { return head_.path; }
+  [[nodiscard]] const Fields& query() const override { return head_.query; }
+  [[nodiscard]] std::string header(std::string_view name) const override { return head_.field(name); }
+  [[nodiscard]] const std::string& remote_address() const override { return connection_.remote_address(); }
+  [[nodiscard]] const std::string& id() const override { return id_; }
+  [[nodiscard]] std::string content_type() const override;
+  [[nodiscard]] Body read_body() override;
+  [[nodiscard]] bool client_gone() const override { return connection_.peer_gone(); }
+
+ private:
+  Connection& connection_;
+  const HttpOptions& options_;
+  Head head_;
+  std::string id_;
+  Framing framing_;
+  std::optional<BodyReader> body_;  ///< empty until the framing is known
+  bool body_taken_ = false;
+};
+
+}  // namespace papilio::server

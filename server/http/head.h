@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "server/http/http.h"
+
+// The head of a request, parsed strictly. cpp-httplib's own parser is not used: it percent-decodes the values
+// of header fields (so `Transfer-Encoding: %63hunked` is chunked to it and to nobody in front of it), passes
+// over lines that it cannot read, and drops repeated query fields. Whoever stands in front of this server
+// must see the same request as it does.
+
+namespace papilio::server {
+
+/// True when both are the same but for the case of ASCII letters.
+[[nodiscard]] bool same_ignoring_case(std::string_view a, std::string_view b);
+/// Without spaces and tabs at either end.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+[[nodiscard]] std::string lower_case(std::string_view text);
+/// True for a non-empty `token` of RFC 9110, of which methods and names of fields are made.
+[[nodiscard]] bool is_token(std::string_view text);
+
+struct Head {
+  std::string method;
+  std::string target;  ///< as it was sent; visible ASCII only
+  std::string path;    ///< percent-decoded, without control characters
+  Fields query;        ///< percent-decoded, in the original order, duplicates kept
+  int minor_version = 1;
+  Fields fields;
+
+  /// The first such field's value, "" when there is none.
+  [[nodiscard]] std::string field(std::string_view name) const;
+  [[nodiscard]] size_t count(std::string_view name) const;
+  /// True when one such field's comma-separated list holds the token.
+  [[nodiscard]] bool lists(std::string_view name, std::string_view token) const;
+};
+
+/// Parses the text up to and with the empty line into `head`. Throws `Problem` (bad_request) on anything that
+/// could be read in two ways; `head` then holds what was read before.
+void parse_head(std::string_view text, Head& head);
+
+}  // namespace papilio::server

@@ -1,0 +1,74 @@
+#include "server/http/http.h"
+
+#include <mutex>
+#include <set>
+
+#include "server/http/connection.h"
+#include "server/http/gate.h"
+#include "server/http/listener.h"
+#include "server/http/routes.h"
+#include "server/http/session.h"
+
+namespace papilio::server {
+
+struct HttpServer::Impl {
+  explicit Impl(HttpOptions given)
+      : options(std::move(given)), listener(options.threads, [this](int fd) { serve(fd); }) {}
+
+  void serve(int fd) {
+    Connection connection(fd, std::chrono::seconds(options.read_seconds),
+                          std::chrono::seconds(options.write_seconds));
+    {
+      const std::lock_guard lock(mutex);
+      if (listener.closed()) return;
+      connections.insert(&connection);
+    }
+    try {
+      Session(connection, options, routes, gate, listener).run();
+    } catch (...) {
+      // Out of memory outside of a handler: this connection is lost, its thread goes on to the next.
+    }
+    const std::lock_guard lock(mutex);
+    connections.erase(&connection);
+  }
+
+  void stop() {
+    gate.close();
+    listener.close();
+    const std::lock_guard lock(mutex);
+    for (Connection* connection : connections) connection->abort();
+  }
+
+  const HttpOptions options;
+  Routes routes;
+  Gate gate;
+  std::mutex mutex;
+  std::set<Connection*> connections;  ///< guarded by mutex: those being served
+  Listener listener;
+};
+
+HttpServer::HttpServer(HttpOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+
+HttpServer::~HttpServer() { stop(); }
+
+void HttpServer::add(const std::string& method, const std::string& path, Handler handler,
+                     WhileDraining while_draining) {
+  impl_->routes.add(method, path, std::move(handler), while_draining);
+}
+
+int HttpServer::bind() { return impl_->listener.open(impl_->options.host, impl_->options.port); }
+
+void HttpServer::run() { impl_->listener.run(); }
+
+int HttpServer::running() const { return impl_->gate.running(); }
+
+bool HttpServer::drain(int seconds) {
+  impl_->gate.close();
+  const bool emptied = impl_->gate.wait_until_empty(std::chrono::seconds(seconds));
+  stop();
+  return emptied;
+}
+
+void HttpServer::stop() { impl_->stop(); }
+
+}  // namespace papilio::server

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/problem.h"
+
+// The HTTP server behind the project's own types. cpp-httplib listens, accepts and keeps the threads
+// (listener.h is the only place that knows it); the messages themselves are read and written in this folder,
+// because the library's parsers read some requests otherwise than any proxy in front of them does (head.h,
+// body.h and form.h name the cases).
+
+namespace papilio::server {
+
+/// Names and values in the order in which they came; a name may come twice.
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+/// One part of a `multipart/form-data` body.
+struct FormPart {
+  std::string name;
+  std::string content_type;  ///< empty when the part has none
+  std::string bytes;
+};
+
+/// A request's body, read whole.
+struct Body {
+  std::string bytes;            ///< the raw body; empty for a form
+  std::vector<FormPart> parts;  ///< the parts of a `multipart/form-data` body, in order; else empty
+  uint64_t size = 0;            ///< bytes received
+};
+
+/// One request while it is being answered. Valid only during the handler's call (and its stream's); used by
+/// one thread.
+class Request {
+ public:
+  virtual ~Request() = default;
+  [[nodiscard]] virtual const std::string& method() const = 0;
+  [[nodiscard]] virtual const std::string& path() const = 0;
+  /// Query fields, percent-decoded, duplicates kept, in their original order.
+  [[nodiscard]] virtual const Fields& query() const = 0;
+  /// A header field's value, "" when absent. Names are matched without regard to case.
+  [[nodiscard]] virtual std::string header(std::string_view name) const = 0;
+  [[nodiscard]] virtual const std::string& remote_address() const = 0;
+  /// `X-Request-Id`: the client's when it sent a sane one (1..64 of [A-Za-z0-9._-]), else a fresh random one.
+  [[nodiscard]] virtual const std::string& id() const = 0;
+  /// The type without its parameters, in lower case: "multipart/form-data".
+  [[nodiscard]] virtual std::string content_type() const = 0;
+  /// Reads the body, once. Throws `Problem`: body_too_large as soon as the limit is passed (chunked bodies
+  /// too), bad_request when it ends early or the form or chunking is damaged, request_timeout when it stalls.
+  [[nodiscard]] virtual Body read_body() = 0;
+  /// True once the client has closed the connection, be it only its sending side; cheap enough (one system
+  /// call) to ask between steps of the work.
+  [[nodiscard]] virtual bool client_gone() const = 0;
+};
+
+/// Where a streamed answer goes.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// False once the client is gone; the rest of the answer is then not worth making.
+  virtual bool write(std::string_view bytes) = 0;
+};
+
+/// What a handler answers.
+struct Response {
+  int status = 200;
+  std::string content_type;
+  /// Content-Length, Transfer-Encoding, Connection, Date and X-Request-Id are the server's own: ignored here.
+  Fields headers;
+  std::string body;
+  /// When set, the body is what this writes, sent chunked as it is written; `body` is ignored. It runs after
+  /// the handler has returned, on the same thread, while the Request is still valid; not for HEAD. It must
+  /// not throw: the answer would end there without its last chunk.
+  std::function<void(Sink&)> stream;
+};
+
+/// Answers one request. May throw `proto::Problem`, which becomes `application/problem+json`; anything else
+/// it throws is logged and becomes `internal` without a word of what it was.
+using Handler = std::function<Response(Request&)>;
+
+/// What becomes of a route's new requests once the server drains.
+enum class WhileDraining { refuse, answer };
+
+/// What the log gets to know of a finished request.
+struct Finished {
+  std::string id, method, remote_address;
+  std::string path;  ///< as it was sent, without the query: visible ASCII, which cannot break a log's lines
+  int status = 0;
+  uint64_t bytes_in = 0, bytes_out = 0;
+  double milliseconds = 0;
+  std::string code;    ///< the problem's public code, "" when all went well
+  std::string detail;  ///< what went wrong, for the log only (for `internal`: the exception's text)
+};
+
+/// Everything that can be set, each with its default and unit.
+struct HttpOptions {
+  std::string host = "127.0.0.1";
+  int port = 8080;                        ///< 0: any free one
+  uint64_t max_body_bytes = 64u << 20;    ///< larger: 413, before it is read where a length is declared
+  uint64_t max_header_bytes = 32u << 10;  ///< request line and header fields together: 431
+  int threads = 64;                       ///< connections served at once; each holds a thread
+  int idle_seconds = 5;    ///< an idle connection is closed after this, or when others wait for its thread
+  int read_seconds = 10;   ///< for a whole head, and for each 1 KiB times this of a body: 408
+  int write_seconds = 10;  ///< longest wait for the client to take the next bytes of an answer
+  int keep_alive_requests = 1000;  ///< requests on one connection
+  /// Called after each answer, from the connection's thread. Must not throw.
+  std::function<void(const Finished&)> on_finished;
+};
+
+/// An HTTP/1.1 server: add routes, bind, run, drain. `add` before `bind`; `drain` and `stop` may be called
+/// from any thread. `run` must have returned before the server is destroyed.
+class HttpServer {
+ public:
+  explicit HttpServer(HttpOptions options);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  /// Exact path, any method (HEAD follows GET, OPTIONS lists the path's methods). Unknown paths answer 404,
+  /// known ones with another method 405 with `Allow`.
+  void add(const std::string& method, const std::string& path, Handler handler,
+           WhileDraining while_draining = WhileDraining::refuse);
+  /// Binds and listens; returns the port. Throws std::runtime_error with the reason, naming host and port.
+  int bind();
+  /// Serves until `stop` or `drain` is done; returns at once when one was called before. Call after `bind`.
+  /// Throws std::runtime_error when connections can no longer be accepted.
+  void run();
+  /// Requests being answered now.
+  [[nodiscard]] int running() const;
+  /// Refuses new requests with 503 `draining` from now on (but for routes added with `answer`), waits until
+  /// the running ones are done or the time is over, then stops. True when none was cut short.
+  bool drain(int seconds);
+  /// Stops at once: cuts every connection (`client_gone` is then true), and `run` returns as soon as the
+  /// handlers have.
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace papilio::server

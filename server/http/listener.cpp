@@ -1,0 +1,108 @@
+#include "server/http/listener.h"
+
+#include <httplib.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace papilio::server {
+namespace {
+
+/// cpp-httplib's own is 5, compiled into the library: a burst of clients would wait for retransmissions.
+constexpr int backlog = 1024;
+
+/// The library's thread pool, with a count of the connections that no thread has taken yet.
+class CountingPool : public httplib::TaskQueue {
+ public:
+  CountingPool(size_t threads, std::atomic<int>& waiting) : pool_(threads), waiting_(waiting) {}
+
+  // Returns void in 0.11 and bool in 0.18.
+  using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+  Enqueued enqueue(std::function<void()> serve) override {
+    ++waiting_;
+    return pool_.enqueue([this, serve = std::move(serve)] {
+      --waiting_;
+      serve();
+    });
+  }
+  void shutdown() override { pool_.shutdown(); }
+
+ private:
+  httplib::ThreadPool pool_;
+  std::atomic<int>& waiting_;
+};
+
+/// The library's default sets SO_REUSEPORT, with which two servers share a port without a word.
+void set_listening_options(int fd) {
+  const int yes = 1;
+  ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+}
+
+}  // namespace
+
+class Listener::Server : public httplib::Server {
+ public:
+  Server(int threads, std::function<void(int)> serve) : serve_(std::move(serve)) {
+    new_task_queue = [this, threads] { return new CountingPool(static_cast<size_t>(threads), waiting_); };
+    set_socket_options(set_listening_options);
+    // Accepted sockets inherit it. Without it a small answer waits 40 ms for the client's delayed
+    // acknowledgement.
+    set_tcp_nodelay(true);
+  }
+
+  ~Server() override {
+    if (fd_ != INVALID_SOCKET) ::close(fd_);
+  }
+
+  int open(const std::string& host, int port) {
+    errno = 0;
+    const int bound = port == 0 ? bind_to_any_port(host) : bind_to_port(host, port) ? port : -1;
+    fd_ = svr_sock_.load();
+    if (bound < 0 || ::listen(fd_, backlog) != 0) {
+      const std::string reason = errno == 0 ? "the host is unknown" : std::strerror(errno);
+      throw std::runtime_error("cannot listen on " + host + ":" + std::to_string(port) + ": " + reason);
+    }
+    return bound;
+  }
+
+  void run() {
+    if (fd_ == INVALID_SOCKET) throw std::runtime_error("the server was not bound");
+    if (listen_after_bind() || closed_) return;
+    fd_ = INVALID_SOCKET;  // the library has closed it
+    throw std::runtime_error("connections can no longer be accepted");
+  }
+
+  // The library's stop() does nothing before listening has begun, and closes the socket's number under the
+  // accepting thread. Here the number stays taken until the end, and `shutdown` wakes that thread.
+  void stop_listening() {
+    closed_ = true;
+    if (svr_sock_.exchange(INVALID_SOCKET) != INVALID_SOCKET) ::shutdown(fd_, SHUT_RDWR);
+  }
+
+  [[nodiscard]] bool closed() const { return closed_; }
+  [[nodiscard]] bool others_wait() const { return waiting_ > 0; }
+
+ private:
+  bool process_and_close_socket(socket_t fd) override {
+    serve_(fd);
+    return true;
+  }
+
+  const std::function<void(int)> serve_;
+  std::atomic<socket_t> fd_ = INVALID_SOCKET;
+  std::atomic<int> waiting_ = 0;
+  std::atomic<bool> closed_ = false;
+};
+
+Listener::Listener(int threads, std::function<void(int fd)> serve)
+    : server_(std::make_unique<Server>(threads, std::move(serve))) {}
+Listener::~Listener() = default;
+int Listener::open(const std::string& host, int port) { return server_->open(host, port); }
+void Listener::run() { server_->run(); }
+void Listener::close() { server_->stop_listening(); }
+bool Listener::closed() const { return server_->closed(); }
+bool Listener::others_wait() const { return server_->others_wait(); }
+
+}  // namespace papilio::server

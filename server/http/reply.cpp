@@ -1,0 +1,175 @@
+#include "server/http/reply.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <ctime>
+
+#include "server/http/head.h"
+
+namespace papilio::server {
+namespace {
+
+std::string_view reason(int status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 201:
+      return "Created";
+    case 202:
+      return "Accepted";
+    case 204:
+      return "No Content";
+    case 301:
+      return "Moved Permanently";
+    case 302:
+      return "Found";
+    case 303:
+      return "See Other";
+    case 304:
+      return "Not Modified";
+    case 307:
+      return "Temporary Redirect";
+    case 308:
+      return "Permanent Redirect";
+    case 400:
+      return "Bad Request";
+    case 401:
+      return "Unauthorized";
+    case 403:
+      return "Forbidden";
+    case 404:
+      return "Not Found";
+    case 405:
+      return "Method Not Allowed";
+    case 406:
+      return "Not Acceptable";
+    case 408:
+      return "Request Timeout";
+    case 409:
+      return "Conflict";
+    case 411:
+      return "Length Required";
+    case 412:
+      return "Precondition Failed";
+    case 413:
+      return "Content Too Large";
+    case 415:
+      return "Unsupported Media Type";
+    case 416:
+      return "Range Not Satisfiable";
+    case 422:
+      return "Unprocessable Content";
+    case 429:
+      return "Too Many Requests";
+    case 431:
+      return "Request Header Fields Too Large";
+    case 499:
+      return "Client Closed Request";
+    case 500:
+      return "Internal Server Error";
+    case 503:
+      return "Service Unavailable";
+    case 507:
+      return "Insufficient Storage";
+    default:
+      return "Unnamed";
+  }
+}
+
+std::string date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 40> text{};
+  // In the C locale, which this program never leaves.
+  return {text.data(), std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc)};
+}
+
+bool has_body(int status) { return status >= 200 && status != 204 && status != 304; }
+
+bool is_of_the_connection(std::string_view name) {
+  constexpr std::array<std::string_view, 5> names{"Connection", "Content-Length", "Transfer-Encoding", "Date",
+                                                  "X-Request-Id"};
+  return std::ranges::any_of(names, [&](std::string_view n) { return same_ignoring_case(n, name); });
+}
+
+/// A line break within a value would begin a header line of somebody else's making.
+void add_field(std::string& head, std::string_view name, std::string_view value) {
+  if (!is_token(name)) return;
+  head += name;
+  head += ": ";
+  for (const char c : value) head += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  head += "\r\n";
+}
+
+std::string reply_head(const Response& response, const Delivery& delivery) {
+  std::string head = "HTTP/1.1 " + std::to_string(response.status) + " ";
+  head += reason(response.status);
+  head += "\r\n";
+  add_field(head, "Date", date());
+  add_field(head, "X-Request-Id", delivery.request_id);
+  if (!response.content_type.empty()) add_field(head, "Content-Type", response.content_type);
+  bool says_cache = false;
+  for (const auto& [name, value] : response.headers) {
+    if (is_of_the_connection(name)) continue;
+    says_cache = says_cache || same_ignoring_case(name, "Cache-Control");
+    add_field(head, name, value);
+  }
+  if (response.status >= 400 && !says_cache) add_field(head, "Cache-Control", "no-store");
+  if (has_body(response.status)) {
+    if (!response.stream) add_field(head, "Content-Length", std::to_string(response.body.size()));
+    if (response.stream && delivery.chunked) add_field(head, "Transfer-Encoding", "chunked");
+  }
+  if (!delivery.keep_alive) add_field(head, "Connection", "close");
+  return head + "\r\n";
+}
+
+class ConnectionSink final : public Sink {
+ public:
+  ConnectionSink(Connection& connection, bool chunked) : connection_(connection), chunked_(chunked) {}
+
+  bool write(std::string_view bytes) override {
+    if (connection_.peer_gone()) return false;
+    if (bytes.empty()) return true;  // an empty chunk would end the answer
+    if (!chunked_) return connection_.write(bytes);
+    std::array<char, 16> size{};
+    const char* end = std::to_chars(size.begin(), size.end(), bytes.size(), 16).ptr;
+    return connection_.write({size.data(), static_cast<size_t>(end - size.data())}, true) &&
+           connection_.write("\r\n", true) && connection_.write(bytes, true) && connection_.write("\r\n");
+  }
+
+ private:
+  Connection& connection_;
+  const bool chunked_;
+};
+
+}  // namespace
+
+Response problem_response(const proto::Problem& problem, const std::string& request_id) {
+  Response response;
+  response.status = problem.status();
+  response.content_type = "application/problem+json";
+  response.headers.emplace_back("Cache-Control", "no-store");
+  if (problem.code() == proto::Code::busy || problem.code() == proto::Code::draining)
+    response.headers.emplace_back("Retry-After", "1");
+  response.body = problem.json(request_id);
+  return response;
+}
+
+bool send_reply(Connection& connection, const Response& response, const Delivery& delivery) {
+  const bool with_body = has_body(response.status) && !delivery.head_only;
+  const bool with_bytes = with_body && !response.stream && !response.body.empty();
+  if (!connection.write(reply_head(response, delivery), with_bytes)) return false;
+  if (with_bytes) return connection.write(response.body);
+  if (!with_body || !response.stream) return true;
+  ConnectionSink sink(connection, delivery.chunked);
+  try {
+    response.stream(sink);
+  } catch (...) {
+    return false;  // without its last chunk the answer shows itself as cut short
+  }
+  return !delivery.chunked || connection.write("0\r\n\r\n");
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,105 @@
+#include "server/http/session.h"
+
+#include <chrono>
+#include <optional>
+
+#include "server/http/reply.h"
+
+namespace papilio::server {
+namespace {
+
+using proto::Code;
+using proto::Problem;
+
+Problem internal() {
+  return {Code::internal, "The server failed on this request; its log tells more under the request id."};
+}
+
+/// A request counts as running from its complete head until its answer is sent and logged.
+class Pass {
+ public:
+  explicit Pass(Gate& gate) : gate_(gate), entered_(gate.enter()) {}
+  ~Pass() {
+    if (entered_) gate_.leave();
+  }
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
+  [[nodiscard]] bool entered() const { return entered_; }
+
+ private:
+  Gate& gate_;
+  const bool entered_;
+};
+
+}  // namespace
+
+void Session::run() {
+  for (int served = 0; served < options_.keep_alive_requests; ++served) {
+    const auto give_up = [&] { return listener_.closed() || (served > 0 && listener_.others_wait()); };
+    if (!connection_.wait_for_request(std::chrono::seconds(options_.idle_seconds), give_up)) return;
+    if (!answer_one(served + 1 == options_.keep_alive_requests)) break;
+  }
+  connection_.linger();
+}
+
+bool Session::answer_one(bool last) {
+  const auto start = Connection::Clock::now();
+  const uint64_t in_before = connection_.bytes_in();
+  const uint64_t out_before = connection_.bytes_out();
+  Exchange exchange(connection_, options_);
+  Finished finished;
+  std::optional<Pass> pass;
+  Response response;
+  try {
+    if (!exchange.receive()) return false;
+    pass.emplace(gate_);
+    const Route& route = routes_.find(exchange.method(), exchange.path());
+    if (!pass->entered() && route.while_draining == WhileDraining::refuse)
+      throw Problem(Code::draining, "This server is shutting down; ask another one.");
+    exchange.refuse_unreadable();
+    response = route.handler(exchange);
+  } catch (const Problem& problem) {
+    response = refusal(exchange, problem, finished);
+  } catch (const std::exception& error) {
+    response = refusal(exchange, internal(), finished);
+    finished.detail = error.what();
+  } catch (...) {
+    response = refusal(exchange, internal(), finished);
+    finished.detail = "an exception of an unknown kind";
+  }
+
+  const bool keep_alive = !last && exchange.may_keep_alive() && !gate_.closed() && !listener_.others_wait();
+  const bool sent = send_reply(connection_, response,
+                               {.request_id = exchange.id(),
+                                .head_only = exchange.method() == "HEAD",
+                                .chunked = exchange.head().minor_version == 1,
+                                .keep_alive = keep_alive});
+  if (!sent && finished.code.empty()) {
+    finished.code = proto::problem_kind(Code::cancelled).name;
+    finished.detail = "the answer was not sent to its end";
+  }
+  if (options_.on_finished) {
+    finished.id = exchange.id();
+    finished.method = exchange.method();
+    finished.path = exchange.head().target.substr(0, exchange.head().target.find('?'));
+    finished.remote_address = exchange.remote_address();
+    finished.status = response.status;
+    finished.bytes_in = connection_.bytes_in() - in_before;
+    finished.bytes_out = connection_.bytes_out() - out_before;
+    finished.milliseconds =
+        std::chrono::duration<double, std::milli>(Connection::Clock::now() - start).count();
+    options_.on_finished(finished);
+  }
+  return sent && keep_alive;
+}
+
+Response Session::refusal(const Exchange& exchange, const Problem& problem, Finished& finished) const {
+  finished.code = proto::problem_kind(problem.code()).name;
+  finished.detail = problem.what();
+  Response response = problem_response(problem, exchange.id());
+  if (problem.code() == Code::method_not_allowed)
+    response.headers.emplace_back("Allow", routes_.allowed(exchange.path()));
+  return response;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,67 @@
+# Debian packages, for the set-up scripts, which source this file.
+# shellcheck shell=bash
+
+deps=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/deps
+
+say() { printf 'setup: %s\n' "$*"; }
+die() {
+  printf 'setup: %s\n' "$*" >&2
+  exit 1
+}
+
+# apt_get ARGUMENT...: quiet apt-get; shows what it said when it fails. Root's downloads land in the project's own
+# folders, which apt's sandbox user may not write to: the sandbox stays off, or apt warns.
+apt_get() {
+  local log="$deps/apt.log"
+  apt-get -qq -o APT::Sandbox::User=root -o DPkg::Lock::Timeout=600 "$@" >"$log" 2>&1 </dev/null || {
+    cat "$log" >&2
+    return 1
+  }
+}
+
+# as_root NAME ARGUMENT...: apt-get with root's rights, or a message with the command to run.
+as_root() {
+  if ((EUID == 0)); then
+    DEBIAN_FRONTEND=noninteractive apt_get "$@"
+  elif command -v sudo >/dev/null; then
+    sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600 "$@" </dev/null
+  else
+    die "this needs root: run as root \`apt-get $*\`, then this again"
+  fi
+}
+
+# Once per set-up, and only when something is to be fetched. A list that cannot be refreshed need not be one we use.
+apt_update() {
+  [[ -z ${PAPILIO_APT_UPDATED:-} ]] || return 0
+  export PAPILIO_APT_UPDATED=yes
+  say "refreshing the package lists"
+  as_root update || say "some package lists could not be refreshed; going on with what there is"
+}
+
+apt_install() {
+  if ((EUID != 0)) && ! command -v sudo >/dev/null; then
+    die "this needs root: run \`apt-get update && apt-get install -y --no-install-recommends $*\` as root, then this again"
+  fi
+  apt_update
+  say "installing $*"
+  as_root install -y --no-install-recommends "$@" || die "could not install: $*"
+}
+
+# unpack_package PACKAGE FOLDER: the package's files under FOLDER, without installing it or what it depends on.
+unpack_package() {
+  say "unpacking $1"
+  if ! (cd "$2" && apt_get download "$1" 2>/dev/null); then
+    apt_update
+    (cd "$2" && apt_get download "$1") || die "could not download $1"
+  fi
+  dpkg-deb -x "$2/$1"_*.deb "$2"
+  rm "$2/$1"_*.deb
+}
+
+# unfinished_folder NAME: a new empty folder in build/deps, to be filled and then renamed, so that what an interrupted
+# set-up leaves is never taken for finished.
+unfinished_folder() {
+  rm -rf "$deps/$1.unfinished"
+  mkdir -p "$deps/$1.unfinished"
+  printf '%s\n' "$deps/$1.unfinished"
+}

@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# demo.sh [--exit]: starts the release server on loopback, refines a coarse bunny uniformly, adaptively and for a view,
+# and shows what each cost. The server stays up until Ctrl-C; with --exit it is stopped at once.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+cd "$root"
+server_pid=
+
+# Ends the server as an operator would, with SIGTERM; returns its exit status, or 1 when it had to be killed.
+stop_server() {
+  [[ -n $server_pid ]] || return 0
+  local pid=$server_pid
+  server_pid=
+  kill -TERM "$pid" 2>/dev/null || true
+  for _ in {1..150}; do
+    kill -0 "$pid" 2>/dev/null || break
+    sleep 0.1
+  done
+  kill -KILL "$pid" 2>/dev/null || true
+  wait "$pid"
+}
+trap 'stop_server || true' EXIT
+
+die() {
+  printf 'demo: %s\n' "$*" >&2
+  exit 1
+}
+
+tests/support/coarse_meshes.sh release
+coarse=build/deps/meshes/bunny600.drc
+mkdir -p build/demo
+rm -f build/demo/*
+info=$(build/release/papilio info --json "$coarse")
+
+# Port 8080, or a free one where something else answers there.
+port=8080
+if (exec 3<>/dev/tcp/127.0.0.1/8080) 2>/dev/null; then port=0; fi
+build/release/papilio-server --host 127.0.0.1 --port "$port" >build/demo/server.out 2>build/demo/server.log &
+server_pid=$!
+for _ in {1..100}; do
+  if [[ -s build/demo/server.out ]] || ! kill -0 "$server_pid" 2>/dev/null; then break; fi
+  sleep 0.1
+done
+url=$(sed -n '1s/^listening on \(http:.*\)$/\1/p' build/demo/server.out)
+if [[ -z $url ]]; then
+  cat build/demo/server.log >&2
+  die "the server did not start"
+fi
+
+row() { printf '%-26s %9s %9s %9s %10s %9s\n' "$@"; }
+header() { tr -d '\r' <build/demo/headers.txt | sed -n "s/^$1: *//Ip" | tail -1; }
+
+# refine WHAT NAME QUERY: one request, its row of the table, and its command line for the list below the table.
+commands=
+refine() {
+  local command milliseconds result=build/demo/$2.drc
+  command="curl -sS --fail-with-body --noproxy '*' -H 'Content-Type: application/x-draco' --data-binary @$coarse"
+  command+=" -o $result '$url/v1/refine?$3'"
+  eval "$command --dump-header build/demo/headers.txt" || {
+    cat "$result" >&2 || true
+    die "this request failed: $command"
+  }
+  # Server-Timing: decode;dur=1.2, refine;dur=3.4, encode;dur=5.6
+  milliseconds=$(header Server-Timing | tr ',' '\n' | awk -F'dur=' '
+    { total += $2 } /refine;/ { refine = $2 } END { printf "%.1f %.1f", refine, total }')
+  # shellcheck disable=SC2086 # two columns
+  row "$1" "$(header Papilio-Vertices)" "$(header Papilio-Faces)" "$(stat -c %s "$result")" $milliseconds
+  commands+="  $command"$'\n'
+}
+
+# The bunny's front, from as far away as shows all of its height in 40 degrees.
+view=$(jq -r '
+  def round4: . * 10000 | round / 10000;
+  def triple: map(round4 | tostring) | join(",");
+  .box as $box
+  | [range(3) | ($box.min[.] + $box.max[.]) / 2] as $centre
+  | (1.1 * ($box.max[1] - $box.min[1]) / 2 / ((20 * 3.141592653589793 / 180) | tan)) as $distance
+  | "view.eye=\([$centre[0], $centre[1], $box.max[2] + $distance] | triple)&view.target=\($centre | triple)&view.fov_y=40"
+' <<<"$info")
+
+echo
+row 'what' 'vertices' 'faces' 'bytes' 'refine ms' 'total ms'
+# shellcheck disable=SC2046 # three columns
+row 'coarse' $(jq -r '.vertices, .faces, .bytes' <<<"$info") - -
+refine 'uniform, 2 levels' uniform 'levels=2'
+refine 'adaptive by flatness' adaptive 'levels=2&flatness=0.8,0.9'
+refine 'adaptive, seen from front' view "levels=2&flatness=0.8,0.9&$view"
+printf '\nThe requests, to be pasted again in %s; the meshes are in build/demo:\n%s' "$root" "$commands"
+
+if [[ ${1:-} == --exit ]]; then
+  stop_server || die "the server did not stop cleanly; what it said is in build/demo/server.log"
+  exit 0
+fi
+printf '\nThe server is at %s (its viewer too, in a browser). Ctrl-C stops it.\n' "$url"
+trap 'echo; stop_server || exit 1; exit 0' INT TERM
+wait "$server_pid" || die "the server ended by itself; what it said is in build/demo/server.log"

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# setup.sh [build|test|demo|bench|check]...: installs what these need and is not there yet; without arguments, everything.
+# Says what it does; when there is nothing to do it does nothing, quickly and silently.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=tests/support/apt.sh
+source "$here/apt.sh"
+
+packages=()
+programs=() # as program:package, for what may have been installed in some other way
+meshes=no
+(($#)) || set -- build test demo bench check
+for purpose in "$@"; do
+  case $purpose in
+    build)
+      packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
+        libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev)
+      ;;
+    test) meshes=yes packages+=(bats perl curl jq draco ca-certificates) ;;
+    demo) meshes=yes packages+=(curl jq ca-certificates) ;;
+    bench) meshes=yes packages+=(ca-certificates) ;;
+    check) packages+=(clang-format clang-tidy shellcheck git jq) ;;
+    *) die "unknown purpose '$purpose'" ;;
+  esac
+done
+[[ $meshes == no ]] || programs+=(node:nodejs npm:npm)
+
+missing=()
+if command -v dpkg-query >/dev/null; then
+  installed=" $(dpkg-query -W -f '${db:Status-Abbrev}${Package} ' "${packages[@]}" 2>/dev/null | tr -s ' ' || true)"
+  for package in "${packages[@]}"; do
+    [[ $installed == *" ii $package "* || " ${missing[*]} " == *" $package "* ]] || missing+=("$package")
+  done
+else
+  die "Debian 12 or 13 is needed here; elsewhere, provide: ${packages[*]}"
+fi
+for program in "${programs[@]}"; do
+  command -v "${program%:*}" >/dev/null || missing+=("${program#*:}")
+done
+
+mkdir -p "$deps"
+exec 9>"$deps/setup.lock"
+flock 9 # two set-ups at once: the second finds nothing left to do
+
+((${#missing[@]} == 0)) || apt_install "${missing[@]}"
+
+# OpenMesh: its library's package, whose name carries a version; and the headers alone of its development package, which
+# would pull in a whole viewer.
+if ! compgen -G '/usr/lib/*/libOpenMeshCore.so.*' >/dev/null; then
+  apt_update
+  library=$(apt-cache depends libopenmesh-dev | sed -n 's/^ *Depends: \(libopenmesh[0-9].*\)$/\1/p')
+  apt_install "$library"
+fi
+if [[ ! -d $deps/openmesh ]]; then
+  unfinished=$(unfinished_folder openmesh)
+  unpack_package libopenmesh-dev "$unfinished"
+  mv -T "$unfinished" "$deps/openmesh"
+fi
+
+[[ $meshes == no ]] || "$here/real_meshes.sh"

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "core/triangle_mesh.h"
+
+// Meshes made by formula, for tests. All are wound counter-clockwise seen from outside.
+
+namespace papilio::test {
+
+[[nodiscard]] TriangleMesh tetrahedron();
+[[nodiscard]] TriangleMesh octahedron();
+[[nodiscard]] TriangleMesh icosahedron();
+[[nodiscard]] TriangleMesh cube();
+/// n by m quadrangles in two triangles each: every vertex has valence 6.
+[[nodiscard]] TriangleMesh torus(uint32_t n, uint32_t m, float radius = 1, float tube = 0.4F);
+/// The square 0..n by 0..m in the plane z = 0, two triangles a cell.
+[[nodiscard]] TriangleMesh grid(uint32_t n, uint32_t m);
+/// A closed fan of K triangles round the origin, the ring at radius 1; `closed` false leaves out the last
+/// triangle's partner, so that K triangles lie between two boundary edges that span `sweep` radians.
+[[nodiscard]] TriangleMesh fan(uint32_t triangles, bool closed, double sweep = 3.14159265358979);
+/// A double cone: two apexes over a ring of K points.
+[[nodiscard]] TriangleMesh bipyramid(uint32_t ring);
+/// Both meshes, the second moved by (dx, 0, 0).
+[[nodiscard]] TriangleMesh join(const TriangleMesh& a, const TriangleMesh& b, float dx);
+
+/// A random mesh that is a manifold: closed or open, of one component or several, of genus 0 or 1, with
+/// jittered positions and valences from 3 up.
+[[nodiscard]] TriangleMesh random_manifold(std::mt19937& random);
+
+}  // namespace papilio::test

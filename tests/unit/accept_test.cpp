@@ -1,0 +1,28 @@
+#include "server/accept.h"
+
+#include <gtest/gtest.h>
+
+namespace papilio::server {
+namespace {
+
+const std::vector<std::string> offered{"application/x-draco", "application/octet-stream", "multipart/mixed"};
+
+TEST(Accept, TakesWhatTheClientLikesBest) {
+  const auto chosen = [](const char* accept) { return negotiate(accept, offered).value_or("none"); };
+  EXPECT_EQ(chosen(""), "application/x-draco");
+  EXPECT_EQ(chosen("*/*"), "application/x-draco");
+  EXPECT_EQ(chosen("multipart/mixed"), "multipart/mixed");
+  EXPECT_EQ(chosen("Multipart/Mixed; q=0.5"), "multipart/mixed");
+  EXPECT_EQ(chosen("multipart/*"), "multipart/mixed");
+  EXPECT_EQ(chosen("*/*, multipart/mixed"), "multipart/mixed");
+  EXPECT_EQ(chosen("*/*;q=0.9, multipart/mixed;q=0.1"), "application/x-draco");
+  EXPECT_EQ(chosen("application/octet-stream"), "application/octet-stream");
+  EXPECT_EQ(chosen("application/*"), "application/x-draco");
+  EXPECT_EQ(chosen("text/html, application/xhtml+xml"), "none");
+  EXPECT_EQ(chosen("application/x-draco;q=0"), "none");
+  EXPECT_EQ(chosen("application/x-draco;q=0, */*"), "application/octet-stream");
+  EXPECT_EQ(chosen("model/vnd;q=x, ;;, ,"), "none");
+}
+
+}  // namespace
+}  // namespace papilio::server

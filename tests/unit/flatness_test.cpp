@@ -1,0 +1,95 @@
+#include "core/flatness.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/normals.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+uint32_t count(const EdgeMarks& marks) {
+  return static_cast<uint32_t>(std::count_if(marks.begin(), marks.end(), [](uint8_t m) { return m != 0; }));
+}
+
+EdgeMarks flatness_marks(const Mesh& mesh, double threshold) {
+  EdgeMarks marks(mesh.topology.edge_count(), 0);
+  mark_by_flatness(mesh, face_normals(mesh), threshold, marks);
+  return marks;
+}
+
+TEST(Flatness, CubeMarksItsTwelveEdgesAndNoDiagonal) {
+  const Mesh mesh = build_mesh(cube());
+  EXPECT_EQ(count(flatness_marks(mesh, 0.5)), 12U);  // right angles: 0 < 0.5
+  EXPECT_EQ(count(flatness_marks(mesh, 0.0)), 0U);   // 0 is not below 0: flat is tau >= t
+  EXPECT_EQ(count(flatness_marks(mesh, 1.0)), 12U);  // the diagonals have exactly 1
+  EXPECT_EQ(count(flatness_marks(mesh, -1.0)), 0U);
+}
+
+TEST(Flatness, IcosahedronHasOneDihedralAngle) {
+  const Mesh mesh = build_mesh(icosahedron());
+  const double tau = std::sqrt(5.0) / 3;
+  EXPECT_EQ(count(flatness_marks(mesh, tau + 1e-5)), 30U);
+  EXPECT_EQ(count(flatness_marks(mesh, tau - 1e-5)), 0U);
+}
+
+TEST(Flatness, BoundaryIsJudgedByTheTurnOfItsCurve) {
+  const Mesh mesh = build_mesh(grid(4, 4));
+  // Flat inside; the rim turns by 90 degrees at four corners, which have two rim edges each.
+  EXPECT_EQ(count(flatness_marks(mesh, 0.5)), 8U);
+  EXPECT_EQ(count(flatness_marks(mesh, -0.1)), 0U);
+}
+
+TEST(Flatness, FaceWithoutAreaMarksNothingOnItsAccount) {
+  // A sliver whose three vertices lie on one line, between two faces of a folded sheet.
+  const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 0, 1}},
+                                {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}}});
+  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_EQ(marks[mesh.topology.edge[i]], 0);
+}
+
+TEST(Flatness, TinyAndHugeMeshesAreJudgedAlike) {
+  for (float scale : {1e-30F, 1e17F}) {
+    TriangleMesh shape = icosahedron();
+    for (Vec3f& p : shape.positions) p = scale * p;
+    EXPECT_EQ(count(flatness_marks(build_mesh(shape), 0.8)), 30U) << scale;
+  }
+}
+
+TEST(Growth, FacesMarksTheOtherEdgesOfBothTriangles) {
+  const Mesh mesh = build_mesh(icosahedron());
+  EdgeMarks marks(30, 0);
+  marks[7] = 1;
+  grow(mesh.topology, Growth::off, marks);
+  EXPECT_EQ(count(marks), 1U);
+  grow(mesh.topology, Growth::faces, marks);
+  EXPECT_EQ(count(marks), 5U);
+}
+
+TEST(Growth, VerticesMarksAllEdgesAtBothEnds) {
+  const Mesh mesh = build_mesh(icosahedron());
+  EdgeMarks marks(30, 0);
+  marks[7] = 1;
+  grow(mesh.topology, Growth::vertices, marks);
+  EXPECT_EQ(count(marks), 9U);  // five at each end, one of them common
+}
+
+TEST(Growth, IsOneStepHoweverManyMarks) {
+  const Mesh mesh = build_mesh(torus(12, 12));
+  EdgeMarks marks(mesh.topology.edge_count(), 0);
+  marks[0] = 1;
+  EdgeMarks twice = marks;
+  grow(mesh.topology, Growth::faces, marks);
+  EXPECT_EQ(count(marks), 5U);
+  grow(mesh.topology, Growth::faces, twice);
+  grow(mesh.topology, Growth::faces, twice);
+  EXPECT_GT(count(twice), count(marks));
+}
+
+}  // namespace
+}  // namespace papilio

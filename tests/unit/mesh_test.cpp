@@ -1,0 +1,149 @@
+#include "core/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/error.h"
+#include "tests/support/invariants.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+Fault fault_of(const TriangleMesh& mesh) {
+  try {
+    (void)build_mesh(mesh);
+  } catch (const Error& error) {
+    EXPECT_GT(std::string(error.what()).size(), 20U);
+    return error.fault();
+  }
+  ADD_FAILURE() << "was not refused";
+  return Fault::cancelled;
+}
+
+TEST(Mesh, ClosedShapesHaveTheirEulerCharacteristic) {
+  EXPECT_EQ(build_mesh(tetrahedron()).topology.euler_characteristic(), 2);
+  EXPECT_EQ(build_mesh(icosahedron()).topology.euler_characteristic(), 2);
+  EXPECT_EQ(build_mesh(cube()).topology.euler_characteristic(), 2);
+  EXPECT_EQ(build_mesh(torus(5, 4)).topology.euler_characteristic(), 0);
+  EXPECT_EQ(build_mesh(grid(3, 2)).topology.euler_characteristic(), 1);
+  EXPECT_EQ(build_mesh(join(torus(3, 3), icosahedron(), 9)).topology.euler_characteristic(), 2);
+}
+
+TEST(Mesh, RandomManifoldsAreConsistentAndCleanlyReported) {
+  for (uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const TriangleMesh input = random_manifold(random);
+    BuildReport report;
+    const Mesh mesh = build_mesh(input, &report);
+    ASSERT_TRUE(is_consistent(mesh)) << "seed " << seed;
+    ASSERT_EQ(mesh.topology.face_count(), input.triangles.size());
+    ASSERT_EQ(report.boundary_edges, count_edges(input).boundary);
+    ASSERT_EQ(report.non_manifold_edges + report.misoriented_edges, 0U);
+  }
+}
+
+TEST(Mesh, WeldsPointsOfEqualPosition) {
+  TriangleMesh soup;
+  for (const Triangle& t : cube().triangles) {
+    for (uint32_t v : t) soup.positions.push_back(cube().positions[v]);
+    const auto n = static_cast<uint32_t>(soup.positions.size());
+    soup.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  soup.positions[0].x = -0.0F;  // the same place as 0
+  BuildReport report;
+  const Mesh mesh = build_mesh(soup, &report);
+  EXPECT_EQ(mesh.topology.vertex_count, 8U);
+  EXPECT_EQ(report.welded_points, 28U);
+  EXPECT_EQ(report.boundary_edges, 0U);
+  EXPECT_TRUE(is_consistent(mesh));
+}
+
+TEST(Mesh, KeepsFaceOrderAndNumbersVerticesAsFacesNameThem) {
+  const Mesh mesh = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{3, 2, 1}, {0, 1, 2}}});
+  EXPECT_EQ(mesh.topology.origin, (std::vector<uint32_t>{0, 1, 2, 3, 2, 1}));
+  EXPECT_EQ(mesh.positions[0], (Vec3f{1, 1, 0}));
+}
+
+TEST(Mesh, DropsAndCountsWhatCannotBeRefined) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.positions.push_back({9, 9, 9});          // isolated
+  mesh.triangles.push_back({0, 1, 1});          // degenerate
+  mesh.triangles.push_back({2, 1, 0});          // repeated: the first face turned
+  mesh.positions.push_back(mesh.positions[0]);  // welded
+  mesh.triangles.push_back({0, 5, 2});          // degenerate once welded
+  BuildReport report;
+  const Mesh built = build_mesh(mesh, &report);
+  EXPECT_EQ(built.topology.face_count(), 4U);
+  EXPECT_EQ(report.isolated_points, 1U);
+  EXPECT_EQ(report.degenerate_faces, 2U);
+  EXPECT_EQ(report.repeated_faces, 1U);
+  EXPECT_EQ(report.welded_points, 1U);
+  EXPECT_TRUE(is_consistent(built));
+}
+
+TEST(Mesh, TwoFacesBackToBackAreASphereNotARepetition) {
+  BuildReport report;
+  const Mesh mesh = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, &report);
+  EXPECT_EQ(report.repeated_faces, 0U);
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 2);
+  EXPECT_TRUE(is_consistent(mesh));
+}
+
+TEST(Mesh, NonManifoldAndMisorientedEdgesAreShared) {
+  BuildReport report;
+  const Mesh book = build_mesh(
+      {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}},
+      &report);
+  EXPECT_EQ(report.non_manifold_edges, 1U);
+  EXPECT_TRUE(is_consistent(book));
+  const Mesh twisted =
+      build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}}, &report);
+  EXPECT_EQ(report.misoriented_edges, 1U);
+  EXPECT_EQ(report.boundary_edges, 4U);
+  EXPECT_TRUE(is_consistent(twisted));
+}
+
+TEST(Mesh, PinchedVerticesAreFound) {
+  BuildReport report;
+  (void)build_mesh(join(tetrahedron(), tetrahedron(), 9), &report);
+  EXPECT_EQ(report.pinched_vertices, 0U);
+  TriangleMesh touching = join(tetrahedron(), tetrahedron(), 9);
+  touching.positions[5] = touching.positions[0];
+  const Mesh mesh = build_mesh(touching, &report);
+  EXPECT_EQ(report.pinched_vertices, 1U);
+  EXPECT_EQ(mesh.positions[mesh.topology.pinched.at(0)], touching.positions[0]);
+  (void)build_mesh(fan(5, false), &report);
+  EXPECT_EQ(report.pinched_vertices, 0U);
+}
+
+TEST(Mesh, RefusesWhatItCannotTake) {
+  EXPECT_EQ(fault_of({}), Fault::no_faces);
+  EXPECT_EQ(fault_of({{{0, 0, 0}}, {{0, 0, 0}}}), Fault::no_faces);
+  EXPECT_EQ(fault_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}), Fault::index_out_of_range);
+  for (float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2e18F}) {
+    TriangleMesh mesh = cube();
+    mesh.positions[3].y = bad;
+    EXPECT_EQ(fault_of(mesh), Fault::not_finite);
+  }
+}
+
+TEST(Mesh, AFanOfManyThousandsOfFacesIsBuilt) {
+  const Mesh mesh = build_mesh(bipyramid(100'000));
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 2);
+}
+
+TEST(Mesh, BoundingBox) {
+  const Box box = bounding_box(cube().positions);
+  EXPECT_EQ(box.min, (Vec3f{0, 0, 0}));
+  EXPECT_EQ(box.max, (Vec3f{1, 1, 1}));
+  EXPECT_DOUBLE_EQ(box.diagonal(), std::sqrt(3.0));
+  EXPECT_EQ(bounding_box({}).diagonal(), 0);
+}
+
+}  // namespace
+}  // namespace papilio

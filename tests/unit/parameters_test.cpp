@@ -1,0 +1,172 @@
+#include "proto/parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "proto/problem.h"
+
+namespace papilio::proto {
+namespace {
+
+struct Refusal {
+  Code code = Code::internal;
+  std::string parameter, detail;
+};
+
+template <class Parse>
+Refusal refusal_of(Parse parse) {
+  try {
+    parse();
+  } catch (const Problem& problem) {
+    return {problem.code(), problem.parameter(), problem.what()};
+  }
+  ADD_FAILURE() << "was not refused";
+  return {};
+}
+
+Refusal query_refusal(const QueryFields& fields) {
+  return refusal_of([&] { (void)parse_query(fields); });
+}
+Refusal json_refusal(const std::string& text) {
+  return refusal_of([&] { (void)parse_json(text); });
+}
+
+TEST(Parameters, NothingGivenIsTheDefault) {
+  EXPECT_EQ(parse_query({}), Parameters{});
+  EXPECT_EQ(parse_json("{}"), Parameters{});
+  EXPECT_EQ(to_query(Parameters{}), "");
+  EXPECT_FALSE(parse_query({}).options.view.has_value());
+}
+
+TEST(Parameters, QueryAndJsonSayTheSame) {
+  const Parameters query = parse_query({{"levels", "3"},
+                                        {"flatness", "0.8,0.9"},
+                                        {"growth", "2"},
+                                        {"scheme", "in-place"},
+                                        {"view.eye", "0,1.5,-3e1"},
+                                        {"view.projection", "orthographic"},
+                                        {"view.viewport", "640,480"},
+                                        {"output.position_bits", "16"},
+                                        {"output.normals", "true"}});
+  const Parameters json =
+      parse_json(R"({"levels": 3, "flatness": [0.8, 0.9], "growth": 2, "scheme": "in-place",
+      "view": {"eye": [0, 1.5, -30], "projection": "orthographic", "viewport": [640, 480]},
+      "output": {"position_bits": 16, "normals": true}})");
+  EXPECT_EQ(query, json);
+  EXPECT_EQ(query.options.levels, 3);
+  EXPECT_EQ(query.options.flatness, (std::vector<double>{0.8, 0.9}));
+  EXPECT_EQ(query.options.growth, Growth::vertices);
+  ASSERT_TRUE(query.options.view);
+  EXPECT_EQ(query.options.view->eye, (Vec3d{0, 1.5, -30}));
+  EXPECT_EQ(query.options.view->projection, Projection::orthographic);
+  EXPECT_EQ(query.options.view->edge_pixels, 10);
+  EXPECT_EQ(query.output.position_bits, 16);
+  EXPECT_TRUE(query.output.normals);
+}
+
+TEST(Parameters, CanonicalFormIsOneForEqualParametersAndReadsBack) {
+  const Parameters a =
+      parse_query({{"levels", "03"}, {"flatness", "0.90,.5"}, {"view.fov_y", "45"}, {"w", "-0"}});
+  const Parameters b = parse_query({{"view.fov_y", "45.0"}, {"flatness", "9e-1,0.5"}, {"levels", "3"}});
+  EXPECT_EQ(to_query(a), to_query(b));
+  EXPECT_EQ(to_query(a), "levels=3&flatness=0.9,0.5&view.eye=0,0,3");
+  EXPECT_EQ(parse_query(to_fields(a)), a);
+  const Parameters full =
+      parse_query({{"view.eye", "0.1,-2,1e-7"}, {"view.near", "0.25"}, {"output.speed", "3"}});
+  EXPECT_EQ(parse_query(to_fields(full)), full);
+}
+
+TEST(Parameters, EveryRowRoundTripsAndRefusesItsNeighbours) {
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string name(info.name);
+    if (info.type == ParameterType::choice || info.type == ParameterType::boolean) {
+      EXPECT_EQ(query_refusal({{name, "perhaps"}}).parameter, name);
+      continue;
+    }
+    const auto repeated = [&](const std::string& value, size_t times) {
+      std::string text = value;
+      for (size_t i = 1; i < times; ++i) text += "," + value;
+      return text;
+    };
+    const size_t count = info.least;
+    EXPECT_EQ(query_refusal({{name, repeated("1e300", count)}}).code, Code::bad_parameter) << name;
+    EXPECT_EQ(query_refusal({{name, repeated("-1e300", count)}}).parameter, name);
+    EXPECT_EQ(query_refusal({{name, repeated("nan", count)}}).parameter, name);
+    EXPECT_EQ(query_refusal({{name, ""}}).parameter, name);
+    EXPECT_EQ(query_refusal({{name, repeated("1", info.most + 1)}}).parameter, name);
+    EXPECT_EQ(query_refusal({{name, repeated("1x", count)}}).parameter, name);
+    EXPECT_EQ(query_refusal({{name, "1, 2,"}}).parameter, name);
+  }
+}
+
+TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
+  const Refusal range = query_refusal({{"levels", "11"}});
+  EXPECT_EQ(range.code, Code::bad_parameter);
+  EXPECT_EQ(range.detail, "levels must be an integer in 0..10, not \"11\".");
+  EXPECT_EQ(query_refusal({{"levels", "1.5"}}).detail, "levels must be an integer in 0..10, not \"1.5\".");
+  const Refusal unknown = query_refusal({{"level", "2"}});
+  EXPECT_EQ(unknown.code, Code::unknown_parameter);
+  EXPECT_EQ(unknown.parameter, "level");
+  EXPECT_NE(unknown.detail.find("levels"), std::string::npos);
+  EXPECT_EQ(query_refusal({{"levels", "2"}, {"levels", "2"}}).parameter, "levels");
+  EXPECT_EQ(query_refusal({{"scheme", "loop"}}).detail, "scheme must be in-place, not \"loop\".");
+  EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail,
+            "output.normals must be true or false, not \"1\".");
+}
+
+TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {
+  EXPECT_EQ(query_refusal({{"view.eye", "1,2,3"}, {"view.target", "1,2,3"}}).parameter, "view.target");
+  EXPECT_EQ(query_refusal({{"view.up", "0,0,1"}}).parameter, "view.up");
+}
+
+TEST(Parameters, JsonOfTheWrongShapeIsRefused) {
+  EXPECT_EQ(json_refusal("").code, Code::bad_request);
+  EXPECT_EQ(json_refusal("{\"levels\": 2").code, Code::bad_request);
+  EXPECT_EQ(json_refusal("[1]").code, Code::bad_request);
+  EXPECT_EQ(json_refusal("{\"levels\": \"2\"}").parameter, "levels");
+  EXPECT_EQ(json_refusal("{\"levels\": [2]}").parameter, "levels");
+  EXPECT_EQ(json_refusal("{\"levels\": null}").parameter, "levels");
+  EXPECT_EQ(json_refusal("{\"flatness\": 0.5}").parameter, "flatness");
+  EXPECT_EQ(json_refusal("{\"view\": 3}").parameter, "view");
+  EXPECT_EQ(json_refusal("{\"view\": {\"eyes\": [0,0,1]}}").parameter, "view.eyes");
+  EXPECT_EQ(json_refusal("{\"view.eye\": [0,0,1]}").code, Code::unknown_parameter);
+  EXPECT_EQ(json_refusal("{\"levels\": 1, \"levels\": 2}").parameter, "levels");
+  EXPECT_EQ(json_refusal("{\"view\": {\"near\": 1, \"near\": 2}}").parameter, "near");
+  EXPECT_EQ(json_refusal(std::string(70000, ' ')).code, Code::body_too_large);
+  EXPECT_EQ(json_refusal(std::string(60000, '[')).code, Code::bad_request);
+}
+
+TEST(Parameters, TheTableDocumentsItself) {
+  const auto rows = nlohmann::json::parse(parameters_json());
+  ASSERT_EQ(rows.size(), parameter_table().size());
+  const std::string markdown = parameters_markdown();
+  for (const auto& row : rows) {
+    EXPECT_NE(markdown.find("`" + row["name"].get<std::string>() + "`"), std::string::npos);
+    EXPECT_FALSE(row["description"].get<std::string>().empty());
+    EXPECT_FALSE(row["default"].get<std::string>().empty());
+  }
+}
+
+TEST(Problem, TableIsInTheOrderOfItsCodesAndComplete) {
+  size_t index = 0;
+  for (const ProblemKind& kind : problem_kinds()) {
+    EXPECT_EQ(static_cast<size_t>(kind.code), index++);
+    EXPECT_GE(kind.status, 400);
+    EXPECT_FALSE(kind.title.empty());
+  }
+  EXPECT_EQ(index, static_cast<size_t>(Code::internal) + 1);
+}
+
+TEST(Problem, JsonIsAProblemDocumentWhateverTheDetailHolds) {
+  const Problem problem(Code::bad_parameter, "not \"\xff\n<b>\"", "levels");
+  const auto document = nlohmann::json::parse(problem.json("id-1"));
+  EXPECT_EQ(document["type"], "urn:papilio:problem:bad_parameter");
+  EXPECT_EQ(document["code"], "bad_parameter");
+  EXPECT_EQ(document["status"], 400);
+  EXPECT_EQ(document["parameter"], "levels");
+  EXPECT_EQ(document["request_id"], "id-1");
+}
+
+}  // namespace
+}  // namespace papilio::proto

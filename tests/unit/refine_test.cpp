@@ -1,0 +1,206 @@
+#include "core/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tests/support/invariants.h"
+#include "tests/support/openmesh_oracle.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+Fault fault_of(const TriangleMesh& mesh, const Options& options, const Hooks& hooks = {}) {
+  try {
+    (void)refine(build_mesh(mesh), options, hooks);
+  } catch (const Error& error) {
+    return error.fault();
+  }
+  ADD_FAILURE() << "was not refused";
+  return Fault::no_faces;
+}
+
+/// Largest distance from a point of `a` to its nearest of `b`, through a grid of cells of size `cell`;
+/// infinite beyond it.
+double one_sided_distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b, double cell) {
+  using Cell = std::array<int64_t, 3>;
+  const auto cell_of = [&](Vec3d p) {
+    return Cell{std::llround(p.x / cell), std::llround(p.y / cell), std::llround(p.z / cell)};
+  };
+  std::multimap<Cell, Vec3d> grid;
+  for (Vec3d p : b) grid.emplace(cell_of(p), p);
+  double largest = 0;
+  for (Vec3d p : a) {
+    double nearest = std::numeric_limits<double>::infinity();
+    const Cell centre = cell_of(p);
+    for (int64_t i = 0; i < 27; ++i) {
+      const Cell near{centre[0] + i % 3 - 1, centre[1] + i / 3 % 3 - 1, centre[2] + i / 9 - 1};
+      const auto [begin, end] = grid.equal_range(near);
+      for (auto it = begin; it != end; ++it) nearest = std::min(nearest, length(it->second - p));
+    }
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
+void expect_equal_to_openmesh(const TriangleMesh& mesh, int most_levels) {
+  const Mesh coarse = build_mesh(mesh);
+  const double diagonal = bounding_box(coarse.positions).diagonal();
+  for (int level = 1; level <= most_levels; ++level) {
+    Options options;
+    options.levels = level;
+    const Result ours = refine(coarse, options);
+    const OracleResult theirs = openmesh_butterfly(mesh, static_cast<size_t>(level));
+    ASSERT_EQ(ours.mesh.topology.face_count(), theirs.faces);
+    ASSERT_EQ(ours.mesh.positions.size(), theirs.positions.size());
+    std::vector<Vec3d> positions;
+    for (Vec3f p : ours.mesh.positions) positions.push_back(to_double(p));
+    EXPECT_LE(one_sided_distance(positions, theirs.positions, 1e-4 * diagonal), 1e-6 * diagonal) << level;
+    EXPECT_LE(one_sided_distance(theirs.positions, positions, 1e-4 * diagonal), 1e-6 * diagonal) << level;
+  }
+}
+
+TEST(Refine, EqualsOpenMeshOnAClosedRealMesh) { expect_equal_to_openmesh(real_mesh("elephant2000.obj"), 3); }
+TEST(Refine, EqualsOpenMeshOnTheBunny) { expect_equal_to_openmesh(real_mesh("bunny600.obj"), 3); }
+TEST(Refine, EqualsOpenMeshOnShapes) {
+  expect_equal_to_openmesh(tetrahedron(), 3);
+  expect_equal_to_openmesh(icosahedron(), 3);
+  expect_equal_to_openmesh(cube(), 3);
+  expect_equal_to_openmesh(torus(5, 7), 3);
+  expect_equal_to_openmesh(bipyramid(12), 3);
+}
+
+TEST(Refine, UniformLevelHasFourToTheLevelTimesTheFaces) {
+  const TriangleMesh bunny = real_mesh("bunny600.obj");
+  for (int level = 0; level <= 4; ++level) {
+    Options options;
+    options.levels = level;
+    const Result result = refine(build_mesh(bunny), options);
+    EXPECT_EQ(result.mesh.topology.face_count(), 600U << (2 * level));
+    EXPECT_EQ(result.levels, level);
+    EXPECT_EQ(result.stop_reason, StopReason::levels);
+    EXPECT_EQ(result.mesh.topology.euler_characteristic(), 2);
+  }
+}
+
+TEST(Refine, AdaptiveBunnySavesFacesAndAViewSavesMore) {
+  const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
+  Options options;
+  options.flatness = {0.8, 0.9};
+  const uint32_t adaptive = refine(bunny, options).mesh.topology.face_count();
+  EXPECT_LE(adaptive, 600 * 16 * 65 / 100);
+  EXPECT_GT(adaptive, 600U);
+  const Box box = bounding_box(bunny.positions);
+  View view;
+  view.target = 0.5 * (to_double(box.min) + to_double(box.max));
+  view.eye = view.target + Vec3d{0, 0, 1.5 * box.diagonal()};
+  options.view = view;
+  const uint32_t dependent = refine(bunny, options).mesh.topology.face_count();
+  EXPECT_LT(dependent, adaptive);
+  EXPECT_GT(dependent, 600U);
+}
+
+TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
+  for (uint32_t seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    const Mesh coarse = build_mesh(random_manifold(random));
+    Options options;
+    options.levels = static_cast<int>(random() % 4);
+    for (uint32_t n = random() % 4; n > 0; --n)
+      options.flatness.push_back(std::uniform_real_distribution<double>(-1, 1)(random));
+    options.growth = static_cast<Growth>(random() % 3);
+    if (random() % 2 == 0) {
+      View view;
+      view.eye = {std::uniform_real_distribution<double>(-5, 25)(random), 1, 7};
+      view.edge_pixels = std::uniform_real_distribution<double>(0, 100)(random);
+      view.projection = static_cast<Projection>(random() % 2);
+      options.view = view;
+    }
+    const EdgeCensus before = count_edges(coarse.triangles());
+    int expected_level = 0;
+    const Hooks hooks{.on_level = [&](const Level& level) {
+      ASSERT_EQ(level.level, expected_level++);
+      ASSERT_TRUE(is_consistent(level.mesh)) << "seed " << seed << " level " << level.level;
+      ASSERT_EQ(level.mesh.topology.euler_characteristic(), coarse.topology.euler_characteristic());
+      const EdgeCensus census = count_edges(level.mesh.triangles());
+      ASSERT_EQ(census.irregular, 0U);
+      if (before.boundary == 0) {
+        ASSERT_EQ(census.boundary, 0U);
+      }
+      ASSERT_TRUE(std::equal(coarse.positions.begin(), coarse.positions.end(), level.mesh.positions.begin()));
+    }};
+    const Result result = refine(coarse, options, hooks);
+    ASSERT_EQ(result.levels, expected_level - 1);
+    for (Vec3f p : result.mesh.positions)
+      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    const Result again = refine(coarse, options);
+    ASSERT_EQ(again.mesh.triangles(), result.mesh.triangles()) << "seed " << seed;
+  }
+}
+
+TEST(Refine, NonManifoldAndMisorientedMeshesStayWithoutCracks) {
+  TriangleMesh book{{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 0}, {1, 0, 2}, {0, 1, 1}, {-1, -1, 1}},
+                    {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {0, 1, 5}, {1, 2, 5}, {1, 0, 6}, {2, 1, 6}}};
+  const Result result = refine(build_mesh(book), {.levels = 3});
+  EXPECT_TRUE(is_consistent(result.mesh));
+  EXPECT_EQ(count_edges(result.mesh.triangles()).irregular, 16U);  // two shared edges, each in eight
+}
+
+TEST(Refine, StopsWhenNothingIsLeftToSplit) {
+  Options options;
+  options.levels = 10;
+  options.flatness = {0.99};
+  const Result result = refine(build_mesh(grid(2, 2)), {.levels = 10, .flatness = {-1}});
+  EXPECT_EQ(result.stop_reason, StopReason::converged);
+  EXPECT_EQ(result.levels, 0);
+  const Result sphere =
+      refine(build_mesh(icosahedron()), options);  // ever flatter: converges before ten levels
+  EXPECT_EQ(sphere.stop_reason, StopReason::converged);
+  EXPECT_GT(sphere.levels, 1);
+}
+
+TEST(Refine, ThresholdsAreOneALevelAndTheLastRepeats) {
+  const Mesh mesh = build_mesh(icosahedron());
+  const auto faces = [&](std::vector<double> flatness, int levels) {
+    return refine(mesh, {.levels = levels, .flatness = std::move(flatness)}).mesh.topology.face_count();
+  };
+  EXPECT_EQ(faces({-1, 1}, 2), 20U);  // nothing at level 1 ends it
+  EXPECT_EQ(faces({1, 1, 1}, 2), 320U);
+  EXPECT_EQ(faces({1}, 3), faces({1, 1, 1}, 3));
+}
+
+TEST(Refine, LimitsAreHeldBeforeTheWork) {
+  Options options;
+  options.levels = 10;
+  options.face_limit = 1000;
+  EXPECT_EQ(fault_of(icosahedron(), options), Fault::result_too_large);
+  options.flatness = {1};  // not known beforehand: found out level by level
+  int levels = 0;
+  EXPECT_EQ(fault_of(icosahedron(), options, {.on_level = [&](const Level&) { ++levels; }}),
+            Fault::result_too_large);
+  EXPECT_EQ(levels, 3);  // 20, 80, 320; 1280 is refused
+}
+
+TEST(Refine, CancelsWithinOneStep) {
+  int asked = 0;
+  const Hooks hooks{.cancelled = [&] { return ++asked == 3; }};
+  EXPECT_EQ(fault_of(icosahedron(), {.levels = 8}, hooks), Fault::cancelled);
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(Refine, RefusesOptionsOutOfRange) {
+  EXPECT_EQ(fault_of(icosahedron(), {.levels = -1}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.levels = 11}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.flatness = {0.5, 1.5}}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.flatness = {std::nan("")}}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.w = 1}), Fault::bad_option);
+}
+
+}  // namespace
+}  // namespace papilio

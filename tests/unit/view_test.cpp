@@ -1,0 +1,168 @@
+#include "core/view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/normals.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+View looking_down_z() {
+  View view;
+  view.eye = {0, 0, 10};
+  view.viewport = {1000, 500};
+  view.fov_y = 90;
+  view.near = 1;
+  return view;
+}
+
+std::string refused_option(const View& view) {
+  try {
+    const Camera camera(view);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::bad_option);
+    return error.option();
+  }
+  return "";
+}
+
+EdgeMarks seen(const Mesh& mesh, const View& view, double edge_pixels = 0) {
+  EdgeMarks marks(mesh.topology.edge_count(), 1);
+  cull_by_view(mesh, face_normals(mesh), Camera(view), edge_pixels, marks);
+  return marks;
+}
+
+size_t count(const EdgeMarks& marks) {
+  return static_cast<size_t>(std::count(marks.begin(), marks.end(), 1));
+}
+
+TEST(Camera, RefusesViewsThatDefineNoPicture) {
+  View view = looking_down_z();
+  EXPECT_EQ(refused_option(view), "");
+  view.target = view.eye;
+  EXPECT_EQ(refused_option(view), "view.target");
+  view = looking_down_z();
+  view.up = {0, 0, -3};
+  EXPECT_EQ(refused_option(view), "view.up");
+  view.up = {0, 0, 0};
+  EXPECT_EQ(refused_option(view), "view.up");
+  view = looking_down_z();
+  view.fov_y = 180;
+  EXPECT_EQ(refused_option(view), "view.fov_y");
+  view = looking_down_z();
+  view.viewport = {0, 100};
+  EXPECT_EQ(refused_option(view), "view.viewport");
+  view = looking_down_z();
+  view.near = -1;
+  EXPECT_EQ(refused_option(view), "view.near");
+  view = looking_down_z();
+  view.eye.x = std::nan("");
+  EXPECT_EQ(refused_option(view), "view.eye");
+}
+
+TEST(Camera, FrustumHasTheViewportsShape) {
+  const Camera camera(looking_down_z());  // at distance 10: 20 high, 40 wide
+  EXPECT_FALSE(camera.is_outside({0, 9.9, 0}, 0));
+  EXPECT_TRUE(camera.is_outside({0, 10.1, 0}, 0));
+  EXPECT_FALSE(camera.is_outside({19.9, 0, 0}, 0));
+  EXPECT_TRUE(camera.is_outside({-20.1, 0, 0}, 0));
+  EXPECT_TRUE(camera.is_outside({0, 0, 9.5}, 0));   // before the near plane
+  EXPECT_FALSE(camera.is_outside({0, 0, 9.5}, 1));  // but not with that radius
+  EXPECT_TRUE(camera.is_outside({0, 0, 20}, 1));    // behind the eye
+}
+
+TEST(Camera, OrthographicShowsWhatPerspectiveShowsAtTheTarget) {
+  View view = looking_down_z();
+  view.projection = Projection::orthographic;
+  const Camera camera(view);
+  for (double z : {0.0, 5.0, -50.0}) {
+    EXPECT_FALSE(camera.is_outside({0, 9.9, z}, 0));
+    EXPECT_TRUE(camera.is_outside({0, 10.1, z}, 0));
+    EXPECT_NEAR(camera.projected_length({0, 0, z}, {1, 0, z}), 25, 1e-9);  // 500 pixels for 20 units
+  }
+  EXPECT_TRUE(camera.is_away({5, 5, 5}, {0, 0, -1}));
+  EXPECT_FALSE(camera.is_away({5, 5, 5}, {0, 0, 1}));
+}
+
+TEST(Camera, ProjectedLength) {
+  const Camera camera(looking_down_z());
+  EXPECT_NEAR(camera.projected_length({0, 0, 0}, {1, 0, 0}), 25, 1e-9);
+  EXPECT_NEAR(camera.projected_length({0, 0, 5}, {0, 1, 5}), 50, 1e-9);
+  EXPECT_NEAR(camera.projected_length({0, 0, 0}, {0, 0, 5}), 0, 1e-9);
+  // Clipped at distance 1: from (1, 0) there, which is 250 pixels off the centre, to (0, 0).
+  EXPECT_NEAR(camera.projected_length({0, 0, 0}, {1.8, 0, 18}), 250 * 0.9, 1e-9);
+  EXPECT_EQ(camera.projected_length({0, 0, 9.5}, {3, 0, 12}), 0);  // all of it before the near plane
+}
+
+TEST(Camera, AwayDependsOnWhereTheFaceIsInAPerspectiveView) {
+  const Camera camera(looking_down_z());
+  // Tilted away from the view direction, yet its front is seen since it lies off the axis.
+  const Vec3d normal = (1 / std::sqrt(1.01)) * Vec3d{-1, 0, -0.1};
+  EXPECT_TRUE(camera.is_away({0, 0, 0}, normal));
+  EXPECT_FALSE(camera.is_away({5, 0, 0}, normal));
+  EXPECT_FALSE(camera.is_away({0, 0, 0}, {1, 0, 0}));  // edge on
+}
+
+TEST(CullByView, KeepsTheFrontAndItsSilhouette) {
+  const Mesh mesh = build_mesh(cube());
+  View view = looking_down_z();
+  view.eye = {0.5, 0.5, 5};
+  view.target = {0.5, 0.5, 0};
+  const EdgeMarks marks = seen(mesh, view);
+  EXPECT_EQ(count(marks), 5U);  // the front's four edges, which are the silhouette, and its diagonal
+  for (uint32_t e = 0; e < marks.size(); ++e) {
+    const uint32_t h = mesh.topology.half_edge[e];
+    const bool front =
+        mesh.positions[mesh.topology.origin[h]].z == 1 && mesh.positions[mesh.topology.tip(h)].z == 1;
+    EXPECT_EQ(marks[e] != 0, front);
+  }
+}
+
+TEST(CullByView, DropsWhatIsOutsideTheFrustum) {
+  const Mesh mesh = build_mesh(grid(40, 40));  // edges of length 1 to sqrt 2, in z = 0
+  View view = looking_down_z();
+  view.eye = {20, 20, 5};
+  view.target = {20, 20, 0};
+  view.viewport = {500, 500};
+  const EdgeMarks marks = seen(mesh, view);  // sees 15..25
+  for (uint32_t e = 0; e < marks.size(); ++e) {
+    const uint32_t h = mesh.topology.half_edge[e];
+    const Vec3f a = mesh.positions[mesh.topology.origin[h]];
+    const Vec3f b = mesh.positions[mesh.topology.tip(h)];
+    const auto off = [](float from, float to) {
+      return std::max(20 - std::max(from, to), std::min(from, to) - 20);
+    };
+    const float distance = std::max(off(a.x, b.x), off(a.y, b.y));
+    if (distance <= 5) {
+      EXPECT_EQ(marks[e], 1);
+    }
+    if (distance > 9) {
+      EXPECT_EQ(marks[e], 0);
+    }
+  }
+}
+
+TEST(CullByView, DropsEdgesThatLookShort) {
+  const Mesh mesh = build_mesh(grid(4, 4));
+  View view = looking_down_z();  // 25 pixels a unit: edges of 25, diagonals of 35
+  view.eye = {2, 2, 10};
+  view.target = {2, 2, 0};
+  EXPECT_EQ(count(seen(mesh, view, 24)), mesh.topology.edge_count());
+  EXPECT_EQ(count(seen(mesh, view, 30)), 16U);
+  EXPECT_EQ(count(seen(mesh, view, 36)), 0U);
+}
+
+TEST(CullByView, FaceWithoutAreaIsNeverAway) {
+  const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
+  EXPECT_EQ(count(seen(mesh, looking_down_z())), 3U);
+}
+
+}  // namespace
+}  // namespace papilio
