@@ -133,7 +133,7 @@ class Butterfly {
 
   // The rules below are sums of symmetric pairs, so that both half-edges of an edge give the same bits.
 
-  Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
+  [[nodiscard]] Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
     const uint32_t h = mesh_.half_edge[e];
     const Point a = p_[mesh_.origin[h]];
     const Point b = p_[mesh_.tip(h)];

@@ -52,15 +52,13 @@ void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
   fan.centre = mesh.origin[h];
   fan.spokes.clear();
   fan.ring.clear();
-  uint32_t last = first;
   uint32_t s = first;
   do {
     fan.spokes.push_back(s);
     fan.ring.push_back(mesh.tip(s));
-    last = s;
     s = counter_clockwise(mesh, s);
   } while (s != none && s != first);
-  if (!fan.closed) fan.ring.push_back(mesh.apex(last));
+  if (!fan.closed) fan.ring.push_back(mesh.apex(fan.spokes.back()));
 }
 
 void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit) {

@@ -62,7 +62,9 @@ std::string Part::header(std::string_view name) const {
 }
 
 MultipartWriter::MultipartWriter(std::string boundary)
-    : boundary_(boundary.empty() ? random_boundary() : std::move(boundary)) {}
+    : boundary_(std::move(boundary)) {
+  if (boundary_.empty()) boundary_ = random_boundary();
+}
 
 std::string MultipartWriter::content_type() const { return "multipart/mixed; boundary=" + boundary_; }
 

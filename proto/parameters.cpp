@@ -105,7 +105,7 @@ std::vector<double> parse_json_value(const ParameterInfo& info, const json& valu
     case ParameterType::numbers: {
       if (!value.is_array() || !std::ranges::all_of(value, [](const json& v) { return v.is_number(); }))
         break;
-      const auto values = value.get<std::vector<double>>();
+      auto values = value.get<std::vector<double>>();
       check_numbers(info, values, given());
       return values;
     }
@@ -220,13 +220,17 @@ std::string describe_range(const ParameterInfo& info) {
     for (std::string_view choice : info.choices) append_item(text, " or ", choice);
     return text;
   }
-  const std::string range = "in " + format_number(info.min) + ".." + format_number(info.max);
-  if (info.type == ParameterType::integer) return "an integer " + range;
-  if (info.type == ParameterType::number) return "a number " + range;
+  std::string range;
+  if (info.max < coordinate_limit)
+    range = " in " + format_number(info.min) + ".." + format_number(info.max);
+  else if (info.min > -coordinate_limit)
+    range = " of at least " + format_number(info.min);
+  if (info.type == ParameterType::integer) return "an integer" + range;
+  if (info.type == ParameterType::number) return "a number" + range;
   const std::string count = info.least == info.most
                                 ? std::to_string(info.least)
                                 : std::to_string(info.least) + " to " + std::to_string(info.most);
-  return count + " numbers " + range;
+  return count + " numbers" + range;
 }
 
 std::string describe_default(const ParameterInfo& info) {

@@ -50,8 +50,8 @@ struct ParameterInfo {
 /// name given twice, a value of another type or out of range, and a view that defines no picture; bad_request
 /// for JSON that cannot be read.
 [[nodiscard]] Parameters parse_query(const QueryFields& fields);
-/// `json`: one object, nested where names have dots, lists as arrays.
-[[nodiscard]] Parameters parse_json(std::string_view json);
+/// `text`: one object, nested where names have dots, lists as arrays.
+[[nodiscard]] Parameters parse_json(std::string_view text);
 
 /// The canonical form: what differs from the defaults, in the table's order, numbers in their shortest exact
 /// form. Equal parameters give equal fields, and `parse_query` of them gives equal parameters.
@@ -60,8 +60,8 @@ struct ParameterInfo {
 [[nodiscard]] std::string to_query(const Parameters& parameters);
 
 /// Words for the documentation: "integer 0..10", "red-green | in-place".
-[[nodiscard]] std::string describe_range(const ParameterInfo& parameter);
-[[nodiscard]] std::string describe_default(const ParameterInfo& parameter);
+[[nodiscard]] std::string describe_range(const ParameterInfo& info);
+[[nodiscard]] std::string describe_default(const ParameterInfo& info);
 /// The table as Markdown and as JSON (an array of objects).
 [[nodiscard]] std::string parameters_markdown();
 [[nodiscard]] std::string parameters_json();

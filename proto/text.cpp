@@ -17,7 +17,10 @@ std::optional<double> parse_number(std::string_view text) {
 std::string format_number(double value) {
   std::array<char, 32> text{};
   if (value == 0) value = 0;  // not "-0"
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  const bool plain = std::abs(value) < 1e9 && value == std::floor(value);
+  const auto [end, error] = plain
+                                ? std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed)
+                                : std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), error == std::errc() ? end : text.data()};
 }
 

@@ -104,11 +104,11 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
 
   int status = 0;
   std::string refusal;
-  std::optional<ServerError> failure;
+  std::string failure;  ///< a problem document that came as a part
   std::optional<proto::MultipartReader> reader;
   const auto take_part = [&](const proto::Part& part) {
     if (part.header("Content-Type") == "application/problem+json")
-      failure = error_from(status, part.body);
+      failure = part.body;
     else
       on_part(part);
   };
@@ -130,7 +130,7 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
     const auto answer = client.send(request);
     if (!answer) throw no_answer(origin_, answer.error());
     if (status != 200) throw error_from(status, refusal);
-    if (failure) throw *failure;
+    if (!failure.empty()) throw error_from(status, failure);
     reader->finish();
   } catch (const proto::Problem& problem) {  // of the reader
     throw ServerError(status, "", problem.what());

@@ -54,7 +54,7 @@ std::optional<std::string> parameter(std::string_view text, std::string_view wan
 }
 
 std::string boundary_of(std::string_view content_type) {
-  const std::string boundary = parameter(content_type, "boundary").value_or("");
+  std::string boundary = parameter(content_type, "boundary").value_or("");
   const bool lawful = std::ranges::all_of(boundary, [](char c) {
     return c == ' ' || std::string_view("(),/:=?").find(c) != std::string_view::npos ||
            is_token(std::string_view(&c, 1));

@@ -91,6 +91,6 @@ if [[ ${1:-} == --exit ]]; then
   stop_server || die "the server did not stop cleanly; what it said is in build/demo/server.log"
   exit 0
 fi
-printf '\nThe server is at %s (its viewer too, in a browser). Ctrl-C stops it.\n' "$url"
+printf '\nThe server is at %s ; GET /v1/info lists what it takes. Ctrl-C stops it.\n' "$url"
 trap 'echo; stop_server || exit 1; exit 0' INT TERM
 wait "$server_pid" || die "the server ended by itself; what it said is in build/demo/server.log"

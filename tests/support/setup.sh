@@ -16,7 +16,7 @@ for purpose in "$@"; do
       packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
         libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev)
       ;;
-    test) meshes=yes packages+=(bats perl curl jq draco ca-certificates) ;;
+    test) meshes=yes packages+=(bats perl curl jq draco ca-certificates) programs+=(python3:python3) ;;
     demo) meshes=yes packages+=(curl jq ca-certificates) ;;
     bench) meshes=yes packages+=(ca-certificates) ;;
     check) packages+=(clang-format clang-tidy shellcheck git jq) ;;

@@ -262,6 +262,8 @@ class HttpServerTest : public ::testing::Test {
   }
 
   void add_routes() {
+    server_->add(
+        "GET", "/alive", [](Request&) { return text("alive"); }, WhileDraining::answer);
     server_->add("GET", "/hello", [](Request& r) { return text("hello " + r.method()); });
     server_->add("GET", "/count", [this](Request&) {
       ++counted_;
@@ -1037,6 +1039,7 @@ TEST_F(HttpServerTest, DrainWaitsForTheRunningAndRefusesTheRest) {
   EXPECT_EQ(refused.field("Connection"), "close");
   expect_problem(kept.ask(get("/hello")), 503, "draining");
   EXPECT_TRUE(kept.at_end());
+  EXPECT_EQ(ask(get("/alive")).status, 200);
   EXPECT_EQ(drained.wait_for(0s), std::future_status::timeout);
   released_ = true;
   EXPECT_EQ(running.receive().body, "held");

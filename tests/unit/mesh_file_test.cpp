@@ -197,6 +197,11 @@ TEST_F(mesh_file, round_trips_of_real_meshes_keep_every_bit) {
   const std::vector<fs::path> meshes = real_meshes();
   ASSERT_FALSE(meshes.empty()) << "PAPILIO_MESHES names no folder with cgal/*.off; run ./dev test";
   for (const fs::path& source : meshes) {
+    if (source.filename() == "prim.off") {  // declares seven faces and has eight
+      EXPECT_THAT([&] { (void)read_triangles(source, Format::off); },
+                  testing::ThrowsMessage<FileError>(HasSubstr("goes on after the faces that it declares")));
+      continue;
+    }
     const TriangleMesh mesh = read_triangles(source, Format::off);
     for (const Format format : kFormats) {
       const TriangleMesh expected = format == Format::stl ? soup(mesh) : mesh;

@@ -1,0 +1,133 @@
+#!/usr/bin/env bats
+# The command line: refine here and there, info, convert, compare.
+
+load helpers
+
+setup_file() { start_server; }
+teardown_file() { stop_server; }
+setup() { cd "$BATS_TEST_TMPDIR" || return; }
+
+@test "here and there give the same bytes, from every kind of file to every kind" {
+  for kind in obj ply off stl drc; do "$papilio" convert "$coarse" "in.$kind"; done
+  for kind in obj ply off stl drc; do
+    for flags in '--levels 2' '--levels 2 --flatness 0.8,0.9' '--levels 3 --view.eye 0,5,30 --output.normals true'; do
+      # shellcheck disable=SC2086
+      "$papilio" refine "in.$kind" -o here.drc $flags
+      # shellcheck disable=SC2086
+      "$papilio" refine "in.$kind" -o there.drc --server "$url" $flags
+      cmp here.drc there.drc
+    done
+    "$papilio" refine in.drc -o "here.$kind"
+    "$papilio" refine in.drc -o "there.$kind" --server "$url"
+    cmp "here.$kind" "there.$kind"
+    [ "$("$papilio" info --json "here.$kind" | jq .faces)" = 9600 ]
+  done
+}
+
+@test "the curl answer is the command line's" {
+  "$papilio" refine "$coarse" -o here.drc --levels 2 --flatness 0.8,0.9
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"
+  cmp here.drc "$body"
+}
+
+@test "results go to standard output only when asked" {
+  "$papilio" refine "$coarse" -o - --levels 1 2>messages >out.drc
+  [ "$(decoded_faces out.drc)" = 2400 ]
+  "$papilio" refine "$coarse" -o file.drc --levels 1 2>messages >out
+  [ ! -s out ]
+  grep -q '2400 faces' messages
+  cmp file.drc out.drc
+  [ "$("$papilio" refine "$coarse" -o file.drc --levels 1 --json | jq .faces)" = 2400 ]
+}
+
+@test "a folder: every mesh, names kept, failures named, the rest done" {
+  mkdir -p models/deep
+  "$papilio" convert "$coarse" models/a.obj
+  "$papilio" convert "$coarse" models/deep/b.ply
+  echo 'not a mesh' >models/readme.txt
+  "$papilio" refine models -o refined --levels 1 --jobs 2
+  [ "$("$papilio" info --json refined/a.drc | jq .faces)" = 2400 ]
+  [ "$("$papilio" info --json refined/deep/b.drc | jq .faces)" = 2400 ]
+  echo 'rubbish' >models/c.off
+  run "$papilio" refine models -o again --to off --server "$url"
+  [ "$status" = 1 ]
+  [[ $output == *c.off* ]]
+  [ -s again/a.off ]
+  [ ! -e again/c.off ]
+  cp models/a.obj models/a.stl 2>/dev/null
+  run "$papilio" refine models -o third
+  [ "$status" = 2 ]
+  [[ $output == *'would both become'* ]]
+}
+
+@test "info says what is in a mesh" {
+  run "$papilio" info "$PAPILIO_MESHES/bunny600.obj"
+  [ "$status" = 0 ]
+  [[ $output == *'euler_characteristic    2'* ]]
+  [ "$("$papilio" info --json "$coarse" | jq -c '[.vertices, .faces, .closed]')" = '[302,600,true]' ]
+}
+
+@test "convert --exact keeps positions to the bit" {
+  "$papilio" convert --exact "$PAPILIO_MESHES/bunny600.obj" exact.drc
+  "$papilio" convert exact.drc back.obj
+  "$papilio" convert "$PAPILIO_MESHES/bunny600.obj" once.obj
+  cmp <(grep '^v ' back.obj | sort) <(grep '^v ' once.obj | sort)
+}
+
+@test "compare measures distances" {
+  "$papilio" refine "$coarse" -o fine.drc --levels 2
+  "$papilio" compare --json fine.drc fine.drc | jq -e '.hausdorff < 1e-12 * .diagonal'
+  run "$papilio" compare "$coarse" fine.drc
+  [ "$status" = 0 ]
+  [[ $output == *'Hausdorff'*'RMS'* ]]
+  "$papilio" compare --json "$coarse" fine.drc | jq -e '.hausdorff > .rms and .rms > 0 and .rms < 0.05 * .diagonal'
+}
+
+@test "failures: status 1 or 2, words, and no partial file" {
+  run "$papilio" refine missing.obj -o out.drc
+  [ "$status" = 1 ]
+  [[ $output == *missing.obj* ]]
+  run "$papilio" refine "$coarse" -o out.xyz
+  [ "$status" = 1 ]
+  [[ $output == *xyz* ]]
+  run "$papilio" refine "$coarse" -o out.drc --levels 99
+  [ "$status" = 2 ]
+  [[ $output == *'levels must be an integer in 0..10'* ]]
+  run "$papilio" refine "$coarse" -o out.drc --level 2
+  [ "$status" = 2 ]
+  run "$papilio" refine "$coarse" -o out.drc --server "${url%:*}:1"
+  [ "$status" = 1 ]
+  [[ $output == *'papilio-server running'* ]]
+  run "$papilio" refine "$coarse" -o out.drc --server localhost
+  [ "$status" = 1 ]
+  [[ $output == *URL* ]]
+  head -c 300 "$coarse" >short.drc
+  for where in '' "--server $url"; do
+    # shellcheck disable=SC2086
+    run "$papilio" refine short.drc -o out.drc $where
+    [ "$status" = 1 ]
+    [[ $output == *'cut short'* ]]
+  done
+  [ ! -e out.drc ]
+  run "$papilio" refine "$coarse" -o absent/out.drc
+  [ "$status" = 1 ]
+  run "$papilio"
+  [ "$status" = 2 ]
+}
+
+@test "README's curl line works when it is pasted" {
+  line=$(grep '^curl ' "$BATS_TEST_DIRNAME/../../README.md")
+  [ "$(wc -l <<<"$line")" = 1 ]
+  [[ $line == *http://localhost:8080/* && $line == *build/deps/meshes/bunny600.drc* ]]
+  line=${line//http:\/\/localhost:8080/$url}
+  line=${line//build\/deps\/meshes/$PAPILIO_MESHES}
+  no_proxy='*' eval "$line"
+  [ "$(decoded_faces fine.drc)" -gt 600 ]
+}
+
+@test "README has the parameter table that the program prints" {
+  readme=$BATS_TEST_DIRNAME/../../README.md
+  "$papilio" parameters >table
+  sed -n '/^| parameter |/,/^$/p' "$readme" | sed '/^$/d' >found
+  diff found table
+}

@@ -1,0 +1,63 @@
+# What every integration test needs: the real programs, a server on a free port, and requests whose answers are kept.
+# shellcheck shell=bash
+
+papilio=$PAPILIO_BUILD/papilio
+server=$PAPILIO_BUILD/papilio-server
+coarse=$PAPILIO_MESHES/bunny600.drc
+draco='Content-Type: application/x-draco'
+
+# start_server [ARGUMENT...]: sets $url and $server_pid. Port 0: the system picks a free one.
+start_server() {
+  rm -f "$BATS_FILE_TMPDIR/server.out"
+  "$server" --port 0 "$@" >"$BATS_FILE_TMPDIR/server.out" 2>"$BATS_FILE_TMPDIR/server.log" 3>&- &
+  server_pid=$!
+  for _ in {1..100}; do
+    [[ ! -s $BATS_FILE_TMPDIR/server.out ]] || break
+    sleep 0.1
+  done
+  url=$(sed -n '1s/^listening on \(http:.*\)$/\1/p' "$BATS_FILE_TMPDIR/server.out")
+  [[ -n $url ]] || { cat "$BATS_FILE_TMPDIR/server.log" >&2; return 1; }
+  export url server_pid
+}
+
+# stop_server: SIGTERM, and the exit status of a server that drains must be 0.
+stop_server() {
+  kill -TERM "$server_pid"
+  wait "$server_pid"
+}
+
+# request ARGUMENT...: curl with these; sets $status, and keeps $headers and $body (files).
+request() {
+  headers=$BATS_TEST_TMPDIR/headers
+  body=$BATS_TEST_TMPDIR/body
+  rm -f "$headers" "$body"
+  status=$(curl -sS --noproxy '*' --max-time 60 -D "$headers" -o "$body" -w '%{http_code}' "$@")
+}
+
+header() { tr -d '\r' <"$headers" | sed -n "s/^$1: *//Ip" | tail -1; }
+field() { jq -r ".$1" "$body"; }
+
+# expect_problem STATUS CODE: a problem document that says what to do, under the request's id, not to be cached.
+expect_problem() {
+  [[ $status == "$1" ]] || { echo "status $status, not $1"; cat "$body"; return 1; }
+  [[ $(header Content-Type) == application/problem+json ]]
+  [[ $(header Cache-Control) == no-store ]]
+  [[ $(field code) == "$2" ]] || { echo "code $(field code), not $2"; return 1; }
+  [[ $(field status) == "$1" ]]
+  [[ $(field type) == "urn:papilio:problem:$2" ]]
+  [[ $(field request_id) == "$(header X-Request-Id)" && -n $(header X-Request-Id) ]]
+  local detail
+  detail=$(field detail)
+  ((${#detail} > 20)) || { echo "detail: $detail"; return 1; }
+}
+
+# decoded_faces FILE: what Debian's independent decoder finds in it.
+decoded_faces() {
+  draco_decoder -i "$1" -o "$BATS_TEST_TMPDIR/decoded.obj" >/dev/null
+  grep -c '^f ' "$BATS_TEST_TMPDIR/decoded.obj"
+}
+
+# The server must have outlived the test, and answer.
+server_is_well() {
+  [[ $(curl -sS --noproxy '*' --max-time 10 "$url/health" | jq -r .status) == alive ]]
+}

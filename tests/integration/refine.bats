@@ -1,0 +1,138 @@
+#!/usr/bin/env bats
+# POST /v1/refine: every kind of request and answer.
+
+load helpers
+
+setup_file() { start_server; }
+teardown_file() { stop_server; }
+
+@test "uniform levels have four to the level times the faces" {
+  for level in 0 1 2 3; do
+    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=$level"
+    [ "$status" = 200 ]
+    faces=$((600 * 4 ** level))
+    [ "$(header Papilio-Faces)" = "$faces" ]
+    [ "$(decoded_faces "$body")" = "$faces" ]
+  done
+}
+
+@test "the answer carries its statistics, length and type" {
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2"
+  [ "$(header Content-Type)" = application/x-draco ]
+  [ "$(header Content-Length)" = "$(stat -c %s "$body")" ]
+  [ "$(header Papilio-Vertices)" = 4802 ]
+  [ "$(header Papilio-Levels)" = 2 ]
+  [ "$(header Papilio-Stop-Reason)" = levels ]
+  [[ $(header Server-Timing) =~ ^decode\;dur=[0-9.]+,\ refine\;dur=[0-9.]+,\ encode\;dur=[0-9.]+$ ]]
+  [ -n "$(header X-Request-Id)" ]
+}
+
+@test "flatness saves a third of the faces, a view saves more" {
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"
+  [ "$status" = 200 ]
+  adaptive=$(header Papilio-Faces)
+  [ "$adaptive" -le $((9600 * 65 / 100)) ]
+  [ "$adaptive" -gt 600 ]
+  [ "$(decoded_faces "$body")" = "$adaptive" ]
+  request -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=2&flatness=0.8,0.9&view.eye=0,5,30&view.target=0,5,0&view.fov_y=40"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Faces)" -lt "$adaptive" ]
+  [ "$(header Papilio-Faces)" -gt 600 ]
+}
+
+@test "a flat request converges early and says so" {
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3&flatness=-1"
+  [ "$(header Papilio-Stop-Reason)" = converged ]
+  [ "$(header Papilio-Levels)" = 0 ]
+  [ "$(decoded_faces "$body")" = 600 ]
+}
+
+@test "a form with mesh and params answers the same bytes as body and query" {
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9&output.speed=3"
+  cp "$body" "$BATS_TEST_TMPDIR/raw"
+  request -F mesh=@"$coarse" -F 'params={"levels": 2, "flatness": [0.8, 0.9], "output": {"speed": 3}}' "$url/v1/refine"
+  [ "$status" = 200 ]
+  cmp "$body" "$BATS_TEST_TMPDIR/raw"
+  request -F mesh=@"$coarse" "$url/v1/refine"
+  [ "$(header Papilio-Faces)" = 9600 ]
+}
+
+@test "chunked upload and octet-stream answer the same bytes" {
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
+  cp "$body" "$BATS_TEST_TMPDIR/raw"
+  request -H 'Content-Type: application/octet-stream' -H 'Transfer-Encoding: chunked' --data-binary @"$coarse" \
+    "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  cmp "$body" "$BATS_TEST_TMPDIR/raw"
+}
+
+@test "Accept: multipart/mixed sends each level, then a summary" {
+  request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" "$url/v1/refine?levels=2"
+  [ "$status" = 200 ]
+  [[ $(header Content-Type) =~ ^multipart/mixed\;\ boundary=(.+)$ ]]
+  [ "$(header Transfer-Encoding)" = chunked ]
+  boundary=${BASH_REMATCH[1]}
+  # Independent of our own reader: cut at the boundary with python's mail parser.
+  python3 - "$body" "$boundary" "$BATS_TEST_TMPDIR" <<'PY'
+import email.parser, email.policy, sys
+body, boundary, folder = sys.argv[1:]
+raw = b"Content-Type: multipart/mixed; boundary=" + boundary.encode() + b"\r\n\r\n" + open(body, "rb").read()
+message = email.parser.BytesParser(policy=email.policy.HTTP).parsebytes(raw)
+parts = message.get_payload()
+assert [p.get_content_type() for p in parts] == ["application/x-draco"] * 3 + ["application/json"], parts
+assert [p["Papilio-Faces"] for p in parts[:3]] == ["600", "2400", "9600"]
+assert [p["Papilio-Levels"] for p in parts[:3]] == ["0", "1", "2"]
+# The mail parser folds line ends inside binary parts; cut by Content-Length instead.
+raw = open(body, "rb").read()
+at = 0
+for i, part in enumerate(parts):
+    at = raw.index(b"\r\n\r\n", at) + 4
+    length = int(part["Content-Length"])
+    open(f"{folder}/part{i}", "wb").write(raw[at:at + length])
+    at += length
+assert raw[at:] == b"\r\n--" + boundary.encode() + b"--\r\n", raw[at:]
+PY
+  [ "$(decoded_faces "$BATS_TEST_TMPDIR/part0")" = 600 ]
+  [ "$(decoded_faces "$BATS_TEST_TMPDIR/part1")" = 2400 ]
+  [ "$(decoded_faces "$BATS_TEST_TMPDIR/part2")" = 9600 ]
+  [ "$(jq -r '.faces, .levels, .stop_reason' "$BATS_TEST_TMPDIR/part3" | xargs)" = '9600 2 levels' ]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2"
+  cmp "$body" "$BATS_TEST_TMPDIR/part2"
+}
+
+@test "vertices do not move between levels" {
+  points() { # of the last answer
+    cp "$body" "$BATS_TEST_TMPDIR/answer.drc"
+    "$papilio" convert "$BATS_TEST_TMPDIR/answer.drc" "$BATS_TEST_TMPDIR/answer.obj"
+    grep '^v ' "$BATS_TEST_TMPDIR/answer.obj" | sort -u
+  }
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  points >"$BATS_TEST_TMPDIR/coarse"
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.9"
+  points >"$BATS_TEST_TMPDIR/fine"
+  [ "$(comm -12 "$BATS_TEST_TMPDIR/coarse" "$BATS_TEST_TMPDIR/fine" | wc -l)" = "$(wc -l <"$BATS_TEST_TMPDIR/coarse")" ]
+}
+
+@test "normals, bits and projection are taken" {
+  request -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=1&output.normals=true&output.position_bits=16&view.projection=orthographic&view.eye=0,5,30"
+  [ "$status" = 200 ]
+  draco_decoder -i "$body" -o "$BATS_TEST_TMPDIR/normals.obj" >/dev/null
+  grep -q '^vn ' "$BATS_TEST_TMPDIR/normals.obj"
+}
+
+@test "X-Request-Id is taken over when it is sane, and made when not" {
+  request -H "$draco" -H 'X-Request-Id: trace-42' --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  [ "$(header X-Request-Id)" = trace-42 ]
+  request -H "$draco" -H 'X-Request-Id: no spaces!' --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  [ "$status" = 200 ]
+  [[ $(header X-Request-Id) =~ ^[A-Za-z0-9._-]+$ ]]
+}
+
+@test "many requests on one connection" {
+  run curl -sS --noproxy '*' --max-time 60 -o /dev/null -w '%{http_code} %{num_connects}\n' -H "$draco" \
+    --data-binary @"$coarse" "$url/v1/refine?levels=[0-3]"
+  [ "$(grep -c ^200 <<<"$output")" = 4 ]
+  [ "$(awk '{ sum += $2 } END { print sum }' <<<"$output")" = 1 ]
+}

@@ -1,0 +1,130 @@
+#!/usr/bin/env bats
+# The server as a program: settings, start, health, load, draining, log.
+
+load helpers
+
+teardown() {
+  if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then stop_server; fi
+}
+
+@test "the first and only line on standard output says where it listens" {
+  start_server
+  stop_server
+  [ "$(wc -l <"$BATS_FILE_TMPDIR/server.out")" = 1 ]
+  grep -qE '^listening on http://127\.0\.0\.1:[0-9]+$' "$BATS_FILE_TMPDIR/server.out"
+}
+
+@test "health, readiness and info" {
+  start_server --max-output-faces 12345
+  request "$url/health"
+  [ "$status" = 200 ]
+  [ "$(field status)" = alive ]
+  request "$url/ready"
+  [ "$status" = 200 ]
+  request "$url/v1/info"
+  [ "$status" = 200 ]
+  [ "$(header Content-Type)" = application/json ]
+  [ "$(field limits.max_output_faces)" = 12345 ]
+  [ "$(field 'schemes[0]')" = in-place ]
+  [ "$(field 'parameters | map(.name) | index("view.edge_pixels") != null')" = true ]
+  [ -n "$(field version)" ]
+  request -I "$url/health"
+  [ "$status" = 200 ]
+}
+
+@test "settings: the environment, then the flag, and refusals that name the setting and its range" {
+  PAPILIO_MAX_BODY_BYTES=1000 start_server
+  request "$url/v1/info"
+  [ "$(field limits.max_body_bytes)" = 1000 ]
+  stop_server
+  PAPILIO_MAX_BODY_BYTES=1000 start_server --max-body-bytes 2000
+  request "$url/v1/info"
+  [ "$(field limits.max_body_bytes)" = 2000 ]
+  stop_server
+  run "$server" --port 70000
+  [ "$status" = 2 ]
+  [[ $output == *--port*65535* ]]
+  PAPILIO_SLOTS=many run "$server"
+  [ "$status" = 2 ]
+  [[ $output == *slots* || $output == *SLOTS* ]]
+  run "$server" --colour red
+  [ "$status" = 2 ]
+  run "$server" --help
+  [ "$status" = 0 ]
+  [[ $output == *PAPILIO_MAX_BODY_BYTES* ]]
+}
+
+@test "a port that is taken and an address that is not ours are refused in words" {
+  start_server
+  run "$server" --port "${url##*:}"
+  [ "$status" = 1 ]
+  [[ $output == *"${url##*:}"* ]]
+  run "$server" --host 192.0.2.1 --port 0
+  [ "$status" = 1 ]
+  [[ $output == *192.0.2.1* ]]
+}
+
+@test "busy: with every slot and place taken others get 429 and Retry-After, health stays" {
+  start_server --slots 1 --queue 0
+  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6" 3>&- &
+  busy=$!
+  refused=
+  for _ in {1..200}; do
+    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
+    [ "$status" != 429 ] || { refused=yes; break; }
+  done
+  [ "$refused" = yes ]
+  expect_problem 429 busy
+  [[ $(header Retry-After) =~ ^[0-9]+$ ]]
+  server_is_well
+  wait "$busy"
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  [ "$status" = 200 ]
+}
+
+@test "a client that goes away stops its work" {
+  start_server --slots 1 --queue 0
+  curl -sS --noproxy '*' --max-time 0.2 -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6" || true
+  for _ in {1..100}; do
+    request "$url/ready"
+    [ "$status" != 200 ] || break
+    sleep 0.1
+  done
+  [ "$status" = 200 ]
+  sleep 0.2
+  grep -q 'code=cancelled' "$BATS_FILE_TMPDIR/server.log"
+}
+
+@test "SIGTERM lets a running request finish, refuses others, and exits 0" {
+  start_server --slots 1 --queue 0
+  curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=6" >"$BATS_TEST_TMPDIR/code" 3>&- &
+  running=$!
+  for _ in {1..200}; do # until its slot is taken
+    request "$url/ready"
+    [ "$status" = 200 ] || break
+  done
+  [ "$status" = 503 ]
+  kill -TERM "$server_pid"
+  request "$url/v1/info"
+  expect_problem 503 draining
+  server_is_well
+  wait "$running"
+  [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
+  [ "$(decoded_faces "$BATS_TEST_TMPDIR/fine.drc")" = 2457600 ]
+  wait "$server_pid"
+  server_pid=
+}
+
+@test "one structured log line a request, health questions only when they fail" {
+  start_server
+  request -H 'X-Request-Id: log-me' -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=9"
+  request -H 'X-Request-Id: bad-one' -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=x"
+  request -H 'X-Request-Id: alive-question' "$url/health"
+  stop_server
+  log=$BATS_FILE_TMPDIR/server.log
+  [ "$(grep -c 'id=log-me ' "$log")" = 1 ]
+  grep -q 'id=log-me method=POST path="/v1/refine" status=507 .*code=result_too_large' "$log"
+  grep -q 'id=bad-one .*status=400 .*code=bad_parameter' "$log"
+  ! grep -q alive-question "$log"
+}
