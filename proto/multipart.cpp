@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <random>
+#include <utility>
 
 #include "proto/problem.h"
 
@@ -61,8 +62,7 @@ std::string Part::header(std::string_view name) const {
   return {};
 }
 
-MultipartWriter::MultipartWriter(std::string boundary)
-    : boundary_(std::move(boundary)) {
+MultipartWriter::MultipartWriter(std::string boundary) : boundary_(std::move(boundary)) {
   if (boundary_.empty()) boundary_ = random_boundary();
 }
 
@@ -107,7 +107,6 @@ bool MultipartReader::step() {
       if (line != delimiter_ && line != delimiter_ + "--") fail("has bytes where a boundary should be.");
       state_ = line == delimiter_ ? State::headers : State::done;
       pending_.erase(0, end + 2);
-      part_ = {};
       return true;
     }
     case State::headers: {
@@ -139,7 +138,7 @@ bool MultipartReader::step() {
       part_.body = pending_.substr(0, body_size_);
       pending_.erase(0, body_size_ + 2);
       state_ = State::delimiter;
-      on_part_(std::move(part_));
+      on_part_(std::exchange(part_, {}));
       return true;
     case State::done:
       break;

@@ -159,6 +159,6 @@ void Connection::linger() {
   } while (Clock::now() < deadline && receive(deadline) == Received::bytes);
 }
 
-void Connection::abort() { ::shutdown(fd_, SHUT_RDWR); }
+void Connection::abort() const { ::shutdown(fd_, SHUT_RDWR); }
 
 }  // namespace papilio::server

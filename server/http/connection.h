@@ -51,7 +51,7 @@ class Connection {
   /// unread bytes reset the connection and the answer is lost.
   void linger();
   /// Ends every wait of this connection at once.
-  void abort();
+  void abort() const;
 
   [[nodiscard]] uint64_t bytes_in() const { return bytes_in_; }
   [[nodiscard]] uint64_t bytes_out() const { return bytes_out_; }

@@ -47,7 +47,7 @@ tidy() {
     echo "$1: no target of the build compiles it"
     return 1
   fi
-  object=$(jq -r .output <<<"$entry")
+  object=$(jq -r '.command | capture(" -o (?<object>[^ ]+)").object' <<<"$entry")
   mapfile -t headers < <(ninja -C build/release -t deps "$object" | sed -n "s|^ *\($PWD/[a-z].*\.h\)$|\1|p")
   key=$({ echo "$TIDY_RULES $entry" && cat "$1" "${headers[@]}"; } | sha256sum | cut -d' ' -f1)
   [[ ! -f $TIDY_CACHE/$key ]] || return 0
