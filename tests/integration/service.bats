@@ -64,22 +64,36 @@ teardown() {
   [[ $output == *192.0.2.1* ]]
 }
 
+# fill_the_slot: a long request takes the one slot; sets $running, its process, whose status goes to the file "code".
+fill_the_slot() {
+  curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=6" >"$BATS_TEST_TMPDIR/code" 3>&- &
+  running=$!
+  for _ in {1..200}; do
+    request "$url/ready"
+    [ "$status" = 200 ] || break
+  done
+  expect_problem 503 not_ready
+}
+
 @test "busy: with every slot and place taken others get 429 and Retry-After, health stays" {
   start_server --slots 1 --queue 0
-  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6" 3>&- &
-  busy=$!
-  refused=
-  for _ in {1..200}; do
-    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
-    [ "$status" != 429 ] || { refused=yes; break; }
-  done
-  [ "$refused" = yes ]
+  fill_the_slot
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   expect_problem 429 busy
   [[ $(header Retry-After) =~ ^[0-9]+$ ]]
   server_is_well
-  wait "$busy"
+  wait "$running"
+  [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   [ "$status" = 200 ]
+}
+
+@test "a request that must wait is answered when its turn comes" {
+  start_server --slots 1 --queue 4
+  curl -sS --noproxy '*' --parallel --parallel-max 5 -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code}\n' -H "$draco" \
+    --data-binary @"$coarse" "$url/v1/refine?levels=4&w=0.0[1-5]" >"$BATS_TEST_TMPDIR/codes"
+  [ "$(grep -c '^200$' "$BATS_TEST_TMPDIR/codes")" = 5 ]
 }
 
 @test "a client that goes away stops its work" {
@@ -97,14 +111,7 @@ teardown() {
 
 @test "SIGTERM lets a running request finish, refuses others, and exits 0" {
   start_server --slots 1 --queue 0
-  curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" --data-binary @"$coarse" \
-    "$url/v1/refine?levels=6" >"$BATS_TEST_TMPDIR/code" 3>&- &
-  running=$!
-  for _ in {1..200}; do # until its slot is taken
-    request "$url/ready"
-    [ "$status" = 200 ] || break
-  done
-  [ "$status" = 503 ]
+  fill_the_slot
   kill -TERM "$server_pid"
   request "$url/v1/info"
   expect_problem 503 draining

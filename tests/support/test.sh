@@ -22,7 +22,7 @@ if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); f
 if compgen -G 'tests/integration/*.bats' >/dev/null; then
   command='bats --tap'
   [[ -z $filter ]] || command+=" --filter ${filter// /.}" # prove splits it at spaces
-  prove --exec "$command" tests/integration/*.bats || failed=1
+  prove --failures --comments --exec "$command" tests/integration/*.bats || failed=1
 else
   echo "no integration tests in tests/integration"
 fi
