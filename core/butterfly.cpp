@@ -126,8 +126,8 @@ class Butterfly {
     const Vec3d across = widen(p_[fan.ring[0]]) - widen(p_[fan.ring[k]]);
     for (uint32_t i = 1; i < k; ++i) {
       const stencil::CurveSpoke rule = stencil::curve_spoke(k, i);
-      add_opinion(fan.spokes[i], narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across +
-                                        rule.sine_1 * sum_1 + rule.sine_2 * sum_2));
+      add_opinion(fan.spokes[i], narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 +
+                                        rule.sine_2 * sum_2));
     }
   }
 
@@ -185,13 +185,13 @@ class Butterfly {
 
   /// A = origin(h) interior, B on a curve that runs along the left face.
   [[nodiscard]] Point interior_curve_left(uint32_t h, uint32_t t) const {
-    return interior_curve(h, mesh_.apex(h), mesh_.apex(t), wing(Topology::previous(h)),
-                          wing(Topology::next(t)), wing(Topology::previous(t)));
+    return interior_curve(h, mesh_.apex(h), mesh_.apex(t), wing(Topology::previous(h)), wing(Topology::next(t)),
+                          wing(Topology::previous(t)));
   }
   /// The same with the curve along the right face.
   [[nodiscard]] Point interior_curve_right(uint32_t h, uint32_t t) const {
-    return interior_curve(h, mesh_.apex(t), mesh_.apex(h), wing(Topology::next(t)),
-                          wing(Topology::previous(h)), wing(Topology::next(h)));
+    return interior_curve(h, mesh_.apex(t), mesh_.apex(h), wing(Topology::next(t)), wing(Topology::previous(h)),
+                          wing(Topology::next(h)));
   }
   [[nodiscard]] Point interior_curve(uint32_t h, uint32_t p, uint32_t q, Point wing_ap, Point wing_aq,
                                      Point b_next) const {
@@ -207,12 +207,8 @@ class Butterfly {
            Row::wing * (wing(Topology::next(t)) + wing(Topology::previous(t)));
   }
 
-  static Vec3d widen(Point p) {
-    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-  }
-  static Point narrow(Vec3d p) {
-    return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)};
-  }
+  static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
+  static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 
   const Topology& mesh_;
   const std::vector<Point>& p_;

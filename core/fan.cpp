@@ -6,9 +6,7 @@ namespace papilio {
 namespace {
 
 /// The next spoke clockwise, `none` across a curve.
-uint32_t clockwise(const Topology& mesh, uint32_t h) {
-  return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]);
-}
+uint32_t clockwise(const Topology& mesh, uint32_t h) { return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]); }
 
 /// The next spoke counter-clockwise, `none` across a curve.
 uint32_t counter_clockwise(const Topology& mesh, uint32_t h) {

@@ -6,6 +6,9 @@
 namespace papilio {
 namespace {
 
+/// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
+constexpr double rounding = 4e-7;
+
 /// Cosine of the turn from a to b to c; 1 where a piece has no length.
 double cosine_of_turn(Vec3f a, Vec3f b, Vec3f c) {
   const Vec3d u = to_double(b) - to_double(a);
@@ -18,15 +21,14 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
   const Vec3f a = mesh.positions[mesh.topology.origin[h]];
   const Vec3f b = mesh.positions[mesh.topology.tip(h)];
   const uint32_t before = curves.before(h);
-  if (before != none && cosine_of_turn(mesh.positions[before], a, b) < threshold) return true;
+  if (before != none && cosine_of_turn(mesh.positions[before], a, b) < threshold - rounding) return true;
   const uint32_t after = curves.after(h);
-  return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold;
+  return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - rounding;
 }
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold,
-                      EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   const CurveNeighbours curves(topology);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
@@ -38,7 +40,7 @@ void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, doubl
     }
     const Vec3f n1 = normals[Topology::face(h)];
     const Vec3f n2 = normals[Topology::face(t)];
-    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold) marks[e] = 1;
+    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold - rounding) marks[e] = 1;
   }
 }
 

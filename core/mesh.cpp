@@ -12,24 +12,21 @@ namespace {
 
 void check(const TriangleMesh& input) {
   const size_t points = input.positions.size();
-  if (points >= none)
-    throw Error(Fault::index_out_of_range, "The mesh has more points than 32 bits can number.");
+  if (points >= none) throw Error(Fault::index_out_of_range, "The mesh has more points than 32 bits can number.");
   if (input.triangles.size() > face_count_limit)
     throw Error(Fault::result_too_large, "The mesh has more than 2^30 faces. Send fewer.");
   for (size_t f = 0; f < input.triangles.size(); ++f)
     for (uint32_t p : input.triangles[f])
       if (p >= points)
-        throw Error(Fault::index_out_of_range, "Face " + std::to_string(f) + " names point " +
-                                                   std::to_string(p) + ", but there are only " +
-                                                   std::to_string(points) + " points.");
+        throw Error(Fault::index_out_of_range, "Face " + std::to_string(f) + " names point " + std::to_string(p) +
+                                                   ", but there are only " + std::to_string(points) + " points.");
   for (size_t p = 0; p < points; ++p) {
     const Vec3f v = input.positions[p];
     const auto usable = [](float c) { return std::abs(c) <= coordinate_limit; };  // false for NaN
     if (!usable(v.x) || !usable(v.y) || !usable(v.z))
-      throw Error(Fault::not_finite,
-                  "Point " + std::to_string(p) +
-                      " has a coordinate that is NaN, infinite or beyond 1e18. Repair or rescale "
-                      "the mesh.");
+      throw Error(Fault::not_finite, "Point " + std::to_string(p) +
+                                         " has a coordinate that is NaN, infinite or beyond 1e18. Repair or rescale "
+                                         "the mesh.");
   }
 }
 
@@ -94,8 +91,7 @@ uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs) {
   std::vector<bool> repeated;
   uint32_t dropped = 0;
   for (size_t c = 1; c < candidates.size(); ++c) {
-    if (candidates[c].rotated != candidates[c - 1].rotated || candidates[c].face == candidates[c - 1].face)
-      continue;
+    if (candidates[c].rotated != candidates[c - 1].rotated || candidates[c].face == candidates[c - 1].face) continue;
     if (repeated.empty()) repeated.resize(mesh.face_count());
     if (!repeated[candidates[c].face]) ++dropped;
     repeated[candidates[c].face] = true;
@@ -185,11 +181,10 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   found.repeated_faces = drop_repeated_faces(topology, runs);
   if (found.repeated_faces > 0) runs = sort_into_edges(topology);
   if (topology.origin.empty()) {
-    throw Error(Fault::no_faces,
-                input.triangles.empty()
-                    ? "The mesh has no faces. Send a triangle mesh."
-                    : "Every face of the mesh has two corners in one place, so there is no surface "
-                      "to refine. Check the mesh's scale and precision.");
+    throw Error(Fault::no_faces, input.triangles.empty()
+                                     ? "The mesh has no faces. Send a triangle mesh."
+                                     : "Every face of the mesh has two corners in one place, so there is no surface "
+                                       "to refine. Check the mesh's scale and precision.");
   }
   connect(topology, runs, found);
   topology.pinched = find_pinched(topology);

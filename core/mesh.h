@@ -30,15 +30,14 @@ enum class EdgeKind : uint8_t {
 /// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices.
 struct Topology {
   uint32_t vertex_count = 0;
-  std::vector<uint32_t> origin;  ///< [H] vertex that the half-edge leaves
-  std::vector<uint32_t>
-      twin;  ///< [H] the half-edge running the other way, `none` at boundary and shared edges
-  std::vector<uint32_t>
-      edge;  ///< [H] edge of the half-edge; all half-edges between two vertices have the same
+  std::vector<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
+  std::vector<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
+  std::vector<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
   std::vector<uint32_t> half_edge;  ///< [E] one half-edge of each edge
   std::vector<EdgeKind> kind;       ///< [E]
-  std::vector<uint32_t>
-      pinched;  ///< vertices with more than one fan, in ascending order; levels inherit them
+  /// Vertices of the coarse mesh with more than one fan, in ascending order. (Vertices that arise on shared edges have
+  /// several too; rules find those by their curves.)
+  std::vector<uint32_t> pinched;
 
   [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }
   [[nodiscard]] uint32_t edge_count() const { return static_cast<uint32_t>(half_edge.size()); }

@@ -19,9 +19,8 @@ bool is_uniform(const Options& options) { return options.flatness.empty() && !op
 
 void require_room(uint64_t faces, uint64_t limit, int level) {
   if (faces > limit)
-    throw Error(Fault::result_too_large, "Level " + std::to_string(level) + " would have " +
-                                             std::to_string(faces) + " faces; the limit is " +
-                                             std::to_string(limit) +
+    throw Error(Fault::result_too_large, "Level " + std::to_string(level) + " would have " + std::to_string(faces) +
+                                             " faces; the limit is " + std::to_string(limit) +
                                              ". Ask for fewer levels or refine less of the mesh.");
 }
 
@@ -30,9 +29,16 @@ double threshold_of(const Options& options, int level) {
   return index < options.flatness.size() ? options.flatness[index] : options.flatness.back();
 }
 
+/// Whether a level after this one could have targets where this one has none: its threshold is higher.
+bool later_level_is_finer(const Options& options, int level) {
+  if (options.flatness.empty()) return false;
+  for (int later = level + 1; later <= options.levels; ++later)
+    if (threshold_of(options, later) > threshold_of(options, level)) return true;
+  return false;
+}
+
 /// The paper's method, in its order: mark by flatness, grow, cull by view.
-EdgeMarks choose_targets(const Mesh& mesh, const Options& options, const std::optional<Camera>& camera,
-                         int level) {
+EdgeMarks choose_targets(const Mesh& mesh, const Options& options, const std::optional<Camera>& camera, int level) {
   EdgeMarks marks(mesh.topology.edge_count(), options.flatness.empty() ? 1 : 0);
   if (is_uniform(options)) return marks;
   const std::vector<Vec3f> normals = face_normals(mesh);
@@ -44,6 +50,24 @@ EdgeMarks choose_targets(const Mesh& mesh, const Options& options, const std::op
   return marks;
 }
 
+/// What a level splits.
+struct NextLevel {
+  int level;
+  SplitPlan plan;
+};
+
+/// The first level after `level` that has targets; nothing when none is left.
+std::optional<NextLevel> find_next_level(const Mesh& mesh, const Options& options, const std::optional<Camera>& camera,
+                                         int level) {
+  while (level < options.levels) {
+    ++level;
+    SplitPlan plan(choose_targets(mesh, options, camera, level));
+    if (plan.count() > 0) return NextLevel{level, std::move(plan)};
+    if (!later_level_is_finer(options, level)) break;
+  }
+  return std::nullopt;
+}
+
 Result run(Mesh mesh, const Options& options, const Hooks& hooks) {
   const auto poll = [&] {
     if (hooks.cancelled && hooks.cancelled()) throw Error(Fault::cancelled, "The caller asked to stop.");
@@ -53,24 +77,18 @@ Result run(Mesh mesh, const Options& options, const Hooks& hooks) {
   check_room(mesh.topology.face_count(), options);
 
   Result result;
-  for (int level = 0;; ++level) {
+  while (true) {
     poll();
-    std::optional<SplitPlan> plan;
-    if (level < options.levels) {
-      plan.emplace(choose_targets(mesh, options, camera, level + 1));
-      if (plan->count() == 0) {
-        plan.reset();
-        result.stop_reason = StopReason::converged;
-      }
-    }
-    if (hooks.on_level) hooks.on_level({level, mesh, !plan});
-    if (!plan) break;
+    const std::optional<NextLevel> next = find_next_level(mesh, options, camera, result.levels);
+    if (hooks.on_level) hooks.on_level({result.levels, mesh, !next});
+    if (!next) break;
     poll();
-    require_room(count_children(mesh.topology, *plan), std::min(options.face_limit, face_count_limit),
-                 level + 1);
-    mesh = refine_in_place(std::move(mesh), *plan, static_cast<float>(options.w));
-    result.levels = level + 1;
+    require_room(count_children(mesh.topology, next->plan), std::min(options.face_limit, face_count_limit),
+                 next->level);
+    mesh = refine_in_place(std::move(mesh), next->plan, static_cast<float>(options.w));
+    result.levels = next->level;
   }
+  result.stop_reason = result.levels == options.levels ? StopReason::levels : StopReason::converged;
   result.mesh = std::move(mesh);
   return result;
 }

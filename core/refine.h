@@ -21,34 +21,33 @@ struct Options {
   /// Edges at which the unit normals' product is below the threshold are targets. One threshold a level,
   /// -1..1, the last repeats; empty: all edges. Higher is finer.
   std::vector<double> flatness{};
-  Growth growth = Growth::faces;  ///< how far targets spread, after flatness; more is smoother and larger
-  std::optional<View> view{};     ///< when set, only what this view shows is refined
-  double w = 0;  ///< -1/16..1/8, the ten-point rule's free parameter; 0 is the eight-point rule
+  Growth growth = Growth::faces;     ///< how far targets spread, after flatness; more is smoother and larger
+  std::optional<View> view{};        ///< when set, only what this view shows is refined
+  double w = 0;                      ///< -1/16..1/8, the ten-point rule's free parameter; 0 is the eight-point rule
   uint64_t face_limit = 16'000'000;  ///< a level that would have more faces is refused before it is made
 };
 
 /// One level as it is made; valid during the callback only.
 struct Level {
-  int level;  ///< 0 is the coarse mesh
+  int level;  ///< 0 is the coarse mesh; a level without targets, before one with a higher threshold, is left out
   const Mesh& mesh;
   bool last;  ///< no further level will come
 };
 
 /// How the caller takes part. Both may be empty; both are called on the calling thread.
 struct Hooks {
-  std::function<void(const Level&)>
-      on_level{};                     ///< after each level, the coarse one first; may throw to stop
-  std::function<bool()> cancelled{};  ///< asked between steps; true stops with `Fault::cancelled`
+  std::function<void(const Level&)> on_level{};  ///< after each level, the coarse one first; may throw to stop
+  std::function<bool()> cancelled{};             ///< asked between steps; true stops with `Fault::cancelled`
 };
 
 enum class StopReason {
-  converged,  ///< no target edge was left
+  converged,  ///< no target edge was left, and no later level has a higher threshold
   levels,     ///< all levels asked for were made
 };
 
 struct Result {
   Mesh mesh;
-  int levels = 0;  ///< levels that changed the mesh
+  int levels = 0;  ///< the last level that changed the mesh
   StopReason stop_reason = StopReason::levels;
 };
 

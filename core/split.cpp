@@ -63,9 +63,7 @@ class Splitter {
     return difference < 0 || (difference == 0 && second_corner < first_corner);
   }
 
-  [[nodiscard]] uint32_t new_vertex(uint32_t h) const {
-    return mesh_.vertex_count + plan_.before[mesh_.edge[h]];
-  }
+  [[nodiscard]] uint32_t new_vertex(uint32_t h) const { return mesh_.vertex_count + plan_.before[mesh_.edge[h]]; }
 
   [[nodiscard]] uint32_t inner_edge_base() const { return mesh_.edge_count() + plan_.count(); }
 
@@ -84,8 +82,7 @@ class Splitter {
     const uint32_t t = mesh_.twin[h];
     if (t == none) return none;
     const uint32_t half_of_twin = plan_.is_split(mesh_.edge[h]) ? 1 - half : 0;
-    return 3 * first_child_[Topology::face(t)] +
-           pattern_[Topology::face(t)]->outer[2 * (t % 3) + half_of_twin];
+    return 3 * first_child_[Topology::face(t)] + pattern_[Topology::face(t)]->outer[2 * (t % 3) + half_of_twin];
   }
 
   void split_face(uint32_t f) {

@@ -30,8 +30,6 @@ struct SplitPattern {
 [[nodiscard]] const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
 
 /// For a mask with two targets: edge i as above.
-[[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) {
-  return mask == 3 ? 0 : mask == 6 ? 1 : 2;
-}
+[[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) { return mask == 3 ? 0 : mask == 6 ? 1 : 2; }
 
 }  // namespace papilio

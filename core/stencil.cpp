@@ -31,9 +31,10 @@ CurveSpoke curve_spoke(uint32_t triangles, uint32_t spoke) {
   const auto k = static_cast<double>(triangles);
   const double theta = pi / k;
   const double i = spoke;
-  const double centre = 1 - std::sin(theta) * std::sin(i * theta) / (k * (1 - std::cos(theta)));
+  // sin t / (1 - cos t) = cot(t / 2) and cos t - cos 2t = 2 sin(3t / 2) sin(t / 2), which keep their digits at large K.
+  const double centre = 1 - std::sin(i * theta) / (k * std::tan(theta / 2));
   const double end = std::cos(i * theta) / 4 - std::sin(2 * theta) * std::sin(2 * i * theta) /
-                                                   (4 * k * (std::cos(theta) - std::cos(2 * theta)));
+                                                   (8 * k * std::sin(1.5 * theta) * std::sin(theta / 2));
   return {centre, end, std::sin(i * theta) / k, std::sin(2 * i * theta) / (2 * k)};
 }
 

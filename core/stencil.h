@@ -22,8 +22,7 @@ inline constexpr uint32_t regular_curve_triangles = 3;
 template <class Real>
 struct Regular {
   Real end, apex, wing, far;  ///< two ends, two apexes, four wings, two points in line with the edge
-  explicit Regular(Real w = 0)
-      : end(Real(0.5) - w), apex(Real(0.125) + 2 * w), wing(Real(-0.0625) - w), far(w) {}
+  explicit Regular(Real w = 0) : end(Real(0.5) - w), apex(Real(0.125) + 2 * w), wing(Real(-0.0625) - w), far(w) {}
 };
 
 /// Along a boundary or crease: the four-point rule [SIG00]. Where the curve ends at a, its missing point is

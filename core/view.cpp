@@ -24,13 +24,11 @@ void check(const View& view) {
   require(is_finite(view.eye), "view.eye", "The eye must be three finite numbers.");
   require(is_finite(view.target), "view.target", "The target must be three finite numbers.");
   require(is_finite(view.up), "view.up", "The up direction must be three finite numbers.");
-  require(view.fov_y > 0 && view.fov_y < 180, "view.fov_y",
-          "The field of view must lie between 0 and 180 degrees.");
+  require(view.fov_y > 0 && view.fov_y < 180, "view.fov_y", "The field of view must lie between 0 and 180 degrees.");
   require(view.viewport[0] > 0 && view.viewport[1] > 0 && std::isfinite(view.viewport[0]) &&
               std::isfinite(view.viewport[1]),
           "view.viewport", "The viewport must be two positive numbers of pixels.");
-  require(view.near >= 0 && std::isfinite(view.near), "view.near",
-          "The near plane's distance must not be negative.");
+  require(view.near >= 0 && std::isfinite(view.near), "view.near", "The near plane's distance must not be negative.");
   require(view.edge_pixels >= 0, "view.edge_pixels", "The length in pixels must not be negative.");
 }
 
@@ -67,8 +65,7 @@ Camera::Camera(const View& view) : perspective_(view.projection == Projection::p
 }
 
 bool Camera::is_outside(Vec3d centre, double radius) const {
-  return std::ranges::any_of(planes_,
-                             [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
+  return std::ranges::any_of(planes_, [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
 }
 
 bool Camera::is_away(Vec3d point, Vec3d normal) const {
@@ -95,8 +92,8 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   return std::hypot(bx - ax, by - ay);
 }
 
-void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera,
-                  double edge_pixels, EdgeMarks& marks) {
+void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
+                  EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   const auto position = [&](uint32_t v) { return to_double(mesh.positions[v]); };
 

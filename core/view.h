@@ -17,7 +17,7 @@ struct View {
   Vec3d up{0, 1, 0};
   double fov_y = 45;                          ///< vertical field of view in degrees, 0 < fov_y < 180
   std::array<double, 2> viewport{1280, 720};  ///< width and height in pixels
-  double near = 0;  ///< distance of the near plane; 0: a thousandth of the distance from eye to target
+  double near = 0;          ///< distance of the near plane; 0: a thousandth of the distance from eye to target
   double edge_pixels = 10;  ///< an edge that looks shorter than this stays whole; 0 turns the criterion off
   /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
   Projection projection = Projection::perspective;
@@ -57,7 +57,7 @@ class Camera {
 /// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are
 /// turned away (so edges on the silhouette stay; a face without normal is never away), those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
-void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera,
-                  double edge_pixels, EdgeMarks& marks);
+void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
+                  EdgeMarks& marks);
 
 }  // namespace papilio

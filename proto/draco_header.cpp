@@ -52,8 +52,7 @@ class Cursor {
 
 void skip_metadata_block(Cursor& cursor, int depth) {
   if (depth > deepest_metadata)
-    throw Problem(Code::mesh_unsupported,
-                  "The Draco metadata is nested too deeply. Encode the mesh without metadata.");
+    throw Problem(Code::mesh_unsupported, "The Draco metadata is nested too deeply. Encode the mesh without metadata.");
   for (uint32_t entries = cursor.varint(); entries > 0; --entries) {
     cursor.take(cursor.byte());
     cursor.take(cursor.varint());
@@ -74,9 +73,8 @@ void skip_metadata(Cursor& cursor) {
 
 void require_count(uint32_t count, uint64_t limit, const char* what) {
   if (count > limit)
-    throw Problem(Code::mesh_too_large, "The mesh declares " + std::to_string(count) + " " + what +
-                                            "; the limit is " + std::to_string(limit) +
-                                            ". Send a coarser mesh.");
+    throw Problem(Code::mesh_too_large, "The mesh declares " + std::to_string(count) + " " + what + "; the limit is " +
+                                            std::to_string(limit) + ". Send a coarser mesh.");
 }
 
 }  // namespace
@@ -84,10 +82,9 @@ void require_count(uint32_t count, uint64_t limit, const char* what) {
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (!bytes.starts_with("DRACO"))
     throw Problem(Code::mesh_not_draco,
-                  bytes.empty()
-                      ? "The mesh is empty. Send a Draco file as the body."
-                      : "The mesh does not start with DRACO, so it is not a Draco file. Encode it with "
-                        "draco_encoder or `papilio convert in.obj out.drc`.");
+                  bytes.empty() ? "The mesh is empty. Send a Draco file as the body."
+                                : "The mesh does not start with DRACO, so it is not a Draco file. Encode it with "
+                                  "draco_encoder or `papilio convert in.obj out.drc`.");
   Cursor cursor(bytes);
   cursor.take(5);
   const unsigned major = cursor.byte();
@@ -96,13 +93,12 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   const unsigned method = cursor.byte();
   const unsigned flags = cursor.word();
   if (major != 2 || minor != 2)
-    throw Problem(Code::mesh_unsupported,
-                  "The Draco bitstream is version " + std::to_string(major) + "." + std::to_string(minor) +
-                      "; only 2.2 is read. Encode the mesh again with Draco 1.3 or later.");
+    throw Problem(Code::mesh_unsupported, "The Draco bitstream is version " + std::to_string(major) + "." +
+                                              std::to_string(minor) +
+                                              "; only 2.2 is read. Encode the mesh again with Draco 1.3 or later.");
   if (geometry != 1)
     throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud; a triangle mesh is needed.");
-  if (method > 1)
-    throw Problem(Code::mesh_not_draco, "The Draco stream names an encoding method that does not exist.");
+  if (method > 1) throw Problem(Code::mesh_not_draco, "The Draco stream names an encoding method that does not exist.");
   constexpr unsigned metadata_flag = 0x8000;
   if ((flags & metadata_flag) != 0) skip_metadata(cursor);
 

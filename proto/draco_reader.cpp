@@ -28,8 +28,7 @@ std::unique_ptr<draco::Mesh> decode(std::string_view bytes) {
 
 const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
   if (mesh.NumNamedAttributes(draco::GeometryAttribute::POSITION) != 1)
-    throw Problem(Code::mesh_unsupported,
-                  "The mesh must have exactly one POSITION attribute. Encode it again.");
+    throw Problem(Code::mesh_unsupported, "The mesh must have exactly one POSITION attribute. Encode it again.");
   const draco::PointAttribute& attribute = *mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (attribute.num_components() != 3 || attribute.data_type() != draco::DT_FLOAT32)
     throw Problem(Code::mesh_unsupported, "POSITION must be three 32-bit floats. Encode the mesh again.");
@@ -38,9 +37,8 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
 
 void require_decoded(uint64_t count, uint64_t limit, const char* what) {
   if (count > limit)
-    throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what +
-                                            "; the limit is " + std::to_string(limit) +
-                                            ". Send a coarser mesh.");
+    throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what + "; the limit is " +
+                                            std::to_string(limit) + ". Send a coarser mesh.");
 }
 
 }  // namespace
@@ -51,8 +49,7 @@ TriangleMesh read_draco(std::string_view bytes, const Limits& limits) {
   require_decoded(mesh->num_faces(), limits.max_input_faces, "faces");
   // A point for every corner is the most that seams can make of a mesh.
   require_decoded(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
-  if (mesh->num_faces() == 0)
-    throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
+  if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
   TriangleMesh out;

@@ -4,15 +4,19 @@
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <memory>
 #include <stdexcept>
 
 #include "core/normals.h"
+#include "proto/problem.h"
 
 namespace papilio::proto {
 namespace {
 
 constexpr int normal_bits = 10;
+constexpr double smallest_range = 1e-30;  // below, Draco's steps a unit overflow
 
 void add_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values) {
   draco::GeometryAttribute description;
@@ -36,13 +40,28 @@ std::unique_ptr<draco::Mesh> to_draco(const Mesh& mesh) {
   return result;
 }
 
+std::string exact_text(float value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// What Encoder::SetAttributeExplicitQuantization sets, but to the bit: that writes numbers with six decimals, in which
+/// the box of a small mesh is lost.
+draco::Options explicit_quantization(const QuantizationBox& box, int bits) {
+  draco::Options options;
+  options.SetInt("quantization_bits", bits);
+  options.SetString("quantization_origin",
+                    exact_text(box.origin.x) + ' ' + exact_text(box.origin.y) + ' ' + exact_text(box.origin.z));
+  options.SetString("quantization_range", exact_text(box.range));
+  return options;
+}
+
 std::string encode(draco::Encoder& encoder, const draco::Mesh& mesh) {
   // Named, since the automatic choice is sequential at speed 10: eleven times the bytes.
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
-  if (!status.ok())
-    throw std::runtime_error("Draco's encoder refuses the mesh: " + status.error_msg_string());
+  if (!status.ok()) throw std::runtime_error("Draco's encoder refuses the mesh: " + status.error_msg_string());
   return {buffer.data(), buffer.size()};
 }
 
@@ -53,6 +72,8 @@ QuantizationBox quantization_box(const std::vector<Vec3f>& coarse) {
   const Vec3d low = to_double(box.min);
   const Vec3d size = to_double(box.max) - low;
   const double range = 1.25 * std::max({size.x, size.y, size.z});
+  if (range < smallest_range)
+    throw Problem(Code::mesh_unusable, "The mesh is smaller than 1e-30 across, too small to be encoded. Scale it up.");
   const Vec3d centre = low + 0.5 * size;
   return {to_float(centre - 0.5 * Vec3d{range, range, range}), static_cast<float>(range)};
 }
@@ -61,8 +82,8 @@ std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const Outp
   const std::unique_ptr<draco::Mesh> out = to_draco(mesh);
   draco::Encoder encoder;
   encoder.SetSpeedOptions(options.speed, options.speed);
-  encoder.SetAttributeExplicitQuantization(draco::GeometryAttribute::POSITION, options.position_bits, 3,
-                                           &box.origin.x, box.range);
+  encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION,
+                                        explicit_quantization(box, options.position_bits));
   if (options.normals) {
     add_attribute(*out, draco::GeometryAttribute::NORMAL, vertex_normals(mesh));
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, normal_bits);

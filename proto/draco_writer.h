@@ -16,6 +16,7 @@ struct QuantizationBox {
 
 /// The bounding box's longest side, padded by an eighth on both sides since the surface swells, round the
 /// box's centre. (What swells further still is encoded right: Draco's grid goes on beyond the cube.)
+/// Throws `Problem` mesh_unusable for a mesh smaller than 1e-30.
 [[nodiscard]] QuantizationBox quantization_box(const std::vector<Vec3f>& coarse);
 
 struct OutputOptions {
@@ -26,8 +27,7 @@ struct OutputOptions {
 
 /// Encodes the mesh as a Draco 2.2 edgebreaker stream. The mesh must have faces; positions must be finite.
 /// Throws std::runtime_error with Draco's words when it refuses.
-[[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box,
-                                      const OutputOptions& options);
+[[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options);
 
 /// Encodes triangles as they are, positions to the bit: what the client sends of a mesh that is not Draco
 /// yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws `Error` as

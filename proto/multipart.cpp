@@ -14,8 +14,7 @@ namespace {
 constexpr size_t longest_header = 16 << 10;
 
 bool equal_without_case(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 std::string random_boundary() {
@@ -32,9 +31,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-[[noreturn]] void fail(const std::string& what) {
-  throw Problem(Code::bad_request, "The multipart body " + what);
-}
+[[noreturn]] void fail(const std::string& what) { throw Problem(Code::bad_request, "The multipart body " + what); }
 
 std::string boundary_of(std::string_view content_type) {
   const size_t semicolon = content_type.find(';');
@@ -45,8 +42,7 @@ std::string boundary_of(std::string_view content_type) {
     std::string_view field = trim(content_type.substr(0, content_type.find(';')));
     if (equal_without_case(field.substr(0, 9), "boundary=")) {
       field.remove_prefix(9);
-      if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-        field = field.substr(1, field.size() - 2);
+      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
       if (!field.empty() && field.size() <= 70) return std::string(field);
     }
     if (content_type.find(';') == std::string_view::npos) break;
@@ -80,9 +76,7 @@ std::string MultipartWriter::end() const { return "--" + boundary_ + "--\r\n"; }
 
 MultipartReader::MultipartReader(std::string_view content_type, uint64_t max_part_bytes,
                                  std::function<void(Part)> on_part)
-    : delimiter_("--" + boundary_of(content_type)),
-      max_part_bytes_(max_part_bytes),
-      on_part_(std::move(on_part)) {}
+    : delimiter_("--" + boundary_of(content_type)), max_part_bytes_(max_part_bytes), on_part_(std::move(on_part)) {}
 
 void MultipartReader::feed(std::string_view bytes) {
   pending_ += bytes;
@@ -119,8 +113,7 @@ bool MultipartReader::step() {
       pending_.erase(0, end + 2);
       if (!line.empty()) {
         const size_t colon = line.find(':');
-        if (colon == std::string::npos || part_.headers.size() > 100)
-          fail("has a part with a damaged header.");
+        if (colon == std::string::npos || part_.headers.size() > 100) fail("has a part with a damaged header.");
         part_.headers.emplace_back(line.substr(0, colon), trim(std::string_view(line).substr(colon + 1)));
         return true;
       }

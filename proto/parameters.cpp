@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr size_t longest_json = 64 << 10;
+constexpr int deepest_json = 4;
 
 /// Reads into one Parameters; knows which names have come already.
 class Reader {
@@ -50,8 +51,8 @@ const ParameterInfo& find(const std::string& name) {
   if (row != table.end()) return *row;
   std::string known;
   for (const ParameterInfo& info : table) append_item(known, ", ", info.name);
-  throw Problem(Code::unknown_parameter,
-                "There is no parameter " + quote(name) + ". There are: " + known + ".", shorten(name));
+  throw Problem(Code::unknown_parameter, "There is no parameter " + quote(name) + ". There are: " + known + ".",
+                shorten(name));
 }
 
 std::string what_it_takes(const ParameterInfo& info) { return "must be " + describe_range(info); }
@@ -103,15 +104,14 @@ std::vector<double> parse_json_value(const ParameterInfo& info, const json& valu
       check_numbers(info, {value.get<double>()}, given());
       return {value.get<double>()};
     case ParameterType::numbers: {
-      if (!value.is_array() || !std::ranges::all_of(value, [](const json& v) { return v.is_number(); }))
-        break;
+      if (!value.is_array() || !std::ranges::all_of(value, [](const json& v) { return v.is_number(); })) break;
       auto values = value.get<std::vector<double>>();
       check_numbers(info, values, given());
       return values;
     }
   }
-  Reader::refuse(info, what_it_takes(info) + (info.type == ParameterType::numbers ? " in an array" : "") +
-                           ", not " + given());
+  Reader::refuse(
+      info, what_it_takes(info) + (info.type == ParameterType::numbers ? " in an array" : "") + ", not " + given());
 }
 
 bool is_group(const std::string& name) {
@@ -124,14 +124,13 @@ void read_object(Reader& reader, const json& object, const std::string& prefix) 
     const std::string name = prefix + key;
     if (prefix.empty() && is_group(name)) {
       if (!value.is_object())
-        throw Problem(Code::bad_parameter, name + " must be an object, such as {\"" + name + "\": {...}}.",
-                      name);
+        throw Problem(Code::bad_parameter, name + " must be an object, such as {\"" + name + "\": {...}}.", name);
       read_object(reader, value, name + ".");
     } else if (prefix.empty() && key.find('.') != std::string::npos) {
-      throw Problem(Code::unknown_parameter,
-                    "In JSON, nest instead of writing dots: " + quote(name) +
-                        " is {\"view\": {...}} or {\"output\": {...}}.",
-                    name);
+      throw Problem(
+          Code::unknown_parameter,
+          "In JSON, nest instead of writing dots: " + quote(name) + " is {\"view\": {...}} or {\"output\": {...}}.",
+          shorten(name));
     } else {
       const ParameterInfo& info = find(name);
       reader.set(info, parse_json_value(info, value));
@@ -139,16 +138,18 @@ void read_object(Reader& reader, const json& object, const std::string& prefix) 
   }
 }
 
-/// Parses, refusing a key that comes twice in one object (the library would keep the last one and lose the
-/// other).
+/// Parses, refusing nesting deeper than any parameter's (the library prints recursively) and a key that comes twice in
+/// one object (the library would keep the last one and lose the other).
 json parse_document(std::string_view text) {
   std::vector<std::set<std::string>> keys;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (depth > deepest_json)
+      throw Problem(Code::bad_request, "The parameters are nested too deeply. No parameter is an array of arrays.");
     if (event == json::parse_event_t::object_start) keys.emplace_back();
     if (event == json::parse_event_t::object_end) keys.pop_back();
     if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
       throw Problem(Code::bad_parameter, quote(parsed.get<std::string>()) + " is given twice; give it once.",
-                    parsed.get<std::string>());
+                    shorten(parsed.get<std::string>()));
     return true;
   };
   try {
@@ -156,6 +157,8 @@ json parse_document(std::string_view text) {
   } catch (const json::parse_error& error) {
     throw Problem(Code::bad_request,
                   "The parameters are not JSON; the fault is at byte " + std::to_string(error.byte) + ".");
+  } catch (const json::exception&) {
+    throw Problem(Code::bad_request, "The parameters hold a number too large to be read.");
   }
 }
 
@@ -171,8 +174,7 @@ std::string value_text(const ParameterInfo& info, const std::vector<double>& val
 
 bool operator==(const Parameters& a, const Parameters& b) {
   return a.options.view.has_value() == b.options.view.has_value() &&
-         std::ranges::all_of(parameter_table(),
-                             [&](const ParameterInfo& info) { return info.get(a) == info.get(b); });
+         std::ranges::all_of(parameter_table(), [&](const ParameterInfo& info) { return info.get(a) == info.get(b); });
 }
 
 Parameters parse_query(const QueryFields& fields) {
@@ -186,8 +188,7 @@ Parameters parse_query(const QueryFields& fields) {
 
 Parameters parse_json(std::string_view text) {
   if (text.size() > longest_json)
-    throw Problem(Code::body_too_large,
-                  "The parameters are longer than 65536 bytes. Send only parameters there.");
+    throw Problem(Code::body_too_large, "The parameters are longer than 65536 bytes. Send only parameters there.");
   const json document = parse_document(text);
   if (!document.is_object())
     throw Problem(Code::bad_request, "The parameters must be one JSON object, such as {\"levels\": 2}.");
@@ -227,26 +228,45 @@ std::string describe_range(const ParameterInfo& info) {
     range = " of at least " + format_number(info.min);
   if (info.type == ParameterType::integer) return "an integer" + range;
   if (info.type == ParameterType::number) return "a number" + range;
-  const std::string count = info.least == info.most
-                                ? std::to_string(info.least)
-                                : std::to_string(info.least) + " to " + std::to_string(info.most);
+  const std::string count = info.least == info.most ? std::to_string(info.least)
+                                                    : std::to_string(info.least) + " to " + std::to_string(info.most);
   return count + " numbers" + range;
 }
 
 std::string describe_default(const ParameterInfo& info) {
-  return info.default_text.empty() ? value_text(info, info.get(Parameters{}))
-                                   : std::string(info.default_text);
+  return info.default_text.empty() ? value_text(info, info.get(Parameters{})) : std::string(info.default_text);
 }
 
 std::string parameters_markdown() {
   std::string text = "| parameter | takes | default | what it does |\n|---|---|---|---|\n";
   for (const ParameterInfo& info : parameter_table()) {
     text += "| `" + std::string(info.name) + "` | " + describe_range(info) +
-            (info.unit.empty() ? "" : ", " + std::string(info.unit)) + " | " + describe_default(info) +
-            " | " + std::string(info.description) + " |\n";
+            (info.unit.empty() ? "" : ", " + std::string(info.unit)) + " | " + describe_default(info) + " | " +
+            std::string(info.description) + " |\n";
   }
   return text;
 }
+
+namespace {
+
+/// Whole numbers without a fraction.
+nlohmann::ordered_json number_json(double value) {
+  return std::abs(value) < 1e15 && value == std::floor(value) ? nlohmann::ordered_json(static_cast<int64_t>(value))
+                                                              : nlohmann::ordered_json(value);
+}
+
+/// Typed as a request's JSON would be.
+nlohmann::ordered_json default_json(const ParameterInfo& info) {
+  const std::vector<double> values = info.get(Parameters{});
+  if (info.type == ParameterType::boolean) return values[0] != 0;
+  if (info.type == ParameterType::choice) return info.choices[static_cast<size_t>(values[0])];
+  if (info.type != ParameterType::numbers) return number_json(values[0]);
+  auto list = nlohmann::ordered_json::array();
+  for (double v : values) list.push_back(number_json(v));
+  return list;
+}
+
+}  // namespace
 
 std::string parameters_json() {
   static constexpr std::array types{"integer", "number", "numbers", "boolean", "choice"};
@@ -256,15 +276,16 @@ std::string parameters_json() {
     if (info.type == ParameterType::choice) {
       row["choices"] = info.choices;
     } else if (info.type != ParameterType::boolean) {
-      row["min"] = info.min;
-      row["max"] = info.max;
+      row["min"] = number_json(info.min);
+      row["max"] = number_json(info.max);
     }
     if (info.type == ParameterType::numbers) {
       row["least"] = info.least;
       row["most"] = info.most;
     }
     if (!info.unit.empty()) row["unit"] = info.unit;
-    row["default"] = describe_default(info);
+    row["default"] = default_json(info);
+    if (!info.default_text.empty()) row["default_text"] = info.default_text;
     row["description"] = info.description;
     rows.push_back(std::move(row));
   }

@@ -33,10 +33,9 @@ struct ParameterInfo {
   std::string_view name;  ///< with dots for nesting
   ParameterType type;
   size_t least = 1, most = 1;
-  double min = 0, max = 0;  ///< inclusive; unused for boolean and choice
-  std::string_view unit{};  ///< "" when it has none
-  std::string_view
-      default_text{};  ///< what stands for the default where its value does not speak for itself, else ""
+  double min = 0, max = 0;          ///< inclusive; unused for boolean and choice
+  std::string_view unit{};          ///< "" when it has none
+  std::string_view default_text{};  ///< what stands for the default where its value does not speak for itself, else ""
   std::string_view description{};
   std::vector<std::string_view> choices{};
   std::vector<double> (*get)(const Parameters&);

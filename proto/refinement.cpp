@@ -41,8 +41,7 @@ auto in_words_of_the_wire(Work work) {
   } catch (const Error& error) {
     throw Problem(error);
   } catch (const std::bad_alloc&) {
-    throw Problem(Code::result_too_large,
-                  "There is not enough memory for this result. Ask for fewer levels.");
+    throw Problem(Code::result_too_large, "There is not enough memory for this result. Ask for fewer levels.");
   }
 }
 
@@ -53,6 +52,7 @@ Refinement::Refinement(std::string_view draco, const Parameters& parameters, con
   Stopwatch watch;
   options_.face_limit = limits.max_output_faces;
   coarse_ = in_words_of_the_wire([&] { return build_mesh(read_draco(draco, limits)); });
+  box_ = quantization_box(coarse_.positions);
   in_words_of_the_wire([&] { check_room(coarse_.topology.face_count(), options_); });
   times_.decode = watch.lap();
 }
@@ -63,11 +63,10 @@ EncodedLevel Refinement::run(const RefinementHooks& hooks) {
 
 EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   Stopwatch watch;
-  const QuantizationBox box = quantization_box(coarse_.positions);
   EncodedLevel made;
   const auto encode = [&](const Mesh& mesh, int level) {
     times_.refine += watch.lap();
-    made.draco = write_draco(mesh, box, output_);
+    made.draco = write_draco(mesh, box_, output_);
     times_.encode += watch.lap();
     made.statistics.level = level;
     made.statistics.vertices = mesh.topology.vertex_count;
@@ -107,8 +106,7 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
       {"Papilio-Faces", std::to_string(statistics.faces)},
       {"Papilio-Levels", std::to_string(statistics.level)},
   };
-  if (statistics.stop_reason)
-    headers.emplace_back("Papilio-Stop-Reason", stop_reason_name(*statistics.stop_reason));
+  if (statistics.stop_reason) headers.emplace_back("Papilio-Stop-Reason", stop_reason_name(*statistics.stop_reason));
   headers.emplace_back("Server-Timing", "decode;dur=" + milliseconds_text(statistics.times.decode) +
                                             ", refine;dur=" + milliseconds_text(statistics.times.refine) +
                                             ", encode;dur=" + milliseconds_text(statistics.times.encode));

@@ -61,6 +61,7 @@ class Refinement {
   Options options_;
   OutputOptions output_;
   Mesh coarse_;
+  QuantizationBox box_;
   StageTimes times_;
 };
 
@@ -70,8 +71,7 @@ class Refinement {
 [[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
 
 /// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason and Server-Timing.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(
-    const Statistics& statistics);
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
 /// The same as a JSON object: vertices, faces, levels, stop_reason, milliseconds {decode, refine, encode}.
 [[nodiscard]] std::string statistics_json(const Statistics& statistics);
 

@@ -18,9 +18,9 @@ std::string format_number(double value) {
   std::array<char, 32> text{};
   if (value == 0) value = 0;  // not "-0"
   const bool plain = std::abs(value) < 1e9 && value == std::floor(value);
-  const auto [end, error] =
-      plain ? std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed)
-            : std::to_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = plain
+                                ? std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed)
+                                : std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), error == std::errc() ? end : text.data()};
 }
 

@@ -5,8 +5,7 @@
 namespace papilio::proto {
 
 std::string encode_url(std::string_view text) {
-  static constexpr std::string_view plain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~,";
+  static constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~,";
   static constexpr std::string_view digits = "0123456789ABCDEF";
   std::string out;
   for (char c : text) {

@@ -14,10 +14,7 @@ Admission::Admission(int slots, int queue) : slots_(slots), queue_(queue) {}
 
 std::shared_ptr<Admission::Slot> Admission::enter(const std::function<bool()>& client_gone) {
   std::unique_lock lock(mutex_);
-  if (computing_ + static_cast<int>(waiting_.size()) >= slots_ + queue_)
-    throw Problem(Code::busy, "All " + std::to_string(slots_) + " computing slots and " +
-                                  std::to_string(queue_) +
-                                  " waiting places are taken. Try again after the time in Retry-After.");
+  if (is_full()) throw busy();
   const uint64_t ticket = next_ticket_++;
   const auto place = waiting_.insert(waiting_.end(), ticket);
   const auto my_turn = [&] { return computing_ < slots_ && waiting_.front() == ticket; };
@@ -56,7 +53,16 @@ int Admission::waiting() const {
 
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
-  return computing_ + static_cast<int>(waiting_.size()) >= slots_ + queue_;
+  return is_full();
+}
+
+void Admission::refuse_when_full() const {
+  if (full()) throw busy();
+}
+
+Problem Admission::busy() const {
+  return {Code::busy, "All " + std::to_string(slots_) + " computing slots and " + std::to_string(queue_) +
+                          " waiting places are taken. Try again after the time in Retry-After."};
 }
 
 }  // namespace papilio::server

@@ -7,6 +7,8 @@
 #include <memory>
 #include <mutex>
 
+#include "proto/problem.h"
+
 namespace papilio::server {
 
 /// Lets a fixed number of requests compute at once and a few more wait their turn, first come first served.
@@ -36,9 +38,13 @@ class Admission {
   [[nodiscard]] int waiting() const;
   /// No request that came now would be let in.
   [[nodiscard]] bool full() const;
+  /// Throws `Problem` busy then: to be asked before a body is read that would only be held for nothing.
+  void refuse_when_full() const;
 
  private:
   void leave();
+  [[nodiscard]] bool is_full() const { return computing_ + static_cast<int>(waiting_.size()) >= slots_ + queue_; }
+  [[nodiscard]] proto::Problem busy() const;
 
   const int slots_;
   const int queue_;

@@ -21,9 +21,8 @@ struct Config {
 /// How `parse_config` ended.
 struct ConfigOutcome {
   Config config;
-  bool exit =
-      false;       ///< the program is to end now, with `status`: help or version shown, or a setting refused
-  int status = 0;  ///< 0, or 2 for bad usage
+  bool exit = false;  ///< the program is to end now, with `status`: help or version shown, or a setting refused
+  int status = 0;     ///< 0, or 2 for bad usage
 };
 
 /// Reads the environment and the command line, and validates. Help goes to standard output; a refusal, which

@@ -6,6 +6,20 @@
 #include "proto/text.h"
 
 namespace papilio::server {
+namespace {
+
+/// A quoted value in which nothing can be taken for the next field.
+std::string log_value(std::string_view text) {
+  constexpr size_t longest = 400;
+  std::string out = "\"";
+  for (char c : text.substr(0, longest)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return out + (text.size() > longest ? "...\"" : "\"");
+}
+
+}  // namespace
 
 void start_log(const std::string& level) {
   auto logger = spdlog::stderr_logger_mt("papilio");
@@ -18,13 +32,12 @@ void start_log(const std::string& level) {
 void log_request(const Finished& request) {
   spdlog::level::level_enum level = spdlog::level::info;
   if (request.status >= 500) level = spdlog::level::err;
-  if (request.status < 400 && (request.path == "/health" || request.path == "/ready"))
-    level = spdlog::level::debug;
+  if (request.status < 400 && (request.path == "/health" || request.path == "/ready")) level = spdlog::level::debug;
   std::string trouble;
-  if (!request.code.empty()) trouble = " code=" + request.code + " detail=" + proto::quote(request.detail);
-  spdlog::log(level, "msg=request id={} method={} path={} status={} ms={:.3f} in={} out={} remote={}{}",
-              request.id, proto::shorten(request.method), proto::quote(request.path), request.status,
-              request.milliseconds, request.bytes_in, request.bytes_out, request.remote_address, trouble);
+  if (!request.code.empty()) trouble = " code=" + request.code + " detail=" + log_value(request.detail);
+  spdlog::log(level, "msg=request id={} method={} path={} status={} ms={:.3f} in={} out={} remote={}{}", request.id,
+              proto::shorten(request.method), log_value(request.path), request.status, request.milliseconds,
+              request.bytes_in, request.bytes_out, request.remote_address, trouble);
 }
 
 }  // namespace papilio::server

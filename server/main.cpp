@@ -1,9 +1,12 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "server/config.h"
@@ -33,17 +36,26 @@ int serve(const Config& config) {
   HttpServer server(http);
   service.add_routes(server);
   const int port = server.bind();
-  std::thread listener([&] { server.run(); });
-  std::cout << "listening on http://"
-            << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']') << ':' << port
-            << std::endl;
+  std::string listener_failure;
+  std::thread listener([&] {
+    try {
+      server.run();
+    } catch (const std::exception& error) {
+      listener_failure = error.what();
+      kill(getpid(), SIGTERM);  // wakes the wait below
+    }
+  });
+  std::cout << "listening on http://" << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']')
+            << ':' << port << std::endl;
   spdlog::info("msg=start version={} slots={} queue={}", PAPILIO_VERSION, config.slots, config.queue);
 
   int signal = 0;
   sigwait(&stop_signals, &signal);
   spdlog::info("msg=draining signal={} running={}", signal, server.running());
+  pthread_sigmask(SIG_UNBLOCK, &stop_signals, nullptr);  // a second signal ends the program at once
   const bool complete = server.drain(config.drain_seconds);
   listener.join();
+  if (!listener_failure.empty()) throw std::runtime_error(listener_failure);
   spdlog::info("msg=stopped complete={}", complete);
   return complete ? 0 : 1;
 }

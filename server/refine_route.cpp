@@ -40,16 +40,14 @@ Order read_form(Request& request) {
     if (part.name != "mesh" && part.name != "params")
       throw Problem(Code::bad_request, "The form has a part " + proto::quote(part.name) +
                                            "; its parts are \"mesh\" (Draco) and \"params\" (JSON).");
-    if (seen)
-      throw Problem(Code::bad_request, "The form has two parts " + proto::quote(part.name) + "; send one.");
+    if (seen) throw Problem(Code::bad_request, "The form has two parts " + proto::quote(part.name) + "; send one.");
     seen = true;
     if (part.name == "mesh")
       order.mesh = std::move(part.bytes);
     else
       order.parameters = proto::parse_json(part.bytes);
   }
-  if (!has_mesh)
-    throw Problem(Code::bad_request, "The form has no part \"mesh\". Add one: curl -F mesh=@in.drc ...");
+  if (!has_mesh) throw Problem(Code::bad_request, "The form has no part \"mesh\". Add one: curl -F mesh=@in.drc ...");
   return order;
 }
 
@@ -57,11 +55,10 @@ Order read_order(Request& request) {
   const std::string type = request.content_type();
   if (type == "multipart/form-data") return read_form(request);
   if (!type.empty() && type != draco_type && type != bytes_type)
-    throw Problem(
-        Code::unsupported_media_type,
-        "Bodies of type " + proto::quote(type) +
-            " are not read here. Send a Draco file with -H 'Content-Type: application/x-draco', or a form "
-            "with parts mesh and params.");
+    throw Problem(Code::unsupported_media_type,
+                  "Bodies of type " + proto::quote(type) +
+                      " are not read here. Send a Draco file with -H 'Content-Type: application/x-draco', or a form "
+                      "with parts mesh and params.");
   Parameters parameters = proto::parse_query(request.query());
   return {request.read_body().bytes, std::move(parameters)};
 }
@@ -74,8 +71,7 @@ proto::Part level_part(const EncodedLevel& level) {
 
 struct ClientGone {};
 
-void stream_levels(Refinement& refinement, const Request& request, const proto::MultipartWriter& writer,
-                   Sink& sink) {
+void stream_levels(Refinement& refinement, const Request& request, const proto::MultipartWriter& writer, Sink& sink) {
   const auto send = [&](const proto::Part& part) {
     if (!sink.write(writer.part(part))) throw ClientGone();
   };
@@ -84,15 +80,13 @@ void stream_levels(Refinement& refinement, const Request& request, const proto::
   };
   try {
     try {
-      const EncodedLevel last =
-          refinement.run({.on_level = [&](const EncodedLevel& level) { send(level_part(level)); },
-                          .cancelled = [&] { return request.client_gone(); }});
+      const EncodedLevel last = refinement.run({.on_level = [&](const EncodedLevel& level) { send(level_part(level)); },
+                                                .cancelled = [&] { return request.client_gone(); }});
       send({{{"Content-Type", "application/json"}}, proto::statistics_json(last.statistics)});
     } catch (const Problem& problem) {
       fail(problem);
     } catch (const std::exception&) {
-      fail(
-          Problem(Code::internal, "Something failed inside the server. The request id finds it in the log."));
+      fail(Problem(Code::internal, "Something failed inside the server. The request id finds it in the log."));
     }
     sink.write(writer.end());
   } catch (const ClientGone&) {  // nobody is left to tell
@@ -108,6 +102,7 @@ Response refine_route(Request& request, const proto::Limits& limits, Admission& 
     throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) +
                                             ", but the answer can only be application/x-draco, "
                                             "application/octet-stream or multipart/mixed.");
+  admission.refuse_when_full();
   const Order order = read_order(request);
   const auto slot = admission.enter([&] { return request.client_gone(); });
   const auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, limits);
@@ -125,8 +120,7 @@ Response refine_route(Request& request, const proto::Limits& limits, Admission& 
   }
   EncodedLevel made = refinement->run({.cancelled = [&] { return request.client_gone(); }});
   response.content_type = *type;
-  for (auto& header : proto::statistics_headers(made.statistics))
-    response.headers.push_back(std::move(header));
+  for (auto& header : proto::statistics_headers(made.statistics)) response.headers.push_back(std::move(header));
   response.body = std::move(made.draco);
   return response;
 }

@@ -28,8 +28,7 @@ Service::Service(const proto::Limits& limits, uint64_t max_body_bytes, int slots
     : limits_(limits), max_body_bytes_(max_body_bytes), admission_(slots, queue) {}
 
 void Service::add_routes(HttpServer& server) {
-  server.add("POST", "/v1/refine",
-             [this](Request& request) { return refine_route(request, limits_, admission_); });
+  server.add("POST", "/v1/refine", [this](Request& request) { return refine_route(request, limits_, admission_); });
   server.add("GET", "/v1/info", [this](Request&) { return info(); });
   server.add(
       "GET", "/health",

@@ -18,8 +18,7 @@ void compare_command(const CompareFlags& flags) {
   }
   const auto line = [&](const char* what, double value) {
     std::cout << what << value;
-    if (found.diagonal > 0)
-      std::cout << " (" << 100 * value / found.diagonal << " % of the first mesh's diagonal)";
+    if (found.diagonal > 0) std::cout << " (" << 100 * value / found.diagonal << " % of the first mesh's diagonal)";
     std::cout << '\n';
   };
   line("Hausdorff distance  ", found.hausdorff);

@@ -16,8 +16,7 @@ void convert_command(const ConvertFlags& flags) {
     return;
   }
   const Mesh mesh = build_mesh(triangles);
-  write_atomically(flags.output,
-                   proto::write_draco(mesh, proto::quantization_box(mesh.positions), flags.options));
+  write_atomically(flags.output, proto::write_draco(mesh, proto::quantization_box(mesh.positions), flags.options));
 }
 
 }  // namespace papilio::client

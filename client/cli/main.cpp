@@ -24,10 +24,9 @@ void add_parameters(CLI::App& command, TypedParameters& typed, std::string_view 
   for (const proto::ParameterInfo& parameter : proto::parameter_table()) {
     if (!parameter.name.starts_with(prefix)) continue;
     const std::string name(parameter.name);
-    const std::string description = std::string(parameter.description) + " (" +
-                                    proto::describe_range(parameter) + "; default " +
-                                    proto::describe_default(parameter) + ")";
-    command.add_option("--" + name, typed[name], description)->type_name("")->group("Parameters");
+    const std::string description = std::string(parameter.description) + " (" + proto::describe_range(parameter) +
+                                    "; default " + proto::describe_default(parameter) + ")";
+    command.add_option("--" + name, typed[name], description)->type_name("VALUE")->group("Parameters");
   }
 }
 
@@ -43,8 +42,7 @@ void add_refine(CLI::App& app) {
   auto typed = std::make_shared<TypedParameters>();
   CLI::App* command = app.add_subcommand("refine", "Refine a mesh, or every mesh in a folder");
   command->add_option("input", flags->input, "Mesh file (.drc .obj .ply .off .stl) or folder")->required();
-  command
-      ->add_option("-o,--output", flags->output, "File whose extension names its kind, folder, or - (Draco)")
+  command->add_option("-o,--output", flags->output, "File whose extension names its kind, folder, or - (Draco)")
       ->required();
   command->add_option("--server", flags->server, "Refine there instead of here: http://host:port");
   command->add_option("--to", flags->to, "Kind of the results of a folder")
@@ -88,9 +86,7 @@ void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Distances between two surfaces");
   command->add_option("a", flags->a, mesh_file)->required();
   command->add_option("b", flags->b, mesh_file)->required();
-  command
-      ->add_option("--samples", flags->options.samples,
-                   "Points sampled on each surface, besides its vertices")
+  command->add_option("--samples", flags->options.samples, "Points sampled on each surface, besides its vertices")
       ->check(CLI::Range(size_t{0}, size_t{100'000'000}))
       ->capture_default_str();
   command->add_flag("--json", flags->json, "As JSON");
@@ -99,11 +95,9 @@ void add_compare(CLI::App& app) {
 
 void add_parameters_command(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* command =
-      app.add_subcommand("parameters", "Print the table of refinement parameters as Markdown");
+  CLI::App* command = app.add_subcommand("parameters", "Print the table of refinement parameters as Markdown");
   command->add_flag("--json", *json, "As JSON");
-  command->callback(
-      [json] { std::cout << (*json ? proto::parameters_json() + "\n" : proto::parameters_markdown()); });
+  command->callback([json] { std::cout << (*json ? proto::parameters_json() + "\n" : proto::parameters_markdown()); });
 }
 
 int complain(const std::string& what, ExitStatus status) {
@@ -122,7 +116,7 @@ int run(int argc, char** argv) {
   add_parameters_command(app);
   try {
     app.parse(argc, argv);
-    return success;
+    return std::cout.flush() ? success : complain("Standard output took not all of the result.", failed);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? success : usage;
   } catch (const UsageError& error) {

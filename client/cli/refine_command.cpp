@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
@@ -32,19 +33,34 @@ void report(std::ostream& out, const RefineFlags& flags, const proto::Statistics
     out << proto::statistics_json(statistics);
     return;
   }
-  std::cerr << flags.output << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, "
-            << bytes << " bytes of Draco, " << statistics.level << " levels; decode "
-            << statistics.times.decode << " ms, refine " << statistics.times.refine << " ms, encode "
-            << statistics.times.encode << " ms\n";
+  std::cerr << flags.output << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, " << bytes
+            << " bytes of Draco, " << statistics.level << " levels; decode " << statistics.times.decode
+            << " ms, refine " << statistics.times.refine << " ms, encode " << statistics.times.encode << " ms\n";
+}
+
+/// Refuses a bad name before the work.
+void check_output_name(const std::string& name) {
+  try {
+    (void)format_of(name);
+  } catch (const FileError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+/// Results among the sources would replace them, or be refined themselves the next time.
+void check_folders_apart(const fs::path& input, const fs::path& output) {
+  const fs::path inner = fs::weakly_canonical(output);
+  const fs::path outer = fs::canonical(input);
+  if (std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end())
+    throw UsageError(output.string() + " lies in " + input.string() + ". Name a folder outside of it for the results.");
 }
 
 void refine_file(const RefineFlags& flags) {
   const bool to_standard_output = flags.output == "-";
-  if (!to_standard_output) (void)format_of(flags.output);  // refuse a bad name before the work
+  if (!to_standard_output) check_output_name(flags.output);
   const EncodedLevel made = refine_stream(load_draco(flags.input), flags);
   if (to_standard_output) {
     std::cout.write(made.draco.data(), static_cast<std::streamsize>(made.draco.size()));
-    if (!std::cout.flush()) throw std::runtime_error("Standard output took not all of the result.");
   } else {
     save_draco(flags.output, made.draco);
   }
@@ -91,8 +107,8 @@ class Progress {
     if (!on_terminal_) return;
     constexpr size_t width = 30;
     const size_t filled = width * done_ / total_;
-    std::cerr << '[' << std::string(filled, '#') << std::string(width - filled, '.') << "] " << done_ << '/'
-              << total_ << ' ' << path.filename().string() << (done_ == total_ ? "\n" : "") << std::flush;
+    std::cerr << '[' << std::string(filled, '#') << std::string(width - filled, '.') << "] " << done_ << '/' << total_
+              << ' ' << path.filename().string() << (done_ == total_ ? "\n" : "") << std::flush;
   }
   [[nodiscard]] size_t failed() const { return failed_; }
 
@@ -115,8 +131,8 @@ std::string refine_one_of_many(const fs::path& input, const fs::path& output, co
 }
 
 void refine_folder(const RefineFlags& flags) {
-  if (flags.output == "-")
-    throw UsageError("The results of a folder cannot go to standard output; name a folder.");
+  if (flags.output == "-") throw UsageError("The results of a folder cannot go to standard output; name a folder.");
+  check_folders_apart(flags.input, flags.output);
   const std::map<fs::path, fs::path> plan = plan_folder(flags);
   const std::vector<std::pair<fs::path, fs::path>> files(plan.begin(), plan.end());
   Progress progress(files.size());
@@ -132,8 +148,8 @@ void refine_folder(const RefineFlags& flags) {
   if (flags.json)
     std::cout << "{\"files\": " << files.size() << ", \"failed\": " << progress.failed() << "}\n";
   else
-    std::cerr << files.size() - progress.failed() << " of " << files.size() << " meshes refined into "
-              << flags.output << '\n';
+    std::cerr << files.size() - progress.failed() << " of " << files.size() << " meshes refined into " << flags.output
+              << '\n';
   if (progress.failed() > 0)
     throw std::runtime_error(std::to_string(progress.failed()) + " of " + std::to_string(files.size()) +
                              " meshes could not be refined; the reasons are above.");
@@ -142,6 +158,11 @@ void refine_folder(const RefineFlags& flags) {
 }  // namespace
 
 void refine_command(const RefineFlags& flags) {
+  try {
+    if (!flags.server.empty()) (void)Remote(flags.server);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
   if (fs::is_directory(flags.input))
     refine_folder(flags);
   else

@@ -19,16 +19,13 @@ bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std
 
 /// `name` is which mesh it is, for messages.
 Triangles corners_of(const TriangleMesh& mesh, const std::string& name) {
-  if (mesh.triangles.empty())
-    throw std::invalid_argument(name + " has no triangles: there is nothing to compare");
+  if (mesh.triangles.empty()) throw std::invalid_argument(name + " has no triangles: there is nothing to compare");
   const auto corner = [&](uint32_t vertex) {
     if (vertex >= mesh.positions.size())
-      throw std::invalid_argument(name + " names vertex " + std::to_string(vertex) +
-                                  ", which it does not have");
+      throw std::invalid_argument(name + " names vertex " + std::to_string(vertex) + ", which it does not have");
     const Vec3d position = to_double(mesh.positions[vertex]);
     if (!is_finite(position))
-      throw std::invalid_argument(name + " has a coordinate that is not finite, at vertex " +
-                                  std::to_string(vertex));
+      throw std::invalid_argument(name + " has a coordinate that is not finite, at vertex " + std::to_string(vertex));
     return position;
   };
   Triangles triangles;
@@ -83,9 +80,7 @@ std::vector<Sample> sample_by_area(std::span<const TriangleCorners> triangles, s
   for (const TriangleCorners& triangle : triangles) {
     passed += area(triangle);
     const auto normal = unit_normal(triangle);
-    const auto due = [&] {
-      return (static_cast<double>(samples.size()) + 0.5) / static_cast<double>(count) * total;
-    };
+    const auto due = [&] { return (static_cast<double>(samples.size()) + 0.5) / static_cast<double>(count) * total; };
     while (normal && samples.size() < count && due() < passed)
       samples.push_back({point_in(triangle, samples.size()), *normal});
   }
@@ -101,8 +96,7 @@ struct OneWay {
 
 double degrees(double cosine) { return std::acos(cosine) * 180 / std::numbers::pi; }
 
-OneWay measure(std::span<const Vec3d> vertices, std::span<const Sample> samples,
-               const SurfaceDistance& surface) {
+OneWay measure(std::span<const Vec3d> vertices, std::span<const Sample> samples, const SurfaceDistance& surface) {
   OneWay result;
   double vertex_squares = 0;
   for (const Vec3d vertex : vertices) {

@@ -20,11 +20,9 @@ struct Comparison {
   double rms = 0;           ///< the larger of `rms_forward` and `rms_backward`
   double max_forward = 0;   ///< largest distance, over vertices and samples: a lower bound of the exact one
   double max_backward = 0;  ///< the same from b to a
-  double rms_forward =
-      0;  ///< root mean square distance over the area (over the vertices if there is no area)
+  double rms_forward = 0;   ///< root mean square distance over the area (over the vertices if there is no area)
   double rms_backward = 0;  ///< the same from b to a
-  double diagonal =
-      0;  ///< of the smallest box, along the axes, around a's triangles: what to divide by for shares
+  double diagonal = 0;      ///< of the smallest box, along the axes, around a's triangles: what to divide by for shares
   /// Mean angle between the normals at a sample and at the point nearest to it, over the samples of both
   /// directions; degrees, 0 to 180. Where faces meet in that point, the one that agrees best counts. 0 where
   /// nothing has a normal.
@@ -38,7 +36,6 @@ struct Comparison {
 ///
 /// Throws `std::invalid_argument`, which says which mesh, if one has no triangles, an index out of range, or
 /// a coordinate that is not finite.
-[[nodiscard]] Comparison compare(const TriangleMesh& a, const TriangleMesh& b,
-                                 const CompareOptions& options = {});
+[[nodiscard]] Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options = {});
 
 }  // namespace papilio::client

@@ -2,8 +2,11 @@
 
 #include <httplib.h>
 
+#include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <thread>
 
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -15,6 +18,9 @@ using nlohmann::json;
 
 constexpr const char* draco_type = "application/x-draco";
 constexpr uint64_t longest_part = 4ULL << 30;
+constexpr int busy_status = 429;
+constexpr int most_attempts = 30;
+constexpr uint64_t longest_pause_seconds = 10;
 
 /// The server's problem document as an exception; other answers as they are.
 ServerError error_from(int status, const std::string& body) {
@@ -43,9 +49,7 @@ httplib::Client connect(const std::string& origin) {
   return client;
 }
 
-uint64_t count_of(const std::string& header) {
-  return static_cast<uint64_t>(proto::parse_number(header).value_or(0));
-}
+uint64_t count_of(const std::string& header) { return static_cast<uint64_t>(proto::parse_number(header).value_or(0)); }
 
 /// decode;dur=1.2, refine;dur=3.4, encode;dur=5.6
 double stage_time(const std::string& server_timing, const std::string& stage) {
@@ -67,8 +71,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   statistics.level = static_cast<int>(count_of(field("Papilio-Levels")));
   statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
   const std::string timing = field("Server-Timing");
-  statistics.times = {stage_time(timing, "decode"), stage_time(timing, "refine"),
-                      stage_time(timing, "encode")};
+  statistics.times = {stage_time(timing, "decode"), stage_time(timing, "refine"), stage_time(timing, "encode")};
   return statistics;
 }
 
@@ -78,8 +81,8 @@ Remote::Remote(const std::string& url) {
   static const std::regex form(R"((https?://[^/?#\s]+)(/[^?#\s]*)?)");
   std::smatch match;
   if (!std::regex_match(url, match, form))
-    throw std::invalid_argument("The server must be a URL such as http://localhost:8080, not " +
-                                proto::quote(url) + ".");
+    throw std::invalid_argument("The server must be a URL such as http://localhost:8080, not " + proto::quote(url) +
+                                ".");
   origin_ = match[1];
   prefix_ = match[2];
   while (prefix_.ends_with('/')) prefix_.pop_back();
@@ -88,7 +91,12 @@ Remote::Remote(const std::string& url) {
 proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_);
   const std::string path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
-  const auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
+  auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
+  for (int attempt = 1; attempt < most_attempts && answer && answer->status == busy_status; ++attempt) {
+    std::this_thread::sleep_for(std::chrono::seconds(
+        std::clamp<uint64_t>(count_of(answer->get_header_value("Retry-After")), 1, longest_pause_seconds)));
+    answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
+  }
   if (!answer) throw no_answer(origin_, answer.error());
   if (answer->status != 200) throw error_from(answer->status, answer->body);
   return {answer->body, statistics_from(answer->headers)};

@@ -15,10 +15,8 @@ class ServerError : public std::runtime_error {
  public:
   ServerError(int status, std::string code, const std::string& what)
       : std::runtime_error(what), status_(status), code_(std::move(code)) {}
-  [[nodiscard]] int status() const { return status_; }  ///< HTTP status; 0 when there was no answer
-  [[nodiscard]] const std::string& code() const {
-    return code_;
-  }  ///< public code of the problem, "" when unknown
+  [[nodiscard]] int status() const { return status_; }             ///< HTTP status; 0 when there was no answer
+  [[nodiscard]] const std::string& code() const { return code_; }  ///< public code of the problem, "" when unknown
 
  private:
   int status_;
@@ -32,7 +30,8 @@ class Remote {
   /// is not a URL.
   explicit Remote(const std::string& url);
 
-  /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. Throws `ServerError`.
+  /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. A busy server is
+  /// asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
   [[nodiscard]] proto::EncodedLevel refine(std::string_view draco, const proto::Parameters& parameters) const;
 
   /// The same level by level: `on_part` is called for each part as it arrives, meshes first, the JSON summary

@@ -114,9 +114,7 @@ void SurfaceDistance::build(uint32_t begin, uint32_t end) {
   if (end - begin <= kLeafTriangles) return;
 
   const Vec3d size = box.high - box.low;
-  const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
-                    : size.y >= size.z                   ? &Vec3d::y
-                                                         : &Vec3d::z;
+  const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x : size.y >= size.z ? &Vec3d::y : &Vec3d::z;
   const auto centre = [axis](const TriangleCorners& t) { return t.a.*axis + t.b.*axis + t.c.*axis; };
   const uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,

@@ -118,8 +118,8 @@ std::string read_bytes(const fs::path& path, uint64_t limit) {
   if (S_ISDIR(about.st_mode)) throw FileError(path, "is a folder; name a file in it");
   const auto refuse_if_above_limit = [&](uint64_t size) {
     if (size > limit)
-      throw FileError(path, "has more than " + std::to_string(limit) +
-                                " bytes, the most that is read; simplify it first");
+      throw FileError(path,
+                      "has more than " + std::to_string(limit) + " bytes, the most that is read; simplify it first");
   };
   const auto size = S_ISREG(about.st_mode) ? static_cast<uint64_t>(about.st_size) : 0;
   refuse_if_above_limit(size);

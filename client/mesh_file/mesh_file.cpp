@@ -20,9 +20,7 @@ constexpr std::array<std::pair<std::string_view, Format>, 5> kExtensions{{
     {".stl", Format::stl},
 }};
 
-std::logic_error draco_is_elsewhere() {
-  return std::logic_error("drc is read and written by papilio::proto");
-}
+std::logic_error draco_is_elsewhere() { return std::logic_error("drc is read and written by papilio::proto"); }
 
 TriangleMesh parse(Format format, std::string_view bytes) {
   switch (format) {
@@ -95,8 +93,7 @@ TriangleMesh read_triangles(const std::filesystem::path& path, Format format) {
       throw ParseError(describe_broken(mesh, sound));
     return mesh;
   } catch (const ParseError& error) {
-    throw FileError(
-        path, std::string(error.what()) + "; export the mesh again, or check that the extension is right");
+    throw FileError(path, std::string(error.what()) + "; export the mesh again, or check that the extension is right");
   }
 }
 

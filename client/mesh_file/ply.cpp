@@ -77,8 +77,7 @@ class PlyNumbers {
     float single = 0;
     // A float is rounded once, from its digits.
     const bool is_number = type == PlyType::float32 ? parse_number(word, single) : parse_number(word, value);
-    if (!is_number)
-      text_.fail("expected a number, found " + (word.empty() ? "the end of the file" : quoted(word)));
+    if (!is_number) text_.fail("expected a number, found " + (word.empty() ? "the end of the file" : quoted(word)));
     return type == PlyType::float32 ? single : value;
   }
 
@@ -175,8 +174,7 @@ std::string format_ply(const TriangleMesh& mesh) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by papilio\nelement vertex " +
                       std::to_string(mesh.positions.size()) +
                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(mesh.triangles.size()) +
-                      "\nproperty list uchar int vertex_indices\nend_header\n";
+                      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 12 * mesh.positions.size() + 13 * mesh.triangles.size());
   for (const Vec3f& position : mesh.positions) store_vector(bytes, position);
   for (const Triangle& triangle : mesh.triangles) {

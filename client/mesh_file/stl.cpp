@@ -18,8 +18,7 @@ constexpr size_t kTriangleBytes = 50;
 constexpr size_t kNormalBytes = 3 * sizeof(float);
 
 bool equals_ignoring_case(std::string_view word, std::string_view lower) {
-  return std::ranges::equal(word, lower,
-                            [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
+  return std::ranges::equal(word, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
 }
 
 size_t declared_size(std::string_view bytes) {
@@ -39,12 +38,10 @@ uint32_t append_corner(TriangleMesh& mesh, Vec3f position) {
 }
 
 TriangleMesh parse_binary(std::string_view bytes) {
-  if (bytes.size() < kHeaderBytes)
-    throw ParseError("is no STL file: neither text nor long enough for a binary one");
+  if (bytes.size() < kHeaderBytes) throw ParseError("is no STL file: neither text nor long enough for a binary one");
   if (declared_size(bytes) > bytes.size())
     throw ParseError("is cut short, or is no STL file: as a binary one it would have " +
-                     std::to_string(declared_size(bytes)) + " bytes, but has " +
-                     std::to_string(bytes.size()));
+                     std::to_string(declared_size(bytes)) + " bytes, but has " + std::to_string(bytes.size()));
   const size_t triangles = load<uint32_t>(bytes.substr(80), std::endian::little);
   TriangleMesh mesh;
   mesh.positions.reserve(3 * triangles);
@@ -65,8 +62,7 @@ TriangleMesh parse_binary(std::string_view bytes) {
 
 void expect(TextScanner& scanner, std::string_view lower) {
   const std::string_view word = scanner.word_anywhere();
-  if (!equals_ignoring_case(word, lower))
-    scanner.fail("expected " + quoted(lower) + ", found " + quoted(word));
+  if (!equals_ignoring_case(word, lower)) scanner.fail("expected " + quoted(lower) + ", found " + quoted(word));
 }
 
 /// From after `facet` to after `endfacet`. Normals are not looked at: some writers put words for NaN there.
@@ -81,8 +77,7 @@ void parse_facet(TextScanner& scanner, TriangleMesh& mesh) {
     const float x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
     corners.push_back(append_corner(mesh, {x, y, z}));
   }
-  if (!equals_ignoring_case(word, "endloop"))
-    scanner.fail("expected 'vertex' or 'endloop', found " + quoted(word));
+  if (!equals_ignoring_case(word, "endloop")) scanner.fail("expected 'vertex' or 'endloop', found " + quoted(word));
   if (corners.size() < 3) scanner.fail("a facet has fewer than three corners");
   expect(scanner, "endfacet");
   append_fan(corners, mesh.triangles);
@@ -98,8 +93,7 @@ TriangleMesh parse_text(std::string_view bytes) {
     std::string_view word = scanner.word_anywhere();
     for (; equals_ignoring_case(word, "facet"); word = scanner.word_anywhere()) parse_facet(scanner, mesh);
     if (word.empty()) scanner.fail("the file ends before 'endsolid': it is cut short");
-    if (!equals_ignoring_case(word, "endsolid"))
-      scanner.fail("expected 'facet' or 'endsolid', found " + quoted(word));
+    if (!equals_ignoring_case(word, "endsolid")) scanner.fail("expected 'facet' or 'endsolid', found " + quoted(word));
   }
   return mesh;
 }
@@ -113,9 +107,7 @@ Vec3f unit_normal(Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
-TriangleMesh parse_stl(std::string_view bytes) {
-  return is_text(bytes) ? parse_text(bytes) : parse_binary(bytes);
-}
+TriangleMesh parse_stl(std::string_view bytes) { return is_text(bytes) ? parse_text(bytes) : parse_binary(bytes); }
 
 std::string format_stl(const TriangleMesh& mesh) {
   std::string bytes = "binary STL, written by papilio";

@@ -83,9 +83,7 @@ bool TextScanner::to_word() {
   return true;
 }
 
-size_t TextScanner::end_of_line() const {
-  return std::min(text_.find('\n', position_), text_.size() - 1) + 1;
-}
+size_t TextScanner::end_of_line() const { return std::min(text_.find('\n', position_), text_.size() - 1) + 1; }
 
 void TextScanner::fail(const std::string& what) const {
   throw ParseError("line " + std::to_string(line_) + ": " + what);

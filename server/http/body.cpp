@@ -37,8 +37,7 @@ Framing framing_of(const Head& head) {
   const size_t encodings = head.count("Transfer-Encoding");
   if (lengths + encodings == 0) return {};
   if (lengths + encodings > 1)
-    throw Problem(Code::bad_request,
-                  "A request has one Content-Length or one Transfer-Encoding, not several.");
+    throw Problem(Code::bad_request, "A request has one Content-Length or one Transfer-Encoding, not several.");
   if (encodings == 1) {
     if (head.minor_version == 0 || !same_ignoring_case(head.field("Transfer-Encoding"), "chunked"))
       throw Problem(Code::bad_request, "The only Transfer-Encoding read here is `chunked`, in HTTP/1.1.");

@@ -26,10 +26,7 @@ void refuse_unreadable(const Head& head, const Framing& framing, uint64_t limit)
 class BodyReader {
  public:
   BodyReader(Connection& connection, const Framing& framing, uint64_t limit)
-      : connection_(connection),
-        framing_(framing),
-        limit_(limit),
-        complete_(framing.kind == Framing::Kind::none) {}
+      : connection_(connection), framing_(framing), limit_(limit), complete_(framing.kind == Framing::Kind::none) {}
 
   /// Throws body_too_large as soon as the limit is passed, bad_request when the chunking is damaged or the
   /// body ends early, request_timeout when it stalls.

@@ -18,9 +18,7 @@ bool Exchange::receive() {
   return true;
 }
 
-void Exchange::refuse_unreadable() const {
-  server::refuse_unreadable(head_, framing_, options_.max_body_bytes);
-}
+void Exchange::refuse_unreadable() const { server::refuse_unreadable(head_, framing_, options_.max_body_bytes); }
 
 bool Exchange::may_keep_alive() const {
   return body_ && body_->complete() && head_.minor_version == 1 && !head_.lists("Connection", "close");

@@ -108,8 +108,7 @@ std::vector<FormPart> parse_form(std::string_view content_type, std::string_view
   }
   std::vector<FormPart> parts;
   while (take_boundary_end(body)) {
-    if (parts.size() == most_parts)
-      throw damaged("it has more than " + std::to_string(most_parts) + " parts");
+    if (parts.size() == most_parts) throw damaged("it has more than " + std::to_string(most_parts) + " parts");
     parts.push_back(take_part_head(body));
     const size_t end = body.find(delimiter);
     if (end == std::string_view::npos) throw damaged("its closing boundary is missing");

@@ -27,8 +27,7 @@ std::string percent_decoded(std::string_view text, bool plus_is_space) {
     if (text[i] == '%') {
       const auto high = i + 1 < text.size() ? hex_digit(text[i + 1]) : std::nullopt;
       const auto low = i + 2 < text.size() ? hex_digit(text[i + 2]) : std::nullopt;
-      if (!high || !low)
-        throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
+      if (!high || !low) throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
       decoded += static_cast<char>(*high * 16 + *low);
       i += 2;
     } else {
@@ -115,14 +114,12 @@ std::string lower_case(std::string_view text) {
 bool is_token(std::string_view text) {
   constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
   return !text.empty() && std::ranges::all_of(text, [&](char c) {
-    return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') ||
-           marks.find(c) != std::string_view::npos;
+    return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') || marks.find(c) != std::string_view::npos;
   });
 }
 
 std::string Head::field(std::string_view name) const {
-  const auto found =
-      std::ranges::find_if(fields, [&](const auto& f) { return same_ignoring_case(f.first, name); });
+  const auto found = std::ranges::find_if(fields, [&](const auto& f) { return same_ignoring_case(f.first, name); });
   return found == fields.end() ? "" : found->second;
 }
 
@@ -152,8 +149,7 @@ void parse_head(std::string_view text, Head& head) {
     return line;
   };
   parse_request_line(next_line(), head);
-  for (std::string_view line = next_line(); !line.empty(); line = next_line())
-    head.fields.push_back(parse_field(line));
+  for (std::string_view line = next_line(); !line.empty(); line = next_line()) head.fields.push_back(parse_field(line));
   parse_target(head);
 }
 

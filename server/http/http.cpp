@@ -16,8 +16,7 @@ struct HttpServer::Impl {
       : options(std::move(given)), listener(options.threads, [this](int fd) { serve(fd); }) {}
 
   void serve(int fd) {
-    Connection connection(fd, std::chrono::seconds(options.read_seconds),
-                          std::chrono::seconds(options.write_seconds));
+    Connection connection(fd, std::chrono::seconds(options.read_seconds), std::chrono::seconds(options.write_seconds));
     {
       const std::lock_guard lock(mutex);
       if (listener.closed()) return;

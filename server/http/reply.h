@@ -10,8 +10,8 @@ namespace papilio::server {
 /// What the request's side decides about the form of its answer.
 struct Delivery {
   std::string request_id;
-  bool head_only = false;  ///< answering HEAD
-  bool chunked = true;  ///< the client knows chunked encoding; without it a stream ends with the connection
+  bool head_only = false;   ///< answering HEAD
+  bool chunked = true;      ///< the client knows chunked encoding; without it a stream ends with the connection
   bool keep_alive = false;  ///< another request may follow on this connection
 };
 

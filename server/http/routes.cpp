@@ -5,8 +5,7 @@ namespace papilio::server {
 using proto::Code;
 using proto::Problem;
 
-void Routes::add(const std::string& method, const std::string& path, Handler handler,
-                 WhileDraining while_draining) {
+void Routes::add(const std::string& method, const std::string& path, Handler handler, WhileDraining while_draining) {
   std::map<std::string, Route>& methods = routes_[path];
   methods[method] = {std::move(handler), while_draining};
   if (method == "GET") methods.try_emplace("HEAD", methods["GET"]);
@@ -23,8 +22,7 @@ const Route& Routes::find(const std::string& method, const std::string& path) co
   const auto route = routes_.find(path);
   if (route == routes_.end()) throw Problem(Code::not_found, "There is nothing at this path.");
   const auto found = route->second.find(method);
-  if (found == route->second.end())
-    throw Problem(Code::method_not_allowed, "This path takes " + allowed(path) + ".");
+  if (found == route->second.end()) throw Problem(Code::method_not_allowed, "This path takes " + allowed(path) + ".");
   return found->second;
 }
 

@@ -75,7 +75,7 @@ bool Session::answer_one(bool last) {
                                 .chunked = exchange.head().minor_version == 1,
                                 .keep_alive = keep_alive});
   if (!sent && finished.code.empty()) {
-    finished.code = proto::problem_kind(Code::cancelled).name;
+    finished.code = "not_sent";
     finished.detail = "the answer was not sent to its end";
   }
   if (options_.on_finished) {
@@ -86,8 +86,7 @@ bool Session::answer_one(bool last) {
     finished.status = response.status;
     finished.bytes_in = connection_.bytes_in() - in_before;
     finished.bytes_out = connection_.bytes_out() - out_before;
-    finished.milliseconds =
-        std::chrono::duration<double, std::milli>(Connection::Clock::now() - start).count();
+    finished.milliseconds = std::chrono::duration<double, std::milli>(Connection::Clock::now() - start).count();
     options_.on_finished(finished);
   }
   return sent && keep_alive;

@@ -23,8 +23,7 @@ class Session {
  private:
   /// Returns whether another request may follow.
   bool answer_one(bool last);
-  [[nodiscard]] Response refusal(const Exchange& exchange, const proto::Problem& problem,
-                                 Finished& finished) const;
+  [[nodiscard]] Response refusal(const Exchange& exchange, const proto::Problem& problem, Finished& finished) const;
 
   Connection& connection_;
   const HttpOptions& options_;

@@ -39,8 +39,7 @@ class Collector : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs)
       if (run.run_type == Run::RT_Iteration)
-        times_[run.run_name.function_name].push_back(run.real_accumulated_time /
-                                                     static_cast<double>(run.iterations));
+        times_[run.run_name.function_name].push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
     std::cerr << '.' << std::flush;
   }
   /// Nanoseconds over the divisor.
@@ -80,15 +79,15 @@ int run(const std::string& filter, const std::string& json_file) {
   Collector collector;
   benchmark::RunSpecifiedBenchmarks(&collector);
 
-  std::printf("\n%-44s %9s %19s %9s %19s %7s  %s\n", "median of 9, in turns", "ours", "(least .. most)",
-              "peer", "(least .. most)", "ratio", "unit");
+  std::printf("\n%-44s %9s %19s %9s %19s %7s  %s\n", "median of 9, in turns", "ours", "(least .. most)", "peer",
+              "(least .. most)", "ratio", "unit");
   auto rows = nlohmann::ordered_json::array();
   for (const Pair& pair : chosen) {
     const Spread ours = collector.of(pair, "/ours");
     const Spread peer = collector.of(pair, "/peer");
     const double ratio = peer.median / ours.median;
-    std::printf("%-44s %9.2f (%7.2f ..%8.2f) %9.2f (%7.2f ..%8.2f) %6.2fx  %s\n", pair.name.c_str(),
-                ours.median, ours.low, ours.high, peer.median, peer.low, peer.high, ratio, pair.unit.c_str());
+    std::printf("%-44s %9.2f (%7.2f ..%8.2f) %9.2f (%7.2f ..%8.2f) %6.2fx  %s\n", pair.name.c_str(), ours.median,
+                ours.low, ours.high, peer.median, peer.low, peer.high, ratio, pair.unit.c_str());
     rows.push_back({{"name", pair.name},
                     {"ours", ours.median},
                     {"peer", peer.median},

@@ -18,8 +18,7 @@ PeerMesh to_peer(const TriangleMesh& mesh) {
   PeerMesh out;
   for (Vec3f p : mesh.positions) out.add_vertex({p.x, p.y, p.z});
   for (const Triangle& t : mesh.triangles)
-    out.add_face(PeerMesh::VertexHandle(static_cast<int>(t[0])),
-                 PeerMesh::VertexHandle(static_cast<int>(t[1])),
+    out.add_face(PeerMesh::VertexHandle(static_cast<int>(t[0])), PeerMesh::VertexHandle(static_cast<int>(t[1])),
                  PeerMesh::VertexHandle(static_cast<int>(t[2])));
   return out;
 }

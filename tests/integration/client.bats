@@ -54,7 +54,15 @@ setup() { cd "$BATS_TEST_TMPDIR" || return; }
   [[ $output == *c.off* ]]
   [ -s again/a.off ]
   [ ! -e again/c.off ]
-  cp models/a.obj models/a.stl 2>/dev/null
+  before=$(md5sum models/*.*)
+  for inside in models models/refined; do
+    run "$papilio" refine models -o "$inside"
+    [ "$status" = 2 ]
+    [[ $output == *'outside of it'* ]]
+  done
+  [ "$(md5sum models/*.*)" = "$before" ]
+  [ ! -e models/refined ]
+  cp models/a.obj models/a.stl
   run "$papilio" refine models -o third
   [ "$status" = 2 ]
   [[ $output == *'would both become'* ]]
@@ -88,7 +96,7 @@ setup() { cd "$BATS_TEST_TMPDIR" || return; }
   [ "$status" = 1 ]
   [[ $output == *missing.obj* ]]
   run "$papilio" refine "$coarse" -o out.xyz
-  [ "$status" = 1 ]
+  [ "$status" = 2 ]
   [[ $output == *xyz* ]]
   run "$papilio" refine "$coarse" -o out.drc --levels 99
   [ "$status" = 2 ]
@@ -99,7 +107,7 @@ setup() { cd "$BATS_TEST_TMPDIR" || return; }
   [ "$status" = 1 ]
   [[ $output == *'papilio-server running'* ]]
   run "$papilio" refine "$coarse" -o out.drc --server localhost
-  [ "$status" = 1 ]
+  [ "$status" = 2 ]
   [[ $output == *URL* ]]
   head -c 300 "$coarse" >short.drc
   for where in '' "--server $url"; do
@@ -109,6 +117,10 @@ setup() { cd "$BATS_TEST_TMPDIR" || return; }
     [[ $output == *'cut short'* ]]
   done
   [ ! -e out.drc ]
+  for command in "info $coarse" parameters "refine $coarse -o fine.drc --json"; do
+    # shellcheck disable=SC2086
+    ! "$papilio" $command >/dev/full
+  done
   run "$papilio" refine "$coarse" -o absent/out.drc
   [ "$status" = 1 ]
   run "$papilio"

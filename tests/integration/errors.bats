@@ -42,6 +42,12 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   expect_problem 400 bad_request
   request -F 'params={}' "$url/v1/refine"
   expect_problem 400 bad_request
+  request -F mesh=@"$coarse" -F 'params={"levels": 1e400}' "$url/v1/refine"
+  expect_problem 400 bad_request
+  nested=$(printf '[%.0s' {1..30000})$(printf ']%.0s' {1..30000})
+  printf '{"levels": %s}' "$nested" >"$BATS_TEST_TMPDIR/nested"
+  request -F mesh=@"$coarse" -F "params=<$BATS_TEST_TMPDIR/nested" "$url/v1/refine"
+  expect_problem 400 bad_request
   request -F mesh=@"$coarse" -F mesh=@"$coarse" "$url/v1/refine"
   expect_problem 400 bad_request
   request -F mesh=@"$coarse" -F other=1 "$url/v1/refine"

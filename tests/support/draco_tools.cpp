@@ -53,8 +53,8 @@ std::string encode_with_draco(const TriangleMesh& mesh, Method method, bool with
   const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
   for (size_t f = 0; f < mesh.triangles.size(); ++f) {
     const Triangle t = mesh.triangles[f];
-    builder.SetAttributeValuesForFace(position, draco::FaceIndex(static_cast<uint32_t>(f)),
-                                      &mesh.positions[t[0]], &mesh.positions[t[1]], &mesh.positions[t[2]]);
+    builder.SetAttributeValuesForFace(position, draco::FaceIndex(static_cast<uint32_t>(f)), &mesh.positions[t[0]],
+                                      &mesh.positions[t[1]], &mesh.positions[t[2]]);
   }
   const std::unique_ptr<draco::Mesh> built = builder.Finalize();
   if (with_metadata) {
@@ -83,8 +83,7 @@ std::string encode_point_cloud(const TriangleMesh& mesh) {
   const std::unique_ptr<draco::PointCloud> cloud = builder.Finalize(false);
   draco::Encoder encoder;
   draco::EncoderBuffer buffer;
-  if (!encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok())
-    throw std::runtime_error("Draco refuses the cloud");
+  if (!encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok()) throw std::runtime_error("Draco refuses the cloud");
   return bytes_of(buffer);
 }
 

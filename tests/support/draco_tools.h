@@ -13,8 +13,7 @@ namespace papilio::test {
 
 /// Draco's own encoder with its defaults (11 bits) or sequentially, as other programs would make a stream.
 enum class Method { edgebreaker, sequential };
-[[nodiscard]] std::string encode_with_draco(const TriangleMesh& mesh, Method method,
-                                            bool with_metadata = false);
+[[nodiscard]] std::string encode_with_draco(const TriangleMesh& mesh, Method method, bool with_metadata = false);
 
 /// Draco's own decoder on a point cloud made from the mesh's positions.
 [[nodiscard]] std::string encode_point_cloud(const TriangleMesh& mesh);

@@ -66,8 +66,7 @@ int64_t euler_characteristic(const TriangleMesh& mesh) {
     if (e >= topology.edge_count()) return fail("edge out of range at half-edge", h);
     ++halves[e];
     const uint32_t r = topology.half_edge[e];
-    if (std::minmax(a, b) != std::minmax(topology.origin[r], topology.tip(r)))
-      return fail("edge of half-edge", h);
+    if (std::minmax(a, b) != std::minmax(topology.origin[r], topology.tip(r))) return fail("edge of half-edge", h);
     const Uses use = uses.at(std::minmax(a, b));
     const bool smooth = use.forward == 1 && use.backward == 1;
     if (smooth) {

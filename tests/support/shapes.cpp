@@ -75,8 +75,7 @@ TriangleMesh icosahedron() {
 TriangleMesh cube() {
   TriangleMesh mesh;
   for (uint32_t i = 0; i < 8; ++i)
-    mesh.positions.push_back(
-        {(i & 1U) != 0 ? 1.0F : 0.0F, (i & 2U) != 0 ? 1.0F : 0.0F, (i & 4U) != 0 ? 1.0F : 0.0F});
+    mesh.positions.push_back({(i & 1U) != 0 ? 1.0F : 0.0F, (i & 2U) != 0 ? 1.0F : 0.0F, (i & 4U) != 0 ? 1.0F : 0.0F});
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;
@@ -101,8 +100,7 @@ TriangleMesh torus(uint32_t n, uint32_t m, float radius, float tube) {
 TriangleMesh grid(uint32_t n, uint32_t m) {
   TriangleMesh mesh;
   for (uint32_t j = 0; j <= m; ++j)
-    for (uint32_t i = 0; i <= n; ++i)
-      mesh.positions.push_back({static_cast<float>(i), static_cast<float>(j), 0});
+    for (uint32_t i = 0; i <= n; ++i) mesh.positions.push_back({static_cast<float>(i), static_cast<float>(j), 0});
   for (uint32_t j = 0; j < m; ++j) {
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t a = j * (n + 1) + i;

@@ -69,16 +69,13 @@ void check_faces(const Mesh& mesh, const std::vector<Triangle>& triangles) {
     for (int k = 0; k < 3; ++k) {
       const int from = triangles[face][k];
       const int to = triangles[face][(k + 1) % 3];
-      if (from < 0 || from >= vertices)
-        throw std::runtime_error(name + " names a vertex that does not exist");
+      if (from < 0 || from >= vertices) throw std::runtime_error(name + " names a vertex that does not exist");
       if (from == to) throw std::runtime_error(name + " uses a vertex twice");
       if (!half_edges.emplace(from, to).second) {
-        throw std::runtime_error(name +
-                                 " is on an edge of more than two faces, or is turned against its neighbour");
+        throw std::runtime_error(name + " is on an edge of more than two faces, or is turned against its neighbour");
       }
       for (const double coordinate : mesh.point(OpenMesh::VertexHandle(from))) {
-        if (!std::isfinite(coordinate))
-          throw std::runtime_error(name + " has a coordinate that is not finite");
+        if (!std::isfinite(coordinate)) throw std::runtime_error(name + " has a coordinate that is not finite");
       }
     }
   }
@@ -102,8 +99,7 @@ std::vector<Triangle> triangles_of(const Mesh& mesh) {
   std::vector<Triangle> triangles;
   for (const auto face : mesh.faces()) {
     Triangle triangle{};
-    std::ranges::transform(face.vertices().to_vector(), triangle.begin(),
-                           [](const auto& v) { return v.idx(); });
+    std::ranges::transform(face.vertices().to_vector(), triangle.begin(), [](const auto& v) { return v.idx(); });
     triangles.push_back(triangle);
   }
   return triangles;
@@ -143,8 +139,7 @@ void simplify(Mesh& mesh, size_t faces) {
   mesh.garbage_collection();
 
   if (mesh.n_faces() > faces) {
-    throw std::runtime_error("no further edge can be collapsed at " + std::to_string(mesh.n_faces()) +
-                             " faces");
+    throw std::runtime_error("no further edge can be collapsed at " + std::to_string(mesh.n_faces()) + " faces");
   }
   check_faces(mesh, triangles_of(mesh));
   check_vertices(mesh);
@@ -195,8 +190,8 @@ int main(int argc, char** argv) {
     const size_t before = mesh.n_faces();
     simplify(mesh, faces);
     write(mesh, arguments[1]);
-    std::cerr << arguments[1] << ": " << mesh.n_vertices() << " vertices, " << mesh.n_faces() << " faces of "
-              << before << '\n';
+    std::cerr << arguments[1] << ": " << mesh.n_vertices() << " vertices, " << mesh.n_faces() << " faces of " << before
+              << '\n';
   } catch (const std::exception& error) {
     std::cerr << "simplify_mesh: " << arguments[0] << ": " << error.what() << '\n';
     return 1;

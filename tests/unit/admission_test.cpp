@@ -27,6 +27,7 @@ TEST(Admission, RefusesWhenSlotsAndQueueAreFull) {
   auto first = admission.enter(stays);
   const auto second = admission.enter(stays);
   EXPECT_TRUE(admission.full());
+  EXPECT_THROW(admission.refuse_when_full(), proto::Problem);
   EXPECT_EQ(refusal_of(admission, stays), proto::Code::busy);
   first.reset();
   EXPECT_FALSE(admission.full());

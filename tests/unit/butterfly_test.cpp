@@ -35,8 +35,7 @@ void expect_near(Vec3d a, Vec3d b, double tolerance) { EXPECT_LE(length(a - b), 
 
 TEST(Butterfly, RegularEdgeIsTheEightPointRule) {
   Mesh mesh = build_mesh(grid(6, 6));
-  for (size_t v = 0; v < mesh.positions.size(); ++v)
-    mesh.positions[v].z = static_cast<float>((v * 7919) % 101);
+  for (size_t v = 0; v < mesh.positions.size(); ++v) mesh.positions[v].z = static_cast<float>((v * 7919) % 101);
   const auto z = [&](float x, float y) {
     for (Vec3f p : mesh.positions)
       if (p.x == x && p.y == y) return double{p.z};
@@ -53,14 +52,13 @@ TEST(Butterfly, RegularEdgeIsTheEightPointRule) {
     return none;
   }();
   ASSERT_NE(along, none);
-  const double expected = 0.5 * (z(3, 3) + z(4, 3)) + 0.125 * (z(4, 4) + z(3, 2)) -
-                          0.0625 * (z(3, 4) + z(5, 4) + z(2, 2) + z(4, 2));
+  const double expected =
+      0.5 * (z(3, 3) + z(4, 3)) + 0.125 * (z(4, 4) + z(3, 2)) - 0.0625 * (z(3, 4) + z(5, 4) + z(2, 2) + z(4, 2));
   EXPECT_NEAR(all[along].z, expected, 1e-12);
   const double w = 1.0 / 64;
   const double ten_points = (0.5 - w) * (z(3, 3) + z(4, 3)) + (0.125 + 2 * w) * (z(4, 4) + z(3, 2)) -
                             (0.0625 + w) * (z(3, 4) + z(5, 4) + z(2, 2) + z(4, 2)) + w * (z(2, 3) + z(5, 3));
-  EXPECT_NEAR(butterfly<double>(mesh.topology, in_double(mesh), everything(mesh), w)[along].z, ten_points,
-              1e-12);
+  EXPECT_NEAR(butterfly<double>(mesh.topology, in_double(mesh), everything(mesh), w)[along].z, ten_points, 1e-12);
 }
 
 TEST(Butterfly, PlanarMeshesOfAnyShapeStayPlanar) {
@@ -69,8 +67,7 @@ TEST(Butterfly, PlanarMeshesOfAnyShapeStayPlanar) {
     Mesh mesh = build_mesh(random_manifold(random));
     for (Vec3f& p : mesh.positions) p.z = 0.25F * p.x - 0.5F * p.y + 3;
     for (Vec3d q : butterfly<double>(mesh.topology, in_double(mesh), everything(mesh)))
-      ASSERT_NEAR(q.z, 0.25 * q.x - 0.5 * q.y + 3, 1e-5)
-          << seed;  // the float positions are that far off the plane
+      ASSERT_NEAR(q.z, 0.25 * q.x - 0.5 * q.y + 3, 1e-5) << seed;  // the float positions are that far off the plane
   }
 }
 

@@ -20,8 +20,8 @@ namespace {
 TriangleMesh cube(float side, Vec3f low = {}) {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.positions.push_back(low + side * Vec3f{static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1),
-                                                static_cast<float>(i >> 2)});
+    mesh.positions.push_back(
+        low + side * Vec3f{static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;
@@ -36,15 +36,13 @@ TriangleMesh sphere(double radius, int levels) {
   const double g = std::numbers::phi;
   std::vector<Vec3d> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                             {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<Triangle> faces{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                              {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                              {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                              {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  std::vector<Triangle> faces{{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                              {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                              {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
     const auto middle = [&](uint32_t i, uint32_t j) {
-      const auto [place, is_new] =
-          middles.try_emplace(std::minmax(i, j), static_cast<uint32_t>(points.size()));
+      const auto [place, is_new] = middles.try_emplace(std::minmax(i, j), static_cast<uint32_t>(points.size()));
       if (is_new) points.push_back(0.5 * (points[i] + points[j]));
       return place->second;
     };
@@ -234,8 +232,8 @@ double distance_by_grid(Vec3d point, const TriangleCorners& t) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; i + j <= kSteps; ++j)
-      least = std::min(
-          least, length(point - t.a - (1.0 * i / kSteps) * (t.b - t.a) - (1.0 * j / kSteps) * (t.c - t.a)));
+      least =
+          std::min(least, length(point - t.a - (1.0 * i / kSteps) * (t.b - t.a) - (1.0 * j / kSteps) * (t.c - t.a)));
   return least;
 }
 
@@ -265,8 +263,7 @@ TEST(surface_distance, equals_brute_force) {
     for (int i = 0; i < 300; ++i) {
       const Vec3d point = 1.5 * random.point();
       double least = std::numeric_limits<double>::infinity();
-      for (const TriangleCorners& triangle : triangles)
-        least = std::min(least, squared_distance(point, triangle));
+      for (const TriangleCorners& triangle : triangles) least = std::min(least, squared_distance(point, triangle));
       ASSERT_EQ(surface.distance(point), std::sqrt(least));
       ASSERT_EQ(surface.nearest(point, {1, 0, 0}).distance, std::sqrt(least));
     }
@@ -280,8 +277,7 @@ TEST(surface_distance, many_triangles_in_one_place) {
 
 TEST(surface_distance, at_an_edge_the_face_that_agrees_counts) {
   // Two faces at a right angle meet in the x axis; the point is nearest to the edge itself.
-  const std::vector<TriangleCorners> triangles{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}},
-                                               {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}};
+  const std::vector<TriangleCorners> triangles{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}};
   const SurfaceDistance surface(triangles);
   EXPECT_NEAR(*surface.nearest({0.25, 1, 1}, {0, 0, -1}).cosine, 1, 1e-12);
   EXPECT_NEAR(*surface.nearest({0.25, 1, 1}, {0, 1, 0}).cosine, 1, 1e-12);

@@ -30,8 +30,7 @@ Code code_of(std::string_view bytes, const Limits& limits = {}) {
 }
 
 std::vector<Vec3f> sorted(std::vector<Vec3f> positions) {
-  std::ranges::sort(positions,
-                    [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+  std::ranges::sort(positions, [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   return positions;
 }
 
@@ -75,9 +74,8 @@ TEST(DracoReader, HoldsDeclaredCountsToTheLimits) {
   EXPECT_EQ(code_of(bytes, {.max_input_vertices = 11}), Code::mesh_too_large);
   EXPECT_NO_THROW((void)read_draco(bytes, {.max_input_faces = 20, .max_input_vertices = 12}));
   // 68 bytes that declare 2^27 faces: refused before the decoder would allocate gigabytes for them.
-  EXPECT_EQ(
-      code_of(std::string("DRACO\2\2\1\1\0\0\0\xff\xff\xff\x3f\xff\xff\xff\x3f", 20) + std::string(48, '\0')),
-      Code::mesh_too_large);
+  EXPECT_EQ(code_of(std::string("DRACO\2\2\1\1\0\0\0\xff\xff\xff\x3f\xff\xff\xff\x3f", 20) + std::string(48, '\0')),
+            Code::mesh_too_large);
 }
 
 TEST(DracoReader, EveryTruncationIsRefused) {
@@ -92,11 +90,9 @@ TEST(DracoReader, DamagedStreamsNeverCrash) {
     std::mt19937 random(1);
     for (int i = 0; i < 3000; ++i) {
       std::string damaged = bytes;
-      for (uint32_t n = 1 + random() % 4; n > 0; --n)
-        damaged[random() % damaged.size()] = static_cast<char>(random());
+      for (uint32_t n = 1 + random() % 4; n > 0; --n) damaged[random() % damaged.size()] = static_cast<char>(random());
       try {
-        const TriangleMesh mesh =
-            read_draco(damaged, {.max_input_faces = 10000, .max_input_vertices = 10000});
+        const TriangleMesh mesh = read_draco(damaged, {.max_input_faces = 10000, .max_input_vertices = 10000});
         for (const Triangle& t : mesh.triangles)
           for (uint32_t v : t) ASSERT_LT(v, mesh.positions.size());
       } catch (const Problem& problem) {
@@ -146,6 +142,27 @@ TEST(DracoWriter, PositionsOutsideTheBoxAreEncodedRight) {
     double nearest = 1e9;
     for (Vec3f q : mesh.positions) nearest = std::min(nearest, length(to_double(p) - to_double(q)));
     EXPECT_LE(nearest, 2e-5);
+  }
+}
+
+TEST(DracoWriter, TinyAndHugeMeshesKeepTheirShape) {
+  for (float scale : {1e-25F, 1e-7F, 1e-6F, 1e6F, 1e17F}) {
+    TriangleMesh shape = icosahedron();
+    for (Vec3f& p : shape.positions) p = scale * (p + Vec3f{3, 0, 0});
+    const Mesh mesh = build_mesh(shape);
+    const TriangleMesh read = read_draco(write_draco(mesh, quantization_box(mesh.positions), {}), {});
+    EXPECT_EQ(build_mesh(read).topology.face_count(), 20U) << scale;
+    for (Vec3f p : read.positions) {
+      double nearest = 1e30;
+      for (Vec3f q : mesh.positions) nearest = std::min(nearest, length(to_double(p) - to_double(q)));
+      EXPECT_LE(nearest, 3e-4 * scale) << scale;
+    }
+  }
+  try {
+    (void)quantization_box({{0, 0, 0}, {1e-35F, 0, 0}});
+    FAIL() << "was not refused";
+  } catch (const Problem& problem) {
+    EXPECT_EQ(problem.code(), Code::mesh_unusable);
   }
 }
 

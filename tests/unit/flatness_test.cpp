@@ -47,10 +47,22 @@ TEST(Flatness, BoundaryIsJudgedByTheTurnOfItsCurve) {
 
 TEST(Flatness, FaceWithoutAreaMarksNothingOnItsAccount) {
   // A sliver whose three vertices lie on one line, between two faces of a folded sheet.
-  const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 0, 1}},
-                                {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}}});
+  const Mesh mesh = build_mesh(
+      {{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}}});
   const EdgeMarks marks = flatness_marks(mesh, 1.0);
   for (uint32_t i = 0; i < 3; ++i) EXPECT_EQ(marks[mesh.topology.edge[i]], 0);
+}
+
+TEST(Flatness, ATiltedPlaneIsFlatAtOneToo) {
+  TriangleMesh plane = grid(6, 6);
+  for (Vec3f& p : plane.positions) p = {p.x + 0.3F * p.y, p.y - 0.7F * p.x, 0.37F * p.x + 0.51F * p.y};
+  const Mesh mesh = build_mesh(plane);
+  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
+    if (mesh.topology.kind[e] == EdgeKind::smooth) {
+      EXPECT_EQ(marks[e], 0);
+    }
+  }
 }
 
 TEST(Flatness, TinyAndHugeMeshesAreJudgedAlike) {

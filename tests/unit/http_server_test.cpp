@@ -160,9 +160,7 @@ std::string request(const std::string& line, const std::string& fields = {}, con
   return line + " HTTP/1.1\r\nHost: test\r\n" + fields + "\r\n" + body;
 }
 
-std::string get(const std::string& path, const std::string& fields = {}) {
-  return request("GET " + path, fields);
-}
+std::string get(const std::string& path, const std::string& fields = {}) { return request("GET " + path, fields); }
 
 std::string post(const std::string& path, const std::string& body, const std::string& fields = {}) {
   return request("POST " + path, fields + "Content-Length: " + std::to_string(body.size()) + "\r\n", body);
@@ -256,8 +254,7 @@ class HttpServerTest : public ::testing::Test {
 
   static std::string described(const Body& body) {
     std::string description;
-    for (const FormPart& part : body.parts)
-      description += part.name + "|" + part.content_type + "|" + part.bytes + ";";
+    for (const FormPart& part : body.parts) description += part.name + "|" + part.content_type + "|" + part.bytes + ";";
     return description + body.bytes;
   }
 
@@ -271,8 +268,7 @@ class HttpServerTest : public ::testing::Test {
     });
     server_->add("POST", "/echo", [](Request& r) { return text(r.read_body().bytes); });
     server_->add("POST", "/form", [](Request& r) { return text(described(r.read_body())); });
-    server_->add("POST", "/refuse",
-                 [](Request&) -> Response { throw Problem(Code::bad_parameter, "no", "levels"); });
+    server_->add("POST", "/refuse", [](Request&) -> Response { throw Problem(Code::bad_parameter, "no", "levels"); });
     server_->add("GET", "/busy", [](Request&) -> Response { throw Problem(Code::busy, "full"); });
     server_->add("GET", "/throw", [](Request&) -> Response { throw std::runtime_error("the secret"); });
     server_->add("GET", "/throw-odd", [](Request&) -> Response { throw 42; });
@@ -442,9 +438,8 @@ TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
 
 TEST_F(HttpServerTest, ClosesWhenTheClientAsksForIt) {
   start();
-  for (const std::string& bytes :
-       {get("/hello", "Connection: Close\r\n"), get("/hello", "Connection: x, close\r\n"),
-        std::string("GET /hello HTTP/1.0\r\n\r\n")}) {
+  for (const std::string& bytes : {get("/hello", "Connection: Close\r\n"), get("/hello", "Connection: x, close\r\n"),
+                                   std::string("GET /hello HTTP/1.0\r\n\r\n")}) {
     Client client(port_);
     const Reply reply = client.ask(bytes);
     EXPECT_EQ(reply.body, "hello GET");
@@ -497,10 +492,8 @@ TEST_F(HttpServerTest, ReadsBodiesOfEitherFraming) {
   EXPECT_EQ(client.ask(post("/echo", std::string(body_limit, 'x'))).body, std::string(body_limit, 'x'));
   EXPECT_EQ(client.ask(post("/echo", "")).body, "");
   const std::string chunked = "Transfer-Encoding: Chunked\r\n";
-  EXPECT_EQ(
-      client.ask(request("POST /echo", chunked, "5\r\nhello\r\n1;ext=1\r\n!\r\n0\r\nTrailer: x\r\n\r\n"))
-          .body,
-      "hello!");
+  EXPECT_EQ(client.ask(request("POST /echo", chunked, "5\r\nhello\r\n1;ext=1\r\n!\r\n0\r\nTrailer: x\r\n\r\n")).body,
+            "hello!");
   EXPECT_EQ(client.ask(request("POST /echo", chunked, "0\r\n\r\n")).body, "");
   EXPECT_EQ(client.ask(get("/hello")).status, 200);
 }
@@ -556,8 +549,7 @@ TEST_F(HttpServerTest, DamagedChunkingIsRefused) {
   for (const std::string& body :
        {"5\r\nhelloXX\r\n0\r\n\r\n" + smuggled, "-1\r\nx\r\n" + smuggled, "0x1\r\nx\r\n0\r\n\r\n" + smuggled,
         "+1\r\nx\r\n0\r\n\r\n" + smuggled, "\r\n\r\n" + smuggled, "1\nx\r\n0\r\n\r\n" + smuggled,
-        "5 5\r\nhello\r\n0\r\n\r\n" + smuggled,
-        "1;" + std::string(1000, 'e') + "\r\nx\r\n0\r\n\r\n" + smuggled}) {
+        "5 5\r\nhello\r\n0\r\n\r\n" + smuggled, "1;" + std::string(1000, 'e') + "\r\nx\r\n0\r\n\r\n" + smuggled}) {
     expect_refused(request("POST /echo", "Transfer-Encoding: chunked\r\n", body), 400, "bad_request");
   }
   std::string endless = "0\r\n";
@@ -640,11 +632,11 @@ TEST_F(HttpServerTest, ReadingABodyTwiceIsABug) {
 TEST_F(HttpServerTest, ReadsFormParts) {
   start();
   Client client(port_);
-  const Reply reply = client.ask(
-      form("preamble\r\n--cut\r\nContent-Disposition: form-data; filename=\"a;b\"; name=\"mesh\"\r\n"
-           "content-type: application/x-draco\r\n\r\n\r\n--cu\r\nbytes\r\n"
-           "--cut  \r\nContent-Disposition: form-data; name=params\r\n\r\n{}\r\n"
-           "--cut\r\nContent-Disposition: form-data; name=\"a \\\"b\\\"\"\r\n\r\n\r\n--cut--"));
+  const Reply reply =
+      client.ask(form("preamble\r\n--cut\r\nContent-Disposition: form-data; filename=\"a;b\"; name=\"mesh\"\r\n"
+                      "content-type: application/x-draco\r\n\r\n\r\n--cu\r\nbytes\r\n"
+                      "--cut  \r\nContent-Disposition: form-data; name=params\r\n\r\n{}\r\n"
+                      "--cut\r\nContent-Disposition: form-data; name=\"a \\\"b\\\"\"\r\n\r\n\r\n--cut--"));
   EXPECT_EQ(reply.body, "mesh|application/x-draco|\r\n--cu\r\nbytes;params||{};a \"b\"||;");
   EXPECT_EQ(client.ask(form("--cut--\r\n")).body, "");
   EXPECT_EQ(client
@@ -660,8 +652,7 @@ TEST_F(HttpServerTest, DamagedFormsAreRefused) {
   for (const std::string& body :
        {std::string(), std::string("--cut"), part, std::string("nothing"), std::string("--other--"),
         part + "--cutter--", std::string("--cut\r\n\r\nno name\r\n--cut--"),
-        std::string("--cut\r\nContent-Disposition: form-data; name=n"),
-        "--cut\r\nX: " + std::string(4000, 'x')}) {
+        std::string("--cut\r\nContent-Disposition: form-data; name=n"), "--cut\r\nX: " + std::string(4000, 'x')}) {
     SCOPED_TRACE(body.substr(0, 100));
     expect_problem(ask(form(body)), 400, "bad_request");
   }
@@ -686,9 +677,8 @@ TEST_F(HttpServerTest, LongPartHeadersDoNotOverflowTheStack) {
   options_.max_body_bytes = 8 << 20;
   start();
   const std::string name(4 << 20, 'n');
-  expect_problem(
-      ask(form("--cut\r\nContent-Disposition: form-data; name=\"" + name + "\"\r\n\r\nv\r\n--cut--")), 400,
-      "bad_request");
+  expect_problem(ask(form("--cut\r\nContent-Disposition: form-data; name=\"" + name + "\"\r\n\r\nv\r\n--cut--")), 400,
+                 "bad_request");
 }
 
 // Heads
@@ -828,8 +818,7 @@ TEST_F(HttpServerTest, IdleConnectionMakesRoomForAWaitingOne) {
 TEST_F(HttpServerTest, RemoteAddressCannotBeForged) {
   start();
   EXPECT_EQ(ask(get("/address")).body, "127.0.0.1 ");
-  EXPECT_EQ(ask(get("/address", "REMOTE_ADDR: 6.6.6.6\r\nX-Forwarded-For: 6.6.6.6\r\n")).body,
-            "127.0.0.1 6.6.6.6");
+  EXPECT_EQ(ask(get("/address", "REMOTE_ADDR: 6.6.6.6\r\nX-Forwarded-For: 6.6.6.6\r\n")).body, "127.0.0.1 6.6.6.6");
 }
 
 TEST_F(HttpServerTest, TakesOverSaneRequestIdsOnly) {
@@ -855,8 +844,7 @@ TEST_F(HttpServerTest, TakesOverSaneRequestIdsOnly) {
 
 TEST_F(HttpServerTest, NothingFromTheClientCanAddHeaderLines) {
   start();
-  const Reply reply =
-      ask(get("/mirror?X-Out=a%0d%0aX-Evil:%20b%0a&X-Bad%0d%0aX-Evil=c&Content-Length=1&Connection=x"));
+  const Reply reply = ask(get("/mirror?X-Out=a%0d%0aX-Evil:%20b%0a&X-Bad%0d%0aX-Evil=c&Content-Length=1&Connection=x"));
   EXPECT_EQ(reply.field("X-Out"), "a  X-Evil: b ");
   EXPECT_EQ(reply.head.find("\r\nX-Evil"), std::string::npos);
   EXPECT_EQ(reply.head.find("X-Bad"), std::string::npos);
@@ -1006,8 +994,7 @@ TEST_F(HttpServerTest, PortInUseIsAnErrorThatNamesIt) {
     second.bind();
     FAIL() << "two servers share a port";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("127.0.0.1:" + std::to_string(port_)), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1:" + std::to_string(port_)), std::string::npos) << error.what();
   }
 }
 

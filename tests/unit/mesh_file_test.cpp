@@ -106,8 +106,7 @@ TriangleMesh untidy() {
   TriangleMesh mesh = tetrahedron();
   mesh.positions.push_back({7, 7, 7});
   mesh.positions.push_back(mesh.positions[0]);
-  mesh.triangles.insert(mesh.triangles.end(),
-                        {{0, 2, 1}, {1, 2, 0}, {0, 0, 1}, {3, 3, 3}, {0, 1, 5}, {5, 1, 2}});
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 1}, {1, 2, 0}, {0, 0, 1}, {3, 3, 3}, {0, 1, 5}, {5, 1, 2}});
   return mesh;
 }
 
@@ -121,8 +120,7 @@ TriangleMesh hard_numbers() {
   std::mt19937 random(11);
   const auto any_float = [&random] {
     for (;;)
-      if (const auto value = std::bit_cast<float>(static_cast<uint32_t>(random())); std::isfinite(value))
-        return value;
+      if (const auto value = std::bit_cast<float>(static_cast<uint32_t>(random())); std::isfinite(value)) return value;
   };
   for (uint32_t i = 3; i < 3000; ++i) {
     const float x = any_float(), y = any_float(), z = any_float();
@@ -241,8 +239,7 @@ TriangleMesh welded(const TriangleMesh& apart, const std::vector<Vec3f>& positio
   TriangleMesh mesh{positions, apart.triangles};
   for (Triangle& triangle : mesh.triangles)
     for (uint32_t& vertex : triangle)
-      vertex =
-          static_cast<uint32_t>(std::ranges::find(positions, apart.positions[vertex]) - positions.begin());
+      vertex = static_cast<uint32_t>(std::ranges::find(positions, apart.positions[vertex]) - positions.begin());
   return mesh;
 }
 
@@ -298,9 +295,8 @@ constexpr std::string_view kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST_F(mesh_file, obj_corners_in_all_their_forms) {
   const std::string vertices(kThree);
-  for (const std::string face :
-       {"f 1 2 3", "f 1/4 2/5 3/6", "f 1//4 2//5 3//6", "f 1/4/7 2/5/8 3/6/9", "f -3 -2 -1",
-        "f -3/-1/-2 -2//-1 -1/-1", "f\t1  2 \\\n3", "f 1 2 \\\r\n 3 # three", "f +1 2/ 3//"})
+  for (const std::string face : {"f 1 2 3", "f 1/4 2/5 3/6", "f 1//4 2//5 3//6", "f 1/4/7 2/5/8 3/6/9", "f -3 -2 -1",
+                                 "f -3/-1/-2 -2//-1 -1/-1", "f\t1  2 \\\n3", "f 1 2 \\\r\n 3 # three", "f +1 2/ 3//"})
     EXPECT_THAT(read(Format::obj, vertices + face).triangles, ElementsAre(Triangle{0, 1, 2})) << face;
 }
 
@@ -326,13 +322,12 @@ TEST_F(mesh_file, polygons_become_fans) {
   const auto fan = ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4});
   EXPECT_THAT(read(Format::obj, "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n").triangles, fan);
   EXPECT_THAT(read(Format::off, "OFF\n5 1 0\n" + pentagon + "5 0 1 2 3 4\n").triangles, fan);
-  EXPECT_THAT(
-      read(Format::ply,
-           "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-           "element face 1\nproperty list uchar int vertex_index\nend_header\n" +
-               pentagon + "5 0 1 2 3 4\n")
-          .triangles,
-      fan);
+  EXPECT_THAT(read(Format::ply,
+                   "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                   "element face 1\nproperty list uchar int vertex_index\nend_header\n" +
+                       pentagon + "5 0 1 2 3 4\n")
+                  .triangles,
+              fan);
 }
 
 TEST_F(mesh_file, a_number_is_read_as_the_nearest_float) {
@@ -347,9 +342,9 @@ TEST_F(mesh_file, a_number_is_read_as_the_nearest_float) {
 
 TEST_F(mesh_file, obj_damage_is_refused) {
   const std::string vertices(kThree);
-  for (const std::string damage : {"f 1 2 4", "f 0 1 2", "f -4 1 2", "f 1 2", "f 1 2 x3", "f 1.5 2 3",
-                                   "f /1/2 2 3", "f 1 2 99999999999999999999", "f 1 2 4294967297", "f 1,2,3",
-                                   "v 1 2", "v 1 2 x", "v", "f", "f 1 2 3/x", "", "f 1 2 3\nv 1e39 0 0"})
+  for (const std::string damage :
+       {"f 1 2 4", "f 0 1 2", "f -4 1 2", "f 1 2", "f 1 2 x3", "f 1.5 2 3", "f /1/2 2 3", "f 1 2 99999999999999999999",
+        "f 1 2 4294967297", "f 1,2,3", "v 1 2", "v 1 2 x", "v", "f", "f 1 2 3/x", "", "f 1 2 3\nv 1e39 0 0"})
     EXPECT_NE(complaint(Format::obj, vertices + damage + "\n"), "") << damage;
   EXPECT_NE(complaint(Format::obj, std::string("v 0 0 0\0f 1 1 1\n", 16)), "");
   EXPECT_THAT(complaint(Format::obj, vertices + "\nf 1 2 bad\n"),
@@ -366,11 +361,9 @@ TEST_F(mesh_file, off_in_its_dialects) {
            std::string(kOffBody),
            "# made by hand\n\nOFF # really\r\n# counts\r\n" + std::string(kOffBody) + "\n# the end\n",
            std::string("OFF\n3 1\n0 0 0\n1 0 0\n\n\n0 1 0\n3 0 1 2 255 0 0"),
-           std::string(
-               "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5 0.5 0.5\n"),
-           std::string(
-               "STCNOFF\n3 1 0\n0 0 0 0 0 1 1 0 0 1 0 0\n1 0 0 0 0 1 1 0 0 1 0 0\n0 1 0 0 0 1 1 0 0 1 0 0\n"
-               "3 0 1 2\n"),
+           std::string("COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5 0.5 0.5\n"),
+           std::string("STCNOFF\n3 1 0\n0 0 0 0 0 1 1 0 0 1 0 0\n1 0 0 0 0 1 1 0 0 1 0 0\n0 1 0 0 0 1 1 0 0 1 0 0\n"
+                       "3 0 1 2\n"),
            std::string("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n1 0\n3 0 1 2\n2 0 1\n"),
        })
     EXPECT_EQ(read(Format::off, text), expected) << text;
@@ -394,8 +387,8 @@ TEST_F(mesh_file, off_goes_on_after_its_faces) {
 }
 
 std::string ply_header(const std::string& format, const std::string& vertex, const std::string& face) {
-  return "ply\nformat " + format + " 1.0\ncomment element face 7\nobj_info end_header\nelement vertex 3\n" +
-         vertex + "element face 1\n" + face + "end_header\n";
+  return "ply\nformat " + format + " 1.0\ncomment element face 7\nobj_info end_header\nelement vertex 3\n" + vertex +
+         "element face 1\n" + face + "end_header\n";
 }
 
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -413,8 +406,7 @@ TEST_F(mesh_file, ply_skips_what_it_does_not_know) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   for (const auto order : {std::endian::little, std::endian::big}) {
     std::string bytes =
-        "ply\r\nformat " +
-        std::string(order == std::endian::little ? "binary_little_endian" : "binary_big_endian") +
+        "ply\r\nformat " + std::string(order == std::endian::little ? "binary_little_endian" : "binary_big_endian") +
         " 1.0\r\nelement camera 2\r\nproperty list uint16 int16 path\r\nproperty double zoom\r\nelement "
         "nothing 4000000000\r\n"
         "element vertex 3\r\nproperty uchar red\r\nproperty short y\r\nproperty double x\r\nproperty list "
@@ -546,15 +538,14 @@ std::vector<std::pair<Format, std::string>> sound_files() {
   return {
       {Format::obj, "# tetrahedron\n" + std::string(kThree) + "vn 0 0 1\nf 1//1 2//1 3//1\nf -3 -2 -1\n"},
       {Format::off, "OFF\n" + std::string(kOffBody)},
-      {Format::off,
-       "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5 0.5 0.5\n"},
+      {Format::off, "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5 0.5 0.5\n"},
       {Format::ply, ply_header("ascii", kXyz, kIndices) + kPlyText},
-      {Format::ply, ply_header("ascii", kXyz, kIndices + "property list uint8 float uv\n") +
-                        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 0\n"},
-      {Format::ply, ply_header("binary_little_endian", kXyz, kIndices) + std::string(36, '\0') + "\3" +
-                        std::string(12, '\0')},
-      {Format::ply, ply_header("binary_big_endian", kXyz, kIndices) + std::string(36, '\0') + "\3" +
-                        std::string(12, '\0')},
+      {Format::ply,
+       ply_header("ascii", kXyz, kIndices + "property list uint8 float uv\n") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 0\n"},
+      {Format::ply,
+       ply_header("binary_little_endian", kXyz, kIndices) + std::string(36, '\0') + "\3" + std::string(12, '\0')},
+      {Format::ply,
+       ply_header("binary_big_endian", kXyz, kIndices) + std::string(36, '\0') + "\3" + std::string(12, '\0')},
       {Format::stl, binary_stl(tetrahedron(), "solid")},
       {Format::stl,
        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
@@ -641,8 +632,7 @@ TEST_F(mesh_file, what_is_no_file_is_refused) {
   try {
     (void)read_triangles(path("absent.obj"), Format::obj);
   } catch (const FileError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("absent.obj: cannot be opened: No such file or directory; check the name"));
+    EXPECT_THAT(error.what(), HasSubstr("absent.obj: cannot be opened: No such file or directory; check the name"));
   }
 }
 
@@ -684,8 +674,7 @@ TEST_F(mesh_file, failed_writing_leaves_nothing) {
   try {
     write_atomically(path("absent/a"), "x");
   } catch (const FileError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("absent/a: cannot be written: No such file or directory; check the name"));
+    EXPECT_THAT(error.what(), HasSubstr("absent/a: cannot be written: No such file or directory; check the name"));
   }
 }
 

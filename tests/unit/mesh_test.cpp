@@ -96,12 +96,10 @@ TEST(Mesh, TwoFacesBackToBackAreASphereNotARepetition) {
 TEST(Mesh, NonManifoldAndMisorientedEdgesAreShared) {
   BuildReport report;
   const Mesh book = build_mesh(
-      {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}},
-      &report);
+      {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}}, &report);
   EXPECT_EQ(report.non_manifold_edges, 1U);
   EXPECT_TRUE(is_consistent(book));
-  const Mesh twisted =
-      build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}}, &report);
+  const Mesh twisted = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}}, &report);
   EXPECT_EQ(report.misoriented_edges, 1U);
   EXPECT_EQ(report.boundary_edges, 4U);
   EXPECT_TRUE(is_consistent(twisted));
@@ -124,8 +122,7 @@ TEST(Mesh, RefusesWhatItCannotTake) {
   EXPECT_EQ(fault_of({}), Fault::no_faces);
   EXPECT_EQ(fault_of({{{0, 0, 0}}, {{0, 0, 0}}}), Fault::no_faces);
   EXPECT_EQ(fault_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}), Fault::index_out_of_range);
-  for (float bad :
-       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2e18F}) {
+  for (float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2e18F}) {
     TriangleMesh mesh = cube();
     mesh.positions[3].y = bad;
     EXPECT_EQ(fault_of(mesh), Fault::not_finite);

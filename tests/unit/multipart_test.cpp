@@ -7,10 +7,9 @@
 namespace papilio::proto {
 namespace {
 
-const std::vector<Part> parts{
-    {{{"Content-Type", "application/x-draco"}, {"Papilio-Faces", "12"}}, "abc"},
-    {{{"Content-Type", "text/plain"}}, ""},
-    {{{"Content-Type", "application/json"}}, "--papilio-test--\r\n\r\n--papilio-test\r\n"}};
+const std::vector<Part> parts{{{{"Content-Type", "application/x-draco"}, {"Papilio-Faces", "12"}}, "abc"},
+                              {{{"Content-Type", "text/plain"}}, ""},
+                              {{{"Content-Type", "application/json"}}, "--papilio-test--\r\n\r\n--papilio-test\r\n"}};
 
 std::string body_of(const MultipartWriter& writer) {
   std::string body;
@@ -21,8 +20,7 @@ std::string body_of(const MultipartWriter& writer) {
 std::vector<Part> read(const std::string& type, const std::string& body, size_t piece) {
   std::vector<Part> found;
   MultipartReader reader(type, 1000, [&](Part part) { found.push_back(std::move(part)); });
-  for (size_t begin = 0; begin < body.size(); begin += piece)
-    reader.feed(std::string_view(body).substr(begin, piece));
+  for (size_t begin = 0; begin < body.size(); begin += piece) reader.feed(std::string_view(body).substr(begin, piece));
   reader.finish();
   return found;
 }
@@ -50,9 +48,7 @@ TEST(Multipart, EveryTruncationIsNoticed) {
     EXPECT_THROW((void)read(writer.content_type(), body.substr(0, size), 7), Problem) << size;
 }
 
-TEST(Multipart, BoundariesDiffer) {
-  EXPECT_NE(MultipartWriter().content_type(), MultipartWriter().content_type());
-}
+TEST(Multipart, BoundariesDiffer) { EXPECT_NE(MultipartWriter().content_type(), MultipartWriter().content_type()); }
 
 TEST(Multipart, ReaderTakesQuotedBoundariesAndOtherFields) {
   const std::string body = body_of(MultipartWriter("papilio-test"));

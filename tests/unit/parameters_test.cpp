@@ -49,8 +49,7 @@ TEST(Parameters, QueryAndJsonSayTheSame) {
                                         {"view.viewport", "640,480"},
                                         {"output.position_bits", "16"},
                                         {"output.normals", "true"}});
-  const Parameters json =
-      parse_json(R"({"levels": 3, "flatness": [0.8, 0.9], "growth": 2, "scheme": "in-place",
+  const Parameters json = parse_json(R"({"levels": 3, "flatness": [0.8, 0.9], "growth": 2, "scheme": "in-place",
       "view": {"eye": [0, 1.5, -30], "projection": "orthographic", "viewport": [640, 480]},
       "output": {"position_bits": 16, "normals": true}})");
   EXPECT_EQ(query, json);
@@ -66,14 +65,12 @@ TEST(Parameters, QueryAndJsonSayTheSame) {
 }
 
 TEST(Parameters, CanonicalFormIsOneForEqualParametersAndReadsBack) {
-  const Parameters a =
-      parse_query({{"levels", "03"}, {"flatness", "0.90,.5"}, {"view.fov_y", "45"}, {"w", "-0"}});
+  const Parameters a = parse_query({{"levels", "03"}, {"flatness", "0.90,.5"}, {"view.fov_y", "45"}, {"w", "-0"}});
   const Parameters b = parse_query({{"view.fov_y", "45.0"}, {"flatness", "9e-1,0.5"}, {"levels", "3"}});
   EXPECT_EQ(to_query(a), to_query(b));
   EXPECT_EQ(to_query(a), "levels=3&flatness=0.9,0.5&view.eye=0,0,3");
   EXPECT_EQ(parse_query(to_fields(a)), a);
-  const Parameters full =
-      parse_query({{"view.eye", "0.1,-2,1e-7"}, {"view.near", "0.25"}, {"output.speed", "3"}});
+  const Parameters full = parse_query({{"view.eye", "0.1,-2,1e-7"}, {"view.near", "0.25"}, {"output.speed", "3"}});
   EXPECT_EQ(parse_query(to_fields(full)), full);
 }
 
@@ -111,8 +108,7 @@ TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
   EXPECT_NE(unknown.detail.find("levels"), std::string::npos);
   EXPECT_EQ(query_refusal({{"levels", "2"}, {"levels", "2"}}).parameter, "levels");
   EXPECT_EQ(query_refusal({{"scheme", "loop"}}).detail, "scheme must be in-place, not \"loop\".");
-  EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail,
-            "output.normals must be true or false, not \"1\".");
+  EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail, "output.normals must be true or false, not \"1\".");
 }
 
 TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {
@@ -135,6 +131,10 @@ TEST(Parameters, JsonOfTheWrongShapeIsRefused) {
   EXPECT_EQ(json_refusal("{\"view\": {\"near\": 1, \"near\": 2}}").parameter, "near");
   EXPECT_EQ(json_refusal(std::string(70000, ' ')).code, Code::body_too_large);
   EXPECT_EQ(json_refusal(std::string(60000, '[')).code, Code::bad_request);
+  EXPECT_EQ(json_refusal("{\"levels\": " + std::string(30000, '[') + std::string(30000, ']') + "}").code,
+            Code::bad_request);
+  EXPECT_EQ(json_refusal("{\"levels\": 1e400}").code, Code::bad_request);
+  EXPECT_EQ(json_refusal("{\"flatness\": [1e400]}").code, Code::bad_request);
 }
 
 TEST(Parameters, TheTableDocumentsItself) {
@@ -144,7 +144,7 @@ TEST(Parameters, TheTableDocumentsItself) {
   for (const auto& row : rows) {
     EXPECT_NE(markdown.find("`" + row["name"].get<std::string>() + "`"), std::string::npos);
     EXPECT_FALSE(row["description"].get<std::string>().empty());
-    EXPECT_FALSE(row["default"].get<std::string>().empty());
+    EXPECT_TRUE(row.contains("default"));
   }
 }
 

@@ -137,8 +137,7 @@ TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
     }};
     const Result result = refine(coarse, options, hooks);
     ASSERT_EQ(result.levels, expected_level - 1);
-    for (Vec3f p : result.mesh.positions)
-      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    for (Vec3f p : result.mesh.positions) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
     const Result again = refine(coarse, options);
     ASSERT_EQ(again.mesh.triangles(), result.mesh.triangles()) << "seed " << seed;
   }
@@ -152,6 +151,66 @@ TEST(Refine, NonManifoldAndMisorientedMeshesStayWithoutCracks) {
   EXPECT_EQ(count_edges(result.mesh.triangles()).irregular, 16U);  // two shared edges, each in eight
 }
 
+TEST(Refine, LevelsWithoutTargetsAreLeftOutOfTheCallbacks) {
+  std::vector<int> levels;
+  const Result result =
+      refine(build_mesh(icosahedron()), {.levels = 3, .flatness = {-1, 1, -1}}, {.on_level = [&](const Level& level) {
+               levels.push_back(level.level);
+               EXPECT_EQ(level.last, level.level == 2);
+             }});
+  EXPECT_EQ(levels, (std::vector<int>{0, 2}));
+  EXPECT_EQ(result.levels, 2);
+  EXPECT_EQ(result.stop_reason, StopReason::converged);
+}
+
+TEST(Refine, MoebiusStripIsRefinedWithoutACrack) {
+  // Seven quadrangles in a ring with half a turn: no orientation fits, so some edges are wound against each other.
+  TriangleMesh strip;
+  constexpr uint32_t n = 7;
+  for (uint32_t i = 0; i < n; ++i) {
+    const double u = 2 * 3.14159265358979 * i / n;
+    for (double v : {-0.3, 0.3}) {
+      const double r = 1 + v * std::cos(u / 2);
+      strip.positions.push_back(to_float({r * std::cos(u), r * std::sin(u), v * std::sin(u / 2)}));
+    }
+    const bool turned = i + 1 == n;
+    const uint32_t a = 2 * i;
+    const uint32_t b = 2 * ((i + 1) % n);
+    strip.triangles.push_back({a, b + (turned ? 1 : 0), a + 1});
+    strip.triangles.push_back({a + 1, b + (turned ? 1 : 0), b + (turned ? 0 : 1)});
+  }
+  BuildReport report;
+  const Mesh mesh = build_mesh(strip, &report);
+  EXPECT_EQ(report.misoriented_edges, 1U);
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 0);
+  const Result result = refine(mesh, {.levels = 3});
+  EXPECT_TRUE(is_consistent(result.mesh));
+  EXPECT_EQ(result.mesh.topology.euler_characteristic(), 0);
+  EXPECT_EQ(count_edges(result.mesh.triangles()).irregular, 8U);
+}
+
+TEST(Refine, TriangleSoupsKeepTheirInvariants) {
+  for (uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    TriangleMesh soup;
+    const uint32_t points = 4 + static_cast<uint32_t>(random()) % 6;
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    for (uint32_t p = 0; p < points; ++p)
+      soup.positions.push_back({coordinate(random), coordinate(random), coordinate(random)});
+    for (uint32_t t = 1 + random() % 12; t > 0; --t) {
+      const uint32_t a = static_cast<uint32_t>(random()) % points;
+      const uint32_t beyond = 2 + static_cast<uint32_t>(random()) % (points - 2);
+      soup.triangles.push_back({a, (a + 1) % points, (a + beyond) % points});
+    }
+    const Mesh mesh = build_mesh(soup);
+    ASSERT_TRUE(is_consistent(mesh)) << seed;
+    const int64_t euler = mesh.topology.euler_characteristic();
+    const Result result = refine(mesh, {.levels = 2, .flatness = {0.5, 0.9}, .growth = static_cast<Growth>(seed % 3)});
+    ASSERT_EQ(result.mesh.topology.euler_characteristic(), euler) << seed;
+    for (Vec3f p : result.mesh.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z)) << seed;
+  }
+}
+
 TEST(Refine, StopsWhenNothingIsLeftToSplit) {
   Options options;
   options.levels = 10;
@@ -159,8 +218,7 @@ TEST(Refine, StopsWhenNothingIsLeftToSplit) {
   const Result result = refine(build_mesh(grid(2, 2)), {.levels = 10, .flatness = {-1}});
   EXPECT_EQ(result.stop_reason, StopReason::converged);
   EXPECT_EQ(result.levels, 0);
-  const Result sphere =
-      refine(build_mesh(icosahedron()), options);  // ever flatter: converges before ten levels
+  const Result sphere = refine(build_mesh(icosahedron()), options);  // ever flatter: converges before ten levels
   EXPECT_EQ(sphere.stop_reason, StopReason::converged);
   EXPECT_GT(sphere.levels, 1);
 }
@@ -170,7 +228,9 @@ TEST(Refine, ThresholdsAreOneALevelAndTheLastRepeats) {
   const auto faces = [&](std::vector<double> flatness, int levels) {
     return refine(mesh, {.levels = levels, .flatness = std::move(flatness)}).mesh.topology.face_count();
   };
-  EXPECT_EQ(faces({-1, 1}, 2), 20U);  // nothing at level 1 ends it
+  EXPECT_EQ(faces({-1, 1}, 1), 20U);
+  EXPECT_EQ(faces({-1, 1}, 2), 80U);  // nothing to do at level 1 does not end it: level 2 is finer
+  EXPECT_EQ(faces({-1, -1, 1, -1}, 4), 80U);
   EXPECT_EQ(faces({1, 1, 1}, 2), 320U);
   EXPECT_EQ(faces({1}, 3), faces({1, 1, 1}, 3));
 }
@@ -182,8 +242,7 @@ TEST(Refine, LimitsAreHeldBeforeTheWork) {
   EXPECT_EQ(fault_of(icosahedron(), options), Fault::result_too_large);
   options.flatness = {1};  // not known beforehand: found out level by level
   int levels = 0;
-  EXPECT_EQ(fault_of(icosahedron(), options, {.on_level = [&](const Level&) { ++levels; }}),
-            Fault::result_too_large);
+  EXPECT_EQ(fault_of(icosahedron(), options, {.on_level = [&](const Level&) { ++levels; }}), Fault::result_too_large);
   EXPECT_EQ(levels, 3);  // 20, 80, 320; 1280 is refused
 }
 

@@ -22,8 +22,7 @@ TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheAnswer) {
   std::vector<EncodedLevel> levels;
   Refinement refinement(coarse(), parameters, {});
   EXPECT_EQ(refinement.coarse_faces(), 20U);
-  const EncodedLevel last =
-      refinement.run({.on_level = [&](const EncodedLevel& level) { levels.push_back(level); }});
+  const EncodedLevel last = refinement.run({.on_level = [&](const EncodedLevel& level) { levels.push_back(level); }});
   ASSERT_EQ(levels.size(), 4U);
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(levels[i].statistics.level, i);

@@ -19,8 +19,7 @@ Mesh split_at_midpoints(Mesh mesh, const EdgeMarks& marks) {
   for (uint32_t e = 0; e < marks.size(); ++e) {
     if (marks[e] == 0) continue;
     const uint32_t h = mesh.topology.half_edge[e];
-    mesh.positions.push_back(
-        0.5F * (mesh.positions[mesh.topology.origin[h]] + mesh.positions[mesh.topology.tip(h)]));
+    mesh.positions.push_back(0.5F * (mesh.positions[mesh.topology.origin[h]] + mesh.positions[mesh.topology.tip(h)]));
   }
   mesh.topology = split(mesh.topology, plan, mesh.positions);
   return mesh;
@@ -89,8 +88,8 @@ TEST(Split, RandomTargetsKeepEveryInvariant) {
 }
 
 TEST(Split, SharedEdgesStayShared) {
-  Mesh book = build_mesh(
-      {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}});
+  Mesh book =
+      build_mesh({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}});
   for (int level = 0; level < 3; ++level) {
     book = split_at_midpoints(std::move(book), EdgeMarks(book.topology.edge_count(), 1));
     ASSERT_TRUE(is_consistent(book));

@@ -11,9 +11,7 @@ namespace {
 
 constexpr double tolerance = 1e-13;
 
-double sum(const std::vector<double>& weights) {
-  return std::accumulate(weights.begin(), weights.end(), 0.0);
-}
+double sum(const std::vector<double>& weights) { return std::accumulate(weights.begin(), weights.end(), 0.0); }
 
 TEST(Stencil, RegularRuleSumsToOneForEveryW) {
   for (double w : {-0.0625, 0.0, 1.0 / 64, 0.125}) {
@@ -68,6 +66,12 @@ TEST(Stencil, CurveVertexRowsSumToOneAndReproduceLinearFunctions) {
       EXPECT_NEAR(x, std::cos(std::numbers::pi * i / k) / 2, tolerance) << k << ' ' << i;
       EXPECT_NEAR(y, std::sin(std::numbers::pi * i / k) / 2, tolerance) << k << ' ' << i;
     }
+  }
+}
+
+TEST(Stencil, CurveVertexRowsKeepTheirDigitsAtHugeValence) {
+  for (uint32_t k : {10'000U, 1'000'000U}) {
+    for (uint32_t i : {1U, k / 3, k - 1}) EXPECT_NEAR(sum(curve_weights(k, i)), 1, 1e-8) << k << ' ' << i;
   }
 }
 

@@ -39,9 +39,7 @@ EdgeMarks seen(const Mesh& mesh, const View& view, double edge_pixels = 0) {
   return marks;
 }
 
-size_t count(const EdgeMarks& marks) {
-  return static_cast<size_t>(std::count(marks.begin(), marks.end(), 1));
-}
+size_t count(const EdgeMarks& marks) { return static_cast<size_t>(std::count(marks.begin(), marks.end(), 1)); }
 
 TEST(Camera, RefusesViewsThatDefineNoPicture) {
   View view = looking_down_z();
@@ -119,8 +117,7 @@ TEST(CullByView, KeepsTheFrontAndItsSilhouette) {
   EXPECT_EQ(count(marks), 5U);  // the front's four edges, which are the silhouette, and its diagonal
   for (uint32_t e = 0; e < marks.size(); ++e) {
     const uint32_t h = mesh.topology.half_edge[e];
-    const bool front =
-        mesh.positions[mesh.topology.origin[h]].z == 1 && mesh.positions[mesh.topology.tip(h)].z == 1;
+    const bool front = mesh.positions[mesh.topology.origin[h]].z == 1 && mesh.positions[mesh.topology.tip(h)].z == 1;
     EXPECT_EQ(marks[e] != 0, front);
   }
 }
@@ -136,9 +133,7 @@ TEST(CullByView, DropsWhatIsOutsideTheFrustum) {
     const uint32_t h = mesh.topology.half_edge[e];
     const Vec3f a = mesh.positions[mesh.topology.origin[h]];
     const Vec3f b = mesh.positions[mesh.topology.tip(h)];
-    const auto off = [](float from, float to) {
-      return std::max(20 - std::max(from, to), std::min(from, to) - 20);
-    };
+    const auto off = [](float from, float to) { return std::max(20 - std::max(from, to), std::min(from, to) - 20); };
     const float distance = std::max(off(a.x, b.x), off(a.y, b.y));
     if (distance <= 5) {
       EXPECT_EQ(marks[e], 1);
