@@ -71,13 +71,13 @@ void skip_metadata(Cursor& cursor) {
   skip_metadata_block(cursor, 0);
 }
 
-void require_count(uint32_t count, uint64_t limit, const char* what) {
+}  // namespace
+
+void require_within(uint64_t count, uint64_t limit, const char* what) {
   if (count > limit)
-    throw Problem(Code::mesh_too_large, "The mesh declares " + std::to_string(count) + " " + what + "; the limit is " +
+    throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what + "; the limit is " +
                                             std::to_string(limit) + ". Send a coarser mesh.");
 }
-
-}  // namespace
 
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (!bytes.starts_with("DRACO"))
@@ -112,8 +112,8 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
     header.faces = cursor.varint();
     header.vertices = cursor.varint();
   }
-  require_count(header.faces, limits.max_input_faces, "faces");
-  require_count(header.vertices, limits.max_input_vertices, "vertices");
+  require_within(header.faces, limits.max_input_faces, "faces");
+  require_within(header.vertices, limits.max_input_vertices, "vertices");
   return header;
 }
 

@@ -35,20 +35,14 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
   return attribute;
 }
 
-void require_decoded(uint64_t count, uint64_t limit, const char* what) {
-  if (count > limit)
-    throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what + "; the limit is " +
-                                            std::to_string(limit) + ". Send a coarser mesh.");
-}
-
 }  // namespace
 
 TriangleMesh read_draco(std::string_view bytes, const Limits& limits) {
   (void)read_draco_header(bytes, limits);
   const std::unique_ptr<draco::Mesh> mesh = decode(bytes);
-  require_decoded(mesh->num_faces(), limits.max_input_faces, "faces");
+  require_within(mesh->num_faces(), limits.max_input_faces, "faces");
   // A point for every corner is the most that seams can make of a mesh.
-  require_decoded(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
+  require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
   if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
