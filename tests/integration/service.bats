@@ -64,21 +64,32 @@ teardown() {
   [[ $output == *192.0.2.1* ]]
 }
 
-# fill_the_slot: a long request takes the one slot; sets $running, its process, whose status goes to the file "code".
-fill_the_slot() {
-  curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" --data-binary @"$coarse" \
-    "$url/v1/refine?levels=6" >"$BATS_TEST_TMPDIR/code" 3>&- &
+# long_request ID QUERY: starts one in the background; sets $running, its process, whose status goes to the file "code".
+long_request() {
+  curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" -H "X-Request-Id: $1" \
+    --data-binary @"$coarse" "$url/v1/refine?$2" >"$BATS_TEST_TMPDIR/code" 3>&- &
   running=$!
-  for _ in {1..200}; do
+}
+
+# until_full: returns once every slot and waiting place is taken.
+until_full() {
+  for _ in {1..500}; do
     request "$url/ready"
     [ "$status" = 200 ] || break
   done
   expect_problem 503 not_ready
 }
 
+# leave PROCESS: the client goes away without a word.
+leave() {
+  kill -KILL "$1"
+  wait "$1" || true
+}
+
 @test "busy: with every slot and place taken others get 429 and Retry-After, health stays" {
   start_server --slots 1 --queue 0
-  fill_the_slot
+  long_request long levels=6
+  until_full
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   expect_problem 429 busy
   [[ $(header Retry-After) =~ ^[0-9]+$ ]]
@@ -96,24 +107,31 @@ fill_the_slot() {
   [ "$(grep -c '^200$' "$BATS_TEST_TMPDIR/codes")" = 5 ]
 }
 
-@test "a client that goes away stops its work, and gives up its place when it waits" {
-  start_server --slots 1 --queue 1
-  # Three quarters of the time of this one go into refinement, and it is far from done when the client leaves.
-  curl -sS --noproxy '*' --max-time 0.3 -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
-    "$url/v1/refine?levels=6&flatness=1&growth=2" || true
-  curl -sS --noproxy '*' --max-time 60 -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=5" 3>&- &
-  running=$!
-  curl -sS --noproxy '*' --max-time 0.3 -o /dev/null -H "$draco" -H 'X-Request-Id: waiter' --data-binary @"$coarse" \
-    "$url/v1/refine?levels=6&flatness=1&growth=2" || true
-  wait "$running"
+@test "a client that goes away stops its work" {
+  start_server --slots 1 --queue 0
+  long_request leaver 'levels=6&flatness=1&growth=2'
+  until_full
+  leave "$running"
   stop_server
   grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
-  grep -q 'id=waiter .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
+}
+
+@test "a client that goes away while it waits gives up its place" {
+  start_server --slots 1 --queue 1
+  long_request first levels=6
+  first=$running
+  long_request waiter 'levels=6&flatness=1&growth=2'
+  until_full
+  leave "$running"
+  wait "$first"
+  stop_server
+  [ "$(grep -cE 'id=(first|waiter) .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log")" = 1 ]
 }
 
 @test "SIGTERM lets a running request finish, refuses others, and exits 0" {
   start_server --slots 1 --queue 0
-  fill_the_slot
+  long_request long levels=6
+  until_full
   kill -TERM "$server_pid"
   request "$url/v1/info"
   expect_problem 503 draining
