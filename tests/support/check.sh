@@ -34,15 +34,12 @@ fi
 # clang-tidy is slow: a file that passed is not read again until it, a header of the project that it includes, the rules
 # or its compile command change.
 export TIDY_CACHE=build/tidy-cache
-mkdir -p "$TIDY_CACHE"
-# clang cannot read GCC's precompiled headers: its compile commands do without.
-jq 'map(.command |= gsub("-Winvalid-pch|-include [^ ]*cmake_pch[.]hxx"; ""))' build/release/compile_commands.json \
-  >"$TIDY_CACHE/compile_commands.json"
+mkdir -p build/release
 TIDY_RULES=$({ clang-tidy --version && cat .clang-tidy; } | sha256sum)
 export TIDY_RULES
 tidy() {
   local entry object key output
-  entry=$(jq -c --arg file "$PWD/$1" 'map(select(.file == $file))[0] // empty' "$TIDY_CACHE/compile_commands.json")
+  entry=$(jq -c --arg file "$PWD/$1" 'map(select(.file == $file))[0] // empty' build/release/compile_commands.json)
   if [[ -z $entry ]]; then
     echo "$1: no target of the build compiles it"
     return 1
@@ -51,7 +48,7 @@ tidy() {
   mapfile -t headers < <(ninja -C build/release -t deps "$object" | sed -n "s|^ *\($PWD/[a-z].*\.h\)$|\1|p")
   key=$({ echo "$TIDY_RULES $entry" && cat "$1" "${headers[@]}"; } | sha256sum | cut -d' ' -f1)
   [[ ! -f $TIDY_CACHE/$key ]] || return 0
-  output=$(clang-tidy --quiet -p "$TIDY_CACHE" --extra-arg=-Wno-unknown-warning-option "$1" 2>&1) || {
+  output=$(clang-tidy --quiet -p build/release --extra-arg=-Wno-unknown-warning-option "$1" 2>&1) || {
     printf '%s\n' "$output" | grep -vE '^[0-9]+ warnings? (generated|treated)' # counts what system headers hide
     return 1
   }
