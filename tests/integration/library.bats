@@ -27,7 +27,7 @@ int main() {
 END
   # The sanitizers of the build at hand, if any, are what the library needs to link.
   flags=$(sed -n 's/^PAPILIO_SANITIZE:STRING=\(..*\)$/-fsanitize=\1/p' "$PAPILIO_BUILD/CMakeCache.txt")
-  cmake -S user -B build -DCMAKE_PREFIX_PATH="$PWD/prefix" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
+  cmake -G Ninja -S user -B build -DCMAKE_PREFIX_PATH="$PWD/prefix" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
   cmake --build build >/dev/null
   [ "$(build/user)" = 64 ]
   "$PWD/prefix/bin/papilio" --version

@@ -34,7 +34,7 @@ fi
 # clang-tidy is slow: a file that passed is not read again until it, a header of the project that it includes, the rules
 # or its compile command change.
 export TIDY_CACHE=build/tidy-cache
-mkdir -p build/release
+mkdir -p "$TIDY_CACHE"
 TIDY_RULES=$({ clang-tidy --version && cat .clang-tidy; } | sha256sum)
 export TIDY_RULES
 tidy() {
