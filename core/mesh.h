@@ -25,6 +25,7 @@ enum class EdgeKind : uint8_t {
   boundary,  ///< one face
   shared,    ///< three faces or more, or two wound against each other: a boundary of every face at it
   crease,    ///< two faces, kept sharp
+  cut,       ///< faces of the uniform mesh are missing here: the border of what a red-green level holds (hierarchy.h)
 };
 
 /// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices.
@@ -38,6 +39,9 @@ struct Topology {
   /// Vertices of the coarse mesh with more than one fan, in ascending order. (Vertices that arise on shared edges have
   /// several too; rules find those by their curves.)
   std::vector<uint32_t> pinched;
+  /// Vertices inside the surface at which a single crease ends, in ascending order. To the rules they are vertices
+  /// without a crease.
+  std::vector<uint32_t> darts;
 
   [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }
   [[nodiscard]] uint32_t edge_count() const { return static_cast<uint32_t>(half_edge.size()); }
@@ -56,12 +60,23 @@ struct Topology {
   }
 };
 
-/// A mesh: connectivity and one position a vertex.
+/// Attributes of a mesh. A point is a vertex together with its values; where charts meet, one vertex is several points,
+/// and positions do not open.
+struct PointAttributes {
+  std::vector<uint32_t> point;        ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
+  uint32_t point_count = 0;           ///< P
+  std::vector<Attribute> attributes;  ///< values [P * components] each
+
+  [[nodiscard]] bool empty() const { return attributes.empty(); }
+};
+
+/// A mesh: connectivity and one position a vertex, and attributes if it has any.
 struct Mesh {
   Topology topology;
   std::vector<Vec3f> positions;  ///< [V]
+  PointAttributes attributes{};
 
-  /// Copies the faces and positions out.
+  /// Copies the faces and positions out; with attributes, points in place of vertices.
   [[nodiscard]] TriangleMesh triangles() const;
 };
 

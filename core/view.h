@@ -19,6 +19,12 @@ struct View {
   std::array<double, 2> viewport{1280, 720};  ///< width and height in pixels
   double near = 0;          ///< distance of the near plane; 0: a thousandth of the distance from eye to target
   double edge_pixels = 10;  ///< an edge that looks shorter than this stays whole; 0 turns the criterion off
+  /// Edges are split only where the surface would move by at least this many pixels, as large as the move looks from
+  /// its distance, whichever way it goes; 0 turns the criterion off.
+  double error_pixels = 0;
+  /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
+  /// over the edge (lighting.h).
+  std::vector<Vec3d> lights{};
   /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
   Projection projection = Projection::perspective;
 };
