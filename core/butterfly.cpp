@@ -3,10 +3,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "curve.h"
 #include "fan.h"
 #include "stencil.h"
+#include "tensed_rules.h"
 
 namespace papilio {
 namespace {
@@ -35,14 +37,17 @@ class Butterfly {
   using Point = Vec3T<Real>;
 
  public:
-  Butterfly(const Topology& topology, const std::vector<Point>& positions, const SplitPlan& plan, Real w)
+  Butterfly(const Topology& topology, const std::vector<Point>& positions, const SplitPlan& plan, Real w,
+            const TensionField* tension)
       : mesh_(topology),
         p_(positions),
         plan_(plan),
         w_(w),
         regular_(w),
         out_(plan.count()),
-        irregular_ends_(plan.count(), 0) {}
+        irregular_ends_(plan.count(), 0) {
+    if (tension != nullptr) tensed_.emplace(topology, positions, *tension);
+  }
 
   std::vector<Point> run() {
     split_at_irregular_vertices();
@@ -56,6 +61,7 @@ class Butterfly {
         out_[rank] = Real(0.5) * out_[rank];
       else if (irregular_ends_[rank] == 0)
         out_[rank] = regular(mesh_.half_edge[e]);
+      if (tensed_) out_[rank] = tensed_->finish(mesh_.half_edge[e], out_[rank]);
     }
     return std::move(out_);
   }
@@ -87,6 +93,10 @@ class Butterfly {
     const uint32_t k = fan.valence();
     const Real* s = weights.ring(k);
     for (uint32_t i = 0; i < k; ++i) {
+      if (tensed_ && k > 2) {
+        add_opinion(fan.spokes[i], tensed_->interior_spoke(fan, s, i));
+        continue;
+      }
       Point q = weights.centre(k) * p_[fan.centre];
       for (uint32_t j = 0; j < k; ++j) q += s[j] * p_[fan.ring[i + j < k ? i + j : i + j - k]];
       add_opinion(fan.spokes[i], q);
@@ -106,11 +116,12 @@ class Butterfly {
       s2 += std::sin(2 * angle(j)) * p;
     }
     const Vec3d constant = stencil::interior_centre * widen(p_[fan.centre]) + (stencil::harmonic_0 / k) * sum;
+    const Real factor = tensed_ ? tensed_->least_factor(fan) : Real(1);
     for (uint32_t i = 0; i < k; ++i) {
       const Vec3d first = std::cos(angle(i)) * c1 + std::sin(angle(i)) * s1;
       const Vec3d second = std::cos(2 * angle(i)) * c2 + std::sin(2 * angle(i)) * s2;
-      add_opinion(fan.spokes[i],
-                  narrow(constant + (stencil::harmonic_1 / k) * first + (stencil::harmonic_2 / k) * second));
+      const Point q = narrow(constant + (stencil::harmonic_1 / k) * first + (stencil::harmonic_2 / k) * second);
+      add_opinion(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q, factor) : q);
     }
   }
 
@@ -126,8 +137,9 @@ class Butterfly {
     const Vec3d across = widen(p_[fan.ring[0]]) - widen(p_[fan.ring[k]]);
     for (uint32_t i = 1; i < k; ++i) {
       const stencil::CurveSpoke rule = stencil::curve_spoke(k, i);
-      add_opinion(fan.spokes[i], narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 +
-                                        rule.sine_2 * sum_2));
+      const Point q =
+          narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 + rule.sine_2 * sum_2);
+      add_opinion(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q) : q);
     }
   }
 
@@ -142,12 +154,25 @@ class Butterfly {
     };
     const Point before = beyond(curves.before(h), a, b);
     const Point after = beyond(curves.after(h), b, a);
+    if (tensed_) return tensed_->along_curve(before, a, b, after);
     return stencil::Curve<Real>::end * (a + b) + stencil::Curve<Real>::next * (before + after);
   }
 
   /// Both ends regular: which row applies depends on the sides on which a curve touches them.
   [[nodiscard]] Point regular(uint32_t h) const {
     const uint32_t t = mesh_.twin[h];
+    if (!tensed_) return regular(h, t);
+    if (touches_curve(h, t)) return tensed_->scaled(h, regular(h, t));
+    const Point q = tensed_->interior_interior(h, t);
+    return w_ == 0 ? q : q + tensed_->least_factor(h) * (interior_interior(h, t) - eight_points(h, t));
+  }
+
+  [[nodiscard]] bool touches_curve(uint32_t h, uint32_t t) const {
+    return mesh_.is_curve(Topology::previous(h)) || mesh_.is_curve(Topology::next(h)) ||
+           mesh_.is_curve(Topology::next(t)) || mesh_.is_curve(Topology::previous(t));
+  }
+
+  [[nodiscard]] Point regular(uint32_t h, uint32_t t) const {
     const bool a_left = mesh_.is_curve(Topology::previous(h));
     const bool b_left = mesh_.is_curve(Topology::next(h));
     const bool a_right = mesh_.is_curve(Topology::next(t));
@@ -168,13 +193,16 @@ class Butterfly {
   [[nodiscard]] Point at(uint32_t vertex) const { return p_[vertex]; }
 
   [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
+    const Point q = eight_points(h, t, regular_);
+    return w_ == 0 ? q : q + regular_.far * (far_point(h) + far_point(t));
+  }
+  [[nodiscard]] Point eight_points(uint32_t h, uint32_t t,
+                                   const stencil::Regular<Real>& row = stencil::Regular<Real>()) const {
     const Point ends = at(mesh_.origin[h]) + at(mesh_.origin[t]);
     const Point apexes = at(mesh_.apex(h)) + at(mesh_.apex(t));
     const Point wings_left = wing(Topology::next(h)) + wing(Topology::previous(h));
     const Point wings_right = wing(Topology::next(t)) + wing(Topology::previous(t));
-    Point q = regular_.end * ends + regular_.apex * apexes + regular_.wing * (wings_left + wings_right);
-    if (w_ != 0) q += regular_.far * (far_point(h) + far_point(t));
-    return q;
+    return row.end * ends + row.apex * apexes + row.wing * (wings_left + wings_right);
   }
 
   /// The vertex opposite to h's tip in the ring of its (regular) origin.
@@ -216,6 +244,7 @@ class Butterfly {
   Real w_;
   stencil::Regular<Real> regular_;
   std::vector<Point> out_;
+  std::optional<TensedRules<Real>> tensed_;
   std::vector<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
 };
 
@@ -223,11 +252,13 @@ class Butterfly {
 
 template <class Real>
 std::vector<Vec3T<Real>> butterfly(const Topology& topology, const std::vector<Vec3T<Real>>& positions,
-                                   const SplitPlan& plan, Real w) {
-  return Butterfly<Real>(topology, positions, plan, w).run();
+                                   const SplitPlan& plan, Real w, const TensionField* tension) {
+  return Butterfly<Real>(topology, positions, plan, w, tension).run();
 }
 
-template std::vector<Vec3f> butterfly(const Topology&, const std::vector<Vec3f>&, const SplitPlan&, float);
-template std::vector<Vec3d> butterfly(const Topology&, const std::vector<Vec3d>&, const SplitPlan&, double);
+template std::vector<Vec3f> butterfly(const Topology&, const std::vector<Vec3f>&, const SplitPlan&, float,
+                                      const TensionField*);
+template std::vector<Vec3d> butterfly(const Topology&, const std::vector<Vec3d>&, const SplitPlan&, double,
+                                      const TensionField*);
 
 }  // namespace papilio

@@ -9,7 +9,7 @@ CurveNeighbours::CurveNeighbours(const Topology& mesh)
     neighbours_[v] ^= other;
   };
   for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-    if (mesh.kind[e] == EdgeKind::smooth) continue;
+    if (mesh.kind[e] == EdgeKind::smooth || mesh.kind[e] == EdgeKind::cut) continue;
     const uint32_t a = mesh.origin[mesh.half_edge[e]];
     const uint32_t b = mesh.tip(mesh.half_edge[e]);
     join(a, b);

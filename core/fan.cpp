@@ -1,21 +1,34 @@
 #include "fan.h"
 
+#include <algorithm>
+
 #include "stencil.h"
 
 namespace papilio {
 namespace {
 
-/// The next spoke clockwise, `none` across a curve.
-uint32_t clockwise(const Topology& mesh, uint32_t h) { return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]); }
+bool is_dart(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.darts, vertex); }
 
-/// The next spoke counter-clockwise, `none` across a curve.
-uint32_t counter_clockwise(const Topology& mesh, uint32_t h) {
-  const uint32_t incoming = Topology::previous(h);
-  return mesh.is_curve(incoming) ? none : mesh.twin[incoming];
-}
+/// Steps from spoke to spoke, `none` across a curve; round a dart its crease does not count.
+class Steps {
+ public:
+  Steps(const Topology& mesh, uint32_t centre) : mesh_(mesh), is_dart_(is_dart(mesh, centre)) {}
+  [[nodiscard]] uint32_t clockwise(uint32_t h) const { return ends_at(h) ? none : Topology::next(mesh_.twin[h]); }
+  [[nodiscard]] uint32_t counter_clockwise(uint32_t h) const {
+    const uint32_t incoming = Topology::previous(h);
+    return ends_at(incoming) ? none : mesh_.twin[incoming];
+  }
 
-bool is_regular(const Fan& fan) {
-  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles);
+ private:
+  [[nodiscard]] bool ends_at(uint32_t h) const { return !is_dart_ && mesh_.is_curve(h); }
+  const Topology& mesh_;
+  const bool is_dart_;
+};
+
+/// A dart never counts as regular: the regular rules look for curves edge by edge.
+bool is_regular(const Topology& mesh, const Fan& fan) {
+  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles) &&
+         !is_dart(mesh, fan.centre);
 }
 
 /// Marks the vertices whose one fan is closed with six faces: no curve, not pinched, six corners.
@@ -38,9 +51,10 @@ std::vector<bool> find_plainly_regular(const Topology& mesh) {
 }  // namespace
 
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
+  const Steps steps(mesh, mesh.origin[h]);
   uint32_t first = h;
   fan.closed = false;
-  for (uint32_t s = clockwise(mesh, h); s != none; s = clockwise(mesh, s)) {
+  for (uint32_t s = steps.clockwise(h); s != none; s = steps.clockwise(s)) {
     first = s;
     if (s == h) {
       fan.closed = true;
@@ -54,7 +68,7 @@ void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
   do {
     fan.spokes.push_back(s);
     fan.ring.push_back(mesh.tip(s));
-    s = counter_clockwise(mesh, s);
+    s = steps.counter_clockwise(s);
   } while (s != none && s != first);
   if (!fan.closed) fan.ring.push_back(mesh.apex(fan.spokes.back()));
 }
@@ -66,7 +80,7 @@ void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<
     if (regular[mesh.origin[h]] || visited[h]) continue;
     collect_fan(mesh, h, fan);
     for (uint32_t s : fan.spokes) visited[s] = true;
-    if (!is_regular(fan)) visit();
+    if (!is_regular(mesh, fan)) visit();
   }
 }
 

@@ -20,11 +20,11 @@ struct Fan {
 };
 
 /// Fills `fan` with the fan that half-edge h, which leaves the centre, is in. An open fan starts at its
-/// clockwise end, a closed one at h.
+/// clockwise end, a closed one at h. Round a dart it is closed.
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan);
 
 /// Collects each fan with interior spokes to which no regular rule applies (closed and not six faces, open
-/// and not three) into `fan` and calls `visit`.
+/// and not three; round a dart always) into `fan` and calls `visit`.
 void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit);
 
 }  // namespace papilio

@@ -34,7 +34,7 @@ void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, doubl
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t h = topology.half_edge[e];
     const uint32_t t = topology.twin[h];
-    if (t == none) {
+    if (topology.kind[e] != EdgeKind::smooth) {
       if (turns(mesh, curves, h, threshold)) marks[e] = 1;
       continue;
     }

@@ -1,15 +1,136 @@
 #include "in_place.h"
 
-#include "butterfly.h"
 #include "split.h"
 
 namespace papilio {
+namespace {
 
-Mesh refine_in_place(Mesh mesh, const SplitPlan& plan, float w) {
-  const std::vector<Vec3f> added = butterfly(mesh.topology, mesh.positions, plan, w);
-  mesh.positions.insert(mesh.positions.end(), added.begin(), added.end());
-  mesh.topology = split(mesh.topology, plan, mesh.positions);
+constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
+
+class InPlace {
+ public:
+  InPlace(const Options& options, const Selection& selection, const Progress& progress)
+      : options_(options), selection_(selection), progress_(progress) {}
+
+  Result run(Mesh coarse) {
+    mesh_ = std::move(coarse);
+    while (true) {
+      progress_.poll();
+      const int level = find_targets();
+      progress_.report(result_.levels, mesh_, level == 0);
+      if (level == 0) break;
+      progress_.poll();
+      split_targets(level);
+    }
+    if (!out_of_budget_)
+      result_.stop_reason = result_.levels == options_.levels ? StopReason::levels : StopReason::converged;
+    result_.mesh = std::move(mesh_);
+    return std::move(result_);
+  }
+
+ private:
+  /// Finds the next level that has targets, and these; 0 when there is none. Notes the deviation that is left.
+  int find_targets() {
+    if (result_.levels == options_.levels && options_.levels > 0) return 0;  // its split edges are noted already
+    trial_.emplace(try_split(mesh_, options_, EdgeMarks(mesh_.topology.edge_count(), 1)));
+    for (int level = result_.levels + 1; level <= options_.levels; ++level) {
+      targets_.assign(mesh_.topology.edge_count(), 1);
+      selection_.narrow(mesh_, trial_->normals, level, targets_);
+      if (selection_.is_by_error()) keep_largest_errors();
+      if (SplitPlan(targets_).count() > 0) {
+        note_error();
+        return level;
+      }
+      if (!selection_.later_level_is_finer(level)) break;
+    }
+    targets_.assign(mesh_.topology.edge_count(), 0);
+    note_error();
+    return 0;
+  }
+
+  void keep_largest_errors() {
+    const std::vector<float> errors = selection_.errors(mesh_, *trial_, targets_);
+    float threshold = selection_.threshold();
+    if (options_.max_faces > 0) {
+      std::vector<WeighedEdge> edges;
+      for (float error : errors) edges.push_back({error, 0});
+      for (uint32_t e : mesh_.topology.edge) ++edges[e].faces;
+      threshold = threshold_within(std::move(edges), threshold, mesh_.topology.face_count(), options_.max_faces);
+      if (threshold > selection_.threshold()) {
+        out_of_budget_ = true;
+        result_.stop_reason = StopReason::budget;
+      }
+    }
+    for (size_t e = 0; e < targets_.size(); ++e) targets_[e] = errors[e] >= threshold ? 1 : 0;
+  }
+
+  void note_error() {
+    ErrorLeft left(selection_);
+    EdgeMarks seen(targets_.size(), 1);
+    selection_.cull(mesh_, trial_->normals, seen);
+    for (uint32_t e = 0; e < seen.size(); ++e)
+      if (seen[e] != 0) left.add(mesh_, e, trial_->at(e), targets_[e] != 0 ? split_leaves : 1);
+    result_.error = left.error();
+    result_.error_pixels = left.pixels();
+  }
+
+  void split_targets(int level) {
+    const SplitPlan plan(targets_);
+    const uint64_t faces = count_children(mesh_.topology, plan);
+    progress_.require_room(faces, level);
+    progress_.require_memory(faces, bytes_per_face, level);
+    std::vector<Vec3f> made;
+    made.reserve(plan.count());
+    for (uint32_t e = 0; e < targets_.size(); ++e)
+      if (targets_[e] != 0) made.push_back(trial_->at(e));
+    mesh_ = split_mesh(std::move(mesh_), plan, made);
+    result_.levels = level;
+  }
+
+  const Options& options_;
+  const Selection& selection_;
+  const Progress& progress_;
+  Mesh mesh_;
+  Result result_;
+  std::optional<Trial> trial_;
+  EdgeMarks targets_;
+  bool out_of_budget_ = false;
+};
+
+}  // namespace
+
+Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const std::vector<Vec3f>& made) {
+  mesh.positions.insert(mesh.positions.end(), made.begin(), made.end());
+  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
   return mesh;
+}
+
+Result refine_in_place(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
+  return InPlace(options, selection, progress).run(std::move(coarse));
+}
+
+Result refine_uniformly(Mesh mesh, const Options& options, const Selection& selection, const Progress& progress) {
+  Result result;
+  for (int level = 1; level <= options.levels; ++level) {
+    progress.poll();
+    const uint64_t faces = 4ULL * mesh.topology.face_count();
+    progress.require_room(faces, level);
+    progress.require_memory(faces, bytes_per_face, level);
+    const EdgeMarks all(mesh.topology.edge_count(), 1);
+    const Trial trial = try_split(mesh, options, all);
+    progress.report(level - 1, mesh, false);
+    progress.poll();
+    if (level == options.levels) {
+      ErrorLeft left(selection);
+      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, e, trial.at(e), split_leaves);
+      result.error = left.error();
+    }
+    mesh = split_mesh(std::move(mesh), trial.tried, trial.made);
+    result.levels = level;
+  }
+  progress.report(result.levels, mesh, true);
+  result.mesh = std::move(mesh);
+  return result;
 }
 
 }  // namespace papilio

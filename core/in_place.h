@@ -1,13 +1,21 @@
 #pragma once
 
-#include "mesh.h"
-#include "split_plan.h"
+#include "progress.h"
+#include "refine.h"
+#include "selection.h"
 
 namespace papilio {
 
-/// One level of the paper's scheme: splits the target edges of `mesh` and its faces by their patterns, and
-/// makes the result the mesh that the next level works on, transition patterns included. Old vertices keep
-/// their numbers and their positions to the bit; `w` as in `butterfly`.
-[[nodiscard]] Mesh refine_in_place(Mesh mesh, const SplitPlan& plan, float w);
+/// Splits the target edges of `mesh`, and its faces by their patterns; `made` [plan.count()] are the new vertices. Old
+/// vertices keep their numbers and their positions to the bit.
+[[nodiscard]] Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const std::vector<Vec3f>& made);
+
+/// Refines by the paper's scheme: each level works on the mesh that the level before left, transition faces included.
+[[nodiscard]] Result refine_in_place(Mesh coarse, const Options& options, const Selection& selection,
+                                     const Progress& progress);
+
+/// Uniform refinement, the same in both schemes.
+[[nodiscard]] Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection,
+                                      const Progress& progress);
 
 }  // namespace papilio

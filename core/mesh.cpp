@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attributes.h"
 #include "error.h"
 #include "fan.h"
 #include "weld.h"
@@ -65,8 +66,8 @@ EdgeRuns sort_into_edges(const Topology& mesh) {
 }
 
 /// Drops each face that has the vertices and orientation of an earlier one. Only faces at edges that two
-/// half-edges run along in one direction can repeat. Returns how many were dropped.
-uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs) {
+/// half-edges run along in one direction can repeat. Returns how many were dropped. `corner_point` [H] or empty.
+uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs, std::vector<uint32_t>& corner_point) {
   struct Candidate {
     Triangle rotated;  ///< starting at its lowest vertex
     uint32_t face;
@@ -101,9 +102,11 @@ uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs) {
   for (uint32_t f = 0; f < repeated.size(); ++f) {
     if (repeated[f]) continue;
     std::copy_n(mesh.origin.begin() + 3 * f, 3, mesh.origin.begin() + 3 * kept);
+    if (!corner_point.empty()) std::copy_n(corner_point.begin() + 3 * f, 3, corner_point.begin() + 3 * kept);
     ++kept;
   }
   mesh.origin.resize(size_t{3} * kept);
+  if (!corner_point.empty()) corner_point.resize(mesh.origin.size());
   return dropped;
 }
 
@@ -162,10 +165,18 @@ std::vector<uint32_t> find_pinched(const Topology& mesh) {
 
 TriangleMesh Mesh::triangles() const {
   TriangleMesh out;
-  out.positions = positions;
+  const std::vector<uint32_t>& corners = attributes.empty() ? topology.origin : attributes.point;
   out.triangles.resize(topology.face_count());
   for (uint32_t f = 0; f < topology.face_count(); ++f)
-    std::copy_n(topology.origin.begin() + size_t{3} * f, 3, out.triangles[f].begin());
+    std::copy_n(corners.begin() + size_t{3} * f, 3, out.triangles[f].begin());
+  if (attributes.empty()) {
+    out.positions = positions;
+    return out;
+  }
+  out.attributes = attributes.attributes;
+  out.positions.resize(attributes.point_count);
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
+    out.positions[attributes.point[h]] = positions[topology.origin[h]];
   return out;
 }
 
@@ -174,11 +185,12 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   BuildReport found;
   Mesh mesh;
   Topology& topology = mesh.topology;
-  topology.origin = weld(input, mesh.positions, found);
+  std::vector<uint32_t> corner_point;
+  topology.origin = weld(input, mesh.positions, found, corner_point);
   topology.vertex_count = static_cast<uint32_t>(mesh.positions.size());
 
   EdgeRuns runs = sort_into_edges(topology);
-  found.repeated_faces = drop_repeated_faces(topology, runs);
+  found.repeated_faces = drop_repeated_faces(topology, runs, corner_point);
   if (found.repeated_faces > 0) runs = sort_into_edges(topology);
   if (topology.origin.empty()) {
     throw Error(Fault::no_faces, input.triangles.empty()
@@ -188,6 +200,7 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   }
   connect(topology, runs, found);
   topology.pinched = find_pinched(topology);
+  mesh.attributes = gather_attributes(input, topology, corner_point);
   found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
   if (report != nullptr) *report = found;
   return mesh;

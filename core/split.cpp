@@ -1,5 +1,6 @@
 #include "split.h"
 
+#include "attributes.h"
 #include "split_pattern.h"
 
 namespace papilio {
@@ -16,11 +17,12 @@ class Splitter {
   Splitter(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions)
       : mesh_(mesh), plan_(plan), positions_(positions) {}
 
-  Topology run() {
+  Topology run(PointAttributes& attributes) {
     choose_patterns();
     const uint32_t faces = first_child_.back();
     child_.vertex_count = mesh_.vertex_count + plan_.count();
     child_.pinched = mesh_.pinched;
+    child_.darts = mesh_.darts;
     child_.origin.resize(size_t{3} * faces);
     child_.twin.resize(size_t{3} * faces);
     child_.edge.resize(size_t{3} * faces);
@@ -33,6 +35,7 @@ class Splitter {
       if (plan_.is_split(e)) child_.kind[base + 1] = mesh_.kind[e];
     }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
+    if (!attributes.empty()) split_corners(attributes);
     return std::move(child_);
   }
 
@@ -44,23 +47,16 @@ class Splitter {
     uint32_t child = 0;
     for (uint32_t f = 0; f < faces; ++f) {
       const unsigned mask = target_mask(mesh_, plan_, f);
-      const bool two = mask == 3 || mask == 5 || mask == 6;
-      pattern_[f] = &split_pattern(mask, two && prefers_second_diagonal(f, mask));
+      const auto corner = [&](uint32_t i) {
+        const uint32_t v = mesh_.origin[3 * f + i];
+        return CornerPoint{v, positions_[v]};
+      };
+      const auto middle = [&](uint32_t i) { return positions_[new_vertex(3 * f + i)]; };
+      pattern_[f] = &split_pattern(mask, prefers_second_diagonal(mask, corner, middle));
       first_child_[f] = child;
       child += pattern_[f]->children;
     }
     first_child_[faces] = child;
-  }
-
-  [[nodiscard]] bool prefers_second_diagonal(uint32_t f, unsigned mask) const {
-    const uint32_t i = first_of_two_targets(mask);
-    const uint32_t j = (i + 1) % 3;
-    const uint32_t first_corner = mesh_.origin[3 * f + i];
-    const uint32_t second_corner = mesh_.origin[3 * f + (j + 1) % 3];
-    const Vec3d first = to_double(positions_[first_corner]) - to_double(positions_[new_vertex(3 * f + j)]);
-    const Vec3d second = to_double(positions_[second_corner]) - to_double(positions_[new_vertex(3 * f + i)]);
-    const double difference = dot(second, second) - dot(first, first);
-    return difference < 0 || (difference == 0 && second_corner < first_corner);
   }
 
   [[nodiscard]] uint32_t new_vertex(uint32_t h) const { return mesh_.vertex_count + plan_.before[mesh_.edge[h]]; }
@@ -105,6 +101,17 @@ class Splitter {
     }
   }
 
+  void split_corners(PointAttributes& attributes) const {
+    const std::vector<uint32_t> made = split_points(mesh_, plan_, attributes);
+    std::vector<uint32_t> point(child_.half_edge_count());
+    for (uint32_t f = 0; f < mesh_.face_count(); ++f)
+      for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
+        const uint8_t corner = pattern_[f]->corner[c / 3][c % 3];
+        point[3 * first_child_[f] + c] = corner < 3 ? attributes.point[3 * f + corner] : made[3 * f + corner - 3];
+      }
+    attributes.point = std::move(point);
+  }
+
   const Topology& mesh_;
   const SplitPlan& plan_;
   const std::vector<Vec3f>& positions_;
@@ -121,8 +128,9 @@ uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
   return children;
 }
 
-Topology split(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions) {
-  return Splitter(mesh, plan, positions).run();
+Topology split(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions,
+               PointAttributes& attributes) {
+  return Splitter(mesh, plan, positions).run(attributes);
 }
 
 }  // namespace papilio

@@ -15,9 +15,10 @@ namespace papilio {
 /// shorter diagonal (equal ones: the one from the lower old vertex); three, four. Orientation is kept and no
 /// T-junction arises.
 ///
-/// `positions` [V + plan.count()] has the new vertices at its end. The result's faces lie in their parents'
-/// order; its arrays follow from the parents' by formula, in O(F + E), without a search. Edge kinds are
-/// inherited; edges inside a parent are smooth.
-[[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions);
+/// `positions` [V + plan.count()] has the new vertices at its end; `attributes` are split along unless they are empty.
+/// The result's faces lie in their parents' order; its arrays follow from the parents' by formula, in O(F + E), without
+/// a search. Edge kinds are inherited; edges inside a parent are smooth.
+[[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions,
+                             PointAttributes& attributes);
 
 }  // namespace papilio

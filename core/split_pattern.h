@@ -32,4 +32,25 @@ struct SplitPattern {
 /// For a mask with two targets: edge i as above.
 [[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) { return mask == 3 ? 0 : mask == 6 ? 1 : 2; }
 
+/// A corner of a face: its number, which breaks ties, and where it is.
+struct CornerPoint {
+  uint32_t number;
+  Vec3f position;
+};
+
+/// Which diagonal cuts the quadrangle that two targets leave: the shorter; of equal ones, that from the lower corner.
+/// `corner(i)` gives corner i, `middle(i)` the position of edge i's new vertex. False for other masks.
+template <class Corner, class Middle>
+[[nodiscard]] bool prefers_second_diagonal(unsigned mask, const Corner& corner, const Middle& middle) {
+  if (mask != 3 && mask != 5 && mask != 6) return false;
+  const uint32_t i = first_of_two_targets(mask);
+  const uint32_t j = (i + 1) % 3;
+  const CornerPoint first_end = corner(i);
+  const CornerPoint second_end = corner((j + 1) % 3);
+  const Vec3d first = to_double(first_end.position) - to_double(middle(j));
+  const Vec3d second = to_double(second_end.position) - to_double(middle(i));
+  const double difference = dot(second, second) - dot(first, first);
+  return difference < 0 || (difference == 0 && second_end.number < first_end.number);
+}
+
 }  // namespace papilio

@@ -4,27 +4,39 @@
 
 #include "mesh.h"
 
-// Tension: no overshoot at sharp edges. The paper reduces stencil weights by factors t_i that it defers to another
-// paper; the definition here is this project's own. The butterfly rule is the edge's midpoint less second differences
-// over the hinges (edges between two faces) in its stencil; each difference is scaled by how flat its hinges are.
+// Tension: no overshoot at sharp edges. The paper lowers stencil weights by factors t_i that it takes from another
+// paper, which cannot be found; the definition here is this project's own. A butterfly rule is the edge's midpoint less
+// second differences over the hinges (edges between two faces) of its stencil; each difference is scaled by how flat
+// the hinges are that lie between it and the edge.
 
 namespace papilio {
 
 enum class Tension {
   soft,   ///< hinges sharper than 60 degrees count less, those of 90 and more not at all
   off,    ///< the plain Modified Butterfly scheme
-  sharp,  ///< soft, and sharp edges themselves follow the four-point rule along the feature
+  sharp,  ///< soft, and sharp edges themselves follow the four-point rule along their feature
 };
 
 /// How much a hinge counts, by the product of its two unit normals: 1 up to 60 degrees, 0 from 90 on, a smooth step
 /// between.
 [[nodiscard]] double hinge_factor(double normal_product);
 
-/// New vertices keep within this share of their edge's length of its midpoint.
+/// A new vertex stays within this share of its edge's length of the midpoint.
 inline constexpr double tension_bound = 0.2;
 
-/// Factor of each edge as a hinge, by the faces' normals [F]; 1 where a face has no normal, and on edges without two
-/// faces. Shape [E].
-[[nodiscard]] std::vector<float> hinge_factors(const Topology& mesh, const std::vector<Vec3f>& normals);
+/// What tension makes of one level.
+struct TensionField {
+  std::vector<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
+  bool follow_features = false;
+  /// With `follow_features`, [V]: how many sharp edges (factor under 1/2) meet there, 3 standing for more, and the
+  /// exclusive or of their other ends.
+  std::vector<uint8_t> feature_degree{};
+  std::vector<uint32_t> feature_neighbours{};
+
+  [[nodiscard]] bool is_sharp(uint32_t e) const { return factor[e] < 0.5F; }
+};
+
+/// The field of a level; `normals` [F] are its faces'. O(V + E).
+[[nodiscard]] TensionField tension_field(const Topology& mesh, const std::vector<Vec3f>& normals, Tension tension);
 
 }  // namespace papilio

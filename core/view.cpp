@@ -30,6 +30,10 @@ void check(const View& view) {
           "view.viewport", "The viewport must be two positive numbers of pixels.");
   require(view.near >= 0 && std::isfinite(view.near), "view.near", "The near plane's distance must not be negative.");
   require(view.edge_pixels >= 0, "view.edge_pixels", "The length in pixels must not be negative.");
+  require(view.error_pixels >= 0, "view.error_pixels", "The deviation in pixels must not be negative.");
+  for (Vec3d light : view.lights)
+    require(length(light) > 0 && std::isfinite(length(light)), "view.lights",
+            "Each light must be a direction, three finite numbers that are not all zero.");
 }
 
 Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
@@ -90,6 +94,10 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   const auto [ax, ay] = project(a);
   const auto [bx, by] = project(b);
   return std::hypot(bx - ax, by - ay);
+}
+
+double Camera::pixels_per_unit(Vec3d point) const {
+  return perspective_ ? pixels_per_unit_ / std::max(near_, dot(forward_, point - eye_)) : pixels_per_unit_;
 }
 
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,

@@ -44,6 +44,9 @@ class Camera {
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
+  /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
+  /// on it.
+  [[nodiscard]] double pixels_per_unit(Vec3d point) const;
 
  private:
   struct Plane {

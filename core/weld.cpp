@@ -45,7 +45,8 @@ class PositionTable {
 
 }  // namespace
 
-std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positions, BuildReport& report) {
+std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positions, BuildReport& report,
+                           std::vector<uint32_t>& corner_point) {
   const auto point_count = static_cast<uint32_t>(input.positions.size());
   std::vector<uint32_t> first(point_count);
   PositionTable table(input.positions);
@@ -64,6 +65,7 @@ std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positi
       ++report.degenerate_faces;
       continue;
     }
+    if (!input.attributes.empty()) corner_point.insert(corner_point.end(), t.begin(), t.end());
     for (uint32_t point : p) {
       if (vertex[point] == none) {
         vertex[point] = static_cast<uint32_t>(positions.size());

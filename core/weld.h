@@ -8,6 +8,8 @@ namespace papilio {
 /// them. Returns the faces' vertices [3F], without the faces that have two equal ones; fills `positions` [V]
 /// and the report's welded_points, isolated_points and degenerate_faces. Indices must be in range. O(n)
 /// expected whatever the input: the hash is seeded anew each time (the result does not depend on the seed).
-[[nodiscard]] std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positions, BuildReport& report);
+/// `corner_point` [3F] is filled with the input's point at each corner if the input has attributes.
+[[nodiscard]] std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positions, BuildReport& report,
+                                         std::vector<uint32_t>& corner_point);
 
 }  // namespace papilio

@@ -82,10 +82,14 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
       hooks.on_level(made);
     };
   }
+  const auto poll = [&] {
+    if (hooks.cancelled && hooks.cancelled()) throw Problem(Code::cancelled, "The client went away.");
+  };
   const Result result = refine(std::move(coarse_), options_, core_hooks);
-  if (hooks.cancelled && hooks.cancelled()) throw Problem(Code::cancelled, "The client went away.");
+  poll();
   made.statistics.stop_reason = result.stop_reason;
   encode(result.mesh, result.levels);
+  poll();  // Draco's encoder cannot be stopped; who left meanwhile is not given an answer
   if (hooks.on_level) hooks.on_level(made);
   return made;
 }

@@ -5,19 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "core/triangle_distance.h"
 #include "core/triangle_mesh.h"
 #include "core/vec3.h"
 
 namespace papilio::client {
-
-struct TriangleCorners {
-  Vec3d a, b, c;
-};
-
-/// The distance squared from a point to the nearest point of a triangle, its border included. A degenerate
-/// triangle is the segment or the point that it covers. Christer Ericson, Real-Time Collision Detection
-/// (2005), 5.1.
-[[nodiscard]] double squared_distance(Vec3d point, const TriangleCorners& triangle);
 
 /// Of length one; nothing for a degenerate triangle.
 [[nodiscard]] std::optional<Vec3d> unit_normal(const TriangleCorners& triangle);

@@ -53,9 +53,7 @@ void expect_equal_to_openmesh(const TriangleMesh& mesh, int most_levels) {
   const Mesh coarse = build_mesh(mesh);
   const double diagonal = bounding_box(coarse.positions).diagonal();
   for (int level = 1; level <= most_levels; ++level) {
-    Options options;
-    options.levels = level;
-    const Result ours = refine(coarse, options);
+    const Result ours = refine(coarse, {.levels = level, .tension = Tension::off});
     const OracleResult theirs = openmesh_butterfly(mesh, static_cast<size_t>(level));
     ASSERT_EQ(ours.mesh.topology.face_count(), theirs.faces);
     ASSERT_EQ(ours.mesh.positions.size(), theirs.positions.size());
@@ -106,22 +104,41 @@ TEST(Refine, AdaptiveBunnySavesFacesAndAViewSavesMore) {
   EXPECT_GT(dependent, 600U);
 }
 
+View random_view(std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  View view;
+  view.eye = {between(-5, 25), 1, 7};
+  view.edge_pixels = between(0, 100);
+  view.projection = static_cast<Projection>(random() % 2);
+  if (random() % 3 == 0) view.error_pixels = between(0.1, 20);
+  if (random() % 3 == 0) view.lights = {{1, 1, 1}, {-1, 0, 2}};
+  return view;
+}
+
+Options random_options(std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Options options;
+  options.levels = static_cast<int>(random() % 4);
+  options.scheme = static_cast<Scheme>(random() % 2);
+  options.tension = static_cast<Tension>(random() % 3);
+  for (uint32_t n = random() % 4; n > 0; --n) options.flatness.push_back(between(-1, 1));
+  options.growth = static_cast<Growth>(random() % 3);
+  if (random() % 3 == 0) options.crease_angle = between(0, 180);
+  if (random() % 3 == 0) options.tolerance = std::pow(10, between(-4, -1));
+  if (random() % 4 == 0) options.max_faces = 500 + random() % 2000;
+  if (random() % 2 == 0) options.view = random_view(random);
+  return options;
+}
+
 TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
   for (uint32_t seed = 0; seed < 400; ++seed) {
     std::mt19937 random(seed);
     const Mesh coarse = build_mesh(random_manifold(random));
-    Options options;
-    options.levels = static_cast<int>(random() % 4);
-    for (uint32_t n = random() % 4; n > 0; --n)
-      options.flatness.push_back(std::uniform_real_distribution<double>(-1, 1)(random));
-    options.growth = static_cast<Growth>(random() % 3);
-    if (random() % 2 == 0) {
-      View view;
-      view.eye = {std::uniform_real_distribution<double>(-5, 25)(random), 1, 7};
-      view.edge_pixels = std::uniform_real_distribution<double>(0, 100)(random);
-      view.projection = static_cast<Projection>(random() % 2);
-      options.view = view;
-    }
+    const Options options = random_options(random);
     const EdgeCensus before = count_edges(coarse.triangles());
     int last_level = -1;
     const Hooks hooks{.on_level = [&](const Level& level) {
@@ -129,6 +146,9 @@ TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
       last_level = level.level;
       ASSERT_TRUE(is_consistent(level.mesh)) << "seed " << seed << " level " << level.level;
       ASSERT_EQ(level.mesh.topology.euler_characteristic(), coarse.topology.euler_characteristic());
+      if (options.max_faces > 0) {
+        ASSERT_LE(level.mesh.topology.face_count(), options.max_faces);
+      }
       const EdgeCensus census = count_edges(level.mesh.triangles());
       ASSERT_EQ(census.irregular, 0U);
       if (before.boundary == 0) {
@@ -155,7 +175,8 @@ TEST(Refine, NonManifoldAndMisorientedMeshesStayWithoutCracks) {
 TEST(Refine, LevelsWithoutTargetsAreLeftOutOfTheCallbacks) {
   std::vector<int> levels;
   const Result result =
-      refine(build_mesh(icosahedron()), {.levels = 3, .flatness = {-1, 1, -1}}, {.on_level = [&](const Level& level) {
+      refine(build_mesh(icosahedron()), {.levels = 3, .scheme = Scheme::in_place, .flatness = {-1, 1, -1}},
+             {.on_level = [&](const Level& level) {
                levels.push_back(level.level);
                EXPECT_EQ(level.last, level.level == 2);
              }});
@@ -227,7 +248,8 @@ TEST(Refine, StopsWhenNothingIsLeftToSplit) {
 TEST(Refine, ThresholdsAreOneALevelAndTheLastRepeats) {
   const Mesh mesh = build_mesh(icosahedron());
   const auto faces = [&](std::vector<double> flatness, int levels) {
-    return refine(mesh, {.levels = levels, .flatness = std::move(flatness)}).mesh.topology.face_count();
+    return refine(mesh, {.levels = levels, .scheme = Scheme::in_place, .flatness = std::move(flatness)})
+        .mesh.topology.face_count();
   };
   EXPECT_EQ(faces({-1, 1}, 1), 20U);
   EXPECT_EQ(faces({-1, 1}, 2), 80U);  // nothing to do at level 1 does not end it: level 2 is finer

@@ -21,7 +21,7 @@ Mesh split_at_midpoints(Mesh mesh, const EdgeMarks& marks) {
     const uint32_t h = mesh.topology.half_edge[e];
     mesh.positions.push_back(0.5F * (mesh.positions[mesh.topology.origin[h]] + mesh.positions[mesh.topology.tip(h)]));
   }
-  mesh.topology = split(mesh.topology, plan, mesh.positions);
+  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
   return mesh;
 }
 

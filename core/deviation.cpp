@@ -1,0 +1,55 @@
+#include "deviation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lighting.h"
+#include "triangle_distance.h"
+
+namespace papilio {
+namespace {
+
+TriangleCorners corners(const Mesh& mesh, uint32_t h) {
+  const auto at = [&](uint32_t v) { return to_double(mesh.positions[v]); };
+  return {at(mesh.topology.origin[h]), at(mesh.topology.tip(h)), at(mesh.topology.apex(h))};
+}
+
+Vec3d midpoint(const Mesh& mesh, uint32_t edge) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return 0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
+}
+
+}  // namespace
+
+double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  const TriangleCorners face = corners(mesh, h);
+  if (mesh.topology.kind[edge] != EdgeKind::smooth)
+    return std::sqrt(squared_distance_to_segment(to_double(q), face.a, face.b));
+  const TriangleCorners other = corners(mesh, mesh.topology.twin[h]);
+  return std::sqrt(std::min(squared_distance(to_double(q), face), squared_distance(to_double(q), other)));
+}
+
+ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, const Camera* camera)
+    : diagonal_(diagonal), tolerated_(tolerance * diagonal), view_(view), camera_(camera) {
+  if (view != nullptr) tolerated_pixels_ = view->error_pixels;
+  if (tolerated_ > 0 && tolerated_pixels_ > 0)
+    threshold_ = 1;
+  else
+    threshold_ = static_cast<float>(tolerated_ > 0 ? tolerance : tolerated_pixels_);
+}
+
+double ErrorMeasure::pixels(const Mesh& mesh, uint32_t edge, double distance) const {
+  return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));
+}
+
+float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const {
+  if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
+    return static_cast<float>(diagonal_ > 0 ? distance / diagonal_ : 0);
+  double seen = pixels(mesh, edge, distance);
+  if (!view_->lights.empty()) seen *= light_weight(mesh, normals, edge, *view_, *camera_);
+  if (tolerated_ == 0) return static_cast<float>(seen);
+  return static_cast<float>(std::min(distance / tolerated_, seen / tolerated_pixels_));
+}
+
+}  // namespace papilio

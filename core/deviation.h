@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mesh.h"
+#include "split_plan.h"
+#include "view.h"
+
+// How far the surface would move where an edge is split: what geometric tolerance and budgets go by.
+
+namespace papilio {
+
+/// Distance from the edge's new vertex q to the surface as it is there: to the nearer of the edge's faces; on a curve
+/// (boundary, shared, crease) to the edge itself. A vertex that slides inside a flat face does not move the surface.
+/// In the mesh's unit.
+[[nodiscard]] double deviation(const Mesh& mesh, uint32_t edge, Vec3f q);
+
+/// Turns deviations into the one number by which edges are compared, with the threshold that makes one a target.
+class ErrorMeasure {
+ public:
+  /// `tolerance` as a share of `diagonal`, `view` and its `camera` (null: none) with its error_pixels and lights. Where
+  /// both are given, the number is the lesser of the two shares that the deviation is of what is tolerated; where
+  /// neither is, pixels with a view, else the share of the diagonal.
+  ErrorMeasure(double tolerance, double diagonal, const View* view, const Camera* camera);
+
+  [[nodiscard]] float threshold() const { return threshold_; }
+  /// The number, for a deviation at the edge. `normals` [F].
+  [[nodiscard]] float error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const;
+  /// The deviation in pixels of the view; 0 without one.
+  [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const;
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+
+ private:
+  double diagonal_;
+  double tolerated_ = 0;         ///< distance; 0: not asked
+  double tolerated_pixels_ = 0;  ///< 0: not asked
+  const View* view_;
+  const Camera* camera_;
+  float threshold_ = 0;
+};
+
+}  // namespace papilio

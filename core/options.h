@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "flatness.h"
+#include "tension.h"
+#include "view.h"
+
+namespace papilio {
+
+/// What a level works on.
+enum class Scheme {
+  /// The hierarchy of the uniform subdivision, built only where it is wanted; transition triangles close the mesh in
+  /// the result and are never refined. Every vertex is bit for bit that of the uniform result. Ours, the default.
+  red_green,
+  /// The mesh that the level before left, transition triangles included: the paper's. Angles halve along the border of
+  /// what is refined, and vertices depend on the refinement's history.
+  in_place,
+};
+
+/// What to do. The defaults refine uniformly, two levels.
+struct Options {
+  int levels = 2;  ///< 0..10; a uniform level multiplies the faces by four
+  Scheme scheme = Scheme::red_green;
+  /// Edges at which the unit normals' product is below the threshold are targets. One threshold a level,
+  /// -1..1, the last repeats; empty: all edges. Higher is finer.
+  std::vector<double> flatness{};
+  Growth growth = Growth::faces;    ///< how far targets spread, after flatness; more is smoother and larger
+  std::optional<View> view{};       ///< when set, only what this view shows is refined
+  Tension tension = Tension::soft;  ///< what keeps the surface from overshooting at sharp edges
+  double w = 0;                     ///< -1/16..1/8, the ten-point rule's free parameter; 0 is the eight-point rule
+  double crease_angle = 180;        ///< degrees, 0..180: edges whose faces' normals differ by more are kept sharp
+  /// Edges are split only where the surface would move by at least this share (0..1) of the coarse mesh's bounding
+  /// box's diagonal; 0: wherever the other criteria say. See `deviation.h`.
+  double tolerance = 0;
+  /// The result never has more faces; the edges with the largest error are split first. 0: as many as it takes.
+  uint64_t max_faces = 0;
+  bool simplify_hidden = false;      ///< simplifies what the view does not show, in the result; needs a view
+  uint64_t face_limit = 16'000'000;  ///< a level that would have more faces is refused before it is made
+  /// A level whose arrays would take more bytes than this is refused before it is made; 0: no limit.
+  uint64_t memory_limit = 0;
+};
+
+/// Throws `Error` bad_option, naming the field, when an option is outside its range.
+void check_options(const Options& options);
+
+}  // namespace papilio

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "deviation.h"
+#include "options.h"
+
+// Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
+
+namespace papilio {
+
+/// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
+/// in `tried` would have.
+struct Trial {
+  std::vector<Vec3f> normals;  ///< [F]
+  SplitPlan tried;             ///< the edges whose new vertices were computed
+  std::vector<Vec3f> made;     ///< [tried.count()]
+
+  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
+};
+
+/// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
+[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
+
+class Selection {
+ public:
+  /// `diagonal` of the coarse mesh's box. The options must outlive this.
+  Selection(const Options& options, double diagonal);
+  Selection(const Selection&) = delete;
+  Selection& operator=(const Selection&) = delete;
+
+  /// No criterion: every edge is split.
+  [[nodiscard]] bool is_uniform() const;
+  /// Errors decide, not only yes and no: there is a tolerance or a budget.
+  [[nodiscard]] bool is_by_error() const;
+  /// What an edge's error must reach for it to be split.
+  [[nodiscard]] float threshold() const { return measure_.threshold(); }
+  [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
+
+  /// The edges that flatness (with growth) and the view want split, of those that are marked already: the paper's
+  /// method, in its order. `level` is the one to be made, from 1. Marks [E].
+  void narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int level, EdgeMarks& marks) const;
+  /// Unmarks what the view does not show or shows too small; all stays without one.
+  void cull(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
+
+  /// The error of each marked edge, which must have been tried; minus infinity elsewhere. [E]
+  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks) const;
+
+  /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
+  [[nodiscard]] bool later_level_is_finer(int level) const;
+
+ private:
+  friend class ErrorLeft;
+  [[nodiscard]] double flatness_of(int level) const;
+
+  const Options& options_;
+  std::optional<Camera> camera_;
+  ErrorMeasure measure_;
+};
+
+/// Collects the largest deviation left, for the result.
+class ErrorLeft {
+ public:
+  explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
+  /// An edge that stays, whose new vertex would be q, or, with share 1/4, one of the last level that was split.
+  void add(const Mesh& mesh, uint32_t edge, Vec3f q, double share = 1);
+  [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
+  [[nodiscard]] double pixels() const { return pixels_; }
+
+ private:
+  const ErrorMeasure& measure_;
+  double distance_ = 0;
+  double pixels_ = 0;
+};
+
+/// What is left of a deviation where a smooth surface is split once more.
+inline constexpr double split_leaves = 0.25;
+
+/// The least threshold, not below `least`, at which no more than `budget` faces come to the `faces` that are there
+/// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing
+/// fits. O(E log E).
+struct WeighedEdge {
+  float error;
+  uint32_t faces;
+};
+[[nodiscard]] float threshold_within(std::vector<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget);
+
+}  // namespace papilio

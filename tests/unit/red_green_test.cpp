@@ -1,0 +1,74 @@
+#include "core/red_green.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/refine.h"
+#include "tests/support/invariants.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/shapes.h"
+#include "tests/support/uniform_hierarchy.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+View view_of(const Mesh& mesh, Vec3d direction) {
+  const Box box = bounding_box(mesh.positions);
+  View view;
+  view.target = 0.5 * (to_double(box.min) + to_double(box.max));
+  view.eye = view.target + (0.8 * box.diagonal()) * direction;
+  view.edge_pixels = 4;
+  return view;
+}
+
+void expect_part_of(const UniformHierarchy& uniform, const Mesh& coarse, const Options& options) {
+  const auto check = [&](const Level& level) {
+    ASSERT_TRUE(uniform.contains(level.mesh)) << "level " << level.level;
+    ASSERT_TRUE(is_consistent(level.mesh)) << "level " << level.level;
+    ASSERT_EQ(level.mesh.topology.euler_characteristic(), coarse.topology.euler_characteristic());
+    ASSERT_TRUE(std::equal(coarse.positions.begin(), coarse.positions.end(), level.mesh.positions.begin()));
+  };
+  const Result result = refine(coarse, options, {.on_level = check});
+  EXPECT_GT(result.mesh.topology.face_count(), coarse.topology.face_count());
+  EXPECT_LT(result.mesh.topology.face_count(), uniform.finest().topology.face_count());
+  EXPECT_GE(smallest_angle(result.mesh), smallest_angle(uniform.finest()) / 3);
+  EXPECT_EQ(refine(coarse, options).mesh.triangles(), result.mesh.triangles()) << "levels seen or not";
+}
+
+class RedGreenOnRealMeshes : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
+  const Mesh coarse = build_mesh(real_mesh(GetParam()));
+  for (Tension tension : {Tension::off, Tension::soft, Tension::sharp}) {
+    Options options{.levels = 3, .tension = tension};
+    const UniformHierarchy uniform(coarse, options);
+    for (Vec3d direction : {Vec3d{}, Vec3d{0, 0, 1}, Vec3d{1, 0.2, 0}}) {
+      if (direction != Vec3d{}) options.view = view_of(coarse, direction);
+      SCOPED_TRACE("tension " + std::to_string(static_cast<int>(tension)) + ", view " + std::to_string(direction.x));
+      options.tolerance = 0;
+      options.flatness = {0.8, 0.9, 0.95};
+      expect_part_of(uniform, coarse, options);
+      options.flatness = {};
+      options.tolerance = 2e-3;
+      expect_part_of(uniform, coarse, options);
+    }
+  }
+}
+
+std::string test_name(const ::testing::TestParamInfo<const char*>& info) {
+  std::string name = info.param;
+  std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(RedGreen, RedGreenOnRealMeshes,
+                         ::testing::Values("bunny600.obj", "elephant2000.obj", "cgal/rotor_small.off",
+                                           "cgal/helmet.off", "cgal/pig.off", "cgal/eight.off", "cgal/nefertiti.off"),
+                         test_name);
+
+}  // namespace
+}  // namespace papilio
