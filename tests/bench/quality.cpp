@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -59,7 +60,16 @@ struct Comparison {
   Measured paper, flatness, tolerance, quadric;
 };
 
-/// A mesh as coarse and as fine as it gets, and the plain Modified Butterfly scheme throughout.
+bool is_far_off(size_t faces, size_t wanted) {
+  return std::abs(static_cast<double>(faces) / static_cast<double>(wanted) - 1) > count_tolerance;
+}
+
+/// With more faces than the others a method wins for that alone: no ratio then. With fewer it does not.
+bool is_fair(const Comparison& c) {
+  return c.tolerance.faces <= c.paper.faces || !is_far_off(c.tolerance.faces, c.paper.faces);
+}
+
+/// A case with its uniform result. The plain Modified Butterfly scheme throughout.
 class Subject {
  public:
   explicit Subject(const Case& the_case) : case_(the_case), coarse_(build_mesh(the_case.coarse)) {
@@ -103,8 +113,12 @@ class Subject {
 /// The largest ratios met.
 struct Worst {
   SurfaceError to_paper, to_quadric;
+  int fair = 0, all = 0;
 
   void include(const Comparison& c) {
+    ++all;
+    if (!is_fair(c)) return;
+    ++fair;
     raise(to_paper, c.tolerance.error, c.paper.error);
     raise(to_quadric, c.tolerance.error, c.quadric.error);
   }
@@ -118,11 +132,13 @@ struct Worst {
 
 /// "RMS / largest", preceded by the number of faces where it is not the wanted one, and by a star where it is far off.
 std::string text_of(const Measured& method, size_t faces) {
-  const double wanted = static_cast<double>(faces);
   std::string text = fixed(method.error.rms, 4) + " / " + fixed(method.error.largest, 3);
   if (method.faces != faces) text = std::to_string(method.faces) + ": " + text;
-  const bool is_off = std::abs(static_cast<double>(method.faces) - wanted) > count_tolerance * wanted;
-  return is_off ? "*" + text : text;
+  return is_far_off(method.faces, faces) ? "*" + text : text;
+}
+
+std::string ratio_text(const Comparison& c, const Measured& other) {
+  return is_fair(c) ? fixed(c.tolerance.error.rms / other.error.rms, 2) : "-";
 }
 
 /// The table and the rows of --json.
@@ -133,13 +149,13 @@ class Quality {
     const double share = 100 * static_cast<double>(faces) / static_cast<double>(uniform_faces);
     table_.add({name, std::to_string(faces), fixed(share, 1) + " %", text_of(c.paper, faces),
                 text_of(c.flatness, faces), text_of(c.tolerance, faces), text_of(c.quadric, faces),
-                fixed(c.tolerance.error.rms / c.paper.error.rms, 2),
-                fixed(c.tolerance.error.rms / c.quadric.error.rms, 2)});
+                ratio_text(c, c.paper), ratio_text(c, c.quadric)});
     worst_.include(c);
     const std::string prefix = "quality/" + name + ", " + std::to_string(faces) + "/";
+    add_rows(prefix + "flatness, peer: the paper", c.flatness, c.paper);
+    if (!is_fair(c)) return;
     add_rows(prefix + "tolerance, peer: the paper", c.tolerance, c.paper);
     add_rows(prefix + "tolerance, peer: quadric", c.tolerance, c.quadric);
-    add_rows(prefix + "flatness, peer: the paper", c.flatness, c.paper);
   }
 
   void print() const {
@@ -151,10 +167,10 @@ class Quality {
         "other.\n\n",
         100 * count_tolerance);
     table_.print();
-    std::printf(
-        "\nWorst ratios of red-green by tolerance, RMS (largest): to the paper's %.2f (%.2f), to quadric %.2f "
-        "(%.2f).\n",
-        worst_.to_paper.rms, worst_.to_paper.largest, worst_.to_quadric.rms, worst_.to_quadric.largest);
+    std::printf("\nRed-green by tolerance met %d of %d sizes.\n", worst_.fair, worst_.all);
+    if (worst_.fair == 0) return;
+    std::printf("Its worst ratios, RMS (largest): %.2f (%.2f) to the paper, %.2f (%.2f) to quadric.\n",
+                worst_.to_paper.rms, worst_.to_paper.largest, worst_.to_quadric.rms, worst_.to_quadric.largest);
   }
 
   [[nodiscard]] const std::vector<ReportRow>& rows() const { return rows_; }
