@@ -160,12 +160,11 @@ class Quality {
 
   void print() const {
     std::printf(
-        "RMS / largest distance from the uniform result's vertices, %% of the diagonal. Where a method's number of "
-        "faces "
-        "differs, it\nstands in front; * where by more than %.0f %%. Ratios: RMS of red-green by tolerance over that "
-        "of the "
-        "other.\n\n",
+        "RMS / largest distance from the uniform result's vertices, %% of the diagonal. Where a method's number of\n");
+    std::printf(
+        "faces differs, it stands in front; * where by more than %.0f %%. Ratios: RMS of red-green by tolerance\n",
         100 * count_tolerance);
+    std::printf("over that of the other.\n\n");
     table_.print();
     std::printf("\nRed-green by tolerance met %d of %d sizes.\n", worst_.fair, worst_.all);
     if (worst_.fair == 0) return;
