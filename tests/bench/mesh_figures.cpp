@@ -11,7 +11,7 @@
 namespace papilio::bench {
 namespace {
 
-client::TriangleCorners corners_of(const TriangleMesh& mesh, const Triangle& t) {
+TriangleCorners corners_of(const TriangleMesh& mesh, const Triangle& t) {
   return {to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])};
 }
 
@@ -25,7 +25,7 @@ double angle_at(Vec3d apex, Vec3d a, Vec3d b) {
 }  // namespace
 
 SurfaceError surface_error(const TriangleMesh& uniform, const TriangleMesh& result) {
-  std::vector<client::TriangleCorners> triangles;
+  std::vector<TriangleCorners> triangles;
   triangles.reserve(result.triangles.size());
   for (const Triangle& t : result.triangles) triangles.push_back(corners_of(result, t));
   const client::SurfaceDistance surface(triangles);
