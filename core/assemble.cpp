@@ -260,6 +260,16 @@ std::vector<bool> find_divided(const HierarchyLevel& level, const SplitPlan& spl
   return divided;
 }
 
+/// The two edges of the level below that half-edge h is split into; `none` where they are not held.
+std::pair<uint32_t, uint32_t> halves(std::span<const HierarchyLevel> levels, size_t k, uint32_t h) {
+  const uint32_t f = Topology::face(h);
+  if (k + 1 == levels.size() || levels[k].child[f] == none) return {none, none};
+  const auto half = [&](uint32_t i) {
+    return levels[k + 1].mesh.topology.edge[3 * levels[k].child[f] + split_pattern(7, false).outer[2 * (h % 3) + i]];
+  };
+  return {half(0), half(1)};
+}
+
 }  // namespace
 
 uint64_t count_assembled(std::span<const HierarchyLevel> levels, float threshold) {
@@ -274,18 +284,34 @@ Mesh assemble(std::span<const HierarchyLevel> levels, float threshold) { return 
 
 ErrorLeft error_left(std::span<const HierarchyLevel> levels, float threshold, const Selection& selection) {
   ErrorLeft left(selection);
-  std::vector<bool> above;
+  std::vector<EdgeMarks> judged;
+  std::vector<EdgeMarks> seen;
   for (const HierarchyLevel& level : levels) {
+    judged.push_back(edges_of_candidates(level));
+    seen.push_back(judged.back());
+    selection.cull(level.mesh, level.trial.normals, seen.back());
+  }
+  std::vector<bool> above;
+  for (size_t k = 0; k < levels.size(); ++k) {
+    const HierarchyLevel& level = levels[k];
     const Topology& mesh = level.mesh.topology;
     const SplitPlan split = split_at(level, threshold);
     const std::vector<bool> divided = find_divided(level, split, above);
-    EdgeMarks seen = edges_of_candidates(level);
-    selection.cull(level.mesh, level.trial.normals, seen);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
       const uint32_t f = Topology::face(h);
       const uint32_t e = mesh.edge[h];
-      if (seen[e] == 0 || divided[f] || !(level.parent.empty() || above[level.parent[f / 4]])) continue;
-      left.add(level.mesh, e, level.trial.at(e), split.is_split(e) ? split_leaves : 1);
+      if (seen[k][e] == 0 || divided[f] || !(level.parent.empty() || above[level.parent[f / 4]])) continue;
+      if (!split.is_split(e)) {
+        left.add(level.mesh, e, level.trial.at(e));
+        continue;
+      }
+      // Its halves may have been judged, though nothing below was wanted.
+      const auto [first, second] = halves(levels, k, h);
+      if (first == none || judged[k + 1][first] == 0 || judged[k + 1][second] == 0)
+        left.add(level.mesh, e, level.trial.at(e), split_leaves);
+      else
+        for (uint32_t half : {first, second})
+          if (seen[k + 1][half] != 0) left.add(levels[k + 1].mesh, half, levels[k + 1].trial.at(half));
     }
     above = divided;
   }
