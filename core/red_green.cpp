@@ -33,7 +33,7 @@ class RedGreen {
       if (options_.levels == 0) break;  // tried for the sake of the error that is reported
       const bool changes = choose();
       if (changes) {
-        progress_.report(result.levels, latest, false);
+        progress_.report(result.levels, latest);
         progress_.require_room(count_assembled(levels_, threshold_), level);
         result.levels = level;
         if (progress_.wants_levels()) latest = assemble(levels_, threshold_);
@@ -53,7 +53,7 @@ class RedGreen {
     level.trial = try_split(level.mesh, options_, is_last ? wanted : complete_edges(level));
     selection_.narrow(level.mesh, level.trial.normals, static_cast<int>(levels_.size()), wanted);
     if (selection_.is_by_error()) {
-      level.error = selection_.errors(level.mesh, level.trial, wanted);
+      level.error = selection_.errors(level.mesh, level.trial, wanted, look_ahead * threshold_);
     } else {
       level.error.assign(wanted.size(), never);
       for (size_t e = 0; e < wanted.size(); ++e)
@@ -146,7 +146,6 @@ class RedGreen {
     if (!progress_.wants_levels())
       latest = result.levels == 0 ? std::move(levels_[0].mesh) : assemble(levels_, threshold_);
     result.mesh = std::move(latest);
-    progress_.report(result.levels, result.mesh, true);
   }
 
   static constexpr float infinite = std::numeric_limits<float>::infinity();

@@ -62,6 +62,10 @@ class Camera {
   std::array<Plane, 5> planes_;
 };
 
+/// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
+/// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
+[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera);
+
 /// Unmarks the edges that the view does not need, the paper's section 3.2: those all of whose faces have all
 /// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are
 /// turned away (so edges on the silhouette stay; a face without normal is never away), those that look
