@@ -9,6 +9,7 @@
 
 #include "core/refine.h"
 #include "tests/support/invariants.h"
+#include "tests/support/models.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 #include "tests/support/uniform_hierarchy.h"
@@ -81,6 +82,19 @@ TEST_P(RedGreenOnRealMeshes, TwoViewsAgreeWhereBothAreFine) {
   EXPECT_EQ(count_common(side, all), side.positions.size());
   EXPECT_GT(count_common(front, side), coarse.positions.size());
   EXPECT_LT(count_common(front, side), front.positions.size());
+}
+
+TEST(RedGreen, AnglesStayLarge) {
+  const std::vector<TriangleMesh> meshes{mug(), wheel(), real_mesh("cgal/pig.off"), real_mesh("cgal/fandisk.off"),
+                                         real_mesh("cgal/knot.off")};
+  for (const TriangleMesh& triangles : meshes) {
+    const Mesh coarse = build_mesh(triangles);
+    for (Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
+      const Options options{.levels = 2, .flatness = {0.6, 0.8}, .growth = growth, .tension = Tension::off};
+      const Mesh uniform = refine(coarse, {.levels = 2, .tension = Tension::off}).mesh;
+      EXPECT_GE(smallest_angle(refine(coarse, options).mesh), smallest_angle(uniform) / 3);
+    }
+  }
 }
 
 TEST(RedGreen, ThreadsGiveTheSameBits) {
