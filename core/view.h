@@ -42,6 +42,8 @@ class Camera {
   /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
   /// perspective.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const;
+  /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
+  [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
