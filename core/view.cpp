@@ -72,10 +72,13 @@ bool Camera::is_outside(Vec3d centre, double radius) const {
   return std::ranges::any_of(planes_, [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
 }
 
-bool Camera::is_away(Vec3d point, Vec3d normal) const {
-  if (!perspective_) return dot(forward_, normal) > away_epsilon;
+bool Camera::is_away(Vec3d point, Vec3d normal) const { return facing(point, normal) < -away_epsilon; }
+
+double Camera::facing(Vec3d point, Vec3d normal) const {
+  if (!perspective_) return -dot(forward_, normal);
   const Vec3d sight = point - eye_;
-  return dot(sight, normal) > away_epsilon * length(sight);
+  const double distance = length(sight);
+  return distance > 0 ? -dot(sight, normal) / distance : 0;
 }
 
 std::array<double, 2> Camera::project(Vec3d relative) const {

@@ -23,7 +23,7 @@ struct View {
   /// its distance, whichever way it goes; 0 turns the criterion off.
   double error_pixels = 0;
   /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
-  /// over the edge (lighting.h).
+  /// over the edge and by whether it is on the silhouette (lighting.h).
   std::vector<Vec3d> lights{};
   /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
   Projection projection = Projection::perspective;
@@ -42,6 +42,8 @@ class Camera {
   /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
   /// perspective.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const;
+  /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
+  [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
