@@ -19,8 +19,8 @@ namespace papilio {
 /// has normals that are off by about d / l over an area of about l^2 * facing: an error of d times the shading's
 /// `slope`, how fast it changes as the normal turns; its `change` from face to face says how strongly the surface is
 /// bent there. An outline that is off by d is wrong by its whole `contrast` over an area of l * d, or, where d is less
-/// than a pixel, by d * contrast over l pixels. The factors are those that measured best: 0.8 dB more on average than
-/// without lights, over 13 meshes.
+/// than a pixel, by d * contrast over l pixels. The factors are those that measured best
+/// on six meshes; on seven others, too, pictures are better by 0.8 dB on average than without lights.
 ///
 /// `normals` [F]. Always positive and finite; how long the lights' vectors are does not matter.
 [[nodiscard]] double light_weight(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance,

@@ -23,7 +23,7 @@ struct View {
   /// its distance, whichever way it goes; 0 turns the criterion off.
   double error_pixels = 0;
   /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
-  /// over the edge (lighting.h).
+  /// over the edge and by whether it is on the silhouette (lighting.h).
   std::vector<Vec3d> lights{};
   /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
   Projection projection = Projection::perspective;

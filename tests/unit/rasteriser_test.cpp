@@ -66,7 +66,7 @@ TEST(Rasteriser, PlaneHasTheCosineOfTheLightForItsShadeAndTheBackgroundIsBlack) 
 TEST(Rasteriser, SquareCoversTheAreaOfItsProjection) {
   View view = front_view();
   const double pixels = 80 / (2 * std::tan(std::numbers::pi / 8));  // at distance 1
-  const double tolerance = 1.4 * pixels / 8;  // half a sample all round, for either square
+  const double tolerance = 1.4 * pixels / 8;                        // half a sample all round, for either square
   EXPECT_NEAR(sum_of(render(square(0.7F, 0), view, 8)), std::pow(1.4 * pixels / 3, 2), tolerance);
   EXPECT_NEAR(sum_of(render(square(0.7F, 1), view, 8)), std::pow(1.4 * pixels / 2, 2), tolerance);
   view.projection = Projection::orthographic;
@@ -98,7 +98,7 @@ TEST(Rasteriser, SphereInPerspectiveShowsTheDiscOfItsTangentCone) {
   View view = front_view();
   view.lights = {{0, 0, 1}, {1, 0, .1}, {-1, 0, .1}, {0, 1, .1}, {0, -1, .1}};  // white nearly everywhere
   const Image image = render(sphere(), view, 4);
-  const double covered = static_cast<double>(std::ranges::count_if(image.grey, [](float g) { return g > 0.5; }));
+  const auto covered = static_cast<double>(std::ranges::count_if(image.grey, [](float g) { return g > 0.5; }));
   const double radius = 80 / (2 * std::tan(std::numbers::pi / 8)) / std::sqrt(8.0);
   EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 0.01 * covered);
 }
