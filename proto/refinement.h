@@ -62,6 +62,7 @@ class Refinement {
   OutputOptions output_;
   Mesh coarse_;
   QuantizationBox box_;
+  AttributeEncoding attributes_;
   StageTimes times_;
 };
 
