@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "attributes.h"
-#include "split.h"
-#include "split_pattern.h"
+#include "transition.h"
 
 namespace papilio {
 namespace {
@@ -86,12 +85,7 @@ class Assembler {
         fate.face[f] = Fate::divided;
         continue;
       }
-      const auto corner = [&](uint32_t i) {
-        const uint32_t v = mesh.origin[3 * f + i];
-        return CornerPoint{v, level.mesh.positions[v]};
-      };
-      const auto middle = [&](uint32_t i) { return level.trial.at(mesh.edge[3 * f + i]); };
-      fate.face[f] = static_cast<uint8_t>(2 * mask + (prefers_second_diagonal(mask, corner, middle) ? 1 : 0));
+      fate.face[f] = choose_transition(level, f, mask);
     }
     fates_.push_back(std::move(fate));
   }
@@ -104,8 +98,6 @@ class Assembler {
     return above.split.is_split(e) ? above.first_new_vertex + above.split.before[e] : none;
   }
 
-  static const SplitPattern& pattern(uint8_t number) { return split_pattern(number / 2, number % 2 != 0); }
-
   /// Bottom up how many faces each gives, then top down where they lie.
   void place() {
     for (size_t k = levels_.size(); k-- > 0;) {
@@ -114,7 +106,7 @@ class Assembler {
         if (!fate.is_shown(f)) continue;
         fate.first[f] = 0;
         if (!fate.is_divided(f))
-          fate.first[f] = pattern(fate.face[f]).children;
+          fate.first[f] = transition_pattern(fate.face[f]).children;
         else
           for (uint32_t c = 0; c < 4; ++c) fate.first[f] += fates_[k + 1].first[levels_[k].child[f] + c];
       }
@@ -142,7 +134,7 @@ class Assembler {
   void make_faces(size_t k, uint32_t f) {
     const Topology& mesh = levels_[k].mesh.topology;
     const Fate& fate = fates_[k];
-    const SplitPattern& cut = pattern(fate.face[f]);
+    const SplitPattern& cut = transition_pattern(fate.face[f]);
     const uint32_t base = 3 * fate.first[f];
     for (uint32_t c = 0; c < 3U * cut.children; ++c) {
       const uint8_t corner = cut.corner[c / 3][c % 3];
@@ -193,7 +185,7 @@ class Assembler {
       ++k;
     }
     const uint32_t f = Topology::face(h);
-    return 3 * fates_[k].first[f] + pattern(fates_[k].face[f]).outer[2 * (h % 3) + half];
+    return 3 * fates_[k].first[f] + transition_pattern(fates_[k].face[f]).outer[2 * (h % 3) + half];
   }
 
   void number_edges() {
@@ -234,7 +226,7 @@ class Assembler {
       for (uint32_t f = 0; f < mesh.face_count(); ++f) {
         if (!fate.is_shown(f)) continue;
         const bool divided = fate.is_divided(f);
-        const SplitPattern& cut = divided ? split_pattern(7, false) : pattern(fate.face[f]);
+        const SplitPattern& cut = divided ? split_pattern(7, false) : transition_pattern(fate.face[f]);
         uint32_t* out =
             divided ? &out_.attributes.point[3 * size_t{levels_[k].child[f]}] : &result[3 * size_t{fate.first[f]}];
         for (uint32_t c = 0; c < 3U * cut.children; ++c) out[c] = point(f, cut.corner[c / 3][c % 3]);
@@ -260,6 +252,16 @@ std::vector<bool> find_divided(const HierarchyLevel& level, const SplitPlan& spl
   return divided;
 }
 
+/// The two edges of the level below that half-edge h is split into; `none` where they are not held.
+std::pair<uint32_t, uint32_t> halves(std::span<const HierarchyLevel> levels, size_t k, uint32_t h) {
+  const uint32_t f = Topology::face(h);
+  if (k + 1 == levels.size() || levels[k].child[f] == none) return {none, none};
+  const auto half = [&](uint32_t i) {
+    return levels[k + 1].mesh.topology.edge[3 * levels[k].child[f] + split_pattern(7, false).outer[2 * (h % 3) + i]];
+  };
+  return {half(0), half(1)};
+}
+
 }  // namespace
 
 uint64_t count_assembled(std::span<const HierarchyLevel> levels, float threshold) {
@@ -274,18 +276,34 @@ Mesh assemble(std::span<const HierarchyLevel> levels, float threshold) { return 
 
 ErrorLeft error_left(std::span<const HierarchyLevel> levels, float threshold, const Selection& selection) {
   ErrorLeft left(selection);
-  std::vector<bool> above;
+  std::vector<EdgeMarks> judged;
+  std::vector<EdgeMarks> seen;
   for (const HierarchyLevel& level : levels) {
+    judged.push_back(edges_of_candidates(level));
+    seen.push_back(judged.back());
+    selection.cull(level.mesh, level.trial.normals, seen.back());
+  }
+  std::vector<bool> above;
+  for (size_t k = 0; k < levels.size(); ++k) {
+    const HierarchyLevel& level = levels[k];
     const Topology& mesh = level.mesh.topology;
     const SplitPlan split = split_at(level, threshold);
     const std::vector<bool> divided = find_divided(level, split, above);
-    EdgeMarks seen = edges_of_candidates(level);
-    selection.cull(level.mesh, level.trial.normals, seen);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
       const uint32_t f = Topology::face(h);
       const uint32_t e = mesh.edge[h];
-      if (seen[e] == 0 || divided[f] || !(level.parent.empty() || above[level.parent[f / 4]])) continue;
-      left.add(level.mesh, e, level.trial.at(e), split.is_split(e) ? split_leaves : 1);
+      if (seen[k][e] == 0 || divided[f] || !(level.parent.empty() || above[level.parent[f / 4]])) continue;
+      if (!split.is_split(e)) {
+        left.add(level.mesh, e, level.trial.at(e));
+        continue;
+      }
+      // Its halves may have been judged, though nothing below was wanted.
+      const auto [first, second] = halves(levels, k, h);
+      if (first == none || judged[k + 1][first] == 0 || judged[k + 1][second] == 0)
+        left.add(level.mesh, e, level.trial.at(e), split_leaves);
+      else
+        for (uint32_t half : {first, second})
+          if (seen[k + 1][half] != 0) left.add(levels[k + 1].mesh, half, levels[k + 1].trial.at(half));
     }
     above = divided;
   }

@@ -47,7 +47,7 @@ float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, u
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return static_cast<float>(diagonal_ > 0 ? distance / diagonal_ : 0);
   double seen = pixels(mesh, edge, distance);
-  if (!view_->lights.empty()) seen *= light_weight(mesh, normals, edge, *view_, *camera_);
+  if (!view_->lights.empty()) seen *= light_weight(mesh, normals, edge, distance, *view_, *camera_);
   if (tolerated_ == 0) return static_cast<float>(seen);
   return static_cast<float>(std::min(distance / tolerated_, seen / tolerated_pixels_));
 }

@@ -17,8 +17,8 @@ class InPlace {
     while (true) {
       progress_.poll();
       const int level = find_targets();
-      progress_.report(result_.levels, mesh_, level == 0);
       if (level == 0) break;
+      progress_.report(result_.levels, mesh_);
       progress_.poll();
       split_targets(level);
     }
@@ -49,7 +49,7 @@ class InPlace {
   }
 
   void keep_largest_errors() {
-    const std::vector<float> errors = selection_.errors(mesh_, *trial_, targets_);
+    const std::vector<float> errors = selection_.errors(mesh_, *trial_, targets_, selection_.threshold());
     float threshold = selection_.threshold();
     if (options_.max_faces > 0) {
       std::vector<WeighedEdge> edges;
@@ -118,7 +118,7 @@ Result refine_uniformly(Mesh mesh, const Options& options, const Selection& sele
     progress.require_memory(faces, bytes_per_face, level);
     const EdgeMarks all(mesh.topology.edge_count(), 1);
     const Trial trial = try_split(mesh, options, all);
-    progress.report(level - 1, mesh, false);
+    progress.report(level - 1, mesh);
     progress.poll();
     if (level == options.levels) {
       ErrorLeft left(selection);
@@ -128,7 +128,6 @@ Result refine_uniformly(Mesh mesh, const Options& options, const Selection& sele
     mesh = split_mesh(std::move(mesh), trial.tried, trial.made);
     result.levels = level;
   }
-  progress.report(result.levels, mesh, true);
   result.mesh = std::move(mesh);
   return result;
 }

@@ -144,23 +144,6 @@ void connect(Topology& mesh, const EdgeRuns& runs, BuildReport& report) {
   }
 }
 
-/// A vertex is pinched when the fan of one of its corners leaves out another corner.
-std::vector<uint32_t> find_pinched(const Topology& mesh) {
-  std::vector<uint32_t> corners(mesh.vertex_count, 0);
-  std::vector<uint32_t> first(mesh.vertex_count, none);
-  for (uint32_t h = mesh.half_edge_count(); h-- > 0;) {
-    ++corners[mesh.origin[h]];
-    first[mesh.origin[h]] = h;
-  }
-  std::vector<uint32_t> pinched;
-  Fan fan;
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    collect_fan(mesh, first[v], fan);
-    if (fan.valence() != corners[v]) pinched.push_back(v);
-  }
-  return pinched;
-}
-
 }  // namespace
 
 TriangleMesh Mesh::triangles() const {
@@ -203,6 +186,32 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   mesh.attributes = gather_attributes(input, topology, corner_point);
   found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
   if (report != nullptr) *report = found;
+  return mesh;
+}
+
+std::vector<uint32_t> find_pinched(const Topology& mesh) {
+  std::vector<uint32_t> corners(mesh.vertex_count, 0);
+  std::vector<uint32_t> first(mesh.vertex_count, none);
+  for (uint32_t h = mesh.half_edge_count(); h-- > 0;) {
+    ++corners[mesh.origin[h]];
+    first[mesh.origin[h]] = h;
+  }
+  std::vector<uint32_t> pinched;  // the fan of one corner leaves out another
+  Fan fan;
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    collect_fan(mesh, first[v], fan);
+    if (fan.valence() != corners[v]) pinched.push_back(v);
+  }
+  return pinched;
+}
+
+Topology connect_faces(std::vector<uint32_t> origin, uint32_t vertex_count) {
+  Topology mesh;
+  mesh.origin = std::move(origin);
+  mesh.vertex_count = vertex_count;
+  BuildReport report;
+  connect(mesh, sort_into_edges(mesh), report);
+  mesh.pinched = find_pinched(mesh);
   return mesh;
 }
 

@@ -104,6 +104,13 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// no_faces.
 [[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr);
 
+/// Connects faces [3F corners] that already are as `build_mesh` leaves them: no repeats, no equal corners, every vertex
+/// used. Makes no creases and no darts. O(n log n) at worst.
+[[nodiscard]] Topology connect_faces(std::vector<uint32_t> origin, uint32_t vertex_count);
+
+/// Vertices with more than one fan of faces, in ascending order. Fans end at curves: no edge may be a crease.
+[[nodiscard]] std::vector<uint32_t> find_pinched(const Topology& mesh);
+
 /// An axis-parallel box. Of no points: `min` above `max`.
 struct Box {
   Vec3f min, max;

@@ -7,14 +7,18 @@
 
 namespace papilio {
 
-/// What a scheme asks and tells while it works: cancellation, limits, levels.
+/// What a scheme asks and tells while it works: cancellation, limits, levels. The last level is told by refine().
 class Progress {
  public:
   Progress(const Options& options, const Hooks& hooks) : options_(options), hooks_(hooks) {}
 
   [[nodiscard]] bool wants_levels() const { return static_cast<bool>(hooks_.on_level); }
-  void report(int level, const Mesh& mesh, bool last) const {
-    if (hooks_.on_level) hooks_.on_level({level, mesh, last});
+  /// A level that is not the last.
+  void report(int level, const Mesh& mesh) const {
+    if (hooks_.on_level) hooks_.on_level({level, mesh, false});
+  }
+  void report_last(int level, const Mesh& mesh) const {
+    if (hooks_.on_level) hooks_.on_level({level, mesh, true});
   }
   /// Throws `Error` cancelled.
   void poll() const {

@@ -5,6 +5,7 @@
 
 #include "assemble.h"
 #include "hierarchy.h"
+#include "transition.h"
 
 namespace papilio {
 namespace {
@@ -16,12 +17,16 @@ constexpr uint64_t bytes_per_face = 160;  // of a level's arrays and of what is 
 /// further down errors can be larger than they are here.
 constexpr float look_ahead = 0.5F;
 
+/// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
+constexpr double sliver_share = 0.4;
+
 class RedGreen {
  public:
   RedGreen(const Options& options, const Selection& selection, const Progress& progress)
       : options_(options), selection_(selection), progress_(progress), threshold_(selection.threshold()) {}
 
   Result run(Mesh coarse) {
+    least_angle_ = sliver_share * smallest_angle(coarse);
     levels_.push_back(coarsest_level(std::move(coarse)));
     Mesh latest;  // the last level that changed something, when the caller wants to see levels
     if (progress_.wants_levels()) latest = levels_[0].mesh;
@@ -33,7 +38,7 @@ class RedGreen {
       if (options_.levels == 0) break;  // tried for the sake of the error that is reported
       const bool changes = choose();
       if (changes) {
-        progress_.report(result.levels, latest, false);
+        progress_.report(result.levels, latest);
         progress_.require_room(count_assembled(levels_, threshold_), level);
         result.levels = level;
         if (progress_.wants_levels()) latest = assemble(levels_, threshold_);
@@ -53,7 +58,7 @@ class RedGreen {
     level.trial = try_split(level.mesh, options_, is_last ? wanted : complete_edges(level));
     selection_.narrow(level.mesh, level.trial.normals, static_cast<int>(levels_.size()), wanted);
     if (selection_.is_by_error()) {
-      level.error = selection_.errors(level.mesh, level.trial, wanted);
+      level.error = selection_.errors(level.mesh, level.trial, wanted, look_ahead * threshold_);
     } else {
       level.error.assign(wanted.size(), never);
       for (size_t e = 0; e < wanted.size(); ++e)
@@ -64,24 +69,24 @@ class RedGreen {
 
   /// Carries the new errors up and finds the threshold. True when the lowest level changes anything.
   bool choose() {
-    if (selection_.is_by_error()) carry_up();
+    for (size_t k = levels_.size(); k-- > 0;) {
+      avoid_slivers(levels_[k], edges_of_candidates(levels_[k]), least_angle_, threshold_);
+      if (k == 0 || !selection_.is_by_error()) break;
+      carry_up(levels_[k], levels_[k - 1]);
+    }
     if (options_.max_faces > 0) keep_within_budget();
     return std::ranges::any_of(levels_.back().error, [&](float e) { return e >= threshold_; });
   }
 
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
-  void carry_up() {
-    for (size_t k = levels_.size() - 1; k > 0; --k) {
-      const HierarchyLevel& below = levels_[k];
-      HierarchyLevel& above = levels_[k - 1];
-      const auto& edge = below.mesh.topology.edge;
-      for (size_t group = 0; group < below.parent.size(); ++group) {
-        float needed = never;
-        for (size_t h = 12 * group; h < 12 * group + 12; ++h) needed = std::max(needed, below.error[edge[h]]);
-        for (uint32_t i = 0; i < 3; ++i) {
-          float& error = above.error[above.mesh.topology.edge[3 * below.parent[group] + i]];
-          error = std::max(error, needed);
-        }
+  static void carry_up(const HierarchyLevel& below, HierarchyLevel& above) {
+    const auto& edge = below.mesh.topology.edge;
+    for (size_t group = 0; group < below.parent.size(); ++group) {
+      float needed = never;
+      for (size_t h = 12 * group; h < 12 * group + 12; ++h) needed = std::max(needed, below.error[edge[h]]);
+      for (uint32_t i = 0; i < 3; ++i) {
+        float& error = above.error[above.mesh.topology.edge[3 * below.parent[group] + i]];
+        error = std::max(error, needed);
       }
     }
   }
@@ -146,7 +151,6 @@ class RedGreen {
     if (!progress_.wants_levels())
       latest = result.levels == 0 ? std::move(levels_[0].mesh) : assemble(levels_, threshold_);
     result.mesh = std::move(latest);
-    progress_.report(result.levels, result.mesh, true);
   }
 
   static constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -155,6 +159,7 @@ class RedGreen {
   const Progress& progress_;
   std::vector<HierarchyLevel> levels_;
   std::vector<float> own_error_;  ///< [E] of the lowest level, before errors from below are carried up
+  double least_angle_ = 0;        ///< what transition faces keep to
   float threshold_;
   bool out_of_budget_ = false;
 };

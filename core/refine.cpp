@@ -1,6 +1,5 @@
 #include "refine.h"
 
-#include <cmath>
 #include <new>
 #include <string>
 
@@ -9,18 +8,29 @@
 #include "progress.h"
 #include "red_green.h"
 #include "selection.h"
+#include "simplify.h"
 
 namespace papilio {
 namespace {
+
+Result run_scheme(Mesh mesh, const Options& options, const Selection& selection, const Progress& progress) {
+  if (selection.is_uniform() && options.levels > 0)
+    return refine_uniformly(std::move(mesh), options, selection, progress);
+  if (options.scheme == Scheme::in_place) return refine_in_place(std::move(mesh), options, selection, progress);
+  return refine_red_green(std::move(mesh), options, selection, progress);
+}
 
 Result run(Mesh mesh, const Options& options, const Hooks& hooks) {
   const Selection selection(options, bounding_box(mesh.positions).diagonal());
   const Progress progress(options, hooks);
   mark_creases(mesh, options.crease_angle);
-  if (selection.is_uniform() && options.levels > 0)
-    return refine_uniformly(std::move(mesh), options, selection, progress);
-  if (options.scheme == Scheme::in_place) return refine_in_place(std::move(mesh), options, selection, progress);
-  return refine_red_green(std::move(mesh), options, selection, progress);
+  Result result = run_scheme(std::move(mesh), options, selection, progress);
+  if (options.simplify_hidden) {
+    progress.poll();
+    result.mesh = simplify_hidden(std::move(result.mesh), *selection.camera());
+  }
+  progress.report_last(result.levels, result.mesh);
+  return result;
 }
 
 }  // namespace

@@ -11,6 +11,14 @@ namespace {
 
 constexpr float never = -std::numeric_limits<float>::infinity();
 
+/// Never less than the deviation: the midpoint is on the surface.
+double distance_to_midpoint(const Mesh& mesh, uint32_t edge, Vec3f q) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  const Vec3d ends =
+      to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]);
+  return length(to_double(q) - 0.5 * ends);
+}
+
 }  // namespace
 
 Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges) {
@@ -63,18 +71,19 @@ void Selection::cull(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMa
   if (camera_) cull_by_view(mesh, normals, *camera_, options_.view->edge_pixels, marks);
 }
 
-std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks) const {
+std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,
+                                     float exact_from) const {
   std::vector<float> errors(marks.size(), never);
-  for (uint32_t e = 0; e < marks.size(); ++e)
-    if (marks[e] != 0) errors[e] = measure_.error(mesh, trial.normals, e, deviation(mesh, e, trial.at(e)));
+  for (uint32_t e = 0; e < marks.size(); ++e) {
+    if (marks[e] == 0) continue;
+    errors[e] = measure_.error(mesh, trial.normals, e, distance_to_midpoint(mesh, e, trial.at(e)));
+    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, deviation(mesh, e, trial.at(e)));
+  }
   return errors;
 }
 
 void ErrorLeft::add(const Mesh& mesh, uint32_t edge, Vec3f q, double share) {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  const Vec3d middle =
-      0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
-  const double most = share * length(to_double(q) - middle);  // the edge is part of the surface
+  const double most = share * distance_to_midpoint(mesh, edge, q);
   if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
   const double distance = share * deviation(mesh, edge, q);
   distance_ = std::max(distance_, distance);

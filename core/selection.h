@@ -45,8 +45,10 @@ class Selection {
   /// Unmarks what the view does not show or shows too small; all stays without one.
   void cull(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
 
-  /// The error of each marked edge, which must have been tried; minus infinity elsewhere. [E]
-  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks) const;
+  /// The error of each marked edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
+  /// come out larger, but stay below it: they cost less. [E]
+  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,
+                                          float exact_from) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;

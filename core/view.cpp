@@ -38,6 +38,39 @@ void check(const View& view) {
 
 Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
 
+/// The vertices [V] that are inside, each with its longest edge as radius.
+std::vector<bool> find_inside(const Mesh& mesh, const Camera& camera) {
+  const Topology& topology = mesh.topology;
+  std::vector<double> radius_squared(topology.vertex_count, 0);
+  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+    const uint32_t a = topology.origin[topology.half_edge[e]];
+    const uint32_t b = topology.tip(topology.half_edge[e]);
+    const Vec3d along = to_double(mesh.positions[b]) - to_double(mesh.positions[a]);
+    radius_squared[a] = std::max(radius_squared[a], dot(along, along));
+    radius_squared[b] = std::max(radius_squared[b], dot(along, along));
+  }
+  std::vector<bool> inside(topology.vertex_count);
+  for (uint32_t v = 0; v < topology.vertex_count; ++v)
+    inside[v] = !camera.is_outside(to_double(mesh.positions[v]), std::sqrt(radius_squared[v]));
+  return inside;
+}
+
+enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
+
+/// What of the above holds for each face [F].
+std::vector<uint8_t> see_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
+  const std::vector<bool> inside = find_inside(mesh, camera);
+  const auto position = [&](uint32_t v) { return to_double(mesh.positions[v]); };
+  std::vector<uint8_t> faces(mesh.topology.face_count(), 0);
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
+    if (inside[corner[0]] || inside[corner[1]] || inside[corner[2]]) faces[f] |= is_inside;
+    const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
+    if (!has_normal(normals[f]) || !camera.is_away(centroid, to_double(normals[f]))) faces[f] |= is_towards;
+  }
+  return faces;
+}
+
 }  // namespace
 
 Camera::Camera(const View& view) : perspective_(view.projection == Projection::perspective), eye_(view.eye) {
@@ -72,10 +105,13 @@ bool Camera::is_outside(Vec3d centre, double radius) const {
   return std::ranges::any_of(planes_, [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
 }
 
-bool Camera::is_away(Vec3d point, Vec3d normal) const {
-  if (!perspective_) return dot(forward_, normal) > away_epsilon;
+bool Camera::is_away(Vec3d point, Vec3d normal) const { return facing(point, normal) < -away_epsilon; }
+
+double Camera::facing(Vec3d point, Vec3d normal) const {
+  if (!perspective_) return -dot(forward_, normal);
   const Vec3d sight = point - eye_;
-  return dot(sight, normal) > away_epsilon * length(sight);
+  const double distance = length(sight);
+  return distance > 0 ? -dot(sight, normal) / distance : 0;
 }
 
 std::array<double, 2> Camera::project(Vec3d relative) const {
@@ -100,33 +136,21 @@ double Camera::pixels_per_unit(Vec3d point) const {
   return perspective_ ? pixels_per_unit_ / std::max(near_, dot(forward_, point - eye_)) : pixels_per_unit_;
 }
 
+std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
+  const std::vector<uint8_t> seen_by = see_faces(mesh, normals, camera);
+  std::vector<bool> hidden(seen_by.size());
+  for (size_t f = 0; f < hidden.size(); ++f) hidden[f] = seen_by[f] != seen;
+  return hidden;
+}
+
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   const auto position = [&](uint32_t v) { return to_double(mesh.positions[v]); };
 
-  std::vector<double> radius_squared(topology.vertex_count, 0);
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
-    const uint32_t a = topology.origin[topology.half_edge[e]];
-    const uint32_t b = topology.tip(topology.half_edge[e]);
-    const Vec3d along = position(b) - position(a);
-    radius_squared[a] = std::max(radius_squared[a], dot(along, along));
-    radius_squared[b] = std::max(radius_squared[b], dot(along, along));
-  }
-  std::vector<bool> inside(topology.vertex_count);
-  for (uint32_t v = 0; v < topology.vertex_count; ++v)
-    inside[v] = !camera.is_outside(position(v), std::sqrt(radius_squared[v]));
-
-  enum : uint8_t { has_face_inside = 1, has_face_towards = 2, seen = 3 };
+  const std::vector<uint8_t> faces = see_faces(mesh, normals, camera);
   std::vector<uint8_t> seen_by(topology.edge_count(), 0);
-  for (uint32_t f = 0; f < topology.face_count(); ++f) {
-    const uint32_t* corner = &topology.origin[size_t{3} * f];
-    uint8_t face = 0;
-    if (inside[corner[0]] || inside[corner[1]] || inside[corner[2]]) face |= has_face_inside;
-    const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
-    if (!has_normal(normals[f]) || !camera.is_away(centroid, to_double(normals[f]))) face |= has_face_towards;
-    for (uint32_t i = 0; i < 3; ++i) seen_by[topology.edge[3 * f + i]] |= face;
-  }
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) seen_by[topology.edge[h]] |= faces[Topology::face(h)];
 
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     if (marks[e] == 0) continue;

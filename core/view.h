@@ -42,6 +42,8 @@ class Camera {
   /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
   /// perspective.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const;
+  /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
+  [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
@@ -61,6 +63,10 @@ class Camera {
   double pixels_per_unit_;  ///< at distance 1 (perspective) or at any (orthographic)
   std::array<Plane, 5> planes_;
 };
+
+/// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
+/// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
+[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera);
 
 /// Unmarks the edges that the view does not need, the paper's section 3.2: those all of whose faces have all
 /// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are

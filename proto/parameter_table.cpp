@@ -15,6 +15,17 @@ View view_of(const Parameters& p) { return p.options.view.value_or(View{}); }
 Values values(Vec3d v) { return {v.x, v.y, v.z}; }
 Vec3d vector(const Values& v) { return {v[0], v[1], v[2]}; }
 
+Values values(const std::vector<Vec3d>& list) {
+  Values all;
+  for (Vec3d v : list) all.insert(all.end(), {v.x, v.y, v.z});
+  return all;
+}
+std::vector<Vec3d> vectors(const Values& v) {
+  std::vector<Vec3d> list;
+  for (size_t i = 0; i + 2 < v.size(); i += 3) list.push_back({v[i], v[i + 1], v[i + 2]});
+  return list;
+}
+
 const std::array table{
     ParameterInfo{.name = "levels",
                   .type = ParameterType::integer,
@@ -25,10 +36,31 @@ const std::array table{
                   .set = [](Parameters& p, const Values& v) { p.options.levels = static_cast<int>(v[0]); }},
     ParameterInfo{.name = "scheme",
                   .type = ParameterType::choice,
-                  .description = "What a level works on; in-place, the paper's: the mesh that the level before left",
-                  .choices = {"in-place"},
-                  .get = [](const Parameters&) { return Values{0}; },
-                  .set = [](Parameters&, const Values&) {}},
+                  .description =
+                      "red-green: every vertex is that of the uniform result, in every view, and angles stay "
+                      "large; in-place, the paper's: each level works on the mesh that the last one left",
+                  .choices = {"red-green", "in-place"},
+                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.scheme)}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.scheme = static_cast<Scheme>(v[0]); }},
+    ParameterInfo{.name = "tolerance",
+                  .type = ParameterType::number,
+                  .min = 0,
+                  .max = 1,
+                  .default_text = "0: none",
+                  .description =
+                      "Split only where the surface would move by at least this share of the box's diagonal, "
+                      "and where something that does needs it: 0.001 is fine, 0.01 coarse",
+                  .get = [](const Parameters& p) { return Values{p.options.tolerance}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.tolerance = v[0]; }},
+    ParameterInfo{.name = "max_faces",
+                  .type = ParameterType::integer,
+                  .min = 0,
+                  .max = static_cast<double>(face_count_limit),
+                  .unit = "faces",
+                  .default_text = "0: as many as it takes",
+                  .description = "The result never has more; the largest errors are taken first",
+                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.max_faces)}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.max_faces = static_cast<uint64_t>(v[0]); }},
     ParameterInfo{.name = "flatness",
                   .type = ParameterType::numbers,
                   .least = 1,
@@ -48,6 +80,27 @@ const std::array table{
                                  "all edges at the two ends",
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.growth)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.growth = static_cast<Growth>(v[0]); }},
+    ParameterInfo{.name = "tension",
+                  .type = ParameterType::choice,
+                  .description = "soft: no overshoot over edges sharper than 60 to 90 degrees; sharp: nor along them; "
+                                 "off: the plain butterfly, which swells there",
+                  .choices = {"soft", "off", "sharp"},
+                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.tension)}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.tension = static_cast<Tension>(v[0]); }},
+    ParameterInfo{.name = "crease_angle",
+                  .type = ParameterType::number,
+                  .min = 0,
+                  .max = 180,
+                  .unit = "degrees",
+                  .default_text = "180: no creases",
+                  .description = "Edges whose faces' normals differ by more are kept sharp",
+                  .get = [](const Parameters& p) { return Values{p.options.crease_angle}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.crease_angle = v[0]; }},
+    ParameterInfo{.name = "simplify_hidden",
+                  .type = ParameterType::boolean,
+                  .description = "With a view: simplifies what it does not show; the rest stays to the bit",
+                  .get = [](const Parameters& p) { return Values{p.options.simplify_hidden ? 1.0 : 0.0}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.simplify_hidden = v[0] != 0; }},
     ParameterInfo{.name = "w",
                   .type = ParameterType::number,
                   .min = -0.0625,
@@ -126,6 +179,28 @@ const std::array table{
                   .description = "Edges that look shorter than this stay whole; 0 splits them however short",
                   .get = [](const Parameters& p) { return Values{view_of(p).edge_pixels}; },
                   .set = [](Parameters& p, const Values& v) { view_of(p).edge_pixels = v[0]; }},
+    ParameterInfo{.name = "view.error_pixels",
+                  .type = ParameterType::number,
+                  .min = 0,
+                  .max = 1e6,
+                  .unit = "pixels",
+                  .default_text = "0: none",
+                  .description = "Like tolerance, as large as it looks from the eye: 0.5 cannot be seen; set "
+                                 "view.edge_pixels=0 with it",
+                  .get = [](const Parameters& p) { return Values{view_of(p).error_pixels}; },
+                  .set = [](Parameters& p, const Values& v) { view_of(p).error_pixels = v[0]; }},
+    ParameterInfo{.name = "view.lights",
+                  .type = ParameterType::numbers,
+                  .least = 3,
+                  .most = 24,
+                  .group = 3,
+                  .min = -any,
+                  .max = any,
+                  .default_text = "none",
+                  .description = "Directions towards lights; errors then count more where the shading changes and on "
+                                 "the silhouette",
+                  .get = [](const Parameters& p) { return values(view_of(p).lights); },
+                  .set = [](Parameters& p, const Values& v) { view_of(p).lights = vectors(v); }},
     ParameterInfo{.name = "view.projection",
                   .type = ParameterType::choice,
                   .description = "Orthographic shows at every depth what perspective shows at the target",

@@ -61,7 +61,8 @@ void check_numbers(const ParameterInfo& info, const std::vector<double>& values,
   const auto good = [&](double v) {
     return v >= info.min && v <= info.max && (info.type != ParameterType::integer || v == std::floor(v));
   };
-  if (values.size() < info.least || values.size() > info.most || !std::ranges::all_of(values, good))
+  if (values.size() < info.least || values.size() > info.most || values.size() % info.group != 0 ||
+      !std::ranges::all_of(values, good))
     Reader::refuse(info, what_it_takes(info) + ", not " + given);
 }
 
@@ -228,9 +229,10 @@ std::string describe_range(const ParameterInfo& info) {
     range = " of at least " + format_number(info.min);
   if (info.type == ParameterType::integer) return "an integer" + range;
   if (info.type == ParameterType::number) return "a number" + range;
-  const std::string count = info.least == info.most ? std::to_string(info.least)
-                                                    : std::to_string(info.least) + " to " + std::to_string(info.most);
-  return count + " numbers" + range;
+  const auto groups = [&](size_t count) { return std::to_string(count / info.group); };
+  const std::string count =
+      info.least == info.most ? std::to_string(info.least) : groups(info.least) + " to " + groups(info.most);
+  return count + (info.group > 1 ? " times " + std::to_string(info.group) : "") + " numbers" + range;
 }
 
 std::string describe_default(const ParameterInfo& info) {
@@ -282,6 +284,7 @@ std::string parameters_json() {
     if (info.type == ParameterType::numbers) {
       row["least"] = info.least;
       row["most"] = info.most;
+      if (info.group > 1) row["group"] = info.group;
     }
     if (!info.unit.empty()) row["unit"] = info.unit;
     row["default"] = default_json(info);

@@ -28,11 +28,12 @@ struct Parameters {
 enum class ParameterType { integer, number, numbers, boolean, choice };
 
 /// One row of the table. A value of any type is a list of numbers: one for integer, number, boolean (0, 1)
-/// and choice (the index), between `least` and `most` of them for numbers.
+/// and choice (the index), between `least` and `most` of them for numbers, in groups of `group`.
 struct ParameterInfo {
   std::string_view name;  ///< with dots for nesting
   ParameterType type;
   size_t least = 1, most = 1;
+  size_t group = 1;                 ///< numbers come in groups of this many
   double min = 0, max = 0;          ///< inclusive; unused for boolean and choice
   std::string_view unit{};          ///< "" when it has none
   std::string_view default_text{};  ///< what stands for the default where its value does not speak for itself, else ""

@@ -1,5 +1,8 @@
 #include "proto/refinement.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <iomanip>
@@ -7,7 +10,9 @@
 #include <sstream>
 
 #include "proto/draco_reader.h"
+#include "proto/findings.h"
 #include "proto/problem.h"
+#include "proto/text.h"
 
 namespace papilio::proto {
 namespace {
@@ -33,6 +38,13 @@ std::string milliseconds_text(double milliseconds) {
   return text.str();
 }
 
+/// Four digits: more would be noise.
+std::string error_text(double error) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), error, std::chars_format::general, 4).ptr;
+  return {text.data(), end};
+}
+
 /// Runs `work` and puts the core's refusals, and memory that is not there, into the words of the wire.
 template <class Work>
 auto in_words_of_the_wire(Work work) {
@@ -53,7 +65,7 @@ Refinement::Refinement(std::string_view draco, const Parameters& parameters, con
   options_.face_limit = limits.max_output_faces;
   in_words_of_the_wire([&] {
     FormattedMesh input = read_draco(draco, limits);
-    coarse_ = build_mesh(input);
+    coarse_ = build_mesh(input, &found_);
     attributes_ = attribute_encoding(coarse_, std::move(input.format));
   });
   box_ = quantization_box(coarse_.positions);
@@ -76,6 +88,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     made.statistics.vertices = mesh.topology.vertex_count;
     made.statistics.faces = mesh.topology.face_count();
     made.statistics.times = times_;
+    made.statistics.found = found_;
   };
 
   Hooks core_hooks{.cancelled = hooks.cancelled};
@@ -92,19 +105,28 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   const Result result = refine(std::move(coarse_), options_, core_hooks);
   poll();
   made.statistics.stop_reason = result.stop_reason;
+  made.statistics.error = result.error;
+  if (options_.view) made.statistics.error_pixels = result.error_pixels;
   encode(result.mesh, result.levels);
   poll();  // Draco's encoder cannot be stopped; who left meanwhile is not given an answer
   if (hooks.on_level) hooks.on_level(made);
   return made;
 }
 
+namespace {
+
+constexpr std::array<std::pair<StopReason, std::string_view>, 3> stop_reasons{
+    {{StopReason::converged, "converged"}, {StopReason::levels, "levels"}, {StopReason::budget, "budget"}}};
+
+}  // namespace
+
 std::string_view stop_reason_name(StopReason reason) {
-  return reason == StopReason::converged ? "converged" : "levels";
+  return std::ranges::find(stop_reasons, reason, &std::pair<StopReason, std::string_view>::first)->second;
 }
 
 std::optional<StopReason> stop_reason_named(std::string_view name) {
-  for (StopReason reason : {StopReason::converged, StopReason::levels})
-    if (name == stop_reason_name(reason)) return reason;
+  for (const auto& [reason, known] : stop_reasons)
+    if (known == name) return reason;
   return std::nullopt;
 }
 
@@ -114,7 +136,13 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
       {"Papilio-Faces", std::to_string(statistics.faces)},
       {"Papilio-Levels", std::to_string(statistics.level)},
   };
-  if (statistics.stop_reason) headers.emplace_back("Papilio-Stop-Reason", stop_reason_name(*statistics.stop_reason));
+  if (statistics.stop_reason) {
+    headers.emplace_back("Papilio-Stop-Reason", stop_reason_name(*statistics.stop_reason));
+    headers.emplace_back("Papilio-Error", error_text(statistics.error));
+    if (statistics.error_pixels) headers.emplace_back("Papilio-Error-Pixels", error_text(*statistics.error_pixels));
+  }
+  if (const std::string found = defects_text(statistics.found); !found.empty())
+    headers.emplace_back("Papilio-Found", found);
   headers.emplace_back("Server-Timing", "decode;dur=" + milliseconds_text(statistics.times.decode) +
                                             ", refine;dur=" + milliseconds_text(statistics.times.refine) +
                                             ", encode;dur=" + milliseconds_text(statistics.times.encode));
@@ -124,7 +152,12 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
 std::string statistics_json(const Statistics& statistics) {
   nlohmann::ordered_json document{
       {"vertices", statistics.vertices}, {"faces", statistics.faces}, {"levels", statistics.level}};
-  if (statistics.stop_reason) document["stop_reason"] = stop_reason_name(*statistics.stop_reason);
+  if (statistics.stop_reason) {
+    document["stop_reason"] = stop_reason_name(*statistics.stop_reason);
+    document["error"] = parse_number(error_text(statistics.error)).value();
+    if (statistics.error_pixels) document["error_pixels"] = parse_number(error_text(*statistics.error_pixels)).value();
+  }
+  for (const auto& [name, count] : defects(statistics.found)) document["found"][std::string(name)] = count;
   const auto rounded = [](double milliseconds) { return std::round(milliseconds * 1000) / 1000; };
   document["milliseconds"] = {{"decode", rounded(statistics.times.decode)},
                               {"refine", rounded(statistics.times.refine)},

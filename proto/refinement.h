@@ -25,7 +25,10 @@ struct StageTimes {
 struct Statistics {
   int level = 0;  ///< 0: the coarse mesh
   uint64_t vertices = 0, faces = 0;
-  std::optional<StopReason> stop_reason;  ///< known with the last level
+  std::optional<StopReason> stop_reason;  ///< known with the last level, and so are the errors
+  double error = 0;                       ///< the largest deviation left, as a share of the coarse mesh's diagonal
+  std::optional<double> error_pixels{};   ///< the same in pixels, where there is a view
+  BuildReport found{};                    ///< in the coarse mesh
   StageTimes times;
 };
 
@@ -61,19 +64,22 @@ class Refinement {
   Options options_;
   OutputOptions output_;
   Mesh coarse_;
+  BuildReport found_;
   QuantizationBox box_;
   AttributeEncoding attributes_;
   StageTimes times_;
 };
 
-/// "converged", "levels".
+/// "converged", "levels", "budget".
 [[nodiscard]] std::string_view stop_reason_name(StopReason reason);
 /// The other way round; nothing for any other text.
 [[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
 
-/// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason and Server-Timing.
+/// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Found
+/// (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// The same as a JSON object: vertices, faces, levels, stop_reason, milliseconds {decode, refine, encode}.
+/// The same as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, found {...},
+/// milliseconds {decode, refine, encode}.
 [[nodiscard]] std::string statistics_json(const Statistics& statistics);
 
 }  // namespace papilio::proto

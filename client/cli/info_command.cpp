@@ -4,6 +4,7 @@
 #include "client/cli/commands.h"
 #include "client/lib/mesh_stream.h"
 #include "core/mesh.h"
+#include "proto/findings.h"
 
 namespace papilio::client {
 namespace {
@@ -16,22 +17,17 @@ ordered_json describe(const std::string& path) {
   const Topology& topology = mesh.topology;
   const Box box = bounding_box(mesh.positions);
   const auto triple = [](Vec3f p) { return ordered_json{p.x, p.y, p.z}; };
-  return {{"file", path},
-          {"bytes", std::filesystem::file_size(path)},
-          {"vertices", topology.vertex_count},
-          {"faces", topology.face_count()},
-          {"edges", topology.edge_count()},
-          {"euler_characteristic", topology.euler_characteristic()},
-          {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0},
-          {"boundary_edges", report.boundary_edges},
-          {"non_manifold_edges", report.non_manifold_edges},
-          {"misoriented_edges", report.misoriented_edges},
-          {"pinched_vertices", report.pinched_vertices},
-          {"welded_points", report.welded_points},
-          {"isolated_points", report.isolated_points},
-          {"degenerate_faces", report.degenerate_faces},
-          {"repeated_faces", report.repeated_faces},
-          {"box", {{"min", triple(box.min)}, {"max", triple(box.max)}, {"diagonal", box.diagonal()}}}};
+  ordered_json description{
+      {"file", path},
+      {"bytes", std::filesystem::file_size(path)},
+      {"vertices", topology.vertex_count},
+      {"faces", topology.face_count()},
+      {"edges", topology.edge_count()},
+      {"euler_characteristic", topology.euler_characteristic()},
+      {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0}};
+  for (const auto& [name, count] : proto::all_findings(report)) description[std::string(name)] = count;
+  description["box"] = {{"min", triple(box.min)}, {"max", triple(box.max)}, {"diagonal", box.diagonal()}};
+  return description;
 }
 
 void print(const ordered_json& value, const std::string& name) {

@@ -13,6 +13,7 @@
 #include "client/cli/commands.h"
 #include "client/lib/mesh_stream.h"
 #include "client/lib/remote.h"
+#include "proto/findings.h"
 #include "proto/refinement.h"
 
 namespace papilio::client {
@@ -36,6 +37,8 @@ void report(std::ostream& out, const RefineFlags& flags, const proto::Statistics
   std::cerr << flags.output << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, " << bytes
             << " bytes of Draco, " << statistics.level << " levels; decode " << statistics.times.decode
             << " ms, refine " << statistics.times.refine << " ms, encode " << statistics.times.encode << " ms\n";
+  if (const std::string found = proto::defects_text(statistics.found); !found.empty())
+    std::cerr << flags.input << ": worked round " << found << '\n';
 }
 
 /// Refuses a bad name before the work.

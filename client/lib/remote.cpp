@@ -8,6 +8,7 @@
 #include <regex>
 #include <thread>
 
+#include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 
@@ -70,6 +71,9 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   statistics.faces = count_of(field("Papilio-Faces"));
   statistics.level = static_cast<int>(count_of(field("Papilio-Levels")));
   statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
+  statistics.error = proto::parse_number(field("Papilio-Error")).value_or(0);
+  statistics.error_pixels = proto::parse_number(field("Papilio-Error-Pixels"));
+  statistics.found = proto::parse_defects(field("Papilio-Found"));
   const std::string timing = field("Server-Timing");
   statistics.times = {stage_time(timing, "decode"), stage_time(timing, "refine"), stage_time(timing, "encode")};
   return statistics;

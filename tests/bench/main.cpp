@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "tests/bench/pairs.h"
+#include "tests/bench/report.h"
 
-// papilio-bench [NAME] [--json FILE]: the rows whose names contain NAME; Google Benchmark does the timing, in
-// random turns.
+// papilio-bench [NAME] [--json FILE]: the report NAME, or the rows whose names contain NAME; Google Benchmark does the
+// timing, in random turns.
 
 namespace papilio::bench {
 namespace {
@@ -20,6 +21,11 @@ constexpr int repetitions = 9;
 
 std::vector<Pair>& pairs() {
   static std::vector<Pair> all;
+  return all;
+}
+
+std::vector<Report>& reports() {
+  static std::vector<Report> all;
   return all;
 }
 
@@ -63,15 +69,38 @@ void run_side(const std::string& name, const std::function<double()>& work) {
       ->MinTime(0.1);
 }
 
-int run(const std::string& filter, const std::string& json_file) {
+int write_json(const nlohmann::ordered_json& rows, const std::string& file) {
+  if (file.empty()) return 0;
+  std::ofstream out(file);
+  out << rows.dump(2) << '\n';
+  out.close();
+  if (!out) std::cerr << "papilio-bench: " << file << " cannot be written\n";
+  return out ? 0 : 1;
+}
+
+int run_report(const Report& report, const std::string& json_file) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const ReportRow& row : report.print()) {
+    // Not finite when ours is 0: written as null.
+    const double ratio = row.peer / row.ours;
+    rows.push_back({{"name", row.name}, {"ours", row.ours}, {"peer", row.peer}, {"ratio", ratio}, {"unit", row.unit}});
+  }
+  return write_json(rows, json_file);
+}
+
+int list_names(const std::string& filter) {
+  std::cerr << "no row has \"" << filter << "\" in its name; there are:\n";
+  for (const Pair& pair : pairs()) std::cerr << "  " << pair.name << '\n';
+  std::cerr << "and these reports:\n";
+  for (const Report& report : reports()) std::cerr << "  " << report.name << '\n';
+  return 2;
+}
+
+int run_pairs(const std::string& filter, const std::string& json_file) {
   std::vector<Pair> chosen;
   std::ranges::copy_if(pairs(), std::back_inserter(chosen),
                        [&](const Pair& pair) { return pair.name.find(filter) != std::string::npos; });
-  if (chosen.empty()) {
-    std::cerr << "no row has \"" << filter << "\" in its name; there are:\n";
-    for (const Pair& pair : pairs()) std::cerr << "  " << pair.name << '\n';
-    return 2;
-  }
+  if (chosen.empty()) return list_names(filter);
   for (const Pair& pair : chosen) {
     run_side(pair.name + "/ours", pair.ours);
     run_side(pair.name + "/peer", pair.peer);
@@ -96,17 +125,24 @@ int run(const std::string& filter, const std::string& json_file) {
                     {"ours_spread", {ours.low, ours.high}},
                     {"peer_spread", {peer.low, peer.high}}});
   }
-  if (json_file.empty()) return 0;
-  std::ofstream out(json_file);
-  out << rows.dump(2) << '\n';
-  out.close();
-  if (!out) std::cerr << "papilio-bench: " << json_file << " cannot be written\n";
-  return out ? 0 : 1;
+  return write_json(rows, json_file);
+}
+
+int run(const std::string& name, const std::string& json_file) {
+  add_table1();
+  add_quality();
+  const auto report = std::ranges::find(reports(), name, &Report::name);
+  if (report != reports().end()) return run_report(*report, json_file);
+  add_uniform();
+  add_service();
+  return run_pairs(name, json_file);
 }
 
 }  // namespace
 
 void add(Pair pair) { pairs().push_back(std::move(pair)); }
+
+void add(Report report) { reports().push_back(std::move(report)); }
 
 double seconds(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -131,7 +167,5 @@ int main(int argc, char** argv) {
   for (std::string& argument : library_arguments) pointers.push_back(argument.data());
   int count = static_cast<int>(pointers.size());
   benchmark::Initialize(&count, pointers.data());
-  papilio::bench::add_uniform();
-  papilio::bench::add_service();
   return papilio::bench::run(filter, json_file);
 }

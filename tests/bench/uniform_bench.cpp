@@ -33,6 +33,7 @@ void add_uniform() {
     for (int levels : {1, 2, 3, 4}) {
       Options options;
       options.levels = levels;
+      options.tension = Tension::off;
       add({.name = "uniform/" + std::string(name) + "/" + std::to_string(levels),
            .divisor = static_cast<double>(triangles.triangles.size() << (2U * static_cast<unsigned>(levels))),
            .unit = "ns/triangle out",

@@ -25,7 +25,7 @@ teardown() {
   [ "$status" = 200 ]
   [ "$(header Content-Type)" = application/json ]
   [ "$(field limits.max_output_faces)" = 12345 ]
-  [ "$(field 'schemes[0]')" = in-place ]
+  [ "$(field 'schemes[0]')" = red-green ]
   [ "$(field 'parameters | map(.name) | index("view.edge_pixels") != null')" = true ]
   [ -n "$(field version)" ]
   request -I "$url/health"

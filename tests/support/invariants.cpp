@@ -1,32 +1,43 @@
 #include "tests/support/invariants.h"
 
-#include <map>
-#include <set>
+#include <algorithm>
+#include <vector>
 
 namespace papilio::test {
 namespace {
 
+/// An edge by its two vertices, and how many faces run from the lower to the higher, and back.
 struct Uses {
-  uint32_t forward = 0, backward = 0;  ///< faces that run from the lower to the higher vertex, and back
+  std::pair<uint32_t, uint32_t> ends;
+  uint32_t forward = 0, backward = 0;
 };
 
-std::map<std::pair<uint32_t, uint32_t>, Uses> uses_of_edges(const TriangleMesh& mesh) {
-  std::map<std::pair<uint32_t, uint32_t>, Uses> uses;
+/// Sorted by ends.
+std::vector<Uses> uses_of_edges(const TriangleMesh& mesh) {
+  std::vector<Uses> all;
+  all.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) {
       const uint32_t a = t[i];
       const uint32_t b = t[(i + 1) % 3];
-      a < b ? ++uses[{a, b}].forward : ++uses[{b, a}].backward;
+      all.push_back(a < b ? Uses{{a, b}, 1, 0} : Uses{{b, a}, 0, 1});
     }
   }
-  return uses;
+  std::ranges::sort(all, {}, &Uses::ends);
+  std::vector<Uses> edges;
+  for (const Uses& use : all) {
+    if (edges.empty() || edges.back().ends != use.ends) edges.push_back({use.ends, 0, 0});
+    edges.back().forward += use.forward;
+    edges.back().backward += use.backward;
+  }
+  return edges;
 }
 
 }  // namespace
 
 EdgeCensus count_edges(const TriangleMesh& mesh) {
   EdgeCensus census;
-  for (const auto& [edge, uses] : uses_of_edges(mesh)) {
+  for (const Uses& uses : uses_of_edges(mesh)) {
     ++census.edges;
     if (uses.forward + uses.backward == 1) ++census.boundary;
     if (uses.forward > 1 || uses.backward > 1) ++census.irregular;
@@ -35,9 +46,10 @@ EdgeCensus count_edges(const TriangleMesh& mesh) {
 }
 
 int64_t euler_characteristic(const TriangleMesh& mesh) {
-  std::set<uint32_t> used;
-  for (const Triangle& t : mesh.triangles) used.insert(t.begin(), t.end());
-  return static_cast<int64_t>(used.size()) - static_cast<int64_t>(count_edges(mesh).edges) +
+  std::vector<bool> used(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles)
+    for (uint32_t v : t) used[v] = true;
+  return std::ranges::count(used, true) - static_cast<int64_t>(count_edges(mesh).edges) +
          static_cast<int64_t>(mesh.triangles.size());
 }
 
@@ -67,7 +79,7 @@ int64_t euler_characteristic(const TriangleMesh& mesh) {
     ++halves[e];
     const uint32_t r = topology.half_edge[e];
     if (std::minmax(a, b) != std::minmax(topology.origin[r], topology.tip(r))) return fail("edge of half-edge", h);
-    const Uses use = uses.at(std::minmax(a, b));
+    const Uses use = *std::ranges::lower_bound(uses, std::pair(std::min(a, b), std::max(a, b)), {}, &Uses::ends);
     const bool smooth = use.forward == 1 && use.backward == 1;
     if (smooth) {
       const uint32_t t = topology.twin[h];

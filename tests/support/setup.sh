@@ -14,7 +14,7 @@ for purpose in "$@"; do
   case $purpose in
     build)
       packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
-        libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev)
+        libcli11-dev libmeshoptimizer-dev libgtest-dev libgmock-dev libbenchmark-dev)
       ;;
     test) meshes=yes packages+=(bats perl curl jq draco ca-certificates) programs+=(python3:python3) ;;
     demo) meshes=yes packages+=(curl jq ca-certificates) ;;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/mesh.h"
@@ -78,6 +79,61 @@ TriangleMesh cube() {
     mesh.positions.push_back({(i & 1U) != 0 ? 1.0F : 0.0F, (i & 2U) != 0 ? 1.0F : 0.0F, (i & 4U) != 0 ? 1.0F : 0.0F});
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+TriangleMesh box(std::array<uint32_t, 3> cells, Vec3f size) {
+  using Corner = std::array<uint32_t, 3>;
+  TriangleMesh mesh;
+  std::map<Corner, uint32_t> known;
+  const auto vertex = [&](Corner c) {
+    const auto [it, is_new] = known.try_emplace(c, static_cast<uint32_t>(mesh.positions.size()));
+    const auto along = [&](uint32_t axis, float whole) {
+      return whole * static_cast<float>(c[axis]) / static_cast<float>(cells[axis]);
+    };
+    if (is_new) mesh.positions.push_back({along(0, size.x), along(1, size.y), along(2, size.z)});
+    return it->second;
+  };
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const uint32_t u = (axis + 1) % 3;
+    const uint32_t v = (axis + 2) % 3;
+    for (uint32_t i = 0; i < cells[u]; ++i)
+      for (uint32_t j = 0; j < cells[v]; ++j)
+        for (const bool far : {false, true}) {
+          Corner corner{};
+          corner[axis] = far ? cells[axis] : 0;
+          const auto at = [&](uint32_t du, uint32_t dv) {
+            Corner c = corner;
+            c[u] = i + du;
+            c[v] = j + dv;
+            return vertex(c);
+          };
+          const uint32_t a = at(0, 0);
+          const uint32_t b = far ? at(1, 0) : at(0, 1);
+          const uint32_t d = far ? at(0, 1) : at(1, 0);
+          mesh.triangles.push_back({a, b, at(1, 1)});
+          mesh.triangles.push_back({a, at(1, 1), d});
+        }
+  }
+  return mesh;
+}
+
+TriangleMesh square_ring(uint32_t n, float inner, float outer, float height) {
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < n; ++i) {
+    const auto c = static_cast<float>(std::cos(2 * pi * i / n));
+    const auto s = static_cast<float>(std::sin(2 * pi * i / n));
+    for (const auto& [radius, z] : {std::pair{inner, 0.0F}, {outer, 0.0F}, {outer, height}, {inner, height}})
+      mesh.positions.push_back({radius * c, radius * s, z});
+  }
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t j = (i + 1) % n;
+    for (uint32_t k = 0; k < 4; ++k) {
+      const uint32_t l = (k + 1) % 4;
+      mesh.triangles.push_back({4 * i + k, 4 * j + l, 4 * j + k});
+      mesh.triangles.push_back({4 * i + k, 4 * i + l, 4 * j + l});
+    }
+  }
   return mesh;
 }
 

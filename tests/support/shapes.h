@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
 
@@ -13,6 +14,10 @@ namespace papilio::test {
 [[nodiscard]] TriangleMesh octahedron();
 [[nodiscard]] TriangleMesh icosahedron();
 [[nodiscard]] TriangleMesh cube();
+/// A box from the origin to `size`, its sides cut into cells of two triangles each.
+[[nodiscard]] TriangleMesh box(std::array<uint32_t, 3> cells, Vec3f size);
+/// A ring of square section round the z axis, with n corners: radii from inner to outer, z from 0 to height.
+[[nodiscard]] TriangleMesh square_ring(uint32_t n, float inner, float outer, float height);
 /// n by m quadrangles in two triangles each: every vertex has valence 6.
 [[nodiscard]] TriangleMesh torus(uint32_t n, uint32_t m, float radius = 1, float tube = 0.4F);
 /// The square 0..n by 0..m in the plane z = 0, two triangles a cell.

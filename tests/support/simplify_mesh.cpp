@@ -6,38 +6,24 @@
 // or 2 (usage).
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <OpenMesh/Core/Utils/vector_traits.hh>
-#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
-#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
-#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
-#include <set>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "tests/support/decimation.h"
 
 namespace {
 
-struct DoubleTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-  using Normal = OpenMesh::Vec3d;
-  VertexAttributes(OpenMesh::Attributes::Status);
-  EdgeAttributes(OpenMesh::Attributes::Status);
-  HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
-  FaceAttributes(OpenMesh::Attributes::Status | OpenMesh::Attributes::Normal);
-};
-using Mesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
-using Triangle = std::array<int, 3>;
+namespace test = papilio::test;
+using Mesh = test::DecimationMesh;
+using Triangle = test::DecimationTriangle;
 
 /// Vertices go into the mesh, faces into a list: OpenMesh's own importer mends complex edges by copying
 /// vertices, without saying so, and its library aborts on the faces it cannot take.
@@ -59,52 +45,6 @@ class FaceListImporter : public OpenMesh::IO::ImporterT<Mesh> {
   std::vector<Triangle> triangles_;
 };
 
-/// Throws unless every face has three different vertices of `mesh`, every coordinate is finite, and no edge
-/// has more than two faces or two that disagree on its direction.
-void check_faces(const Mesh& mesh, const std::vector<Triangle>& triangles) {
-  const int vertices = static_cast<int>(mesh.n_vertices());
-  std::set<std::pair<int, int>> half_edges;
-  for (size_t face = 0; face < triangles.size(); ++face) {
-    const std::string name = "face " + std::to_string(face);
-    for (int k = 0; k < 3; ++k) {
-      const int from = triangles[face][k];
-      const int to = triangles[face][(k + 1) % 3];
-      if (from < 0 || from >= vertices) throw std::runtime_error(name + " names a vertex that does not exist");
-      if (from == to) throw std::runtime_error(name + " uses a vertex twice");
-      if (!half_edges.emplace(from, to).second) {
-        throw std::runtime_error(name + " is on an edge of more than two faces, or is turned against its neighbour");
-      }
-      for (const double coordinate : mesh.point(OpenMesh::VertexHandle(from))) {
-        if (!std::isfinite(coordinate)) throw std::runtime_error(name + " has a coordinate that is not finite");
-      }
-    }
-  }
-}
-
-/// Throws where the faces around a vertex are more than one fan.
-void check_vertices(const Mesh& mesh) {
-  for (const auto vertex : mesh.vertices()) {
-    if (!mesh.is_manifold(vertex)) {
-      throw std::runtime_error("vertex " + std::to_string(vertex.idx()) + " joins two parts of the surface");
-    }
-  }
-}
-
-bool is_closed(const Mesh& mesh) {
-  return std::none_of(mesh.halfedges_begin(), mesh.halfedges_end(),
-                      [&mesh](OpenMesh::HalfedgeHandle half_edge) { return mesh.is_boundary(half_edge); });
-}
-
-std::vector<Triangle> triangles_of(const Mesh& mesh) {
-  std::vector<Triangle> triangles;
-  for (const auto face : mesh.faces()) {
-    Triangle triangle{};
-    std::ranges::transform(face.vertices().to_vector(), triangle.begin(), [](const auto& v) { return v.idx(); });
-    triangles.push_back(triangle);
-  }
-  return triangles;
-}
-
 Mesh read(const std::string& file) {
   Mesh mesh;
   FaceListImporter importer(mesh);
@@ -112,39 +52,8 @@ Mesh read(const std::string& file) {
   if (!OpenMesh::IO::IOManager().read(file, importer, options) || importer.triangles().empty()) {
     throw std::runtime_error("no mesh could be read from it");
   }
-  check_faces(mesh, importer.triangles());
-  for (const auto& [a, b, c] : importer.triangles()) {
-    using Vertex = OpenMesh::VertexHandle;
-    if (!mesh.add_face(Vertex(a), Vertex(b), Vertex(c)).is_valid()) {
-      throw std::runtime_error("the surface is not manifold");
-    }
-  }
-  mesh.delete_isolated_vertices();
-  mesh.garbage_collection();
-  check_vertices(mesh);
+  test::add_faces(mesh, importer.triangles());
   return mesh;
-}
-
-void simplify(Mesh& mesh, size_t faces) {
-  const bool closed = is_closed(mesh);
-  mesh.update_face_normals();
-  OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
-  OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
-  OpenMesh::Decimater::ModNormalFlippingT<Mesh>::Handle flipping;
-  decimater.add(quadric);
-  decimater.add(flipping);
-  decimater.module(quadric).unset_max_err();
-  if (!decimater.initialize()) throw std::runtime_error("OpenMesh's decimater did not start");
-  decimater.decimate_to_faces(0, faces);
-  mesh.garbage_collection();
-
-  if (mesh.n_faces() > faces) {
-    throw std::runtime_error("no further edge can be collapsed at " + std::to_string(mesh.n_faces()) + " faces");
-  }
-  check_faces(mesh, triangles_of(mesh));
-  check_vertices(mesh);
-  if (is_closed(mesh) != closed)
-    throw std::runtime_error("the result is closed where the input is open, or the reverse");
 }
 
 /// Writes beside `file` and renames, so that nobody meets half a mesh.
@@ -155,7 +64,7 @@ void write(const Mesh& mesh, const std::filesystem::path& file) {
   out.precision(std::numeric_limits<float>::max_digits10);
   if (off) out << "OFF\n" << mesh.n_vertices() << ' ' << mesh.n_faces() << " 0\n";
   for (const auto vertex : mesh.vertices()) out << (off ? "" : "v ") << mesh.point(vertex) << '\n';
-  for (const auto& [a, b, c] : triangles_of(mesh)) {
+  for (const auto& [a, b, c] : test::triangles_of(mesh)) {
     if (off) {
       out << "3 " << a << ' ' << b << ' ' << c << '\n';
     } else {
@@ -188,7 +97,7 @@ int main(int argc, char** argv) {
   try {
     Mesh mesh = read(arguments[0]);
     const size_t before = mesh.n_faces();
-    simplify(mesh, faces);
+    test::decimate(mesh, faces);
     write(mesh, arguments[1]);
     std::cerr << arguments[1] << ": " << mesh.n_vertices() << " vertices, " << mesh.n_faces() << " faces of " << before
               << '\n';

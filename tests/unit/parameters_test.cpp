@@ -107,7 +107,7 @@ TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
   EXPECT_EQ(unknown.parameter, "level");
   EXPECT_NE(unknown.detail.find("levels"), std::string::npos);
   EXPECT_EQ(query_refusal({{"levels", "2"}, {"levels", "2"}}).parameter, "levels");
-  EXPECT_EQ(query_refusal({{"scheme", "loop"}}).detail, "scheme must be in-place, not \"loop\".");
+  EXPECT_EQ(query_refusal({{"scheme", "loop"}}).detail, "scheme must be red-green or in-place, not \"loop\".");
   EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail, "output.normals must be true or false, not \"1\".");
 }
 

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <thread>
+#include <tuple>
 
 #include "core/refine.h"
 #include "tests/support/invariants.h"
+#include "tests/support/models.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 #include "tests/support/uniform_hierarchy.h"
@@ -57,6 +60,54 @@ TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
       expect_part_of(uniform, coarse, options);
     }
   }
+}
+
+/// The positions of the first mesh that the second has too, looked up by bits.
+size_t count_common(const Mesh& a, const Mesh& b) {
+  const auto less = [](Vec3f p, Vec3f q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
+  std::vector<Vec3f> sorted = b.positions;
+  std::ranges::sort(sorted, less);
+  return static_cast<size_t>(
+      std::ranges::count_if(a.positions, [&](Vec3f p) { return std::ranges::binary_search(sorted, p, less); }));
+}
+
+TEST_P(RedGreenOnRealMeshes, TwoViewsAgreeWhereBothAreFine) {
+  const Mesh coarse = build_mesh(real_mesh(GetParam()));
+  Options options{.levels = 3, .view = view_of(coarse, {0, 0, 1})};
+  const Mesh front = refine(coarse, options).mesh;
+  options.view = view_of(coarse, {0.8, 0, 0.6});
+  const Mesh side = refine(coarse, options).mesh;
+  const Mesh all = refine(coarse, {.levels = 3}).mesh;
+  EXPECT_EQ(count_common(front, all), front.positions.size());
+  EXPECT_EQ(count_common(side, all), side.positions.size());
+  EXPECT_GT(count_common(front, side), coarse.positions.size());
+  EXPECT_LT(count_common(front, side), front.positions.size());
+}
+
+TEST(RedGreen, AnglesStayLarge) {
+  const std::vector<TriangleMesh> meshes{mug(), wheel(), real_mesh("cgal/pig.off"), real_mesh("cgal/fandisk.off"),
+                                         real_mesh("cgal/knot.off")};
+  for (const TriangleMesh& triangles : meshes) {
+    const Mesh coarse = build_mesh(triangles);
+    for (Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
+      const Options options{.levels = 2, .flatness = {0.6, 0.8}, .growth = growth, .tension = Tension::off};
+      const Mesh uniform = refine(coarse, {.levels = 2, .tension = Tension::off}).mesh;
+      EXPECT_GE(smallest_angle(refine(coarse, options).mesh), smallest_angle(uniform) / 3);
+    }
+  }
+}
+
+TEST(RedGreen, ThreadsGiveTheSameBits) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  const Options options{.levels = 3, .view = view_of(coarse, {0, 0, 1}), .tolerance = 1e-3};
+  const TriangleMesh expected = refine(coarse, options).mesh.triangles();
+  std::array<TriangleMesh, 4> results;
+  {
+    std::vector<std::jthread> threads;
+    for (TriangleMesh& result : results)
+      threads.emplace_back([&] { result = refine(coarse, options).mesh.triangles(); });
+  }
+  for (const TriangleMesh& result : results) EXPECT_EQ(result, expected);
 }
 
 std::string test_name(const ::testing::TestParamInfo<const char*>& info) {

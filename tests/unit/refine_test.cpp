@@ -269,6 +269,29 @@ TEST(Refine, LimitsAreHeldBeforeTheWork) {
   EXPECT_EQ(levels, 3);  // 20, 80, 320; 1280 is refused
 }
 
+TEST(Refine, SimplifiesWhatTheViewDoesNotShow) {
+  const Mesh bunny = build_mesh(real_mesh("bunny.obj"));
+  const Box box = bounding_box(bunny.positions);
+  View view;
+  view.target = 0.5 * (to_double(box.min) + to_double(box.max));
+  view.eye = view.target + Vec3d{0, 0, box.diagonal()};
+  view.edge_pixels = 4;
+  for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
+    Options options{.levels = 1, .scheme = scheme, .view = view};
+    const Result whole = refine(bunny, options);
+    options.simplify_hidden = true;
+    int last_faces = 0;
+    const Result less = refine(bunny, options, {.on_level = [&](const Level& level) {
+                                 if (level.last) last_faces = static_cast<int>(level.mesh.topology.face_count());
+                               }});
+    EXPECT_LT(less.mesh.topology.face_count(), whole.mesh.topology.face_count() * 9 / 10);
+    EXPECT_EQ(last_faces, static_cast<int>(less.mesh.topology.face_count()));
+    EXPECT_EQ(less.mesh.topology.euler_characteristic(), whole.mesh.topology.euler_characteristic());
+    EXPECT_TRUE(is_consistent(less.mesh));
+  }
+  EXPECT_EQ(fault_of(icosahedron(), {.simplify_hidden = true}), Fault::bad_option);  // nothing is hidden without a view
+}
+
 TEST(Refine, CancelsWithinOneStep) {
   int asked = 0;
   const Hooks hooks{.cancelled = [&] { return ++asked == 3; }};
@@ -282,6 +305,10 @@ TEST(Refine, RefusesOptionsOutOfRange) {
   EXPECT_EQ(fault_of(icosahedron(), {.flatness = {0.5, 1.5}}), Fault::bad_option);
   EXPECT_EQ(fault_of(icosahedron(), {.flatness = {std::nan("")}}), Fault::bad_option);
   EXPECT_EQ(fault_of(icosahedron(), {.w = 1}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.crease_angle = 181}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.tolerance = -0.1}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.view = View{.error_pixels = -1}}), Fault::bad_option);
+  EXPECT_EQ(fault_of(icosahedron(), {.view = View{.lights = {{0, 0, 0}}}}), Fault::bad_option);
 }
 
 }  // namespace

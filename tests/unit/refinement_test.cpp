@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "proto/draco_reader.h"
+#include "proto/findings.h"
 #include "proto/problem.h"
 #include "tests/support/draco_tools.h"
 #include "tests/support/shapes.h"
@@ -62,17 +63,29 @@ TEST(Refinement, CancelledStops) {
 }
 
 TEST(Refinement, StatisticsAreHeaders) {
-  Statistics statistics{
-      .level = 2, .vertices = 10, .faces = 16, .stop_reason = StopReason::converged, .times = {1, 2.5, 3}};
+  Statistics statistics{.level = 2,
+                        .vertices = 10,
+                        .faces = 16,
+                        .stop_reason = StopReason::converged,
+                        .error = 0.00123456,
+                        .error_pixels = 2,
+                        .found = {.boundary_edges = 7, .non_manifold_edges = 3, .pinched_vertices = 1},
+                        .times = {1, 2.5, 3}};
   const auto headers = statistics_headers(statistics);
   const std::vector<std::pair<std::string, std::string>> expected{
       {"Papilio-Vertices", "10"},
       {"Papilio-Faces", "16"},
       {"Papilio-Levels", "2"},
       {"Papilio-Stop-Reason", "converged"},
+      {"Papilio-Error", "0.001235"},
+      {"Papilio-Error-Pixels", "2"},
+      {"Papilio-Found", "non_manifold_edges=3, pinched_vertices=1"},
       {"Server-Timing", "decode;dur=1.000, refine;dur=2.500, encode;dur=3.000"}};
   EXPECT_EQ(headers, expected);
-  EXPECT_EQ(stop_reason_named("levels"), StopReason::levels);
+  EXPECT_EQ(parse_defects("non_manifold_edges=3, pinched_vertices=1, new=4, odd").non_manifold_edges, 3U);
+  EXPECT_EQ(defects_text(parse_defects(defects_text(statistics.found))), defects_text(statistics.found));
+  for (StopReason reason : {StopReason::converged, StopReason::levels, StopReason::budget})
+    EXPECT_EQ(stop_reason_named(stop_reason_name(reason)), reason);
   EXPECT_FALSE(stop_reason_named("no"));
 }
 

@@ -154,6 +154,16 @@ TEST(CullByView, DropsEdgesThatLookShort) {
   EXPECT_EQ(count(seen(mesh, view, 36)), 0U);
 }
 
+TEST(Camera, FacingIsTheCosineToTheViewer) {
+  View view;
+  EXPECT_NEAR(Camera(view).facing({4, 0, 0}, {0, 0, 1}), 0.6, 1e-15);
+  EXPECT_NEAR(Camera(view).facing({4, 0, 0}, {1, 0, 0}), -0.8, 1e-15);
+  EXPECT_EQ(Camera(view).facing(view.eye, {0, 0, 1}), 0);
+  view.projection = Projection::orthographic;
+  EXPECT_EQ(Camera(view).facing({4, 0, 0}, {0, 0, 1}), 1);
+  EXPECT_EQ(Camera(view).facing({4, 0, 0}, {1, 0, 0}), 0);
+}
+
 TEST(CullByView, FaceWithoutAreaIsNeverAway) {
   const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
   EXPECT_EQ(count(seen(mesh, looking_down_z())), 3U);

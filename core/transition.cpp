@@ -1,0 +1,109 @@
+#include "transition.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace papilio {
+namespace {
+
+/// The face's corners and, where an edge is in `mask`, its new vertex, numbered as in SplitPattern.
+std::array<Vec3d, 6> local_points(const HierarchyLevel& level, uint32_t face, unsigned mask) {
+  const Topology& mesh = level.mesh.topology;
+  std::array<Vec3d, 6> points;
+  for (uint32_t i = 0; i < 3; ++i) {
+    points[i] = to_double(level.mesh.positions[mesh.origin[3 * face + i]]);
+    if ((mask >> i & 1U) != 0) points[3 + i] = to_double(level.trial.at(mesh.edge[3 * face + i]));
+  }
+  return points;
+}
+
+double cosine(Vec3d u, Vec3d v) {
+  const double size = length(u) * length(v);
+  return size > 0 ? dot(u, v) / size : 1;
+}
+
+/// Cosine of the smallest angle of the pattern's pieces.
+double smallest_angle_cosine(const SplitPattern& pattern, const std::array<Vec3d, 6>& points) {
+  double largest = -1;
+  for (uint32_t c = 0; c < pattern.children; ++c)
+    for (uint32_t i = 0; i < 3; ++i) {
+      const Vec3d at = points[pattern.corner[c][i]];
+      largest = std::max(
+          largest, cosine(points[pattern.corner[c][(i + 1) % 3]] - at, points[pattern.corner[c][(i + 2) % 3]] - at));
+    }
+  return largest;
+}
+
+double angle(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); }
+
+bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, double least_angle) {
+  const std::array<Vec3d, 6> points = local_points(level, face, mask);
+  const uint8_t number = choose_transition(level, face, mask);
+  return angle(smallest_angle_cosine(transition_pattern(number), points)) < least_angle &&
+         angle(smallest_angle_cosine(split_pattern(0, false), points)) >= least_angle;
+}
+
+/// Raises the errors of the face's edges; true when one changed.
+bool mend(HierarchyLevel& level, uint32_t face, double least_angle, float least_error) {
+  const Topology& mesh = level.mesh.topology;
+  std::array<uint32_t, 3> side{0, 1, 2};
+  const auto error = [&](uint32_t i) -> float& { return level.error[mesh.edge[3 * face + i]]; };
+  std::ranges::stable_sort(side, [&](uint32_t i, uint32_t j) { return error(i) > error(j); });
+  unsigned mask = 0;
+  // As the threshold falls, edges are split one after the other: none of the masks on the way may make slivers.
+  for (uint32_t n = 0; n < 2 && error(side[n]) >= least_error; ++n) {
+    mask |= 1U << side[n];
+    if (error(side[n + 1]) == error(side[n]) || !makes_slivers(level, face, mask, least_angle)) continue;
+    const float all = error(side[n]);
+    for (uint32_t i = n + 1; i < 3; ++i) error(side[i]) = all;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double smallest_angle(const Mesh& mesh) {
+  double largest = -1;
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+    const auto at = [&](uint32_t v) { return to_double(mesh.positions[v]); };
+    const Vec3d corner = at(mesh.topology.origin[h]);
+    largest = std::max(largest, cosine(at(mesh.topology.tip(h)) - corner, at(mesh.topology.apex(h)) - corner));
+  }
+  return angle(largest);
+}
+
+uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask) {
+  const auto number = static_cast<uint8_t>(2 * mask);
+  if (mask != 3 && mask != 5 && mask != 6) return number;
+  const std::array<Vec3d, 6> points = local_points(level, face, mask);
+  const double first = smallest_angle_cosine(split_pattern(mask, false), points);
+  const double second = smallest_angle_cosine(split_pattern(mask, true), points);
+  const uint32_t i = first_of_two_targets(mask);
+  const auto& origin = level.mesh.topology.origin;
+  const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
+  return second < first || (second == first && second_is_lower) ? number + 1 : number;
+}
+
+void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle, float least_error) {
+  const Topology& mesh = level.mesh.topology;
+  const auto may_be_divided = [&](uint32_t f) {
+    return may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
+           may_be_split[mesh.edge[3 * f + 2]] != 0;
+  };
+  std::vector<uint32_t> faces;
+  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+    if (may_be_divided(f)) faces.push_back(f);
+  while (!faces.empty()) {
+    const uint32_t f = faces.back();
+    faces.pop_back();
+    if (!mend(level, f, least_angle, least_error)) continue;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+      const uint32_t t = mesh.twin[h];
+      if (t != none && may_be_divided(Topology::face(t))) faces.push_back(Topology::face(t));
+    }
+  }
+}
+
+}  // namespace papilio

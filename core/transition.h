@@ -1,0 +1,26 @@
+#pragma once
+
+#include "hierarchy.h"
+#include "split_pattern.h"
+
+// Transition faces: the pieces into which one or two split edges cut a face of a red-green level.
+
+namespace papilio {
+
+/// The pattern for the face with the split edges of `mask` (bit i: edge i): of the two ways to cut a quadrangle, the
+/// one whose smallest angle is larger; where they are equal, the diagonal from the lower corner. Two for the number's
+/// sake: pattern number = 2 * mask + (second diagonal ? 1 : 0).
+[[nodiscard]] uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask);
+[[nodiscard]] inline const SplitPattern& transition_pattern(uint8_t number) {
+  return split_pattern(number / 2U, number % 2 != 0);
+}
+
+/// The smallest angle of the mesh's faces, in radians; 0 for one without area.
+[[nodiscard]] double smallest_angle(const Mesh& mesh);
+
+/// Has the other edges of a face split along where pieces would have an angle under `least_angle` (radians), and the
+/// face itself has not. Raises errors [E] of edges in `may_be_split`, in faces with an edge of at least `least_error`,
+/// until no such face is left.
+void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle, float least_error);
+
+}  // namespace papilio

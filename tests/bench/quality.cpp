@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "core/refine.h"
+#include "tests/bench/equal_size.h"
+#include "tests/bench/head.h"
+#include "tests/bench/markdown_table.h"
+#include "tests/bench/mesh_figures.h"
+#include "tests/bench/report.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/simplify.h"
+
+// Quality at equal size: how far results of the same number of faces are from the uniform result of the last level.
+// The paper's method, in-place by flatness, sets the sizes; the quadric simplification of the uniform result, which
+// sees all of it, is the optimum to come near.
+
+namespace papilio::bench {
+namespace {
+
+struct Case {
+  std::string name;
+  TriangleMesh coarse;
+  int levels;
+  std::vector<double> thresholds;  ///< of the middle size
+};
+
+/// The three sizes: the thresholds' angles times these.
+constexpr double size_factors[] = {1.5, 1, 1 / 1.5};
+
+/// Counts further off than this are marked.
+constexpr double count_tolerance = 0.02;
+
+TriangleMesh simplified(const std::string& name, size_t faces) {
+  return test::simplify(test::real_mesh("cgal/" + name + ".off"), faces);
+}
+
+std::vector<Case> cases() {
+  const TriangleMesh bunny = simplified("bunny00", 600);
+  return {{"bunny00, 600 faces, 4 levels", bunny, 4, {0.6, 0.7, 0.8, 0.9}},
+          {"bunny00, 600 faces, 2 levels", bunny, 2, {0.8, 0.9}},
+          {"refined_elephant, 1500 faces, 3 levels", simplified("refined_elephant", 1500), 3, {0.8, 0.9, 0.95}},
+          {"camel, 2000 faces, 3 levels", simplified("camel", 2000), 3, {0.8, 0.9, 0.95}},
+          {"armadillo, 3000 faces, 3 levels", simplified("armadillo", 3000), 3, {0.8, 0.9, 0.95}},
+          {"head, 2092 faces, 2 levels", head(), 2, {0.8, 0.9}},
+          {"rotor_small, 4800 faces, 2 levels", test::real_mesh("cgal/rotor_small.off"), 2, {0.8, 0.9}},
+          {"couplingdown, 3714 faces, 2 levels", test::real_mesh("cgal/couplingdown.off"), 2, {0.8, 0.9}},
+          {"fandisk, 2000 faces, 2 levels", simplified("fandisk", 2000), 2, {0.8, 0.9}}};
+}
+
+/// One method's result; distances in percent of the coarse mesh's diagonal.
+struct Measured {
+  size_t faces;
+  SurfaceError error;
+};
+
+/// The methods at one size.
+struct Comparison {
+  Measured paper, flatness, tolerance, quadric;
+};
+
+bool is_far_off(size_t faces, size_t wanted) {
+  return std::abs(static_cast<double>(faces) / static_cast<double>(wanted) - 1) > count_tolerance;
+}
+
+/// With more faces than the others a method wins for that alone: no ratio then. With fewer it does not.
+bool is_fair(const Comparison& c) {
+  return c.tolerance.faces <= c.paper.faces || !is_far_off(c.tolerance.faces, c.paper.faces);
+}
+
+/// A case with its uniform result. The plain Modified Butterfly scheme throughout.
+class Subject {
+ public:
+  explicit Subject(const Case& the_case) : case_(the_case), coarse_(build_mesh(the_case.coarse)) {
+    uniform_ = refine(coarse_, options(Scheme::in_place)).mesh.triangles();
+  }
+
+  [[nodiscard]] size_t uniform_faces() const { return uniform_.triangles.size(); }
+
+  [[nodiscard]] Comparison compare(double size_factor) const {
+    Options paper = options(Scheme::in_place);
+    Options ours = options(Scheme::red_green);
+    ours.flatness = paper.flatness = scaled_thresholds(case_.thresholds, size_factor);
+    const TriangleMesh result = refine(coarse_, paper).mesh.triangles();
+    const size_t faces = result.triangles.size();
+    return {.paper = measured(result),
+            .flatness = measured(flatness_result(coarse_, ours, faces)),
+            .tolerance = measured(tolerance_result(coarse_, ours, faces)),
+            .quadric = measured(test::simplify(uniform_, faces))};
+  }
+
+ private:
+  [[nodiscard]] Options options(Scheme scheme) const {
+    Options all;
+    all.levels = case_.levels;
+    all.scheme = scheme;
+    all.tension = Tension::off;
+    return all;
+  }
+
+  [[nodiscard]] Measured measured(const TriangleMesh& result) const {
+    const double percent = 100 / bounding_box(coarse_.positions).diagonal();
+    const SurfaceError error = surface_error(uniform_, result);
+    return {result.triangles.size(), {percent * error.rms, percent * error.largest}};
+  }
+
+  const Case& case_;
+  Mesh coarse_;
+  TriangleMesh uniform_;
+};
+
+/// The largest ratios met.
+struct Worst {
+  SurfaceError to_paper, to_quadric;
+  int fair = 0, all = 0;
+
+  void include(const Comparison& c) {
+    ++all;
+    if (!is_fair(c)) return;
+    ++fair;
+    raise(to_paper, c.tolerance.error, c.paper.error);
+    raise(to_quadric, c.tolerance.error, c.quadric.error);
+  }
+
+ private:
+  static void raise(SurfaceError& worst, const SurfaceError& ours, const SurfaceError& theirs) {
+    worst.rms = std::max(worst.rms, ours.rms / theirs.rms);
+    worst.largest = std::max(worst.largest, ours.largest / theirs.largest);
+  }
+};
+
+/// "RMS / largest", preceded by the number of faces where it is not the wanted one, and by a star where it is far off.
+std::string text_of(const Measured& method, size_t faces) {
+  std::string text = fixed(method.error.rms, 4) + " / " + fixed(method.error.largest, 3);
+  if (method.faces != faces) text = std::to_string(method.faces) + ": " + text;
+  return is_far_off(method.faces, faces) ? "*" + text : text;
+}
+
+std::string ratio_text(const Comparison& c, const Measured& other) {
+  return is_fair(c) ? fixed(c.tolerance.error.rms / other.error.rms, 2) : "-";
+}
+
+/// The table and the rows of --json.
+class Quality {
+ public:
+  void add(const std::string& name, size_t uniform_faces, const Comparison& c) {
+    const size_t faces = c.paper.faces;
+    const double share = 100 * static_cast<double>(faces) / static_cast<double>(uniform_faces);
+    table_.add({name, std::to_string(faces), fixed(share, 1) + " %", text_of(c.paper, faces),
+                text_of(c.flatness, faces), text_of(c.tolerance, faces), text_of(c.quadric, faces),
+                ratio_text(c, c.paper), ratio_text(c, c.quadric)});
+    worst_.include(c);
+    const std::string prefix = "quality/" + name + ", " + std::to_string(faces) + "/";
+    add_rows(prefix + "flatness, peer: the paper", c.flatness, c.paper);
+    if (!is_fair(c)) return;
+    add_rows(prefix + "tolerance, peer: the paper", c.tolerance, c.paper);
+    add_rows(prefix + "tolerance, peer: quadric", c.tolerance, c.quadric);
+  }
+
+  void print() const {
+    std::printf(
+        "RMS / largest distance from the uniform result's vertices, %% of the diagonal. Where a method's number of\n");
+    std::printf(
+        "faces differs, it stands in front; * where by more than %.0f %%. Ratios: RMS of red-green by tolerance\n",
+        100 * count_tolerance);
+    std::printf("over that of the other.\n\n");
+    table_.print();
+    std::printf("\nRed-green by tolerance met %d of %d sizes.\n", worst_.fair, worst_.all);
+    if (worst_.fair == 0) return;
+    std::printf("Its worst ratios, RMS (largest): %.2f (%.2f) to the paper, %.2f (%.2f) to quadric.\n",
+                worst_.to_paper.rms, worst_.to_paper.largest, worst_.to_quadric.rms, worst_.to_quadric.largest);
+  }
+
+  [[nodiscard]] const std::vector<ReportRow>& rows() const { return rows_; }
+
+ private:
+  void add_rows(const std::string& name, const Measured& ours, const Measured& peer) {
+    rows_.push_back({name + "/faces", static_cast<double>(ours.faces), static_cast<double>(peer.faces), "faces"});
+    rows_.push_back({name + "/rms", ours.error.rms, peer.error.rms, "% of the diagonal"});
+    rows_.push_back({name + "/largest", ours.error.largest, peer.error.largest, "% of the diagonal"});
+  }
+
+  MarkdownTable table_{{"", "faces", "of uniform", "in-place by flatness (the paper)", "red-green by flatness",
+                        "red-green by tolerance", "quadric, offline", "to the paper", "to quadric"}};
+  Worst worst_;
+  std::vector<ReportRow> rows_;
+};
+
+std::vector<ReportRow> print_quality() {
+  Quality quality;
+  for (const Case& the_case : cases()) {
+    const Subject subject(the_case);
+    for (double factor : size_factors) {
+      std::cerr << "quality: " << the_case.name << ", thresholds' angles times " << fixed(factor, 2) << '\n';
+      quality.add(the_case.name, subject.uniform_faces(), subject.compare(factor));
+    }
+  }
+  quality.print();
+  return quality.rows();
+}
+
+}  // namespace
+
+void add_quality() { add(Report{"quality", print_quality}); }
+
+}  // namespace papilio::bench

@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "core/refine.h"
+#include "tests/support/shapes.h"
+
+// Every allocation of a refinement is made to fail in turn.
+
+namespace {
+
+thread_local int64_t allocations_left = -1;  // negative: as many as wanted
+
+}  // namespace
+
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC 12 looks through both and sees new meet free
+
+void* operator new(std::size_t size) {
+  if (allocations_left >= 0 && allocations_left-- == 0) throw std::bad_alloc();
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+/// Runs with ever more allocations until one run passes; each before that must end in an `Error`.
+void fail_each_allocation(const Options& options) {
+  const Mesh coarse = build_mesh(join(icosahedron(), cube(), 5));
+  const Result expected = refine(coarse, options);
+  for (int64_t allowed = 0;; ++allowed) {
+    Mesh copy = coarse;
+    allocations_left = allowed;
+    try {
+      const Result result = refine(std::move(copy), options);
+      allocations_left = -1;
+      EXPECT_EQ(result.mesh.triangles(), expected.mesh.triangles());
+      EXPECT_GT(allowed, 20);
+      return;
+    } catch (const Error& error) {
+      allocations_left = -1;
+      ASSERT_EQ(error.fault(), Fault::out_of_memory) << allowed;
+    } catch (const std::bad_alloc&) {
+      allocations_left = -1;
+      ASSERT_LT(allowed, 3) << "only the words of the error themselves may be too much";
+    }
+  }
+}
+
+TEST(Allocation, FailureIsAnErrorWhereverItHappens) {
+  fail_each_allocation({.levels = 2});
+  fail_each_allocation({.levels = 2, .scheme = Scheme::in_place, .flatness = {0.9}, .tension = Tension::sharp});
+  fail_each_allocation({.levels = 3, .crease_angle = 60, .tolerance = 1e-3});
+  fail_each_allocation({.levels = 3, .view = View{.error_pixels = 0.1}, .max_faces = 200});
+}
+
+TEST(Allocation, MemoryLimitIsHeldBeforeTheWork) {
+  for (const Options& options :
+       {Options{.levels = 6, .memory_limit = 1 << 20}, Options{.levels = 6, .tolerance = 1e-7, .memory_limit = 1 << 20},
+        Options{.levels = 6, .scheme = Scheme::in_place, .flatness = {1}, .memory_limit = 1 << 20}}) {
+    try {
+      (void)refine(build_mesh(icosahedron()), options);
+      ADD_FAILURE() << "was not refused";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::result_too_large);
+      EXPECT_NE(std::string(error.what()).find("MiB"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace papilio

@@ -1,0 +1,48 @@
+#include "tests/support/models.h"
+
+#include <gtest/gtest.h>
+
+#include "core/mesh.h"
+#include "tests/support/invariants.h"
+
+namespace papilio {
+namespace {
+
+double signed_volume(const TriangleMesh& mesh) {
+  double six_volumes = 0;
+  for (const Triangle& t : mesh.triangles)
+    six_volumes +=
+        dot(to_double(mesh.positions[t[0]]), cross(to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])));
+  return six_volumes / 6;
+}
+
+struct Expected {
+  uint32_t vertices, faces;
+  int64_t euler_characteristic;
+};
+
+void expect_clean(const TriangleMesh& model, const Expected& expected) {
+  BuildReport report;
+  const Mesh mesh = build_mesh(model, &report);
+  EXPECT_EQ(mesh.topology.vertex_count, expected.vertices);
+  EXPECT_EQ(mesh.topology.face_count(), expected.faces);
+  EXPECT_EQ(mesh.topology.euler_characteristic(), expected.euler_characteristic);
+  EXPECT_EQ(report.welded_points + report.isolated_points, 0U);
+  EXPECT_EQ(report.degenerate_faces + report.repeated_faces, 0U);
+  EXPECT_EQ(report.boundary_edges + report.non_manifold_edges + report.misoriented_edges, 0U);
+  EXPECT_EQ(report.pinched_vertices, 0U);
+  EXPECT_TRUE(test::is_consistent(mesh));
+}
+
+TEST(Models, MugHasTheCountsOfThePaperAndIsClosed) { expect_clean(test::mug(), {172, 344, 0}); }
+
+TEST(Models, WheelHasTheCountsOfThePaperAndIsClosed) { expect_clean(test::wheel(), {163, 290, 18}); }
+
+TEST(Models, FacesLookOutward) {
+  // The clay of a mug of these measures, and the wheel's parts added up: torus, hub, spokes; all coarse polygons.
+  EXPECT_NEAR(signed_volume(test::mug()), 115, 15);
+  EXPECT_NEAR(signed_volume(test::wheel()), 8300, 500);
+}
+
+}  // namespace
+}  // namespace papilio

@@ -1,0 +1,207 @@
+#include "core/tension.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/butterfly.h"
+#include "core/normals.h"
+#include "core/refine.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+std::vector<Vec3d> in_double(const Mesh& mesh) {
+  std::vector<Vec3d> positions;
+  for (Vec3f p : mesh.positions) positions.push_back(to_double(p));
+  return positions;
+}
+
+SplitPlan everything(const Mesh& mesh) { return SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1)); }
+
+struct Ends {
+  Vec3d a, b;
+  [[nodiscard]] Vec3d middle() const { return 0.5 * (a + b); }
+  [[nodiscard]] double size() const { return length(b - a); }
+};
+
+Ends ends_of(const Mesh& mesh, uint32_t edge, const std::vector<Vec3d>& positions) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return {positions[mesh.topology.origin[h]], positions[mesh.topology.tip(h)]};
+}
+
+TEST(Tension, HingeFactorFallsFromSixtyToNinetyDegrees) {
+  EXPECT_EQ(hinge_factor(1), 1);
+  EXPECT_EQ(hinge_factor(0.5), 1);
+  EXPECT_EQ(hinge_factor(0), 0);
+  EXPECT_EQ(hinge_factor(-1), 0);
+  EXPECT_EQ(hinge_factor(0.25), 0.5);
+  EXPECT_GT(hinge_factor(0.3), hinge_factor(0.2));
+}
+
+/// How far the refined surface reaches beyond the box of the mesh, as a share of `size`.
+double overshoot(const TriangleMesh& triangles, Tension tension, double size) {
+  const Mesh coarse = build_mesh(triangles);
+  const Box before = bounding_box(coarse.positions);
+  const Box after = bounding_box(refine(coarse, {.levels = 3, .tension = tension}).mesh.positions);
+  const Vec3f low = before.min - after.min;
+  const Vec3f high = after.max - before.max;
+  return std::max({low.x, low.y, low.z, high.x, high.y, high.z}) / size;
+}
+
+void expect_overshoots(const TriangleMesh& mesh, double size, double plain, double soft) {
+  EXPECT_NEAR(overshoot(mesh, Tension::off, size), plain, 5e-4);
+  EXPECT_NEAR(overshoot(mesh, Tension::soft, size), soft, 5e-4);
+  EXPECT_LE(overshoot(mesh, Tension::sharp, size), 1e-6);
+}
+
+TEST(Tension, TableOfOvershoots) {
+  {
+    SCOPED_TRACE("cube");
+    expect_overshoots(cube(), 1, 0.175, 0.086);
+  }
+  {
+    SCOPED_TRACE("slab 1 x 1 x 0.1");
+    expect_overshoots(box({4, 4, 1}, {1, 1, 0.1F}), 1, 0.052, 0.031);
+  }
+  {
+    SCOPED_TRACE("bar 1 x 1 x 6, across");
+    expect_overshoots(box({1, 1, 6}, {1, 1, 6}), 1, 0.217, 0.128);
+  }
+  {
+    SCOPED_TRACE("rim of a wheel with twelve corners");
+    expect_overshoots(square_ring(12, 0.65F, 1, 0.4F), 2, 0.025, 0.0002);
+  }
+}
+
+TEST(Tension, SmoothShapesAreUntouched) {
+  for (const TriangleMesh& shape : {icosahedron(), torus(12, 8)}) {
+    const Mesh coarse = build_mesh(shape);
+    const Mesh plain = refine(coarse, {.levels = 3, .tension = Tension::off}).mesh;
+    for (Tension tension : {Tension::soft, Tension::sharp}) {
+      const Mesh tensed = refine(coarse, {.levels = 3, .tension = tension}).mesh;
+      for (size_t v = 0; v < plain.positions.size(); ++v)
+        ASSERT_LE(length(to_double(plain.positions[v]) - to_double(tensed.positions[v])), 2e-6);
+    }
+  }
+}
+
+TEST(Tension, TetrahedronStaysFlat) {
+  // Its exterior angles are 109 degrees: every factor is 0, and every vertex a midpoint.
+  const Mesh coarse = build_mesh(tetrahedron());
+  const TensionField field = tension_field(coarse.topology, face_normals(coarse), Tension::soft);
+  const std::vector<Vec3d> positions = in_double(coarse);
+  const auto made = butterfly<double>(coarse.topology, positions, everything(coarse), 0, &field);
+  for (uint32_t e = 0; e < made.size(); ++e) EXPECT_LE(length(made[e] - ends_of(coarse, e, positions).middle()), 1e-15);
+}
+
+/// Calls `check(edge, plain, tensed)` for each edge inside the surface that the bound leaves alone, every factor
+/// being 1.
+template <class Check>
+void with_all_factors_one(const Mesh& mesh, const std::vector<Vec3d>& positions, const Check& check) {
+  const TensionField ones{.factor = std::vector<float>(mesh.topology.edge_count(), 1)};
+  const auto plain = butterfly<double>(mesh.topology, positions, everything(mesh));
+  const auto tensed = butterfly<double>(mesh.topology, positions, everything(mesh), 0, &ones);
+  for (uint32_t e = 0; e < plain.size(); ++e) {
+    if (mesh.topology.kind[e] != EdgeKind::smooth) continue;
+    const Ends ends = ends_of(mesh, e, positions);
+    if (length(plain[e] - ends.middle()) < tension_bound * ends.size()) check(e, plain[e], tensed[e]);
+  }
+}
+
+TEST(Tension, EqualsThePlainSchemeWhereEveryFactorIsOne) {
+  const auto expect_equal = [](uint32_t e, Vec3d plain, Vec3d tensed) {
+    ASSERT_LE(length(plain - tensed), 1e-12 * (1 + length(plain))) << e;
+  };
+  for (uint32_t ring = 3; ring <= 40; ++ring) {
+    const Mesh cone = build_mesh(bipyramid(ring));
+    with_all_factors_one(cone, in_double(cone), expect_equal);
+  }
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    std::mt19937 random(seed);
+    const Mesh mesh = build_mesh(random_manifold(random));
+    with_all_factors_one(mesh, in_double(mesh), expect_equal);
+  }
+  const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
+  with_all_factors_one(bunny, in_double(bunny), expect_equal);
+}
+
+TEST(Tension, IsAffineInvariantForGivenFactors) {
+  const Mesh mesh = build_mesh(real_mesh("bunny600.obj"));
+  const TensionField field = tension_field(mesh.topology, face_normals(mesh), Tension::soft);
+  ASSERT_LT(*std::ranges::min_element(field.factor), 0.5F);
+  const auto map = [](Vec3d p) {
+    return Vec3d{1.5 * p.x + 0.25 * p.y - 0.5 * p.z + 3, 0.75 * p.y + 0.125 * p.x - 1, 1.25 * p.z + 0.5 * p.x};
+  };
+  const std::vector<Vec3d> before = in_double(mesh);
+  std::vector<Vec3d> after = before;
+  std::ranges::transform(after, after.begin(), map);
+  const auto q_before = butterfly<double>(mesh.topology, before, everything(mesh), 0, &field);
+  const auto q_after = butterfly<double>(mesh.topology, after, everything(mesh), 0, &field);
+  uint32_t compared = 0;
+  for (uint32_t e = 0; e < q_before.size(); ++e) {
+    const Ends there = ends_of(mesh, e, before);
+    const Ends here = ends_of(mesh, e, after);
+    const double bound = 0.999 * tension_bound;  // the bound is on lengths, which no affine map keeps
+    if (length(q_before[e] - there.middle()) > bound * there.size()) continue;
+    if (length(q_after[e] - here.middle()) > bound * here.size()) continue;
+    ASSERT_LE(length(map(q_before[e]) - q_after[e]), 1e-12 * (1 + length(q_after[e]))) << e;
+    ++compared;
+  }
+  EXPECT_GT(compared, q_before.size() / 2);
+}
+
+TEST(Tension, NothingGoesFurtherThanTheBound) {
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    std::mt19937 random(seed);
+    const Mesh mesh = build_mesh(random_manifold(random));
+    const std::vector<Vec3d> positions = in_double(mesh);
+    for (Tension tension : {Tension::soft, Tension::sharp}) {
+      const TensionField field = tension_field(mesh.topology, face_normals(mesh), tension);
+      const auto made = butterfly<double>(mesh.topology, positions, everything(mesh), 1.0 / 64, &field);
+      for (uint32_t e = 0; e < made.size(); ++e) {
+        const Ends ends = ends_of(mesh, e, positions);
+        ASSERT_LE(length(made[e] - ends.middle()), (tension_bound + 1e-12) * ends.size()) << seed;
+      }
+    }
+  }
+}
+
+TEST(Tension, BothHalfEdgesGiveTheSameBits) {
+  for (uint32_t seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    Mesh mesh = build_mesh(random_manifold(random));
+    for (Tension tension : {Tension::soft, Tension::sharp}) {
+      const TensionField field = tension_field(mesh.topology, face_normals(mesh), tension);
+      const auto before = butterfly(mesh.topology, mesh.positions, everything(mesh), 0.01F, &field);
+      Mesh turned = mesh;
+      for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e)
+        if (const uint32_t t = mesh.topology.twin[mesh.topology.half_edge[e]]; t != none)
+          turned.topology.half_edge[e] = t;
+      ASSERT_EQ(butterfly(turned.topology, turned.positions, everything(turned), 0.01F, &field), before) << seed;
+    }
+  }
+}
+
+TEST(Tension, SharpEdgesFollowTheirFeature) {
+  // The rim of a drum with 24 corners: its circle comes out round, not a polygon.
+  const Mesh drum = build_mesh(square_ring(24, 0.6F, 1, 0.5F));
+  const Mesh sharp = refine(drum, {.levels = 3, .tension = Tension::sharp}).mesh;
+  const Mesh soft = refine(drum, {.levels = 3, .tension = Tension::soft}).mesh;
+  const auto least_outer_radius = [](const Mesh& mesh) {
+    double least = 2;
+    for (Vec3f p : mesh.positions)
+      if (p.z == 0 && std::hypot(p.x, p.y) > 0.975) least = std::min(least, double{std::hypot(p.x, p.y)});
+    return least;
+  };
+  EXPECT_GT(least_outer_radius(sharp), 0.9995);
+  EXPECT_LT(least_outer_radius(soft), least_outer_radius(sharp));
+}
+
+}  // namespace
+}  // namespace papilio
