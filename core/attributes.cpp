@@ -17,8 +17,9 @@ void check(const TriangleMesh& input) {
       throw Error(Fault::index_out_of_range,
                   "Attribute " + std::to_string(a) + " has not as many values as the mesh has points.");
     if (!std::ranges::all_of(attribute.values, [](double v) { return std::isfinite(v); }))
-      throw Error(Fault::not_finite,
-                  "Attribute " + std::to_string(a) + " has a value that is NaN or infinite. Repair the mesh.");
+      throw Error(Fault::not_finite, "Attribute " + std::to_string(a) +
+                                         " (the first besides positions is 0) has a value that is NaN or infinite. "
+                                         "Repair the mesh, or leave the attribute out.");
   }
 }
 
@@ -66,7 +67,7 @@ void append_mean(Attribute& attribute, uint32_t p, uint32_t q) {
   const size_t begin = attribute.values.size();
   double size = 0;
   for (uint32_t i = 0; i < attribute.components; ++i) {
-    const double mean = 0.5 * (values_of(attribute, p)[i] + values_of(attribute, q)[i]);
+    const double mean = 0.5 * values_of(attribute, p)[i] + 0.5 * values_of(attribute, q)[i];  // the sum may overflow
     attribute.values.push_back(mean);
     size += mean * mean;
   }

@@ -73,10 +73,10 @@ void skip_metadata(Cursor& cursor) {
 
 }  // namespace
 
-void require_within(uint64_t count, uint64_t limit, const char* what) {
+void require_within(uint64_t count, uint64_t limit, const char* what, const char* advice) {
   if (count > limit)
     throw Problem(Code::mesh_too_large, "The mesh has " + std::to_string(count) + " " + what + "; the limit is " +
-                                            std::to_string(limit) + ". Send a coarser mesh.");
+                                            std::to_string(limit) + ". " + advice);
 }
 
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {

@@ -20,7 +20,8 @@ struct DracoHeader {
 /// point cloud), mesh_too_large.
 [[nodiscard]] DracoHeader read_draco_header(std::string_view bytes, const Limits& limits);
 
-/// Throws `Problem` mesh_too_large, naming the limit, when there are more than it allows of `what` ("faces").
-void require_within(uint64_t count, uint64_t limit, const char* what);
+/// Throws `Problem` mesh_too_large, naming the limit, when there are more than it allows of `what` ("faces"). `advice`
+/// says what to do about it.
+void require_within(uint64_t count, uint64_t limit, const char* what, const char* advice = "Send a coarser mesh.");
 
 }  // namespace papilio::proto

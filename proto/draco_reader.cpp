@@ -1,24 +1,53 @@
 #include "proto/draco_reader.h"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
+#include "proto/draco_attributes.h"
 #include "proto/draco_header.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {
 namespace {
 
-std::unique_ptr<draco::Mesh> decode(std::string_view bytes) {
-  draco::DecoderBuffer buffer;
-  buffer.Init(bytes.data(), bytes.size());
+/// One of Draco's decoders, stopped between the attributes' declarations and their values: 255 attributes of 255
+/// components may be declared, and a value that is the same everywhere takes next to no bytes.
+template <class Decoder>
+class BoundedDecoder : public Decoder {
+ public:
+  std::unique_ptr<draco::Mesh> run(std::string_view bytes) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(bytes.data(), bytes.size());
+    auto mesh = std::make_unique<draco::Mesh>();
+    const bool ok = this->Decode(draco::DecoderOptions(), &buffer, mesh.get()).ok();
+    if (refusal_) throw Problem(*refusal_);
+    return ok ? std::move(mesh) : nullptr;
+  }
+
+ private:
+  bool DecodeAllAttributes() override {
+    try {
+      require_attributes_within_limits(*this->point_cloud());
+    } catch (const Problem& problem) {  // not through Draco, which is built without exceptions
+      refusal_ = problem;
+      return false;
+    }
+    return Decoder::DecodeAllAttributes();
+  }
+
+  std::optional<Problem> refusal_;
+};
+
+std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool edgebreaker) {
   try {
-    draco::Decoder decoder;
-    auto result = decoder.DecodeMeshFromBuffer(&buffer);
-    if (result.ok()) return std::move(result).value();
+    std::unique_ptr<draco::Mesh> mesh = edgebreaker ? BoundedDecoder<draco::MeshEdgebreakerDecoder>().run(bytes)
+                                                    : BoundedDecoder<draco::MeshSequentialDecoder>().run(bytes);
+    if (mesh) return mesh;
   } catch (const std::bad_alloc&) {  // a damaged stream asks for absurd sizes
   } catch (const std::length_error&) {
   }
@@ -37,16 +66,16 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_draco(std::string_view bytes, const Limits& limits) {
-  (void)read_draco_header(bytes, limits);
-  const std::unique_ptr<draco::Mesh> mesh = decode(bytes);
+FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
+  const DracoHeader header = read_draco_header(bytes, limits);
+  const std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
   // A point for every corner is the most that seams can make of a mesh.
   require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
   if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
-  TriangleMesh out;
+  FormattedMesh out;
   out.positions.resize(mesh->num_points());
   for (draco::PointIndex p(0); p < mesh->num_points(); ++p) {
     const draco::AttributeValueIndex value = attribute.mapped_index(p);
@@ -64,6 +93,7 @@ TriangleMesh read_draco(std::string_view bytes, const Limits& limits) {
       out.triangles[f.value()][corner] = p;
     }
   }
+  read_attributes(*mesh, out);
   return out;
 }
 

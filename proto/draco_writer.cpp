@@ -1,68 +1,156 @@
 #include "proto/draco_writer.h"
 
-#include <draco/compression/encode.h>
+#include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "core/normals.h"
+#include "proto/draco_attributes.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {
 namespace {
 
 constexpr int normal_bits = 10;
+// A quarter of a texel of a texture of 4096; at 12 bits a whole one, and the picture would swim where faces are small.
+constexpr int texture_bits = 14;
+constexpr int value_bits = 16;  // of values whose meaning is not known
+constexpr double largest_integer = 1 << 20;
 constexpr double smallest_range = 1e-30;  // below, Draco's steps a unit overflow
-
-void add_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values) {
-  draco::GeometryAttribute description;
-  description.Init(type, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);
-  const int id = out.AddAttribute(description, true, static_cast<uint32_t>(values.size()));
-  out.attribute(id)->buffer()->Write(0, values.data(), values.size() * sizeof(Vec3f));
-}
-
-std::unique_ptr<draco::Mesh> to_draco(const Mesh& mesh) {
-  const Topology& topology = mesh.topology;
-  auto result = std::make_unique<draco::Mesh>();  // draco::Mesh cannot be moved
-  draco::Mesh& out = *result;
-  out.set_num_points(topology.vertex_count);
-  out.SetNumFaces(topology.face_count());
-  for (uint32_t f = 0; f < topology.face_count(); ++f) {
-    draco::Mesh::Face face;
-    for (uint32_t i = 0; i < 3; ++i) face[i] = topology.origin[3 * f + i];
-    out.SetFace(draco::FaceIndex(f), face);
-  }
-  add_attribute(out, draco::GeometryAttribute::POSITION, mesh.positions);
-  return result;
-}
 
 std::string exact_text(float value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// What Encoder::SetAttributeExplicitQuantization sets, but to the bit: that writes numbers with six decimals, in which
-/// the box of a small mesh is lost.
-draco::Options explicit_quantization(const QuantizationBox& box, int bits) {
+/// What ExpertEncoder::SetAttributeExplicitQuantization sets, but to the bit: that writes numbers with six decimals, in
+/// which the box of a small mesh is lost.
+draco::Options explicit_quantization(const std::vector<float>& origin, float range, int bits) {
+  std::string text;
+  for (float component : origin) text += (text.empty() ? "" : " ") + exact_text(component);
   draco::Options options;
   options.SetInt("quantization_bits", bits);
-  options.SetString("quantization_origin",
-                    exact_text(box.origin.x) + ' ' + exact_text(box.origin.y) + ' ' + exact_text(box.origin.z));
-  options.SetString("quantization_range", exact_text(box.range));
+  options.SetString("quantization_origin", text);
+  options.SetString("quantization_range", exact_text(range));
   return options;
 }
 
-std::string encode(draco::Encoder& encoder, const draco::Mesh& mesh) {
-  // Named, since the automatic choice is sequential at speed 10: eleven times the bytes.
-  encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-  draco::EncoderBuffer buffer;
-  const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
-  if (!status.ok()) throw std::runtime_error("Draco's encoder refuses the mesh: " + status.error_msg_string());
-  return {buffer.data(), buffer.size()};
+/// A mesh on its way to Draco.
+class Encoding {
+ public:
+  /// With `attributes` points are what the faces name, else vertices.
+  Encoding(const Mesh& mesh, bool attributes) : mesh_(mesh), encoder_(out_) {
+    if (attributes) points_.emplace(mesh);
+    const std::vector<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
+    out_.set_num_points(attributes ? mesh.attributes.point_count : mesh.topology.vertex_count);
+    out_.SetNumFaces(mesh.topology.face_count());
+    for (uint32_t f = 0; f < mesh.topology.face_count(); ++f)
+      out_.SetFace(draco::FaceIndex(f), {draco::PointIndex(corner[3 * f]), draco::PointIndex(corner[3 * f + 1]),
+                                         draco::PointIndex(corner[3 * f + 2])});
+    add_vertices(draco::GeometryAttribute::POSITION, mesh.positions);
+  }
+
+  int add_vertices(draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values) {
+    return add_vertex_attribute(out_, type, values, points_ ? &*points_ : nullptr);
+  }
+
+  int add(size_t number, const AttributeFormat& format) {
+    const Attribute& attribute = mesh_.attributes.attributes[number];
+    const int added = add_point_attribute(out_, attribute, format, *points_);
+    if (is_too_large(attribute, format)) {
+      options().SetAttributeInt(added, "prediction_scheme", draco::PREDICTION_NONE);
+      encoder_.SetUseBuiltInAttributeCompression(false);  // of all attributes, there is no other way
+    }
+    return added;
+  }
+
+  [[nodiscard]] draco::EncoderOptions& options() { return encoder_.options(); }
+  void set_unique_id(int number, uint32_t id) { out_.attribute(number)->set_unique_id(id); }
+
+  std::string run() {
+    // Named, since the automatic choice is sequential at speed 10: eleven times the bytes.
+    encoder_.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+    // Above speed 5 Draco would cut the surface open at seams, and write their positions twice.
+    if (points_) options().SetGlobalBool("split_mesh_on_seams", false);
+    draco::EncoderBuffer buffer;
+    const draco::Status status = encoder_.EncodeToBuffer(&buffer);
+    if (!status.ok()) throw std::runtime_error("Draco's encoder refuses the mesh: " + status.error_msg_string());
+    return {buffer.data(), buffer.size()};
+  }
+
+ private:
+  /// Draco's entropy coder counts symbols in a table as long as the largest, and crashes where predictions from values
+  /// of 31 bits overflow.
+  static bool is_too_large(const Attribute& attribute, const AttributeFormat& format) {
+    if (format.type != ValueType::int32 && format.type != ValueType::uint32) return false;
+    const auto [low, high] = std::ranges::minmax(attribute.values);
+    return std::max(-low, high) > largest_integer;
+  }
+
+  const Mesh& mesh_;
+  draco::Mesh out_;
+  draco::ExpertEncoder encoder_;
+  std::optional<VertexPoints> points_;
+};
+
+/// Whether Draco's octahedral coding takes it.
+bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
+  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
+}
+
+AttributeEncoding::Grid grid_of(const Attribute& attribute) {
+  AttributeEncoding::Grid grid;
+  double range = 0;
+  for (uint32_t i = 0; i < attribute.components; ++i) {
+    double low = attribute.values[i];
+    double high = low;
+    for (size_t k = i; k < attribute.values.size(); k += attribute.components) {
+      low = std::min(low, attribute.values[k]);
+      high = std::max(high, attribute.values[k]);
+    }
+    grid.origin.push_back(static_cast<float>(low));
+    range = std::max(range, high - low);
+  }
+  if (range < smallest_range) range = 1;  // all values are the origin
+  if (range < static_cast<double>(std::numeric_limits<float>::max())) grid.range = static_cast<float>(range);
+  return grid;
+}
+
+void set_quantization(Encoding& encoding, int number, const Attribute& attribute, const AttributeFormat& format,
+                      const AttributeEncoding::Grid& grid) {
+  if (format.type != ValueType::float32) return;
+  if (is_unit_normal(attribute, format)) {
+    encoding.options().SetAttributeInt(number, "quantization_bits", normal_bits);
+  } else if (format.kind != AttributeKind::normal && grid.range > 0) {
+    const int bits = format.kind == AttributeKind::tex_coord ? texture_bits : value_bits;
+    encoding.options().SetAttributeOptions(number, explicit_quantization(grid.origin, grid.range, bits));
+  }
+}
+
+/// Attributes to be written: all but the mesh's own normals where new ones replace them.
+std::vector<size_t> choose_attributes(const MeshFormat& format, bool new_normals) {
+  std::vector<size_t> chosen;
+  for (size_t a = 0; a < format.attributes.size(); ++a)
+    if (!new_normals || format.attributes[a].kind != AttributeKind::normal) chosen.push_back(a);
+  return chosen;
+}
+
+/// The id of the normals that are replaced, or the lowest that is free.
+uint32_t id_for_normals(const MeshFormat& format) {
+  const auto& attributes = format.attributes;
+  const auto own = std::ranges::find(attributes, AttributeKind::normal, &AttributeFormat::kind);
+  if (own != attributes.end()) return own->id;
+  uint32_t id = 0;
+  while (id == format.position_id || std::ranges::count(attributes, id, &AttributeFormat::id) > 0) ++id;
+  return id;
 }
 
 }  // namespace
@@ -78,22 +166,39 @@ QuantizationBox quantization_box(const std::vector<Vec3f>& coarse) {
   return {to_float(centre - 0.5 * Vec3d{range, range, range}), static_cast<float>(range)};
 }
 
-std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options) {
-  const std::unique_ptr<draco::Mesh> out = to_draco(mesh);
-  draco::Encoder encoder;
-  encoder.SetSpeedOptions(options.speed, options.speed);
-  encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION,
-                                        explicit_quantization(box, options.position_bits));
-  if (options.normals) {
-    add_attribute(*out, draco::GeometryAttribute::NORMAL, vertex_normals(mesh));
-    encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, normal_bits);
-  }
-  return encode(encoder, *out);
+AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format) {
+  AttributeEncoding encoding{std::move(format), {}};
+  for (const Attribute& attribute : coarse.attributes.attributes) encoding.grids.push_back(grid_of(attribute));
+  return encoding;
 }
 
-std::string write_draco_exact(const TriangleMesh& mesh) {
-  draco::Encoder encoder;
-  return encode(encoder, *to_draco(build_mesh(mesh)));
+std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
+                        const AttributeEncoding& attributes) {
+  const MeshFormat& format = attributes.format;
+  const std::vector<size_t> chosen = choose_attributes(format, options.normals);
+  Encoding encoding(mesh, !chosen.empty());
+  encoding.options().SetSpeed(options.speed, options.speed);
+  encoding.options().SetAttributeOptions(
+      0, explicit_quantization({box.origin.x, box.origin.y, box.origin.z}, box.range, options.position_bits));
+  encoding.set_unique_id(0, format.position_id);
+  for (size_t a : chosen) {
+    const int number = encoding.add(a, format.attributes[a]);
+    set_quantization(encoding, number, mesh.attributes.attributes[a], format.attributes[a], attributes.grids[a]);
+  }
+  if (options.normals) {
+    const int number = encoding.add_vertices(draco::GeometryAttribute::NORMAL, vertex_normals(mesh));
+    encoding.options().SetAttributeInt(number, "quantization_bits", normal_bits);
+    encoding.set_unique_id(number, id_for_normals(format));
+  }
+  return encoding.run();
+}
+
+std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format) {
+  const Mesh mesh = build_mesh(triangles);
+  Encoding encoding(mesh, !format.attributes.empty());
+  encoding.set_unique_id(0, format.position_id);
+  for (size_t a = 0; a < format.attributes.size(); ++a) encoding.add(a, format.attributes[a]);
+  return encoding.run();
 }
 
 }  // namespace papilio::proto

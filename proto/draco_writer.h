@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "proto/mesh_format.h"
 
 namespace papilio::proto {
 
@@ -19,19 +20,35 @@ struct QuantizationBox {
 /// Throws `Problem` mesh_unusable for a mesh smaller than 1e-30.
 [[nodiscard]] QuantizationBox quantization_box(const std::vector<Vec3f>& coarse);
 
+/// How the attributes of a mesh are written. As with positions the grids come from the coarse mesh alone: values
+/// between its own are all that interpolation makes.
+struct AttributeEncoding {
+  struct Grid {
+    std::vector<float> origin;  ///< [components] lowest values
+    float range = 0;            ///< widest extent of a component; 0: not quantised
+  };
+  MeshFormat format{};
+  std::vector<Grid> grids{};  ///< one for each attribute
+};
+[[nodiscard]] AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format);
+
 struct OutputOptions {
   int position_bits = 14;  ///< 8..16, bits of a coordinate
   int speed = 7;           ///< 0..10, Draco's encoding speed: 0 smallest, 10 fastest
-  bool normals = false;    ///< adds unit normals of the vertices, at 10 bits
+  bool normals = false;    ///< adds unit normals of the vertices, at 10 bits, in place of the mesh's own
 };
 
-/// Encodes the mesh as a Draco 2.2 edgebreaker stream. The mesh must have faces; positions must be finite.
+/// Encodes the mesh as a Draco 2.2 edgebreaker stream. The mesh must have faces; positions must be finite. Each vertex
+/// has one position; attributes that `attributes` describes (all, in order, or none) have their seams. 32-bit floats
+/// are quantised: texture coordinates at 14 bits, unit normals at 10, the rest at 16. All else is kept: integers
+/// (uint32 to 2^31 - 1), float64, normals that are not three floats, floats with a range that is no float's.
 /// Throws std::runtime_error with Draco's words when it refuses.
-[[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options);
+[[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
+                                      const AttributeEncoding& attributes = {});
 
-/// Encodes triangles as they are, positions to the bit: what the client sends of a mesh that is not Draco
-/// yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws `Error` as
-/// `build_mesh`.
-[[nodiscard]] std::string write_draco_exact(const TriangleMesh& mesh);
+/// Encodes triangles as they are, positions and the attributes of `format` to the bit: what the client sends of a mesh
+/// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws
+/// `Error` as `build_mesh`.
+[[nodiscard]] std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format = {});
 
 }  // namespace papilio::proto

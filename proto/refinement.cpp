@@ -63,7 +63,11 @@ Refinement::Refinement(std::string_view draco, const Parameters& parameters, con
     : options_(parameters.options), output_(parameters.output) {
   Stopwatch watch;
   options_.face_limit = limits.max_output_faces;
-  coarse_ = in_words_of_the_wire([&] { return build_mesh(read_draco(draco, limits), &found_); });
+  in_words_of_the_wire([&] {
+    FormattedMesh input = read_draco(draco, limits);
+    coarse_ = build_mesh(input, &found_);
+    attributes_ = attribute_encoding(coarse_, std::move(input.format));
+  });
   box_ = quantization_box(coarse_.positions);
   in_words_of_the_wire([&] { check_room(coarse_.topology.face_count(), options_); });
   times_.decode = watch.lap();
@@ -78,7 +82,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   EncodedLevel made;
   const auto encode = [&](const Mesh& mesh, int level) {
     times_.refine += watch.lap();
-    made.draco = write_draco(mesh, box_, output_);
+    made.draco = write_draco(mesh, box_, output_, attributes_);
     times_.encode += watch.lap();
     made.statistics.level = level;
     made.statistics.vertices = mesh.topology.vertex_count;

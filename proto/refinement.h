@@ -66,6 +66,7 @@ class Refinement {
   Mesh coarse_;
   BuildReport found_;
   QuantizationBox box_;
+  AttributeEncoding attributes_;
   StageTimes times_;
 };
 

@@ -12,7 +12,7 @@ constexpr proto::Limits own_limits{face_count_limit, face_count_limit, face_coun
 
 }  // namespace
 
-TriangleMesh load_triangles(const std::filesystem::path& path) {
+proto::FormattedMesh load_triangles(const std::filesystem::path& path) {
   const Format format = format_of(path);
   if (format == Format::drc) return proto::read_draco(read_bytes(path, kMaxFileBytes), own_limits);
   return read_triangles(path, format);
@@ -21,15 +21,18 @@ TriangleMesh load_triangles(const std::filesystem::path& path) {
 std::string load_draco(const std::filesystem::path& path) {
   const Format format = format_of(path);
   if (format == Format::drc) return read_bytes(path, kMaxFileBytes);
-  return proto::write_draco_exact(read_triangles(path, format));
+  const proto::FormattedMesh mesh = read_triangles(path, format);
+  return proto::write_draco_exact(mesh, mesh.format);
 }
 
 void save_draco(const std::filesystem::path& path, std::string_view draco) {
   const Format format = format_of(path);
-  if (format == Format::drc)
+  if (format == Format::drc) {
     write_atomically(path, draco);
-  else
-    write_triangles(path, format, proto::read_draco(draco, own_limits));
+    return;
+  }
+  const proto::FormattedMesh mesh = proto::read_draco(draco, own_limits);
+  write_triangles(path, format, mesh, mesh.format);
 }
 
 }  // namespace papilio::client

@@ -5,16 +5,16 @@
 #include <string_view>
 
 #include "client/mesh_file/mesh_file.h"
-#include "core/triangle_mesh.h"
+#include "proto/mesh_format.h"
 
 // Mesh files of every kind as Draco streams, which are all that a refinement takes and gives.
 
 namespace papilio::client {
 
-/// A mesh file's triangles. Throws `FileError`, and `proto::Problem` for a bad Draco stream.
-[[nodiscard]] TriangleMesh load_triangles(const std::filesystem::path& path);
+/// A mesh file's triangles and attributes. Throws `FileError`, and `proto::Problem` for a bad Draco stream.
+[[nodiscard]] proto::FormattedMesh load_triangles(const std::filesystem::path& path);
 
-/// A mesh file as a Draco stream: .drc as it is, others encoded with their positions to the bit. Throws
+/// A mesh file as a Draco stream: .drc as it is, others encoded with their positions and attributes to the bit. Throws
 /// `FileError`, and `Error` where there is no surface in the file.
 [[nodiscard]] std::string load_draco(const std::filesystem::path& path);
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/triangle_mesh.h"
+#include "proto/mesh_format.h"
 
 /// The four formats between bytes and triangles; `mesh_file.h` is what others include.
 ///
@@ -24,15 +24,15 @@ struct ParseError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-[[nodiscard]] TriangleMesh parse_obj(std::string_view bytes);
+[[nodiscard]] proto::FormattedMesh parse_obj(std::string_view bytes);
 [[nodiscard]] TriangleMesh parse_off(std::string_view bytes);
-[[nodiscard]] TriangleMesh parse_ply(std::string_view bytes);
+[[nodiscard]] proto::FormattedMesh parse_ply(std::string_view bytes);
 [[nodiscard]] TriangleMesh parse_stl(std::string_view bytes);
 
-/// Indices must be in range.
-[[nodiscard]] std::string format_obj(const TriangleMesh& mesh);
+/// Indices must be in range. `format` describes all of the mesh's attributes, in order, or none.
+[[nodiscard]] std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format);
 [[nodiscard]] std::string format_off(const TriangleMesh& mesh);
-[[nodiscard]] std::string format_ply(const TriangleMesh& mesh);
+[[nodiscard]] std::string format_ply(const TriangleMesh& mesh, const proto::MeshFormat& format);
 [[nodiscard]] std::string format_stl(const TriangleMesh& mesh);
 
 }  // namespace papilio::client

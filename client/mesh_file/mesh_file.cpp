@@ -22,28 +22,28 @@ constexpr std::array<std::pair<std::string_view, Format>, 5> kExtensions{{
 
 std::logic_error draco_is_elsewhere() { return std::logic_error("drc is read and written by papilio::proto"); }
 
-TriangleMesh parse(Format format, std::string_view bytes) {
+proto::FormattedMesh parse(Format format, std::string_view bytes) {
   switch (format) {
     case Format::obj:
       return parse_obj(bytes);
     case Format::ply:
       return parse_ply(bytes);
     case Format::off:
-      return parse_off(bytes);
+      return {parse_off(bytes), {}};
     case Format::stl:
-      return parse_stl(bytes);
+      return {parse_stl(bytes), {}};
     case Format::drc:
       break;
   }
   throw draco_is_elsewhere();
 }
 
-std::string to_bytes(Format format, const TriangleMesh& mesh) {
+std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshFormat& mesh_format) {
   switch (format) {
     case Format::obj:
-      return format_obj(mesh);
+      return format_obj(mesh, mesh_format);
     case Format::ply:
-      return format_ply(mesh);
+      return format_ply(mesh, mesh_format);
     case Format::off:
       return format_off(mesh);
     case Format::stl:
@@ -82,12 +82,12 @@ Format format_of(const std::filesystem::path& path) {
   throw FileError(path, found + "; use one of .drc, .obj, .ply, .off, .stl");
 }
 
-TriangleMesh read_triangles(const std::filesystem::path& path, Format format) {
+proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format) {
   if (format == Format::drc) throw draco_is_elsewhere();
   const std::string bytes = read_bytes(path, kMaxFileBytes);
   if (bytes.empty()) throw FileError(path, "is empty; export the mesh again");
   try {
-    TriangleMesh mesh = parse(format, bytes);
+    proto::FormattedMesh mesh = parse(format, bytes);
     if (mesh.triangles.empty()) throw ParseError("holds no triangles");
     if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
       throw ParseError(describe_broken(mesh, sound));
@@ -97,7 +97,8 @@ TriangleMesh read_triangles(const std::filesystem::path& path, Format format) {
   }
 }
 
-void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh) {
+void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
+                     const proto::MeshFormat& mesh_format) {
   if (format == Format::drc) throw draco_is_elsewhere();
   if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
     throw std::invalid_argument(describe_broken(mesh, sound));
@@ -105,7 +106,7 @@ void write_triangles(const std::filesystem::path& path, Format format, const Tri
   constexpr size_t kMost = std::numeric_limits<int32_t>::max();
   if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)
     throw FileError(path, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
-  write_atomically(path, to_bytes(format, mesh));
+  write_atomically(path, to_bytes(format, mesh, mesh_format));
 }
 
 }  // namespace papilio::client

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "client/mesh_file/file_bytes.h"
-#include "core/triangle_mesh.h"
+#include "proto/mesh_format.h"
 
 namespace papilio::client {
 
@@ -19,22 +19,27 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 
 /// Positions and triangles as they stand in the file: repeated, degenerate and non-manifold faces are kept,
 /// unused positions too. Polygons become fans around their first corner; polygons of one or two corners,
-/// which OFF and PLY allow, are left out. Normals, colours, texture coordinates and materials are not read.
-/// STL has no shared vertices: three new positions for each triangle. Coordinates that are NaN or infinite
-/// are passed on.
+/// which OFF and PLY allow, are left out. OBJ's texture coordinates (`vt`, of two or three numbers) and
+/// normals (`vn`) are attributes: each position is then one point for each pair of them that faces name with it; where
+/// a corner lacks one it is zero. PLY's normals, colours and texture coordinates of vertices are attributes. Those of
+/// OFF and STL, and all materials, are not read. STL has no shared vertices: three new positions for each triangle.
+/// Coordinates that are NaN or infinite are passed on.
 ///
 /// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
-/// one tell), names a vertex that does not exist, has a coordinate too large for a float, or holds no
-/// triangle; and `std::logic_error` for `Format::drc`, whose bytes are read by `proto`. Memory stays within a
-/// small multiple of the file's size, whatever counts the file declares. Any number of threads may call it.
-[[nodiscard]] TriangleMesh read_triangles(const std::filesystem::path& path, Format format);
+/// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,
+/// or holds no triangle; and `std::logic_error` for `Format::drc`, whose bytes are read by `proto`. Memory stays within
+/// a small multiple of the file's size, whatever counts the file declares. Any number of threads may call it.
+[[nodiscard]] proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format);
 
 /// Writes through `write_atomically`. OBJ and OFF as text, in the shortest digits that give back the same
 /// float; PLY and STL binary, little-endian. Positions survive to the bit in all four; STL loses what is
-/// shared between triangles, and gives degenerate ones a zero normal.
+/// shared between triangles, and gives degenerate ones a zero normal. OBJ keeps the first texture coordinates of at
+/// most three numbers and the first normals that `mesh_format` describes, as floats; PLY such normals, texture
+/// coordinates of two numbers and the first colours, with a vertex for each point; OFF and STL keep positions alone.
 ///
 /// Throws `FileError` if it cannot be written; `std::invalid_argument` if a triangle names a vertex that does
 /// not exist; `std::logic_error` for `Format::drc`.
-void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh);
+void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
+                     const proto::MeshFormat& mesh_format = {});
 
 }  // namespace papilio::client

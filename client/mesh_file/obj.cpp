@@ -1,60 +1,177 @@
-// Wavefront OBJ: `v x y z` and `f 1 2 3`, indices from 1 or, negative, back from the latest vertex. A face
-// may come before its vertices. All other keywords are passed over.
+// Wavefront OBJ: `v x y z`, `vt u v`, `vn x y z` and `f 1/1/1 2/2/2 3/3/3`, indices from 1 or, negative, back from the
+// latest. A face may come before what it names. All other keywords are passed over.
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
-#include "client/mesh_file/text_writer.h"
+#include "core/mesh.h"
 
 namespace papilio::client {
 namespace {
 
-/// The vertex of a face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
-uint32_t parse_corner(const TextScanner& scanner, std::string_view word, size_t vertices_so_far) {
-  const std::string_view number = word.substr(0, word.find('/'));
-  const std::string_view attributes = word.substr(number.size());
+using proto::AttributeKind;
+
+constexpr uint32_t nowhere = none - 1;  ///< an index that is sure to be out of range
+
+/// Position, texture coordinate and normal of a face's corner, from zero; `none` for one that is not named.
+struct Corner {
+  uint32_t position = none, texture = none, normal = none;
+  friend bool operator==(const Corner&, const Corner&) = default;
+  friend bool operator<(const Corner& a, const Corner& b) {
+    return std::tie(a.position, a.texture, a.normal) < std::tie(b.position, b.texture, b.normal);
+  }
+};
+
+/// What the file lists, before points are made of it.
+struct Lists {
+  std::vector<Vec3f> positions, textures, normals;
+  std::vector<Corner> corners;
+  std::vector<Triangle> triangles;  ///< of numbers of corners
+};
+
+uint32_t from_zero(int64_t index, size_t so_far) {
+  const int64_t number = index < 0 ? static_cast<int64_t>(so_far) + index : index - 1;
+  return number < 0 || number >= nowhere ? nowhere : static_cast<uint32_t>(number);
+}
+
+/// The texture coordinate or normal of a corner: takes "/7" off the front of `rest`.
+uint32_t parse_optional(std::string_view& rest, size_t so_far) {
+  if (!rest.empty()) rest.remove_prefix(1);
+  const std::string_view number = rest.substr(0, rest.find('/'));
+  rest.remove_prefix(number.size());
   int64_t index = 0;
-  if (!parse_number(number, index) || attributes.find_first_not_of("/-0123456789") != std::string_view::npos)
+  if (number.empty()) return none;
+  return parse_number(number, index) ? from_zero(index, so_far) : nowhere;
+}
+
+/// A face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
+Corner parse_corner(const TextScanner& scanner, std::string_view word, const Lists& lists) {
+  const std::string_view number = word.substr(0, word.find('/'));
+  std::string_view rest = word.substr(number.size());
+  int64_t index = 0;
+  if (!parse_number(number, index) || rest.find_first_not_of("/-0123456789") != std::string_view::npos)
     scanner.fail("expected the number of a vertex, found " + quoted(word));
-  const int64_t from_zero = index < 0 ? static_cast<int64_t>(vertices_so_far) + index : index - 1;
-  if (from_zero < 0 || from_zero >= std::numeric_limits<uint32_t>::max())
-    scanner.fail("there is no vertex " + std::to_string(index));
-  return static_cast<uint32_t>(from_zero);
+  Corner corner{.position = from_zero(index, lists.positions.size())};
+  if (corner.position == nowhere) scanner.fail("there is no vertex " + std::to_string(index));
+  corner.texture = parse_optional(rest, lists.textures.size());
+  corner.normal = parse_optional(rest, lists.normals.size());
+  return corner;
+}
+
+/// One to three numbers; those that are absent are zero.
+Vec3f parse_texture(TextScanner& scanner) {
+  std::array<float, 3> numbers{scanner.coordinate()};
+  for (size_t i = 1; i < numbers.size(); ++i) {
+    const std::string_view word = scanner.word();
+    if (word.empty()) break;
+    if (!parse_number(word, numbers[i])) scanner.fail("expected a number that a float can hold, found " + quoted(word));
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Lists parse_lists(std::string_view bytes) {
+  TextScanner scanner(bytes, {.hash_comments = true, .backslash_continues = true});
+  Lists lists;
+  std::vector<uint32_t> face;
+  for (bool more = scanner.to_word(); more; more = scanner.next_line()) {
+    const std::string_view keyword = scanner.word();
+    if (keyword == "v" || keyword == "vn") {
+      const float x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
+      (keyword == "v" ? lists.positions : lists.normals).push_back({x, y, z});
+    } else if (keyword == "vt") {
+      lists.textures.push_back(parse_texture(scanner));
+    } else if (keyword == "f") {
+      face.clear();
+      for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
+        face.push_back(static_cast<uint32_t>(lists.corners.size()));
+        lists.corners.push_back(parse_corner(scanner, word, lists));
+      }
+      if (face.size() < 3) scanner.fail("a face has fewer than three corners");
+      append_fan(face, lists.triangles);
+    }
+  }
+  return lists;
+}
+
+/// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
+bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const std::vector<Vec3f>& listed,
+              const char* what) {
+  bool used = false;
+  for (Corner& corner : corners) {
+    if (listed.empty()) corner.*member = none;
+    if (corner.*member == none) continue;
+    used = true;
+    if (corner.*member >= listed.size()) throw ParseError(std::string("a face names a ") + what + " that is not there");
+  }
+  return used;
+}
+
+/// Makes each of `corners` the number of its point. Points are in the order of their positions, at least one each.
+std::vector<Corner> make_points(const Lists& lists, std::vector<uint32_t>& point_of_corner) {
+  const std::vector<Corner>& corners = lists.corners;
+  std::vector<uint32_t> order(corners.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](uint32_t a, uint32_t b) { return corners[a] < corners[b]; });
+  point_of_corner.resize(corners.size());
+  std::vector<Corner> points;
+  size_t next = 0;
+  for (uint32_t p = 0; p < lists.positions.size(); ++p) {
+    if (next == order.size() || corners[order[next]].position != p) points.push_back({.position = p});
+    for (; next < order.size() && corners[order[next]].position == p; ++next) {
+      const Corner& corner = corners[order[next]];
+      if (points.empty() || points.back() != corner) points.push_back(corner);
+      point_of_corner[order[next]] = static_cast<uint32_t>(points.size() - 1);
+    }
+  }
+  return points;
+}
+
+void add_attribute(proto::FormattedMesh& mesh, AttributeKind kind, uint32_t components,
+                   const std::vector<Corner>& points, uint32_t Corner::*member, const std::vector<Vec3f>& listed) {
+  Attribute& attribute = mesh.attributes.emplace_back();
+  attribute.components = components;
+  attribute.unit_length = kind == AttributeKind::normal;
+  attribute.values.reserve(points.size() * components);
+  for (const Corner& point : points) {
+    const Vec3f value = point.*member == none ? Vec3f{} : listed[point.*member];
+    const std::array<float, 3> numbers{value.x, value.y, value.z};
+    attribute.values.insert(attribute.values.end(), numbers.begin(), numbers.begin() + components);
+  }
+  mesh.format.attributes.push_back({.kind = kind, .id = static_cast<uint32_t>(mesh.attributes.size())});
 }
 
 }  // namespace
 
-TriangleMesh parse_obj(std::string_view bytes) {
+proto::FormattedMesh parse_obj(std::string_view bytes) {
   if (bytes.find('\0') != std::string_view::npos) throw ParseError("is not a text, as OBJ files are");
-  TextScanner scanner(bytes, {.hash_comments = true, .backslash_continues = true});
-  TriangleMesh mesh;
-  std::vector<uint32_t> corners;
-  for (bool more = scanner.to_word(); more; more = scanner.next_line()) {
-    const std::string_view keyword = scanner.word();
-    if (keyword == "v") {
-      const float x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
-      mesh.positions.push_back({x, y, z});
-    } else if (keyword == "f") {
-      corners.clear();
-      for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word())
-        corners.push_back(parse_corner(scanner, word, mesh.positions.size()));
-      if (corners.size() < 3) scanner.fail("a face has fewer than three corners");
-      append_fan(corners, mesh.triangles);
-    }
+  Lists lists = parse_lists(bytes);
+  const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");
+  const bool normals = are_used(lists.corners, &Corner::normal, lists.normals, "normal (vn)");
+  proto::FormattedMesh mesh;
+  mesh.triangles = std::move(lists.triangles);
+  const bool sound =
+      std::ranges::all_of(lists.corners, [&](const Corner& c) { return c.position < lists.positions.size(); });
+  if (!sound || (!textures && !normals)) {  // of indices out of range the caller tells
+    for (Triangle& triangle : mesh.triangles)
+      for (uint32_t& corner : triangle) corner = lists.corners[corner].position;
+    mesh.positions = std::move(lists.positions);
+    return mesh;
   }
+  std::vector<uint32_t> point_of_corner;
+  const std::vector<Corner> points = make_points(lists, point_of_corner);
+  for (Triangle& triangle : mesh.triangles)
+    for (uint32_t& corner : triangle) corner = point_of_corner[corner];
+  for (const Corner& point : points) mesh.positions.push_back(lists.positions[point.position]);
+  const bool three = std::ranges::any_of(lists.textures, [](Vec3f t) { return t.z != 0; });
+  if (textures) add_attribute(mesh, AttributeKind::tex_coord, three ? 3 : 2, points, &Corner::texture, lists.textures);
+  if (normals) add_attribute(mesh, AttributeKind::normal, 3, points, &Corner::normal, lists.normals);
   return mesh;
-}
-
-std::string format_obj(const TriangleMesh& mesh) {
-  std::string text = "# " + std::to_string(mesh.positions.size()) + " vertices, " +
-                     std::to_string(mesh.triangles.size()) + " triangles\n";
-  for (const Vec3f& p : mesh.positions) append_line(text, "v", {p.x, p.y, p.z});
-  for (const auto& [a, b, c] : mesh.triangles)
-    append_line(text, "f", {uint64_t{a} + 1, uint64_t{b} + 1, uint64_t{c} + 1});
-  return text;
 }
 
 }  // namespace papilio::client

@@ -1,5 +1,5 @@
 // Stanford's Polygon File Format: a header that says what follows, then the same in text or binary. Read are
-// the vertices' x, y, z and the faces' vertex_indices, of whatever type; everything else is passed over.
+// the vertices' x, y, z and attributes and the faces' vertex_indices, of whatever type; everything else is passed over.
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "client/mesh_file/binary.h"
 #include "client/mesh_file/formats.h"
+#include "client/mesh_file/ply_attributes.h"
 #include "client/mesh_file/ply_header.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
@@ -113,22 +114,22 @@ void skip_element(PlyNumbers& numbers, const PlyElement& element) {
     for (const PlyProperty& property : element.properties) read_property(numbers, property, values);
 }
 
-void read_vertices(PlyNumbers& numbers, const PlyElement& element, std::vector<Vec3f>& positions) {
+void read_vertices(PlyNumbers& numbers, const PlyElement& element, proto::FormattedMesh& mesh) {
   const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"});
   if (!x || !y || !z) throw ParseError("has vertices without x, y and z");
   std::vector<double> values;
-  positions.reserve(positions.size() + element.count);
+  std::vector<double> firsts(element.properties.size());
+  PlyAttributes attributes(element);
+  mesh.positions.reserve(element.count);
   for (uint64_t i = 0; i < element.count; ++i) {
-    Vec3f position;
     for (size_t k = 0; k < element.properties.size(); ++k) {
       read_property(numbers, element.properties[k], values);
-      if (values.empty()) continue;
-      if (k == *x) position.x = to_coordinate(values[0]);
-      if (k == *y) position.y = to_coordinate(values[0]);
-      if (k == *z) position.z = to_coordinate(values[0]);
+      firsts[k] = values.empty() ? 0 : values[0];
     }
-    positions.push_back(position);
+    mesh.positions.push_back({to_coordinate(firsts[*x]), to_coordinate(firsts[*y]), to_coordinate(firsts[*z])});
+    attributes.add(firsts);
   }
+  attributes.move_to(mesh);
 }
 
 void read_faces(PlyNumbers& numbers, const PlyElement& element, std::vector<Triangle>& triangles) {
@@ -150,14 +151,15 @@ void read_faces(PlyNumbers& numbers, const PlyElement& element, std::vector<Tria
 
 }  // namespace
 
-TriangleMesh parse_ply(std::string_view bytes) {
+proto::FormattedMesh parse_ply(std::string_view bytes) {
   const PlyHeader header = parse_ply_header(bytes);
   PlyNumbers numbers(bytes, header);
-  TriangleMesh mesh;
+  proto::FormattedMesh mesh;
   for (const PlyElement& element : header.elements) {
     numbers.require(element);
     if (element.name == "vertex") {
-      read_vertices(numbers, element, mesh.positions);
+      if (!mesh.positions.empty()) throw ParseError("has vertices twice");
+      read_vertices(numbers, element, mesh);
     } else if (element.name == "face") {
       read_faces(numbers, element, mesh.triangles);
     } else if (element.name == "tristrips") {
@@ -170,13 +172,18 @@ TriangleMesh parse_ply(std::string_view bytes) {
   return mesh;
 }
 
-std::string format_ply(const TriangleMesh& mesh) {
+std::string format_ply(const TriangleMesh& mesh, const proto::MeshFormat& format) {
+  const PlyAttributeWriter attributes(mesh, format);
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by papilio\nelement vertex " +
                       std::to_string(mesh.positions.size()) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+                      "\nproperty float x\nproperty float y\nproperty float z\n" + attributes.properties() +
+                      "element face " + std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 12 * mesh.positions.size() + 13 * mesh.triangles.size());
-  for (const Vec3f& position : mesh.positions) store_vector(bytes, position);
+  for (size_t p = 0; p < mesh.positions.size(); ++p) {
+    store_vector(bytes, mesh.positions[p]);
+    attributes.append_values(bytes, p);
+  }
   for (const Triangle& triangle : mesh.triangles) {
     store(bytes, uint8_t{3});
     for (const uint32_t vertex : triangle) store(bytes, vertex);

@@ -8,17 +8,17 @@
 
 namespace papilio::client {
 
-/// Appends a number after a space: floats in the shortest digits that give back the same float.
+/// Appends a number after a blank: floats in the shortest digits that give back the same float.
 template <class Number>
 requires std::integral<Number> || std::floating_point<Number>
-void append_number(std::string& text, Number number) {
+void append_number(std::string& text, Number number, char blank = ' ') {
   char digits[32];
   const auto written = std::to_chars(digits, digits + sizeof digits, number);
-  text += ' ';
+  text += blank;
   text.append(digits, written.ptr);
 }
 
-/// A line of a keyword and three numbers.
+/// A line of a keyword and numbers.
 template <class Number>
 void append_line(std::string& text, std::string_view keyword, std::initializer_list<Number> numbers) {
   text += keyword;

@@ -24,6 +24,45 @@ setup() { cd "$BATS_TEST_TMPDIR" || return; }
   done
 }
 
+@test "texture coordinates and normals go all the way, here and there" {
+  cat >square.obj <<'END'
+v 0 0 0
+v 1 0 0
+v 1 1 0.5
+v 0 1 0
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+vt 0.1 1.7
+vn 0 0 1
+f 1/1/1 2/2/1 3/3/1
+f 1/5/1 3/3/1 4/4/1
+END
+  for flags in '--levels 2' '--levels 2 --output.normals true' '--levels 2 --output.speed 0'; do
+    # shellcheck disable=SC2086
+    "$papilio" refine square.obj -o here.drc $flags
+    # shellcheck disable=SC2086
+    "$papilio" refine square.obj -o there.drc --server "$url" $flags
+    cmp here.drc there.drc
+    draco_decoder -i here.drc -o seen.obj
+    # 25 vertices, and 4 more texture coordinates along the seam: it meets the other chart in one corner.
+    [ "$(grep -c '^v ' seen.obj)" = 25 ]
+    [ "$(grep -c '^vn ' seen.obj)" -gt 0 ]
+  done
+  "$papilio" refine square.obj -o fine.obj
+  [ "$(grep -c '^v ' fine.obj)" = 25 ]
+  [ "$(grep -c '^vt ' fine.obj)" = 29 ]
+  [ "$(grep -c '^vn ' fine.obj)" = 1 ]
+  [ "$(grep -Ec '^f [0-9]+/[0-9]+/1 [0-9]+/[0-9]+/1 [0-9]+/[0-9]+/1$' fine.obj)" = 32 ]
+  "$papilio" convert square.obj all.drc
+  "$papilio" convert --exact square.obj exact.drc
+  for name in all exact; do
+    "$papilio" convert $name.drc back.obj
+    [ "$(grep -c '^vt ' back.obj)" = 5 ]
+  done
+}
+
 @test "the curl answer is the command line's" {
   "$papilio" refine "$coarse" -o here.drc --levels 2 --flatness 0.8,0.9
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"

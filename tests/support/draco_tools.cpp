@@ -33,18 +33,42 @@ class Folder {
   fs::path path_;
 };
 
+void run(const std::string& program, const fs::path& in, const fs::path& out) {
+  const std::string command = program + " -i " + in.string() + " -o " + out.string() + " > /dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error(program + " refuses its input");
+}
+
 std::string bytes_of(const draco::EncoderBuffer& buffer) { return {buffer.data(), buffer.size()}; }
 
 }  // namespace
 
 TriangleMesh decode_with_draco_decoder(std::string_view draco) {
   const Folder folder;
-  const fs::path in = folder.path() / "in.drc";
-  const fs::path out = folder.path() / "out.ply";
-  client::write_atomically(in, draco);
-  const std::string command = "draco_decoder -i " + in.string() + " -o " + out.string() + " > /dev/null 2>&1";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("draco_decoder refuses the stream");
-  return client::read_triangles(out, client::Format::ply);
+  client::write_atomically(folder.path() / "in.drc", draco);
+  run("draco_decoder", folder.path() / "in.drc", folder.path() / "out.ply");
+  return client::read_triangles(folder.path() / "out.ply", client::Format::ply);
+}
+
+proto::FormattedMesh decode_to_obj(std::string_view draco, size_t* positions) {
+  const Folder folder;
+  const fs::path out = folder.path() / "out.obj";
+  client::write_atomically(folder.path() / "in.drc", draco);
+  run("draco_decoder", folder.path() / "in.drc", out);
+  if (positions != nullptr) {
+    const std::string text = client::read_bytes(out, client::kMaxFileBytes);
+    *positions = 0;
+    for (size_t at = text.find("\nv "); at != std::string::npos; at = text.find("\nv ", at + 1)) ++*positions;
+    *positions += text.starts_with("v ") ? 1 : 0;
+  }
+  return client::read_triangles(out, client::Format::obj);
+}
+
+std::string encode_with_draco_encoder(const proto::FormattedMesh& mesh, int compression) {
+  const Folder folder;
+  client::write_triangles(folder.path() / "in.obj", client::Format::obj, mesh, mesh.format);
+  run("draco_encoder -qp 14 -qt 14 -cl " + std::to_string(compression), folder.path() / "in.obj",
+      folder.path() / "out.drc");
+  return client::read_bytes(folder.path() / "out.drc", client::kMaxFileBytes);
 }
 
 std::string encode_with_draco(const TriangleMesh& mesh, Method method, bool with_metadata) {

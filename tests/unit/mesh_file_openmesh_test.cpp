@@ -84,7 +84,9 @@ TEST_F(mesh_file, reads_what_openmesh_writes) {
   for (const auto& [format, options] : kinds) {
     const fs::path file = path("theirs" + extension_of(format));
     ASSERT_TRUE(OpenMesh::IO::write_mesh(theirs, file.string(), options));
-    const TriangleMesh found = read_triangles(file, format);
+    TriangleMesh found = read_triangles(file, format);
+    EXPECT_EQ(found.attributes.size(), format != Format::off && options.vertex_has_normal() ? 1U : 0U);
+    found.attributes.clear();
     EXPECT_EQ(with_smallest_first(format == Format::stl ? welded(found, mesh.positions) : found),
               with_smallest_first(mesh))
         << extension_of(format) << " with options " << static_cast<unsigned>(options);

@@ -1,0 +1,97 @@
+// The OBJ that obj.cpp reads.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+#include "client/mesh_file/formats.h"
+#include "client/mesh_file/text_writer.h"
+
+namespace papilio::client {
+namespace {
+
+using proto::AttributeKind;
+
+/// The numbers of the first attribute of this kind, three a point, a missing third one zero; empty if there is none.
+std::vector<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& format, AttributeKind kind,
+                                  uint32_t& components) {
+  for (size_t a = 0; a < format.attributes.size(); ++a) {
+    const Attribute& attribute = mesh.attributes[a];
+    components = attribute.components;
+    if (format.attributes[a].kind != kind || components > 3 || (kind == AttributeKind::normal && components != 3))
+      continue;
+    const double unit = proto::one_of(format.attributes[a]);
+    std::vector<Vec3f> found(mesh.positions.size());
+    for (size_t p = 0; p < found.size(); ++p) {
+      std::array<float, 3> numbers{};
+      for (uint32_t i = 0; i < components; ++i)
+        numbers[i] = static_cast<float>(attribute.values[p * components + i] / unit);
+      found[p] = {numbers[0], numbers[1], numbers[2]};
+    }
+    return found;
+  }
+  return {};
+}
+
+/// Leaves the different ones among `values`, in order; gives the place of each.
+std::vector<uint32_t> drop_repeated(std::vector<Vec3f>& values) {
+  const auto bits = [&](uint32_t p) {  // which have an order, also where a value is NaN
+    return std::array{std::bit_cast<uint32_t>(values[p].x), std::bit_cast<uint32_t>(values[p].y),
+                      std::bit_cast<uint32_t>(values[p].z)};
+  };
+  std::vector<uint32_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](uint32_t p, uint32_t q) { return std::pair(bits(p), p) < std::pair(bits(q), q); });
+  std::vector<uint32_t> place(values.size());
+  for (size_t i = 0; i < order.size(); ++i)
+    place[order[i]] = i > 0 && bits(order[i]) == bits(order[i - 1]) ? place[order[i - 1]] : order[i];
+  uint32_t kept = 0;
+  for (uint32_t p = 0; p < values.size(); ++p) {
+    if (place[p] == p) {
+      values[kept] = values[p];
+      place[p] = kept++;
+    } else {
+      place[p] = place[place[p]];
+    }
+  }
+  values.resize(kept);
+  return place;
+}
+
+}  // namespace
+
+std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format) {
+  uint32_t texture_components = 0;
+  uint32_t normal_components = 0;
+  std::vector<Vec3f> textures = find_attribute(mesh, format, AttributeKind::tex_coord, texture_components);
+  std::vector<Vec3f> normals = find_attribute(mesh, format, AttributeKind::normal, normal_components);
+  std::vector<Vec3f> positions = mesh.positions;
+  std::vector<uint32_t> position(positions.size());
+  std::iota(position.begin(), position.end(), 0);
+  // Points apart in their attributes alone are one vertex, which does not come apart where the file is read again.
+  if (!textures.empty() || !normals.empty()) position = drop_repeated(positions);
+  const std::vector<uint32_t> texture = drop_repeated(textures);
+  const std::vector<uint32_t> normal = drop_repeated(normals);
+
+  std::string text =
+      "# " + std::to_string(positions.size()) + " vertices, " + std::to_string(mesh.triangles.size()) + " triangles\n";
+  for (const Vec3f& p : positions) append_line(text, "v", {p.x, p.y, p.z});
+  for (const Vec3f& t : textures)
+    texture_components == 3 ? append_line(text, "vt", {t.x, t.y, t.z}) : append_line(text, "vt", {t.x, t.y});
+  for (const Vec3f& n : normals) append_line(text, "vn", {n.x, n.y, n.z});
+  for (const Triangle& triangle : mesh.triangles) {
+    text += 'f';
+    for (const uint32_t p : triangle) {
+      append_number(text, uint64_t{position[p]} + 1);
+      if (!texture.empty()) append_number(text, uint64_t{texture[p]} + 1, '/');
+      if (!normal.empty() && texture.empty()) text += '/';
+      if (!normal.empty()) append_number(text, uint64_t{normal[p]} + 1, '/');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace papilio::client

@@ -1,0 +1,226 @@
+#include "proto/draco_attributes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <type_traits>
+
+#include "proto/draco_header.h"
+#include "proto/problem.h"
+
+namespace papilio::proto {
+namespace {
+
+// Everything a skinned glTF model has (tangents, two texture coordinates, colours, joints, weights) is 20 components.
+constexpr uint64_t most_attributes = 16;
+constexpr uint64_t most_components = 32;
+constexpr size_t longest_name = 256;
+constexpr const char* name_entry = "name";
+
+static_assert(draco::GeometryAttribute::NORMAL == 1 + static_cast<int>(AttributeKind::normal));
+static_assert(draco::GeometryAttribute::GENERIC == 1 + static_cast<int>(AttributeKind::generic));
+static_assert(draco::DT_INT8 == 1 + static_cast<int>(ValueType::int8));
+static_assert(draco::DT_BOOL == 1 + static_cast<int>(ValueType::boolean));
+
+/// Calls `visit` with a number of the type.
+template <class Visit>
+auto with_number(ValueType type, Visit visit) {
+  switch (type) {
+    case ValueType::int8:
+      return visit(int8_t{});
+    case ValueType::uint8:
+      return visit(uint8_t{});
+    case ValueType::int16:
+      return visit(int16_t{});
+    case ValueType::uint16:
+      return visit(uint16_t{});
+    case ValueType::int32:
+      return visit(int32_t{});
+    case ValueType::uint32:
+      return visit(uint32_t{});
+    case ValueType::int64:
+      return visit(int64_t{});
+    case ValueType::uint64:
+      return visit(uint64_t{});
+    case ValueType::float32:
+      return visit(float{});
+    case ValueType::float64:
+      return visit(double{});
+    case ValueType::boolean:
+      break;
+  }
+  return visit(bool{});
+}
+
+AttributeFormat format_of(const draco::Mesh& mesh, int number) {
+  const draco::PointAttribute& attribute = *mesh.attribute(number);
+  AttributeFormat format;
+  const int kind = attribute.attribute_type() - 1;
+  format.kind = kind >= 0 && kind < static_cast<int>(AttributeKind::generic) ? static_cast<AttributeKind>(kind)
+                                                                             : AttributeKind::generic;
+  if (attribute.data_type() <= draco::DT_INVALID || attribute.data_type() > draco::DT_BOOL)
+    throw Problem(Code::mesh_not_draco, "An attribute of the mesh has a type that does not exist. Encode it again.");
+  format.type = static_cast<ValueType>(attribute.data_type() - 1);
+  format.normalized = attribute.normalized();
+  format.id = attribute.unique_id();
+  const draco::AttributeMetadata* metadata = mesh.GetAttributeMetadataByAttributeId(number);
+  if (metadata != nullptr && metadata->GetEntryString(name_entry, &format.name) && format.name.size() > longest_name)
+    format.name.resize(longest_name);
+  return format;
+}
+
+template <class Number>
+std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t points) {
+  const size_t components = attribute.num_components();
+  std::vector<double> values;
+  values.reserve(points * components);
+  for (draco::PointIndex p(0); p < points; ++p) {
+    const draco::AttributeValueIndex index = attribute.mapped_index(p);
+    if (index.value() >= attribute.size())
+      throw Problem(Code::mesh_unusable, "The mesh has a point without a value of attribute " +
+                                             std::to_string(attribute.unique_id()) + ". Encode it again.");
+    const uint8_t* bytes = attribute.GetAddress(index);
+    for (size_t i = 0; i < components; ++i) {
+      using Stored = std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // any byte, not 0 or 1 alone
+      Stored value;
+      std::memcpy(&value, bytes + i * sizeof value, sizeof value);
+      values.push_back(std::is_same_v<Number, bool> ? (value != 0 ? 1 : 0) : static_cast<double>(value));
+    }
+  }
+  return values;
+}
+
+template <class Number>
+Number nearest(double value) {
+  if constexpr (std::is_same_v<Number, bool>) return value >= 0.5;
+  using Range = std::numeric_limits<Number>;
+  // Draco's encoder holds integers of up to 32 bits in an int32_t.
+  constexpr Number highest =
+      std::is_same_v<Number, uint32_t> ? static_cast<Number>(std::numeric_limits<int32_t>::max()) : Range::max();
+  const double rounded = std::is_integral_v<Number> ? std::round(value) : value;
+  if (rounded >= static_cast<double>(highest)) return highest;
+  if (rounded <= static_cast<double>(Range::lowest())) return Range::lowest();
+  return static_cast<Number>(rounded);
+}
+
+template <class Number>
+std::vector<char> to_bytes(const std::vector<double>& values) {
+  std::vector<char> bytes(values.size() * sizeof(Number));
+  for (size_t i = 0; i < values.size(); ++i) {
+    const auto number = nearest<Number>(values[i]);
+    std::memcpy(bytes.data() + i * sizeof number, &number, sizeof number);
+  }
+  return bytes;
+}
+
+/// For each point the first of its vertex whose value is the same.
+std::vector<uint32_t> find_same(const std::vector<char>& bytes, size_t stride, const VertexPoints& points) {
+  const std::vector<uint32_t>& vertex = points.vertex();
+  std::vector<uint32_t> same(vertex.size());
+  for (uint32_t p = 0; p < same.size(); ++p) same[p] = p;
+  const auto compare = [&](uint32_t p, uint32_t q) {
+    return std::memcmp(bytes.data() + p * stride, bytes.data() + q * stride, stride);
+  };
+  std::vector<uint32_t> order = points.on_seams();
+  std::ranges::sort(order, [&](uint32_t p, uint32_t q) {
+    if (vertex[p] != vertex[q]) return vertex[p] < vertex[q];
+    const int difference = compare(p, q);
+    return difference != 0 ? difference < 0 : p < q;
+  });
+  for (size_t i = 1; i < order.size(); ++i)
+    if (vertex[order[i - 1]] == vertex[order[i]] && compare(order[i - 1], order[i]) == 0)
+      same[order[i]] = same[order[i - 1]];
+  return same;
+}
+
+}  // namespace
+
+void require_attributes_within_limits(const draco::PointCloud& mesh) {
+  uint64_t components = 0;
+  for (int number = 0; number < mesh.num_attributes(); ++number) components += mesh.attribute(number)->num_components();
+  require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes,
+                 "attributes, its positions included", "Leave some out.");
+  require_within(components, 3 + most_components, "components in its attributes, three of its positions included",
+                 "Leave some attributes out.");
+}
+
+void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
+  for (int number = 0; number < mesh.num_attributes(); ++number) {
+    const draco::PointAttribute& attribute = *mesh.attribute(number);
+    if (attribute.attribute_type() == draco::GeometryAttribute::POSITION) {
+      out.format.position_id = attribute.unique_id();
+      continue;
+    }
+    const AttributeFormat format = format_of(mesh, number);
+    Attribute& read = out.attributes.emplace_back();
+    read.components = attribute.num_components();
+    read.unit_length =
+        format.kind == AttributeKind::normal && format.type == ValueType::float32 && read.components == 3;
+    read.values = with_number(format.type, [&](auto zero) {
+      return read_values<decltype(zero)>(attribute, static_cast<uint32_t>(out.positions.size()));
+    });
+    out.format.attributes.push_back(format);
+  }
+}
+
+VertexPoints::VertexPoints(const Mesh& mesh) : vertex_(mesh.attributes.point_count) {
+  std::vector<uint32_t> first(mesh.topology.vertex_count, none);
+  std::vector<bool> has_several(mesh.topology.vertex_count);
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+    const uint32_t v = mesh.topology.origin[h];
+    const uint32_t p = mesh.attributes.point[h];
+    vertex_[p] = v;
+    if (first[v] == none) first[v] = p;
+    if (first[v] != p) has_several[v] = true;
+  }
+  for (uint32_t p = 0; p < vertex_.size(); ++p)
+    if (has_several[vertex_[p]]) on_seams_.push_back(p);
+}
+
+int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values,
+                         const VertexPoints* points) {
+  draco::GeometryAttribute description;
+  description.Init(type, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);
+  const int number = out.AddAttribute(description, points == nullptr, static_cast<uint32_t>(values.size()));
+  draco::PointAttribute& added = *out.attribute(number);
+  added.buffer()->Write(0, values.data(), values.size() * sizeof(Vec3f));
+  if (points != nullptr)
+    for (uint32_t p = 0; p < points->vertex().size(); ++p)
+      added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(points->vertex()[p]));
+  return number;
+}
+
+int add_point_attribute(draco::Mesh& out, const Attribute& attribute, const AttributeFormat& format,
+                        const VertexPoints& points) {
+  const std::vector<char> bytes =
+      with_number(format.type, [&](auto zero) { return to_bytes<decltype(zero)>(attribute.values); });
+  const auto count = static_cast<uint32_t>(points.vertex().size());
+  const size_t stride = bytes.size() / count;
+  const std::vector<uint32_t> same = find_same(bytes, stride, points);
+  std::vector<uint32_t> value(count);
+  uint32_t value_count = 0;
+  for (uint32_t p = 0; p < count; ++p) value[p] = same[p] == p ? value_count++ : value[same[p]];
+
+  draco::GeometryAttribute description;
+  description.Init(static_cast<draco::GeometryAttribute::Type>(1 + static_cast<int>(format.kind)), nullptr,
+                   static_cast<uint8_t>(attribute.components),
+                   static_cast<draco::DataType>(1 + static_cast<int>(format.type)), format.normalized,
+                   static_cast<int64_t>(stride), 0);
+  const int number = out.AddAttribute(description, false, value_count);
+  draco::PointAttribute& added = *out.attribute(number);
+  for (uint32_t p = 0; p < count; ++p) {
+    added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(value[p]));
+    if (same[p] == p) added.SetAttributeValue(draco::AttributeValueIndex(value[p]), bytes.data() + p * stride);
+  }
+  added.set_unique_id(format.id);
+  if (!format.name.empty()) {
+    auto metadata = std::make_unique<draco::AttributeMetadata>();
+    metadata->AddEntryString(name_entry, format.name);
+    out.AddAttributeMetadata(number, std::move(metadata));
+  }
+  return number;
+}
+
+}  // namespace papilio::proto

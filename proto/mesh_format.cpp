@@ -1,0 +1,14 @@
+#include "proto/mesh_format.h"
+
+#include <cmath>
+
+namespace papilio::proto {
+
+double one_of(const AttributeFormat& format) {
+  if (!format.normalized || format.type > ValueType::uint64) return 1;
+  const auto number = static_cast<unsigned>(format.type);  // signed and unsigned by turns, of 8 bits and more
+  const int bits = 8 << (number / 2);
+  return std::ldexp(1.0, number % 2 == 0 ? bits - 1 : bits) - 1;
+}
+
+}  // namespace papilio::proto
