@@ -31,12 +31,6 @@ SplitPlan split_at(const HierarchyLevel& level, float threshold) {
   return SplitPlan(marks);
 }
 
-unsigned mask_of(const Topology& mesh, const SplitPlan& split, uint32_t f) {
-  unsigned mask = 0;
-  for (uint32_t i = 0; i < 3; ++i) mask |= split.is_split(mesh.edge[3 * f + i]) ? 1U << i : 0U;
-  return mask;
-}
-
 class Assembler {
  public:
   Assembler(std::span<const HierarchyLevel> levels, float threshold) : levels_(levels) {
@@ -80,7 +74,7 @@ class Assembler {
         fate.face[f] = Fate::hidden;
         continue;
       }
-      const unsigned mask = mask_of(mesh, fate.split, f);
+      const unsigned mask = split_mask(mesh, fate.split, f);
       if (mask == 7 && has_children && level.child[f] != none) {
         fate.face[f] = Fate::divided;
         continue;
@@ -248,7 +242,7 @@ std::vector<bool> find_divided(const HierarchyLevel& level, const SplitPlan& spl
   std::vector<bool> divided(mesh.face_count());
   for (uint32_t f = 0; f < mesh.face_count(); ++f)
     divided[f] = (level.parent.empty() || above[level.parent[f / 4]]) && !level.child.empty() &&
-                 level.child[f] != none && mask_of(mesh, split, f) == 7;
+                 level.child[f] != none && split_mask(mesh, split, f) == 7;
   return divided;
 }
 

@@ -13,10 +13,6 @@ namespace {
 constexpr float never = -std::numeric_limits<float>::infinity();
 constexpr uint64_t bytes_per_face = 160;  // of a level's arrays and of what is computed on it
 
-/// A face may be divided where one of its edges, or one near it, has at least this share of the error that counts:
-/// further down errors can be larger than they are here.
-constexpr float look_ahead = 0.5F;
-
 /// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
 constexpr double sliver_share = 0.4;
 
@@ -58,13 +54,16 @@ class RedGreen {
     level.trial = try_split(level.mesh, options_, is_last ? wanted : complete_edges(level));
     selection_.narrow(level.mesh, level.trial.normals, static_cast<int>(levels_.size()), wanted);
     if (selection_.is_by_error()) {
-      level.error = selection_.errors(level.mesh, level.trial, wanted, look_ahead * threshold_);
+      level.error = selection_.errors(level.mesh, level.trial, wanted, threshold_);
     } else {
       level.error.assign(wanted.size(), never);
       for (size_t e = 0; e < wanted.size(); ++e)
         if (wanted[e] != 0) level.error[e] = threshold_;
     }
     own_error_ = level.error;
+    if (options_.max_faces > 0) return;
+    // Without a budget the threshold does not move, so it is all the same by how much an error passes it.
+    for (float& error : level.error) error = error >= threshold_ ? threshold_ : never;
   }
 
   /// Carries the new errors up and finds the threshold. True when the lowest level changes anything.
@@ -125,14 +124,14 @@ class RedGreen {
     return red;
   }
 
-  /// Every face that touches one with an edge of large error, unless its edges may not be split.
+  /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
+  /// error were tried too, and a tenth: results were the same.)
   [[nodiscard]] std::vector<uint8_t> faces_to_look_into() const {
     const HierarchyLevel& level = levels_.back();
     const Topology& mesh = level.mesh.topology;
-    const float least = look_ahead * threshold_;
     std::vector<uint8_t> faces(mesh.face_count(), 0);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-      if (own_error_[mesh.edge[h]] >= least) faces[Topology::face(h)] = 1;
+      if (own_error_[mesh.edge[h]] >= threshold_) faces[Topology::face(h)] = 1;
     faces = with_neighbours(mesh, faces);
     const EdgeMarks may_be_split = edges_of_candidates(level);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)

@@ -6,12 +6,6 @@
 namespace papilio {
 namespace {
 
-unsigned target_mask(const Topology& mesh, const SplitPlan& plan, uint32_t f) {
-  unsigned mask = 0;
-  for (uint32_t i = 0; i < 3; ++i) mask |= plan.is_split(mesh.edge[3 * f + i]) ? 1U << i : 0U;
-  return mask;
-}
-
 class Splitter {
  public:
   Splitter(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions)
@@ -46,7 +40,7 @@ class Splitter {
     first_child_.resize(faces + 1);
     uint32_t child = 0;
     for (uint32_t f = 0; f < faces; ++f) {
-      const unsigned mask = target_mask(mesh_, plan_, f);
+      const unsigned mask = split_mask(mesh_, plan_, f);
       const auto corner = [&](uint32_t i) {
         const uint32_t v = mesh_.origin[3 * f + i];
         return CornerPoint{v, positions_[v]};

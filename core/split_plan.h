@@ -28,4 +28,11 @@ struct SplitPlan {
   [[nodiscard]] bool is_split(uint32_t e) const { return before[e + 1] != before[e]; }
 };
 
+/// Bit i is set where edge i of the face is split.
+[[nodiscard]] inline unsigned split_mask(const Topology& mesh, const SplitPlan& plan, uint32_t face) {
+  unsigned mask = 0;
+  for (uint32_t i = 0; i < 3; ++i) mask |= plan.is_split(mesh.edge[3 * face + i]) ? 1U << i : 0U;
+  return mask;
+}
+
 }  // namespace papilio

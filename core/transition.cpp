@@ -35,26 +35,25 @@ double smallest_angle_cosine(const SplitPattern& pattern, const std::array<Vec3d
   return largest;
 }
 
-double angle(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); }
-
-bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, double least_angle) {
+bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const std::array<Vec3d, 6> points = local_points(level, face, mask);
   const uint8_t number = choose_transition(level, face, mask);
-  return angle(smallest_angle_cosine(transition_pattern(number), points)) < least_angle &&
-         angle(smallest_angle_cosine(split_pattern(0, false), points)) >= least_angle;
+  return smallest_angle_cosine(transition_pattern(number), points) > most_cosine &&
+         smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine;
 }
 
 /// Raises the errors of the face's edges; true when one changed.
-bool mend(HierarchyLevel& level, uint32_t face, double least_angle, float least_error) {
+bool mend(HierarchyLevel& level, uint32_t face, double most_cosine, float least_error) {
   const Topology& mesh = level.mesh.topology;
-  std::array<uint32_t, 3> side{0, 1, 2};
   const auto error = [&](uint32_t i) -> float& { return level.error[mesh.edge[3 * face + i]]; };
-  std::ranges::stable_sort(side, [&](uint32_t i, uint32_t j) { return error(i) > error(j); });
+  if (error(0) == error(1) && error(1) == error(2)) return false;
+  std::array<uint32_t, 3> side{0, 1, 2};
+  std::ranges::sort(side, [&](uint32_t i, uint32_t j) { return error(i) != error(j) ? error(i) > error(j) : i < j; });
   unsigned mask = 0;
   // As the threshold falls, edges are split one after the other: none of the masks on the way may make slivers.
   for (uint32_t n = 0; n < 2 && error(side[n]) >= least_error; ++n) {
     mask |= 1U << side[n];
-    if (error(side[n + 1]) == error(side[n]) || !makes_slivers(level, face, mask, least_angle)) continue;
+    if (error(side[n + 1]) == error(side[n]) || !makes_slivers(level, face, mask, most_cosine)) continue;
     const float all = error(side[n]);
     for (uint32_t i = n + 1; i < 3; ++i) error(side[i]) = all;
     return true;
@@ -71,7 +70,7 @@ double smallest_angle(const Mesh& mesh) {
     const Vec3d corner = at(mesh.topology.origin[h]);
     largest = std::max(largest, cosine(at(mesh.topology.tip(h)) - corner, at(mesh.topology.apex(h)) - corner));
   }
-  return angle(largest);
+  return std::acos(std::min(largest, 1.0));
 }
 
 uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask) {
@@ -92,13 +91,14 @@ void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double 
     return may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
            may_be_split[mesh.edge[3 * f + 2]] != 0;
   };
+  const double most_cosine = std::cos(least_angle);
   std::vector<uint32_t> faces;
   for (uint32_t f = 0; f < mesh.face_count(); ++f)
     if (may_be_divided(f)) faces.push_back(f);
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();
-    if (!mend(level, f, least_angle, least_error)) continue;
+    if (!mend(level, f, most_cosine, least_error)) continue;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
       const uint32_t t = mesh.twin[h];
       if (t != none && may_be_divided(Topology::face(t))) faces.push_back(Topology::face(t));

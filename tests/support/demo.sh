@@ -82,9 +82,10 @@ echo
 row 'what' 'vertices' 'faces' 'bytes' 'refine ms' 'total ms'
 # shellcheck disable=SC2046 # three columns
 row 'coarse' $(jq -r '.vertices, .faces, .bytes' <<<"$info") - -
-refine 'uniform, 2 levels' uniform 'levels=2'
-refine 'adaptive by flatness' adaptive 'levels=2&flatness=0.8,0.9'
-refine 'adaptive, seen from front' view "levels=2&flatness=0.8,0.9&$view"
+refine 'uniform, 3 levels' uniform 'levels=3'
+refine 'to 0.1 % of its size' adaptive 'levels=3&tolerance=0.001'
+refine 'to a pixel, from the front' view "levels=3&$view&view.error_pixels=1&view.edge_pixels=0"
+refine 'the best 4000 faces' budget 'levels=3&max_faces=4000'
 printf '\nThe requests, to be pasted again in %s; the meshes are in build/demo:\n%s' "$root" "$commands"
 
 if [[ ${1:-} == --exit ]]; then
