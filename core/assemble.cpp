@@ -25,16 +25,10 @@ struct Fate {
   [[nodiscard]] bool is_divided(uint32_t f) const { return face[f] == divided; }
 };
 
-SplitPlan split_at(const HierarchyLevel& level, float threshold) {
-  EdgeMarks marks(level.error.size());
-  for (size_t e = 0; e < marks.size(); ++e) marks[e] = level.error[e] >= threshold ? 1 : 0;
-  return SplitPlan(marks);
-}
-
 class Assembler {
  public:
-  Assembler(std::span<const HierarchyLevel> levels, float threshold) : levels_(levels) {
-    for (size_t k = 0; k < levels.size(); ++k) decide(k, threshold);
+  explicit Assembler(std::span<const HierarchyLevel> levels) : levels_(levels) {
+    for (size_t k = 0; k < levels.size(); ++k) decide(k);
     place();
   }
 
@@ -58,10 +52,10 @@ class Assembler {
 
  private:
   /// Top down: what becomes of each face, and the vertices' numbers.
-  void decide(size_t k, float threshold) {
+  void decide(size_t k) {
     const HierarchyLevel& level = levels_[k];
     const Topology& mesh = level.mesh.topology;
-    Fate fate{.split = split_at(level, threshold), .face = {}, .first = {}, .vertex = {}};
+    Fate fate{.split = SplitPlan(level.split), .face = {}, .first = {}, .vertex = {}};
     fate.face.resize(mesh.face_count());
     fate.first.resize(mesh.face_count());
     fate.vertex.resize(mesh.vertex_count);
@@ -121,7 +115,7 @@ class Assembler {
     out_.positions.reserve(out_.topology.vertex_count);
     out_.positions = levels_[0].mesh.positions;
     for (size_t k = 0; k < levels_.size(); ++k)
-      for (uint32_t e = 0; e < levels_[k].error.size(); ++e)
+      for (uint32_t e = 0; e < levels_[k].split.size(); ++e)
         if (fates_[k].split.is_split(e)) out_.positions.push_back(levels_[k].trial.at(e));
   }
 
@@ -258,17 +252,17 @@ std::pair<uint32_t, uint32_t> halves(std::span<const HierarchyLevel> levels, siz
 
 }  // namespace
 
-uint64_t count_assembled(std::span<const HierarchyLevel> levels, float threshold) {
+uint64_t count_assembled(std::span<const HierarchyLevel> levels) {
   // A split edge may only be one all of whose faces are in the result: each of them becomes one more.
   uint64_t faces = levels[0].mesh.topology.face_count();
   for (const HierarchyLevel& level : levels)
-    for (uint32_t e : level.mesh.topology.edge) faces += level.error[e] >= threshold ? 1 : 0;
+    for (uint32_t e : level.mesh.topology.edge) faces += level.split[e];
   return faces;
 }
 
-Mesh assemble(std::span<const HierarchyLevel> levels, float threshold) { return Assembler(levels, threshold).run(); }
+Mesh assemble(std::span<const HierarchyLevel> levels) { return Assembler(levels).run(); }
 
-ErrorLeft error_left(std::span<const HierarchyLevel> levels, float threshold, const Selection& selection) {
+ErrorLeft error_left(std::span<const HierarchyLevel> levels, const Selection& selection) {
   ErrorLeft left(selection);
   std::vector<EdgeMarks> judged;
   std::vector<EdgeMarks> seen;
@@ -281,7 +275,7 @@ ErrorLeft error_left(std::span<const HierarchyLevel> levels, float threshold, co
   for (size_t k = 0; k < levels.size(); ++k) {
     const HierarchyLevel& level = levels[k];
     const Topology& mesh = level.mesh.topology;
-    const SplitPlan split = split_at(level, threshold);
+    const SplitPlan split = SplitPlan(level.split);
     const std::vector<bool> divided = find_divided(level, split, above);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
       const uint32_t f = Topology::face(h);

@@ -7,17 +7,16 @@
 
 namespace papilio {
 
-/// Faces of the mesh that the levels give at a threshold: edges with at least this error are split.
-[[nodiscard]] uint64_t count_assembled(std::span<const HierarchyLevel> levels, float threshold);
+/// Faces of the mesh that the levels give with the edges that each has marked as split.
+[[nodiscard]] uint64_t count_assembled(std::span<const HierarchyLevel> levels);
 
-/// The mesh that the levels give at a threshold: every edge with at least this error is split, faces with three such
-/// edges give way to their children, those with one or two are closed by the patterns of split.h. All but the last
-/// level must have children. Faces lie where their coarse face lies; vertices are those of the coarse mesh, then those
-/// of each level in the order of its edges. Arrays follow from the levels' by formula, without a search (but for
-/// edges of three faces or more).
-[[nodiscard]] Mesh assemble(std::span<const HierarchyLevel> levels, float threshold);
+/// That mesh: faces with three split edges give way to their children, those with one or two are cut (transition.h).
+/// All but the last level must have children. Faces lie where their coarse face lies; vertices are those of the coarse
+/// mesh, then those of each level in the order of its edges. Arrays follow from the levels' by formula, without a
+/// search (but for edges of three faces or more).
+[[nodiscard]] Mesh assemble(std::span<const HierarchyLevel> levels);
 
 /// The largest deviation left in that mesh.
-[[nodiscard]] ErrorLeft error_left(std::span<const HierarchyLevel> levels, float threshold, const Selection& selection);
+[[nodiscard]] ErrorLeft error_left(std::span<const HierarchyLevel> levels, const Selection& selection);
 
 }  // namespace papilio

@@ -23,8 +23,10 @@ struct HierarchyLevel {
   std::vector<uint32_t> parent;    ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
   std::vector<uint32_t> child;     ///< [F] first of the face's four children in the level below; `none`
   Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give
-  /// [E] the threshold at which the edge is still split: its own error, or that of what needs it split.
+  /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
+  /// infinity where nothing wants it.
   std::vector<float> error;
+  EdgeMarks split;  ///< [E] what is split for the result
 
   /// Whether every face at the edge is held, and so are the rings round its ends.
   [[nodiscard]] bool is_complete(uint32_t edge) const;

@@ -35,9 +35,9 @@ class RedGreen {
       const bool changes = choose();
       if (changes) {
         progress_.report(result.levels, latest);
-        progress_.require_room(count_assembled(levels_, threshold_), level);
+        progress_.require_room(count_assembled(levels_), level);
         result.levels = level;
-        if (progress_.wants_levels()) latest = assemble(levels_, threshold_);
+        if (progress_.wants_levels()) latest = assemble(levels_);
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
@@ -50,39 +50,36 @@ class RedGreen {
   void try_level() {
     HierarchyLevel& level = levels_.back();
     const bool is_last = static_cast<int>(levels_.size()) >= options_.levels;
-    EdgeMarks wanted = edges_of_candidates(level);
+    may_be_split_.push_back(edges_of_candidates(level));
+    EdgeMarks wanted = may_be_split_.back();
     level.trial = try_split(level.mesh, options_, is_last ? wanted : complete_edges(level));
     selection_.narrow(level.mesh, level.trial.normals, static_cast<int>(levels_.size()), wanted);
     if (selection_.is_by_error()) {
-      level.error = selection_.errors(level.mesh, level.trial, wanted, threshold_);
+      level.error = selection_.errors(level.mesh, level.trial, wanted, options_.max_faces > 0 ? 0 : threshold_);
     } else {
       level.error.assign(wanted.size(), never);
       for (size_t e = 0; e < wanted.size(); ++e)
         if (wanted[e] != 0) level.error[e] = threshold_;
     }
-    own_error_ = level.error;
-    if (options_.max_faces > 0) return;
-    // Without a budget the threshold does not move, so it is all the same by how much an error passes it.
-    for (float& error : level.error) error = error >= threshold_ ? threshold_ : never;
+    level.split.assign(level.error.size(), 0);
   }
 
-  /// Carries the new errors up and finds the threshold. True when the lowest level changes anything.
+  /// Decides what is split. True when the lowest level changes anything.
   bool choose() {
-    for (size_t k = levels_.size(); k-- > 0;) {
-      avoid_slivers(levels_[k], edges_of_candidates(levels_[k]), least_angle_, threshold_);
-      if (k == 0 || !selection_.is_by_error()) break;
-      carry_up(levels_[k], levels_[k - 1]);
-    }
+    if (selection_.is_by_error())
+      for (size_t k = levels_.size() - 1; k > 0; --k) carry_up(levels_[k], levels_[k - 1]);
+    threshold_ = selection_.threshold();
+    split_from(threshold_);
     if (options_.max_faces > 0) keep_within_budget();
-    return std::ranges::any_of(levels_.back().error, [&](float e) { return e >= threshold_; });
+    return std::ranges::any_of(levels_.back().split, [](uint8_t mark) { return mark != 0; });
   }
 
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
   static void carry_up(const HierarchyLevel& below, HierarchyLevel& above) {
-    const auto& edge = below.mesh.topology.edge;
     for (size_t group = 0; group < below.parent.size(); ++group) {
       float needed = never;
-      for (size_t h = 12 * group; h < 12 * group + 12; ++h) needed = std::max(needed, below.error[edge[h]]);
+      for (size_t h = 12 * group; h < 12 * group + 12; ++h)
+        needed = std::max(needed, below.error[below.mesh.topology.edge[h]]);
       for (uint32_t i = 0; i < 3; ++i) {
         float& error = above.error[above.mesh.topology.edge[3 * below.parent[group] + i]];
         error = std::max(error, needed);
@@ -90,16 +87,50 @@ class RedGreen {
     }
   }
 
+  /// Marks what has at least this error, and what that needs so that no transition face becomes a sliver.
+  void split_from(float threshold) {
+    for (HierarchyLevel& level : levels_)
+      for (size_t e = 0; e < level.error.size(); ++e) level.split[e] = level.error[e] >= threshold ? 1 : 0;
+    for (size_t k = levels_.size(); k-- > 0;) {
+      avoid_slivers(levels_[k], may_be_split_[k], least_angle_);
+      if (k > 0) carry_marks_up(levels_[k], levels_[k - 1]);
+    }
+  }
+
+  static void carry_marks_up(const HierarchyLevel& below, HierarchyLevel& above) {
+    for (size_t h = 0; h < below.mesh.topology.edge.size(); ++h) {
+      if (below.split[below.mesh.topology.edge[h]] == 0) continue;
+      const uint32_t parent = below.parent[h / 12];
+      for (uint32_t i = 0; i < 3; ++i) above.split[above.mesh.topology.edge[3 * parent + i]] = 1;
+    }
+  }
+
+  /// Raises the threshold until no more is split than the budget allows. What avoiding slivers costs is known only
+  /// afterwards; where it is too much, the errors themselves get that much less.
   void keep_within_budget() {
+    const uint64_t coarse = levels_[0].mesh.topology.face_count();
+    const std::vector<WeighedEdge> edges = weighed_edges();
+    uint64_t room = options_.max_faces;
+    for (uint64_t faces = count_assembled(levels_); faces > options_.max_faces; faces = count_assembled(levels_)) {
+      float raised = threshold_within(edges, selection_.threshold(), coarse, room);
+      while (raised <= threshold_) {
+        room -= std::min(room - coarse, faces - options_.max_faces);
+        raised = threshold_within(edges, selection_.threshold(), coarse, room);
+      }
+      threshold_ = raised;
+      split_from(threshold_);
+    }
+    out_of_budget_ = threshold_ > selection_.threshold();
+  }
+
+  [[nodiscard]] std::vector<WeighedEdge> weighed_edges() const {
     std::vector<WeighedEdge> edges;
     for (const HierarchyLevel& level : levels_) {
       const size_t begin = edges.size();
       for (float error : level.error) edges.push_back({error, 0});
       for (uint32_t e : level.mesh.topology.edge) ++edges[begin + e].faces;
     }
-    threshold_ = threshold_within(std::move(edges), selection_.threshold(), levels_[0].mesh.topology.face_count(),
-                                  options_.max_faces);
-    out_of_budget_ = threshold_ > selection_.threshold();
+    return edges;
   }
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
@@ -120,7 +151,7 @@ class RedGreen {
     const HierarchyLevel& level = levels_.back();
     std::vector<uint8_t> red(level.candidate);
     for (uint32_t h = 0; h < level.mesh.topology.half_edge_count(); ++h)
-      if (!(level.error[level.mesh.topology.edge[h]] >= threshold_)) red[Topology::face(h)] = 0;
+      if (level.split[level.mesh.topology.edge[h]] == 0) red[Topology::face(h)] = 0;
     return red;
   }
 
@@ -131,24 +162,22 @@ class RedGreen {
     const Topology& mesh = level.mesh.topology;
     std::vector<uint8_t> faces(mesh.face_count(), 0);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-      if (own_error_[mesh.edge[h]] >= threshold_) faces[Topology::face(h)] = 1;
+      if (level.error[mesh.edge[h]] >= threshold_) faces[Topology::face(h)] = 1;
     faces = with_neighbours(mesh, faces);
-    const EdgeMarks may_be_split = edges_of_candidates(level);
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-      if (may_be_split[mesh.edge[h]] == 0) faces[Topology::face(h)] = 0;
+      if (may_be_split_.back()[mesh.edge[h]] == 0) faces[Topology::face(h)] = 0;
     return faces;
   }
 
   void finish(Result& result, Mesh latest) {
-    const ErrorLeft left = error_left(levels_, options_.levels == 0 ? infinite : threshold_, selection_);
+    const ErrorLeft left = error_left(levels_, selection_);
     result.error = left.error();
     result.error_pixels = left.pixels();
     if (out_of_budget_)
       result.stop_reason = StopReason::budget;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (!progress_.wants_levels())
-      latest = result.levels == 0 ? std::move(levels_[0].mesh) : assemble(levels_, threshold_);
+    if (!progress_.wants_levels()) latest = result.levels == 0 ? std::move(levels_[0].mesh) : assemble(levels_);
     result.mesh = std::move(latest);
   }
 
@@ -157,8 +186,8 @@ class RedGreen {
   const Selection& selection_;
   const Progress& progress_;
   std::vector<HierarchyLevel> levels_;
-  std::vector<float> own_error_;  ///< [E] of the lowest level, before errors from below are carried up
-  double least_angle_ = 0;        ///< what transition faces keep to
+  std::vector<EdgeMarks> may_be_split_;  ///< [level] the edges of candidates
+  double least_angle_ = 0;               ///< what transition faces keep to
   float threshold_;
   bool out_of_budget_ = false;
 };

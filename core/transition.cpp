@@ -42,23 +42,9 @@ bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, do
          smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine;
 }
 
-/// Raises the errors of the face's edges; true when one changed.
-bool mend(HierarchyLevel& level, uint32_t face, double most_cosine, float least_error) {
-  const Topology& mesh = level.mesh.topology;
-  const auto error = [&](uint32_t i) -> float& { return level.error[mesh.edge[3 * face + i]]; };
-  if (error(0) == error(1) && error(1) == error(2)) return false;
-  std::array<uint32_t, 3> side{0, 1, 2};
-  std::ranges::sort(side, [&](uint32_t i, uint32_t j) { return error(i) != error(j) ? error(i) > error(j) : i < j; });
-  unsigned mask = 0;
-  // As the threshold falls, edges are split one after the other: none of the masks on the way may make slivers.
-  for (uint32_t n = 0; n < 2 && error(side[n]) >= least_error; ++n) {
-    mask |= 1U << side[n];
-    if (error(side[n + 1]) == error(side[n]) || !makes_slivers(level, face, mask, most_cosine)) continue;
-    const float all = error(side[n]);
-    for (uint32_t i = n + 1; i < 3; ++i) error(side[i]) = all;
-    return true;
-  }
-  return false;
+unsigned mask_of(const HierarchyLevel& level, uint32_t face) {
+  const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
+  return level.split[edge[0]] | level.split[edge[1]] << 1U | level.split[edge[2]] << 2U;
 }
 
 }  // namespace
@@ -85,24 +71,24 @@ uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned m
   return second < first || (second == first && second_is_lower) ? number + 1 : number;
 }
 
-void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle, float least_error) {
+void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle) {
   const Topology& mesh = level.mesh.topology;
-  const auto may_be_divided = [&](uint32_t f) {
-    return may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
-           may_be_split[mesh.edge[3 * f + 2]] != 0;
-  };
   const double most_cosine = std::cos(least_angle);
+  const auto must_be_divided = [&](uint32_t f) {
+    const unsigned mask = mask_of(level, f);
+    return mask != 0 && mask != 7 && may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
+           may_be_split[mesh.edge[3 * f + 2]] != 0 && makes_slivers(level, f, mask, most_cosine);
+  };
   std::vector<uint32_t> faces;
   for (uint32_t f = 0; f < mesh.face_count(); ++f)
-    if (may_be_divided(f)) faces.push_back(f);
+    if (must_be_divided(f)) faces.push_back(f);
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();
-    if (!mend(level, f, most_cosine, least_error)) continue;
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-      const uint32_t t = mesh.twin[h];
-      if (t != none && may_be_divided(Topology::face(t))) faces.push_back(Topology::face(t));
-    }
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) level.split[mesh.edge[h]] = 1;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+      if (const uint32_t t = mesh.twin[h]; t != none && must_be_divided(Topology::face(t)))
+        faces.push_back(Topology::face(t));
   }
 }
 

@@ -18,9 +18,8 @@ namespace papilio {
 /// The smallest angle of the mesh's faces, in radians; 0 for one without area.
 [[nodiscard]] double smallest_angle(const Mesh& mesh);
 
-/// Has the other edges of a face split along where pieces would have an angle under `least_angle` (radians), and the
-/// face itself has not. Raises errors [E] of edges in `may_be_split`, in faces with an edge of at least `least_error`,
-/// until no such face is left.
-void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle, float least_error);
+/// Has the other edges of a face split too where pieces would have an angle under `least_angle` (radians) though the
+/// face itself has not, until no such face is left. Adds to `level.split`, edges in `may_be_split` only.
+void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle);
 
 }  // namespace papilio
