@@ -53,8 +53,7 @@ class InPlace {
     float threshold = selection_.threshold();
     if (options_.max_faces > 0) {
       std::vector<WeighedEdge> edges;
-      for (float error : errors) edges.push_back({error, 0});
-      for (uint32_t e : mesh_.topology.edge) ++edges[e].faces;
+      append_edges(mesh_.topology, errors, edges);
       threshold = threshold_within(std::move(edges), threshold, mesh_.topology.face_count(), options_.max_faces);
       if (threshold > selection_.threshold()) {
         out_of_budget_ = true;
@@ -109,8 +108,10 @@ Result refine_in_place(Mesh coarse, const Options& options, const Selection& sel
   return InPlace(options, selection, progress).run(std::move(coarse));
 }
 
-Result refine_uniformly(Mesh mesh, const Options& options, const Selection& selection, const Progress& progress) {
+Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
   Result result;
+  Mesh& mesh = result.mesh;
+  mesh = std::move(coarse);
   for (int level = 1; level <= options.levels; ++level) {
     progress.poll();
     const uint64_t faces = 4ULL * mesh.topology.face_count();
@@ -128,7 +129,6 @@ Result refine_uniformly(Mesh mesh, const Options& options, const Selection& sele
     mesh = split_mesh(std::move(mesh), trial.tried, trial.made);
     result.levels = level;
   }
-  result.mesh = std::move(mesh);
   return result;
 }
 

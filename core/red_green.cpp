@@ -125,11 +125,7 @@ class RedGreen {
 
   [[nodiscard]] std::vector<WeighedEdge> weighed_edges() const {
     std::vector<WeighedEdge> edges;
-    for (const HierarchyLevel& level : levels_) {
-      const size_t begin = edges.size();
-      for (float error : level.error) edges.push_back({error, 0});
-      for (uint32_t e : level.mesh.topology.edge) ++edges[begin + e].faces;
-    }
+    for (const HierarchyLevel& level : levels_) append_edges(level.mesh.topology, level.error, edges);
     return edges;
   }
 

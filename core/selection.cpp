@@ -90,6 +90,13 @@ void ErrorLeft::add(const Mesh& mesh, uint32_t edge, Vec3f q, double share) {
   pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
 }
 
+void append_edges(const Topology& mesh, const std::vector<float>& errors, std::vector<WeighedEdge>& edges) {
+  const size_t begin = edges.size();
+  edges.resize(begin + errors.size());
+  for (size_t e = 0; e < errors.size(); ++e) edges[begin + e] = {errors[e], 0};
+  for (uint32_t e : mesh.edge) ++edges[begin + e].faces;
+}
+
 float threshold_within(std::vector<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {
   std::erase_if(edges, [&](const WeighedEdge& e) { return !(e.error >= least); });
   for (const WeighedEdge& e : edges) faces += e.faces;

@@ -25,6 +25,14 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   post "$url/v1/refine?view.eye=0,0,0"
   expect_problem 400 bad_parameter
   [ "$(field parameter)" = view.target ]
+  post "$url/v1/refine?simplify_hidden=true"
+  expect_problem 400 bad_parameter
+  [ "$(field parameter)" = simplify_hidden ]
+  post "$url/v1/refine?view.lights=0,0,1,1"
+  expect_problem 400 bad_parameter
+  [[ $(field detail) == *"1 to 8 times 3 numbers"* ]]
+  post "$url/v1/refine?tolerance=2"
+  expect_problem 400 bad_parameter
 }
 
 @test "unknown_parameter" {

@@ -48,6 +48,50 @@ teardown_file() { stop_server; }
   [ "$(decoded_faces "$body")" = 600 ]
 }
 
+@test "tolerance: the error reached is reported, finer is larger, a view saves" {
+  local before=600
+  for tolerance in 0.004 0.002 0.001; do
+    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&tolerance=$tolerance"
+    [ "$status" = 200 ]
+    [ "$(header Papilio-Stop-Reason)" = converged ]
+    [ "$(jq -n "$(header Papilio-Error) < $tolerance")" = true ]
+    [ -z "$(header Papilio-Error-Pixels)" ]
+    [ "$(header Papilio-Faces)" -gt "$before" ]
+    [ "$(decoded_faces "$body")" = "$(header Papilio-Faces)" ]
+    before=$(header Papilio-Faces)
+  done
+  local view='view.eye=0,5,30&view.target=0,5,0&view.fov_y=40&view.edge_pixels=0'
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&$view&view.error_pixels=1"
+  [ "$(jq -n "$(header Papilio-Error-Pixels) < 1")" = true ]
+  before=$(header Papilio-Faces)
+  request -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=6&$view&view.error_pixels=1&view.lights=0,0,1,1,1,0&simplify_hidden=true"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Faces)" != "$before" ]
+}
+
+@test "max_faces is never passed, in no part" {
+  for scheme in red-green in-place; do
+    request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" \
+      "$url/v1/refine?levels=4&max_faces=3000&scheme=$scheme"
+    [ "$status" = 200 ]
+    grep -aq '"stop_reason": "budget"' "$body"
+    [ "$(grep -a '^Papilio-Faces: ' "$body" | tr -d '\r' | awk '$2 > 3000' | wc -l)" = 0 ]
+  done
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?max_faces=500"
+  expect_problem 507 result_too_large
+  [[ $(field detail) == *600* ]]
+}
+
+@test "what is wrong with a mesh is refined without a crack and counted" {
+  printf 'v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n' >"$BATS_TEST_TMPDIR/book.obj"
+  "$papilio" convert "$BATS_TEST_TMPDIR/book.obj" "$BATS_TEST_TMPDIR/book.drc"
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/book.drc" "$url/v1/refine?levels=2"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Found)" = "non_manifold_edges=1, pinched_vertices=2" ]
+  [ "$(header Papilio-Faces)" = 48 ]
+}
+
 @test "a form with mesh and params answers the same bytes as body and query" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9&output.speed=3"
   cp "$body" "$BATS_TEST_TMPDIR/raw"
