@@ -54,7 +54,7 @@ teardown_file() { stop_server; }
     request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&tolerance=$tolerance"
     [ "$status" = 200 ]
     [ "$(header Papilio-Stop-Reason)" = converged ]
-    [ "$(jq -n "$(header Papilio-Error) < $tolerance")" = true ]
+    [ "$(jq -n "$(header Papilio-Error) <= $tolerance")" = true ]
     [ -z "$(header Papilio-Error-Pixels)" ]
     [ "$(header Papilio-Faces)" -gt "$before" ]
     [ "$(decoded_faces "$body")" = "$(header Papilio-Faces)" ]
@@ -62,7 +62,7 @@ teardown_file() { stop_server; }
   done
   local view='view.eye=0,5,30&view.target=0,5,0&view.fov_y=40&view.edge_pixels=0'
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&$view&view.error_pixels=1"
-  [ "$(jq -n "$(header Papilio-Error-Pixels) < 1")" = true ]
+  [ "$(jq -n "$(header Papilio-Error-Pixels) <= 1")" = true ]
   before=$(header Papilio-Faces)
   request -H "$draco" --data-binary @"$coarse" \
     "$url/v1/refine?levels=6&$view&view.error_pixels=1&view.lights=0,0,1,1,1,0&simplify_hidden=true"
