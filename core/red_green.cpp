@@ -41,6 +41,7 @@ class RedGreen {
         progress_.report(result.levels, latest);
         progress_.require_room(count_assembled(levels_, threshold_), level);
         result.levels = level;
+        keep();
         if (progress_.wants_levels()) latest = assemble(levels_, threshold_);
       }
       if (level == options_.levels || !go_deeper(level)) break;
@@ -103,6 +104,25 @@ class RedGreen {
     out_of_budget_ = threshold_ > selection_.threshold();
   }
 
+  /// Remembers what the result is made of. With a budget further levels can make it worse without changing anything
+  /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
+  void keep() {
+    if (options_.max_faces == 0) return;
+    kept_threshold_ = threshold_;
+    kept_errors_.clear();
+    for (const HierarchyLevel& level : levels_) kept_errors_.push_back(level.error);
+  }
+
+  void bring_back_what_was_kept() {
+    if (options_.max_faces == 0) return;
+    threshold_ = kept_threshold_;
+    for (size_t k = 0; k < levels_.size(); ++k)
+      if (k < kept_errors_.size())
+        levels_[k].error = std::move(kept_errors_[k]);
+      else
+        std::ranges::fill(levels_[k].error, never);
+  }
+
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
     const std::vector<uint8_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
@@ -141,6 +161,7 @@ class RedGreen {
   }
 
   void finish(Result& result, Mesh latest) {
+    bring_back_what_was_kept();
     const ErrorLeft left = error_left(levels_, options_.levels == 0 ? infinite : threshold_, selection_);
     result.error = left.error();
     result.error_pixels = left.pixels();
@@ -161,6 +182,8 @@ class RedGreen {
   std::vector<float> own_error_;  ///< [E] of the lowest level, before errors from below are carried up
   double least_angle_ = 0;        ///< what transition faces keep to
   float threshold_;
+  float kept_threshold_ = selection_.threshold();
+  std::vector<std::vector<float>> kept_errors_;  ///< [levels][E]
   bool out_of_budget_ = false;
 };
 
