@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lighting.h"
 #include "triangle_distance.h"
@@ -17,6 +18,11 @@ TriangleCorners corners(const Mesh& mesh, uint32_t h) {
 Vec3d midpoint(const Mesh& mesh, uint32_t edge) {
   const uint32_t h = mesh.topology.half_edge[edge];
   return 0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
+}
+
+/// Infinity is kept for what is not to be reached: a budget's threshold where nothing fits.
+float to_finite(double number) {
+  return static_cast<float>(std::min<double>(std::numeric_limits<float>::max(), number));
 }
 
 }  // namespace
@@ -45,11 +51,11 @@ double ErrorMeasure::pixels(const Mesh& mesh, uint32_t edge, double distance) co
 
 float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
-    return static_cast<float>(diagonal_ > 0 ? distance / diagonal_ : 0);
+    return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
   double seen = pixels(mesh, edge, distance);
   if (!view_->lights.empty()) seen *= light_weight(mesh, normals, edge, distance, *view_, *camera_);
-  if (tolerated_ == 0) return static_cast<float>(seen);
-  return static_cast<float>(std::min(distance / tolerated_, seen / tolerated_pixels_));
+  if (tolerated_ == 0) return to_finite(seen);
+  return to_finite(std::min(distance / tolerated_, seen / tolerated_pixels_));
 }
 
 }  // namespace papilio

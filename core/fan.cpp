@@ -9,7 +9,8 @@ namespace {
 
 bool is_dart(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.darts, vertex); }
 
-/// Steps from spoke to spoke, `none` across a curve; round a dart its crease does not count.
+/// Steps from spoke to spoke, `none` across a curve; round a dart its crease does not count. (A cut does: beyond it no
+/// faces are held.)
 class Steps {
  public:
   Steps(const Topology& mesh, uint32_t centre) : mesh_(mesh), is_dart_(is_dart(mesh, centre)) {}
@@ -20,7 +21,9 @@ class Steps {
   }
 
  private:
-  [[nodiscard]] bool ends_at(uint32_t h) const { return !is_dart_ && mesh_.is_curve(h); }
+  [[nodiscard]] bool ends_at(uint32_t h) const {
+    return mesh_.is_curve(h) && !(is_dart_ && mesh_.kind[mesh_.edge[h]] == EdgeKind::crease);
+  }
   const Topology& mesh_;
   const bool is_dart_;
 };

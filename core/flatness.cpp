@@ -6,9 +6,6 @@
 namespace papilio {
 namespace {
 
-/// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
-constexpr double rounding = 4e-7;
-
 /// Cosine of the turn from a to b to c; 1 where a piece has no length.
 double cosine_of_turn(Vec3f a, Vec3f b, Vec3f c) {
   const Vec3d u = to_double(b) - to_double(a);
@@ -21,9 +18,9 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
   const Vec3f a = mesh.positions[mesh.topology.origin[h]];
   const Vec3f b = mesh.positions[mesh.topology.tip(h)];
   const uint32_t before = curves.before(h);
-  if (before != none && cosine_of_turn(mesh.positions[before], a, b) < threshold - rounding) return true;
+  if (before != none && cosine_of_turn(mesh.positions[before], a, b) < threshold - product_rounding) return true;
   const uint32_t after = curves.after(h);
-  return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - rounding;
+  return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - product_rounding;
 }
 
 }  // namespace
@@ -34,13 +31,14 @@ void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, doubl
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t h = topology.half_edge[e];
     const uint32_t t = topology.twin[h];
+    if (topology.kind[e] == EdgeKind::cut) continue;  // no curve: what lies beyond its ends is not known
     if (topology.kind[e] != EdgeKind::smooth) {
       if (turns(mesh, curves, h, threshold)) marks[e] = 1;
       continue;
     }
     const Vec3f n1 = normals[Topology::face(h)];
     const Vec3f n2 = normals[Topology::face(t)];
-    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold - rounding) marks[e] = 1;
+    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold - product_rounding) marks[e] = 1;
   }
 }
 

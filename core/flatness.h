@@ -10,8 +10,8 @@ namespace papilio {
 /// Marks the edges that are not flat, the paper's section 3.1.1: those of two faces whose unit normals have n1.n2 <
 /// `threshold` (less 4e-7, the rounding of float normals, so that what is flat stays whole at 1 too). An edge
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is marked when the curve turns by more than
-/// acos(threshold) at one of its ends. An edge at a face without area is not marked on that face's account. Shapes:
-/// normals [F], marks [E], only ever set.
+/// acos(threshold) at one of its ends. A cut edge is never marked; an edge at a face without area is not marked on that
+/// face's account. Shapes: normals [F], marks [E], only ever set.
 void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks);
 
 /// How far marks spread, the paper's section 3.1.2.

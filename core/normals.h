@@ -14,6 +14,9 @@ namespace papilio {
 /// there are none.
 [[nodiscard]] std::vector<Vec3f> vertex_normals(const Mesh& mesh);
 
+/// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
+inline constexpr double product_rounding = 4e-7;
+
 [[nodiscard]] inline bool has_normal(Vec3f n) { return n != Vec3f{}; }
 
 }  // namespace papilio

@@ -37,6 +37,7 @@ class RedGreen {
         progress_.report(result.levels, latest);
         progress_.require_room(count_assembled(levels_), level);
         result.levels = level;
+        keep();
         if (progress_.wants_levels()) latest = assemble(levels_);
       }
       if (level == options_.levels || !go_deeper(level)) break;
@@ -129,6 +130,21 @@ class RedGreen {
     return edges;
   }
 
+  /// Remembers what the result is made of. With a budget further levels can make it worse without changing anything
+  /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
+  void keep() {
+    kept_.clear();
+    for (const HierarchyLevel& level : levels_) kept_.push_back(level.split);
+  }
+
+  void bring_back_what_was_kept() {
+    for (size_t k = 0; k < levels_.size(); ++k)
+      if (k < kept_.size())
+        levels_[k].split = std::move(kept_[k]);
+      else
+        std::ranges::fill(levels_[k].split, 0);
+  }
+
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
     const std::vector<uint8_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
@@ -166,6 +182,7 @@ class RedGreen {
   }
 
   void finish(Result& result, Mesh latest) {
+    bring_back_what_was_kept();
     const ErrorLeft left = error_left(levels_, selection_);
     result.error = left.error();
     result.error_pixels = left.pixels();
@@ -177,7 +194,6 @@ class RedGreen {
     result.mesh = std::move(latest);
   }
 
-  static constexpr float infinite = std::numeric_limits<float>::infinity();
   const Options& options_;
   const Selection& selection_;
   const Progress& progress_;
@@ -185,6 +201,7 @@ class RedGreen {
   std::vector<EdgeMarks> may_be_split_;  ///< [level] the edges of candidates
   double least_angle_ = 0;               ///< what transition faces keep to
   float threshold_;
+  std::vector<EdgeMarks> kept_;  ///< [level] what was split when a level last changed something
   bool out_of_budget_ = false;
 };
 

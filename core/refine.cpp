@@ -27,7 +27,8 @@ Result run(Mesh mesh, const Options& options, const Hooks& hooks) {
   Result result = run_scheme(std::move(mesh), options, selection, progress);
   if (options.simplify_hidden) {
     progress.poll();
-    result.mesh = simplify_hidden(std::move(result.mesh), *selection.camera());
+    result.mesh =
+        simplify_hidden(std::move(result.mesh), *selection.camera(), default_hidden_error, [&] { progress.poll(); });
   }
   progress.report_last(result.levels, result.mesh);
   return result;

@@ -71,12 +71,13 @@ class Trouble {
 
 /// Attempts until one does no damage: round each fault everything is locked the next time. Nothing when all fail.
 std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hidden, const std::vector<bool>& to_lock,
-                                  double error) {
+                                  double error, const std::function<void()>& poll) {
   const Collapser collapser(mesh, hidden);
   for (int k = 0; k < max_errors; ++k, error /= 4) {
     std::vector<bool> locked = to_lock;
     Trouble trouble(mesh.topology);
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
+      if (poll) poll();
       Collapsed result = collapser.run(locked, error);
       std::vector<uint32_t> faults = find_faults(mesh, result);
       if (faults.empty()) {
@@ -127,7 +128,7 @@ bool restore_creases(const Topology& before, const std::vector<uint32_t>& crease
 
 }  // namespace
 
-Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error) {
+Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error, const std::function<void()>& poll) {
   const std::vector<bool> hidden = hidden_faces(mesh, face_normals(mesh), camera);
   if (std::ranges::find(hidden, true) == hidden.end() || bounding_box(mesh.positions).diagonal() == 0) return mesh;
   const std::vector<bool> to_lock = find_locked(mesh, hidden);
@@ -135,7 +136,7 @@ Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error) {
   // What `connect_faces` would make of the faces at hand, so that before and after compare.
   const std::vector<uint32_t> creases = unmark_creases(mesh.topology);
   const std::vector<uint32_t> pinched = std::exchange(mesh.topology.pinched, find_pinched(mesh.topology));
-  std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error);
+  std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error, poll);
   if (result && restore_creases(mesh.topology, creases, *result)) return std::move(result->mesh);
 
   for (uint32_t e : creases) mesh.topology.kind[e] = EdgeKind::crease;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "mesh.h"
 #include "view.h"
 
@@ -18,11 +20,13 @@ inline constexpr double default_hidden_error = 0.0025;
 /// (boundary, shared, crease), pinched, or on a seam. The curves and the Euler characteristic stay, no edge becomes
 /// non-manifold, no face flipped or degenerate. Where that cannot be had, less is simplified, at worst nothing. The
 /// visible faces come first, in their order; vertices and points keep their order, less those not used any more. The
-/// mesh comes back as it is when nothing is hidden. Deterministic.
+/// mesh comes back as it is when nothing is hidden. Deterministic. `poll`, if any, is called between attempts; it may
+/// throw to stop.
 ///
 /// By meshoptimizer, not by OpenMesh's Decimater (ModQuadric, locked vertices): 4 to 13 times as fast although what it
 /// does is checked and done again, takes what is not manifold, leaves fewer faces folded over, and is a small library
 /// to install where the other comes with a viewer. The price: a mean distance 10 to 75 % larger at equal faces.
-[[nodiscard]] Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error = default_hidden_error);
+[[nodiscard]] Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error = default_hidden_error,
+                                   const std::function<void()>& poll = {});
 
 }  // namespace papilio

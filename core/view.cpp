@@ -14,6 +14,9 @@ namespace {
 /// edge-on.
 constexpr double away_epsilon = 1e-3;
 
+/// However near the near plane is: what it is multiplied by stays a number.
+constexpr double most_pixels_per_unit = 1e200;
+
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void require(bool good, const char* option, const char* what) {
@@ -115,7 +118,7 @@ double Camera::facing(Vec3d point, Vec3d normal) const {
 }
 
 std::array<double, 2> Camera::project(Vec3d relative) const {
-  const double scale = perspective_ ? pixels_per_unit_ / dot(forward_, relative) : pixels_per_unit_;
+  const double scale = pixels_per_unit_at(dot(forward_, relative));
   return {scale * dot(right_, relative), scale * dot(up_, relative)};
 }
 
@@ -132,8 +135,10 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   return std::hypot(bx - ax, by - ay);
 }
 
-double Camera::pixels_per_unit(Vec3d point) const {
-  return perspective_ ? pixels_per_unit_ / std::max(near_, dot(forward_, point - eye_)) : pixels_per_unit_;
+double Camera::pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
+
+double Camera::pixels_per_unit_at(double depth) const {
+  return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
 }
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {

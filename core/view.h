@@ -56,6 +56,7 @@ class Camera {
     double offset;  ///< a point p is inside when normal.p >= offset
   };
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
+  [[nodiscard]] double pixels_per_unit_at(double depth) const;
 
   bool perspective_;
   Vec3d eye_, right_, up_, forward_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fan.h"
 #include "core/refine.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
@@ -122,6 +123,36 @@ TEST(Crease, DartReproducesLinearFunctions) {
     if (!inside(mesh.positions[mesh.topology.origin[h]]) || !inside(mesh.positions[mesh.topology.tip(h)])) continue;
     const Vec3f middle = 0.5F * (mesh.positions[mesh.topology.origin[h]] + mesh.positions[mesh.topology.tip(h)]);
     ASSERT_LE(length(fine.positions[mesh.topology.vertex_count + e] - middle), 1e-6F) << e;
+  }
+}
+
+TEST(Crease, FlatSheetHasNoneAtAnyAngle) {
+  TriangleMesh sheet = grid(20, 20);
+  for (Vec3f& p : sheet.positions) {  // rotated and scaled, so that normals are rounded each in its own way
+    const float x = 0.137F * p.x;
+    const float y = 0.291F * p.y;
+    p = {0.6F * x - 0.3F * y, 0.5F * x + 0.7F * y, 0.2F * x + 0.55F * y};
+  }
+  EXPECT_EQ(count_creases(with_creases(sheet, 0)), 0U);
+}
+
+TEST(Crease, FanOfADartEndsWhereFacesAreMissing) {
+  // Six of twelve faces are held, as at the border of a red-green level: nothing lies beyond the first and last spoke.
+  Mesh mesh = build_mesh(fan(6, false));
+  Topology& topology = mesh.topology;
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
+    if (topology.origin[h] != 0 && topology.tip(h) != 0) continue;
+    if (topology.twin[h] == none) topology.kind[topology.edge[h]] = EdgeKind::cut;
+    if (topology.origin[h] == 0 && topology.tip(h) == 4) topology.kind[topology.edge[h]] = EdgeKind::crease;
+  }
+  topology.darts = {0};
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
+    if (topology.origin[h] != 0) continue;
+    Fan found;
+    collect_fan(topology, h, found);
+    EXPECT_FALSE(found.closed);
+    EXPECT_EQ(found.valence(), 6U);
+    EXPECT_EQ(found.ring.size(), 7U);
   }
 }
 

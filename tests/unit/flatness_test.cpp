@@ -73,6 +73,20 @@ TEST(Flatness, TinyAndHugeMeshesAreJudgedAlike) {
   }
 }
 
+TEST(Flatness, CutEdgesHaveNoCurveToTurn) {
+  Mesh mesh = build_mesh(grid(20, 20));
+  for (Vec3f& p : mesh.positions) p.z = std::sin(p.x) * std::cos(p.y);
+  std::vector<uint32_t> cut;  // they leave the boundary, whose neighbours are those of another curve
+  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
+    const float y = mesh.positions[mesh.topology.origin[mesh.topology.half_edge[e]]].y;
+    if (mesh.topology.kind[e] == EdgeKind::smooth && (y == 0 || y == 20)) cut.push_back(e);
+  }
+  ASSERT_FALSE(cut.empty());
+  for (uint32_t e : cut) mesh.topology.kind[e] = EdgeKind::cut;
+  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  for (uint32_t e : cut) EXPECT_EQ(marks[e], 0) << e;
+}
+
 TEST(Growth, FacesMarksTheOtherEdgesOfBothTriangles) {
   const Mesh mesh = build_mesh(icosahedron());
   EdgeMarks marks(30, 0);

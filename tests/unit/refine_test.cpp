@@ -299,6 +299,21 @@ TEST(Refine, CancelsWithinOneStep) {
   EXPECT_EQ(asked, 3);
 }
 
+TEST(Refine, CancelsBetweenAttemptsToSimplify) {
+  const Mesh fine = refine(build_mesh(torus(24, 12)), {.levels = 2}).mesh;
+  Options options{.levels = 0, .view = View{.eye = {0, 0, 5}}};
+  int asked = 0;
+  const auto count = [&] { return ++asked < 0; };
+  (void)refine(fine, options, {.cancelled = count});
+  const int without = asked;
+  options.simplify_hidden = true;
+  asked = 0;
+  EXPECT_LT(refine(fine, options, {.cancelled = count}).mesh.topology.face_count(), fine.topology.face_count());
+  ASSERT_GT(asked, without + 1);
+  int left = asked;
+  EXPECT_THROW((void)refine(fine, options, {.cancelled = [&] { return --left == 0; }}), Error);
+}
+
 TEST(Refine, RefusesOptionsOutOfRange) {
   EXPECT_EQ(fault_of(icosahedron(), {.levels = -1}), Fault::bad_option);
   EXPECT_EQ(fault_of(icosahedron(), {.levels = 11}), Fault::bad_option);

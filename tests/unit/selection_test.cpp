@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "client/lib/compare.h"
 #include "core/refine.h"
@@ -188,6 +189,44 @@ TEST(Budget, LargeEnoughChangesNothing) {
     const Result less = refine(bunny, options);
     EXPECT_LT(faces_of(less), faces_of(without));
     EXPECT_EQ(less.stop_reason, StopReason::budget);
+  }
+}
+
+TEST(Budget, SeenLevelByLevelOrNotTheResultIsTheSame) {
+  for (uint32_t seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    const Mesh coarse = build_mesh(random_manifold(random));
+    const uint32_t least = coarse.topology.face_count();
+    for (double times : {1.1, 1.3, 1.7, 2.2, 2.8}) {
+      const Options options{.levels = 3, .max_faces = static_cast<uint64_t>(times * least)};
+      const Result result = refine(coarse, options);
+      const Result seen = refine(coarse, options, {.on_level = [](const Level&) {}});
+      ASSERT_EQ(result.mesh.triangles(), seen.mesh.triangles()) << seed;
+      ASSERT_EQ(result.error, seen.error) << seed;
+      ASSERT_EQ(result.levels > 0, faces_of(result) > least) << seed;
+      Options shallow = options;
+      shallow.levels = 1;
+      ASSERT_EQ(faces_of(refine(coarse, shallow)) > least, faces_of(result) > least) << seed << ": deeper is no worse";
+    }
+  }
+}
+
+TEST(Budget, IsNotPassedHoweverLargeErrorsLook) {
+  const Mesh coarse = build_mesh(icosahedron());
+  const Topology& mesh = coarse.topology;
+  View view;
+  view.eye = 0.5 * (to_double(coarse.positions[mesh.origin[0]]) + to_double(coarse.positions[mesh.origin[1]]));
+  view.target = view.eye - Vec3d{0, 0, 1};
+  view.fov_y = 0.01;
+  view.viewport = {1e6, 1e6};
+  view.edge_pixels = 0;
+  for (double near : {1e-30, 1e-300}) {
+    view.near = near;
+    for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
+      const Result result = refine(coarse, {.levels = 3, .scheme = scheme, .view = view, .max_faces = 25});
+      EXPECT_LE(faces_of(result), 25U);
+      EXPECT_TRUE(std::isfinite(result.error_pixels));
+    }
   }
 }
 
