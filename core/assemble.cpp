@@ -1,7 +1,6 @@
 #include "assemble.h"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <utility>
 
@@ -269,7 +268,7 @@ ErrorLeft error_left(std::span<const HierarchyLevel> levels, const Selection& se
   for (const HierarchyLevel& level : levels) {
     judged.push_back(edges_of_candidates(level));
     seen.push_back(judged.back());
-    selection.cull(level.mesh, level.trial.normals, seen.back());
+    selection.cull_unseen(level.mesh, level.trial.normals, seen.back());
   }
   std::vector<bool> above;
   for (size_t k = 0; k < levels.size(); ++k) {

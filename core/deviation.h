@@ -21,7 +21,7 @@ class ErrorMeasure {
  public:
   /// `tolerance` as a share of `diagonal`, `view` and its `camera` (null: none) with its error_pixels and lights. Where
   /// both are given, the number is the lesser of the two shares that the deviation is of what is tolerated; where
-  /// neither is, pixels with a view, else the share of the diagonal.
+  /// neither is, pixels with a view, else the share of the diagonal. Lights weigh pixels only.
   ErrorMeasure(double tolerance, double diagonal, const View* view, const Camera* camera);
 
   [[nodiscard]] float threshold() const { return threshold_; }

@@ -1,5 +1,6 @@
 #include "in_place.h"
 
+#include "attributes.h"
 #include "split.h"
 
 namespace papilio {
@@ -66,7 +67,7 @@ class InPlace {
   void note_error() {
     ErrorLeft left(selection_);
     EdgeMarks seen(targets_.size(), 1);
-    selection_.cull(mesh_, trial_->normals, seen);
+    selection_.cull_unseen(mesh_, trial_->normals, seen);
     for (uint32_t e = 0; e < seen.size(); ++e)
       if (seen[e] != 0) left.add(mesh_, e, trial_->at(e), targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
@@ -77,7 +78,7 @@ class InPlace {
     const SplitPlan plan(targets_);
     const uint64_t faces = count_children(mesh_.topology, plan);
     progress_.require_room(faces, level);
-    progress_.require_memory(faces, bytes_per_face, level);
+    progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh_.attributes), level);
     std::vector<Vec3f> made;
     made.reserve(plan.count());
     for (uint32_t e = 0; e < targets_.size(); ++e)
@@ -116,7 +117,7 @@ Result refine_uniformly(Mesh coarse, const Options& options, const Selection& se
     progress.poll();
     const uint64_t faces = 4ULL * mesh.topology.face_count();
     progress.require_room(faces, level);
-    progress.require_memory(faces, bytes_per_face, level);
+    progress.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh.attributes), level);
     const EdgeMarks all(mesh.topology.edge_count(), 1);
     const Trial trial = try_split(mesh, options, all);
     progress.report(level - 1, mesh);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
+#include <stdexcept>
 
 #include "attributes.h"
 #include "error.h"
@@ -163,7 +165,9 @@ TriangleMesh Mesh::triangles() const {
   return out;
 }
 
-Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
+namespace {
+
+Mesh build(const TriangleMesh& input, BuildReport* report) {
   check(input);
   BuildReport found;
   Mesh mesh;
@@ -187,6 +191,18 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
   if (report != nullptr) *report = found;
   return mesh;
+}
+
+}  // namespace
+
+Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
+  try {
+    return build(input, report);
+  } catch (const std::bad_alloc&) {
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Send a smaller one.");
+  } catch (const std::length_error&) {
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Send a smaller one.");
+  }
 }
 
 std::vector<uint32_t> find_pinched(const Topology& mesh) {

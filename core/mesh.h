@@ -101,7 +101,7 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// Builds the mesh: welds points of equal position (to the bit, but -0 = 0), numbers vertices in the order in
 /// which the faces name them, drops what cannot be refined and counts it. Face order is kept. O(n log n) at
 /// worst. Throws `Error`: index_out_of_range, not_finite (NaN, infinite or beyond `coordinate_limit`),
-/// no_faces.
+/// no_faces, out_of_memory.
 [[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr);
 
 /// Connects faces [3F corners] that already are as `build_mesh` leaves them: no repeats, no equal corners, every vertex

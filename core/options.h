@@ -25,7 +25,8 @@ struct Options {
   int levels = 2;  ///< 0..10; a uniform level multiplies the faces by four
   Scheme scheme = Scheme::red_green;
   /// Edges at which the unit normals' product is below the threshold are targets. One threshold a level,
-  /// -1..1, the last repeats; empty: all edges. Higher is finer.
+  /// -1..1, the last repeats; empty: all edges. Higher is finer. In the red-green scheme the first judges the
+  /// edges of the coarse mesh, the next the edges that come of splitting these, and so on.
   std::vector<double> flatness{};
   Growth growth = Growth::faces;    ///< how far targets spread, after flatness; more is smoother and larger
   std::optional<View> view{};       ///< when set, only what this view shows is refined

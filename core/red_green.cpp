@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "assemble.h"
+#include "attributes.h"
 #include "hierarchy.h"
 #include "transition.h"
 
@@ -153,7 +154,9 @@ class RedGreen {
     };
     if (count(red) == 0) return false;
     const uint64_t faces = 4 * count(with_neighbours(levels_.back().mesh.topology, red));
-    progress_.require_memory(faces, bytes_per_face, level + 1);
+    // What is held but not in the result is bounded too.
+    progress_.require_room(faces / 4, level + 1);
+    progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(levels_[0].mesh.attributes), level + 1);
     if (faces > face_count_limit) progress_.require_room(faces, level + 1);
     levels_.push_back(refine_level(levels_.back(), red));
     return true;

@@ -64,11 +64,11 @@ void Selection::narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int 
     grow(mesh.topology, options_.growth, curved);
     for (size_t e = 0; e < marks.size(); ++e) marks[e] &= curved[e];
   }
-  cull(mesh, normals, marks);
+  if (camera_) cull_by_view(mesh, normals, *camera_, options_.view->edge_pixels, marks);
 }
 
-void Selection::cull(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const {
-  if (camera_) cull_by_view(mesh, normals, *camera_, options_.view->edge_pixels, marks);
+void Selection::cull_unseen(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const {
+  if (camera_) cull_by_view(mesh, normals, *camera_, 0, marks);
 }
 
 std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,

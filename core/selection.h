@@ -42,8 +42,8 @@ class Selection {
   /// The edges that flatness (with growth) and the view want split, of those that are marked already: the paper's
   /// method, in its order. `level` is the one to be made, from 1. Marks [E].
   void narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int level, EdgeMarks& marks) const;
-  /// Unmarks what the view does not show or shows too small; all stays without one.
-  void cull(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
+  /// Unmarks what the view does not show, however small it looks; all stays without one.
+  void cull_unseen(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
 
   /// The error of each marked edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. [E]

@@ -97,12 +97,16 @@ class TensedRules {
       if (factor < 1) q = factor * q + (1 - factor) * along_feature(h);
     }
     const Point m = midpoint(h);
-    const Real moved = length(q - m);
-    const Real most = Real(tension_bound) * length(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
-    return moved > most ? m + (most / moved) * (q - m) : q;
+    const double moved = length(widen(q - m));
+    const double most = tension_bound * length(widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]));
+    return moved > most ? m + Real(most / moved) * (q - m) : q;
   }
 
  private:
+  /// Squares of small floats would be nothing.
+  [[nodiscard]] static Vec3d widen(Point p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+  }
   [[nodiscard]] Point midpoint(uint32_t h) const { return Real(0.5) * (p_[mesh_.origin[h]] + p_[mesh_.tip(h)]); }
 
   [[nodiscard]] Point between(uint32_t h, Point q, Real factor) const {
@@ -119,10 +123,10 @@ class TensedRules {
   }
 
   [[nodiscard]] static Real turn_factor(Point before, Point at, Point after) {
-    const Point u = at - before;
-    const Point v = after - at;
-    const Real size = length(u) * length(v);
-    return size > 0 ? Real(hinge_factor(static_cast<double>(dot(u, v) / size))) : Real(1);
+    const Vec3d u = widen(at - before);
+    const Vec3d v = widen(after - at);
+    const double size = length(u) * length(v);
+    return size > 0 ? Real(hinge_factor(dot(u, v) / size)) : Real(1);
   }
 
   /// The four-point rule along the chain of sharp edges that the edge of h is in.
@@ -139,9 +143,9 @@ class TensedRules {
   [[nodiscard]] Point beyond(uint32_t end, uint32_t other) const {
     if (field_.feature_degree[end] != 2) return reflected(end, other);
     const Point next = p_[field_.feature_neighbours[end] ^ other];
-    const Point u = p_[end] - p_[other];
-    const Point v = next - p_[end];
-    return dot(u, v) > Real(0.5) * length(u) * length(v) ? next : reflected(end, other);
+    const Vec3d u = widen(p_[end] - p_[other]);
+    const Vec3d v = widen(next - p_[end]);
+    return dot(u, v) > 0.5 * length(u) * length(v) ? next : reflected(end, other);
   }
   [[nodiscard]] Point reflected(uint32_t end, uint32_t other) const { return Real(2) * p_[end] - p_[other]; }
 

@@ -8,8 +8,8 @@
 namespace papilio {
 
 /// The pattern for the face with the split edges of `mask` (bit i: edge i): of the two ways to cut a quadrangle, the
-/// one whose smallest angle is larger; where they are equal, the diagonal from the lower corner. Two for the number's
-/// sake: pattern number = 2 * mask + (second diagonal ? 1 : 0).
+/// one whose smallest angle is larger; where they are equal, the diagonal from the lower corner. Returned as a pattern
+/// number = 2 * mask + (second diagonal ? 1 : 0).
 [[nodiscard]] uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask);
 [[nodiscard]] inline const SplitPattern& transition_pattern(uint8_t number) {
   return split_pattern(number / 2U, number % 2 != 0);

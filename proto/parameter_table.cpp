@@ -197,8 +197,9 @@ const std::array table{
                   .min = -any,
                   .max = any,
                   .default_text = "none",
-                  .description = "Directions towards lights; errors then count more where the shading changes and on "
-                                 "the silhouette",
+                  .description =
+                      "Directions towards lights: with view.error_pixels or max_faces, errors count more where "
+                      "the shading changes and on the silhouette",
                   .get = [](const Parameters& p) { return values(view_of(p).lights); },
                   .set = [](Parameters& p, const Values& v) { view_of(p).lights = vectors(v); }},
     ParameterInfo{.name = "view.projection",

@@ -136,6 +136,18 @@ TEST(ErrorPixels, NearerIsFiner) {
   }
 }
 
+TEST(ErrorPixels, EdgesTooShortToBeSplitCountInWhatIsLeft) {
+  View view;
+  view.eye = {0, 0, 30};
+  view.edge_pixels = 1000;
+  for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
+    const Result result = refine(build_mesh(icosahedron()), {.levels = 3, .scheme = scheme, .view = view});
+    EXPECT_EQ(faces_of(result), 20U);
+    EXPECT_GT(result.error, 0.01);
+    EXPECT_GT(result.error_pixels, 1);
+  }
+}
+
 TEST(ErrorPixels, APixelIsWhatTheCameraSays) {
   View view;
   view.eye = {0, 0, 10};
