@@ -9,19 +9,12 @@
 #include "core/in_place.h"
 #include "core/stencil.h"
 #include "tests/support/shapes.h"
+#include "tests/support/whole_split.h"
 
 namespace papilio {
 namespace {
 
 using namespace test;
-
-std::vector<Vec3d> in_double(const Mesh& mesh) {
-  std::vector<Vec3d> positions;
-  for (Vec3f p : mesh.positions) positions.push_back(to_double(p));
-  return positions;
-}
-
-SplitPlan everything(const Mesh& mesh) { return SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1)); }
 
 uint32_t edge_between(const Mesh& mesh, Vec3f a, Vec3f b) {
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)

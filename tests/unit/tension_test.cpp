@@ -10,19 +10,12 @@
 #include "core/refine.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
+#include "tests/support/whole_split.h"
 
 namespace papilio {
 namespace {
 
 using namespace test;
-
-std::vector<Vec3d> in_double(const Mesh& mesh) {
-  std::vector<Vec3d> positions;
-  for (Vec3f p : mesh.positions) positions.push_back(to_double(p));
-  return positions;
-}
-
-SplitPlan everything(const Mesh& mesh) { return SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1)); }
 
 struct Ends {
   Vec3d a, b;

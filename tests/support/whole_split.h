@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/split_plan.h"
+
+// What tests of the butterfly's rules ask of a whole mesh.
+
+namespace papilio::test {
+
+[[nodiscard]] inline std::vector<Vec3d> in_double(const Mesh& mesh) {
+  std::vector<Vec3d> positions;
+  positions.reserve(mesh.positions.size());
+  for (Vec3f p : mesh.positions) positions.push_back(to_double(p));
+  return positions;
+}
+
+/// The plan that splits every edge.
+[[nodiscard]] inline SplitPlan everything(const Mesh& mesh) {
+  return SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1));
+}
+
+}  // namespace papilio::test
