@@ -229,7 +229,7 @@ class Assembler {
   std::vector<EdgeKind> kind_;  ///< [H] of the result
 };
 
-/// Whether the face is in the result, itself or cut: its parent is divided. `divided` [F] of the level above.
+/// [F] Which faces give way to their children in the result; `above` is the same of the level above.
 std::vector<bool> find_divided(const HierarchyLevel& level, const SplitPlan& split, const std::vector<bool>& above) {
   const Topology& mesh = level.mesh.topology;
   std::vector<bool> divided(mesh.face_count());

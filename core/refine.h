@@ -14,7 +14,7 @@ namespace papilio {
 
 /// One level as it is made; valid during the callback only.
 struct Level {
-  int level;  ///< 0 is the coarse mesh; a level without targets, before one with a higher threshold, is left out
+  int level;  ///< 0 is the coarse mesh; levels that change nothing, before one that does, are left out
   const Mesh& mesh;
   bool last;  ///< no further level will come
 };
@@ -26,7 +26,7 @@ struct Hooks {
 };
 
 enum class StopReason {
-  converged,  ///< no target edge was left, and no later level has a higher threshold
+  converged,  ///< no target edge was left (in place: nor does a later level have a higher flatness threshold)
   levels,     ///< all levels asked for were made
   budget,     ///< `max_faces` kept something out
 };
@@ -46,8 +46,9 @@ struct Result {
 /// done.
 void check_room(uint64_t faces, const Options& options);
 
-/// Refines the mesh. Vertices of `coarse` keep their numbers and their positions to the bit. Re-entrant; no
-/// state is kept. Throws `Error`: bad_option, result_too_large (with the number), cancelled, out_of_memory.
+/// Refines the mesh. Vertices of `coarse` keep their numbers and their positions to the bit; with `simplify_hidden`
+/// hidden ones may be dropped, which moves the numbers of the others up. Re-entrant; no state is kept. Throws `Error`:
+/// bad_option, result_too_large (with the number), cancelled, out_of_memory.
 [[nodiscard]] Result refine(Mesh coarse, const Options& options, const Hooks& hooks = {});
 
 }  // namespace papilio
