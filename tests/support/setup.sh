@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh [build|test|demo|bench|check]...: installs what these need and is not there yet; without arguments, everything.
+# setup.sh [build|test|demo|bench|check|fuzz|soak]...: installs what these need and is not there yet; without arguments, everything.
 # Says what it does; when there is nothing to do it does nothing, quickly and silently.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -9,17 +9,22 @@ source "$here/apt.sh"
 packages=()
 programs=() # as program:package, for what may have been installed in some other way
 meshes=no
-(($#)) || set -- build test demo bench check
+(($#)) || set -- build test demo bench check fuzz soak
 for purpose in "$@"; do
   case $purpose in
     build)
       packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
-        libcli11-dev libmeshoptimizer-dev libgtest-dev libgmock-dev libbenchmark-dev)
+        libcli11-dev libmeshoptimizer-dev libgtest-dev libgmock-dev libbenchmark-dev libssl-dev libhiredis-dev
+        prometheus-cpp-dev)
       ;;
-    test) meshes=yes packages+=(bats perl curl jq draco ca-certificates) programs+=(python3:python3) ;;
+    test)
+      meshes=yes packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx) programs+=(python3:python3)
+      ;;
     demo) meshes=yes packages+=(curl jq ca-certificates) ;;
     bench) meshes=yes packages+=(ca-certificates) ;;
     check) packages+=(clang-format clang-tidy shellcheck git jq) ;;
+    fuzz) meshes=yes packages+=(clang libclang-rt-dev ca-certificates) ;;
+    soak) meshes=yes packages+=(wrk curl jq ca-certificates) ;;
     *) die "unknown purpose '$purpose'" ;;
   esac
 done
