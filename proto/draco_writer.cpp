@@ -1,6 +1,7 @@
 #include "proto/draco_writer.h"
 
 #include <draco/compression/expert_encode.h>
+#include <draco/core/draco_version.h>
 #include <draco/mesh/mesh.h>
 
 #include <algorithm>
@@ -200,5 +201,7 @@ std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& f
   for (size_t a = 0; a < format.attributes.size(); ++a) encoding.add(a, format.attributes[a]);
   return encoding.run();
 }
+
+std::string_view draco_version() { return draco::kDracoVersion; }
 
 }  // namespace papilio::proto

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/mesh.h"
@@ -50,5 +51,8 @@ struct OutputOptions {
 /// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws
 /// `Error` as `build_mesh`.
 [[nodiscard]] std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format = {});
+
+/// Of the library that writes: other versions may write other bytes.
+[[nodiscard]] std::string_view draco_version();
 
 }  // namespace papilio::proto

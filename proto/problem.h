@@ -15,7 +15,10 @@ enum class Code {
   bad_parameter,           ///< a value that does not parse or is outside its range
   unknown_parameter,       ///< a name that no parameter has
   bad_request,             ///< the request itself cannot be read: form, JSON, framing
+  unauthorized,            ///< a key is needed, and there was none or an unknown one
+  forbidden,               ///< a known key without the right to do this
   not_found,               ///< no such path
+  mesh_not_found,          ///< no mesh is stored under this id
   method_not_allowed,      ///< the path exists, the method does not
   not_acceptable,          ///< `Accept` names nothing that this path makes
   request_timeout,         ///< the body did not arrive in time
@@ -32,7 +35,11 @@ enum class Code {
   busy,                    ///< every computing slot and waiting place is taken
   not_ready,               ///< /ready only: no further request would be let in now
   draining,                ///< the server is shutting down
-  result_too_large,        ///< the result would pass the limit on faces
+  store_unavailable,       ///< the store of meshes does not answer
+  out_of_memory,           ///< there is no memory for the request at present
+  result_too_large,        ///< the result would pass the limit on faces or memory
+  takes_too_long,          ///< the work passed the limit on computing time
+  store_full,              ///< the store has no room for the mesh
   cancelled,               ///< the client went away; nobody reads this answer
   internal,                ///< a bug here
 };

@@ -60,9 +60,10 @@ auto in_words_of_the_wire(Work work) {
 }  // namespace
 
 Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
-    : options_(parameters.options), output_(parameters.output) {
+    : options_(parameters.options), output_(parameters.output), most_seconds_(limits.max_compute_seconds) {
   Stopwatch watch;
   options_.face_limit = limits.max_output_faces;
+  options_.memory_limit = limits.max_compute_bytes;
   in_words_of_the_wire([&] {
     FormattedMesh input = read_draco(draco, limits);
     coarse_ = build_mesh(input, &found_);
@@ -91,7 +92,11 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     made.statistics.found = found_;
   };
 
-  Hooks core_hooks{.cancelled = hooks.cancelled};
+  const auto stop = [&] {
+    require_time();
+    return hooks.cancelled && hooks.cancelled();
+  };
+  Hooks core_hooks{.cancelled = stop};
   if (hooks.on_level) {
     core_hooks.on_level = [&](const Level& level) {
       if (level.last) return;  // it is sent with the reason why it is the last
@@ -100,7 +105,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     };
   }
   const auto poll = [&] {
-    if (hooks.cancelled && hooks.cancelled()) throw Problem(Code::cancelled, "The client went away.");
+    if (stop()) throw Problem(Code::cancelled, "The client went away.");
   };
   const Result result = refine(std::move(coarse_), options_, core_hooks);
   poll();
@@ -111,6 +116,12 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   poll();  // Draco's encoder cannot be stopped; who left meanwhile is not given an answer
   if (hooks.on_level) hooks.on_level(made);
   return made;
+}
+
+void Refinement::require_time() const {
+  if (most_seconds_ > 0 && std::chrono::steady_clock::now() - begin_ > std::chrono::seconds(most_seconds_))
+    throw Problem(Code::takes_too_long, "The work takes longer than " + std::to_string(most_seconds_) +
+                                            " seconds, the limit. Ask for fewer levels or a coarser mesh.");
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -54,12 +55,14 @@ class Refinement {
 
   [[nodiscard]] uint32_t coarse_faces() const { return coarse_.topology.face_count(); }
   [[nodiscard]] uint32_t coarse_vertices() const { return coarse_.topology.vertex_count; }
+  [[nodiscard]] const BuildReport& found() const { return found_; }
 
   /// Refines and encodes; call once. Returns the last level. Throws `Problem`, and what the hooks throw.
   [[nodiscard]] EncodedLevel run(const RefinementHooks& hooks = {});
 
  private:
   EncodedLevel run_core(const RefinementHooks& hooks);
+  void require_time() const;
 
   Options options_;
   OutputOptions output_;
@@ -68,6 +71,8 @@ class Refinement {
   QuantizationBox box_;
   AttributeEncoding attributes_;
   StageTimes times_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  int most_seconds_;
 };
 
 /// "converged", "levels", "budget".

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <thread>
 
 namespace papilio::server {
@@ -36,55 +37,126 @@ class Settings {
   void add(const std::string& flag, Value& value, Value least, Value most, const std::string& description) {
     add(flag, value, description)->check(CLI::Range(least, most));
   }
+  void add_flag(const std::string& flag, bool& value, const std::string& description) {
+    app_.add_flag("--" + flag, value, description)->envname(environment_twin(flag));
+  }
 
  private:
   CLI::App& app_;
 };
+
+constexpr uint64_t most_bytes = 4ULL << 30;
+constexpr uint64_t most_kept = 1ULL << 44;
+constexpr uint64_t most_faces = 1ULL << 30;
+
+void add_http_settings(Settings& settings, HttpOptions& http) {
+  settings.add("host", http.host, "Address to listen on; 0.0.0.0 for all");
+  settings.add("port", http.port, 0, 65535, "Port to listen on; 0 picks a free one");
+  settings.add("max-body-bytes", http.max_body_bytes, uint64_t{1}, most_bytes, "Largest request body: 413");
+  settings.add("max-held-bytes", http.max_held_bytes, uint64_t{1}, most_kept,
+               "Most bytes of all bodies that are held at once: 429");
+  settings.add("max-header-bytes", http.max_header_bytes, uint64_t{1024}, uint64_t{1} << 20,
+               "Longest request line and header fields together: 431");
+  settings.add("connections", http.threads, 1, 10000, "Connections served at once");
+  settings.add("idle-seconds", http.idle_seconds, 1, 3600, "An idle connection is closed after this");
+  settings.add("read-seconds", http.read_seconds, 1, 3600, "Longest wait for the next bytes of a request");
+  settings.add("write-seconds", http.write_seconds, 1, 3600, "Longest wait for a client to take more bytes");
+}
+
+void add_limits(Settings& settings, Config& config) {
+  proto::Limits& limits = config.engine.limits;
+  settings.add("max-input-faces", limits.max_input_faces, uint64_t{1}, most_faces, "Most faces of a mesh sent: 413");
+  settings.add("max-input-vertices", limits.max_input_vertices, uint64_t{1}, most_faces,
+               "Most vertices of a mesh sent: 413");
+  settings.add("max-output-faces", limits.max_output_faces, uint64_t{1}, most_faces, "Most faces of a result: 507");
+  settings.add("max-compute-seconds", limits.max_compute_seconds, 0, 86400,
+               "Longest time of a refinement: 507; 0: no limit");
+  settings.add("max-compute-bytes", limits.max_compute_bytes, uint64_t{0}, most_kept,
+               "Most memory of a refinement's level: 507; 0: no limit");
+  settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
+               "Address space of the process; 0: what the other settings may need");
+  settings.add("slots", config.engine.slots, 0, 1024, "Requests computed at once; 0: one a core");
+  settings.add("queue", config.engine.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
+  settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");
+}
+
+void add_store_settings(Settings& settings, EngineOptions& engine) {
+  settings.add("store", engine.store.address,
+               "Where meshes are stored: memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] or "
+               "redis+unix:PATH");
+  settings.add("store-bytes", engine.store.bytes, uint64_t{1024}, most_kept,
+               "Size of the store; in memory the meshes used longest ago give way, elsewhere more are refused: 507");
+  settings.add("store-seconds", engine.store.seconds, 0, 1 << 30,
+               "Redis: meshes that are not used for so long go; 0: never");
+  settings.add("result-cache-bytes", engine.result_cache_bytes, uint64_t{0}, most_kept,
+               "Memory for results of stored meshes; 0: none are kept");
+  settings.add("mesh-cache-bytes", engine.mesh_cache_bytes, uint64_t{0}, most_kept,
+               "Memory for stored meshes made ready for new views; 0: none are kept");
+  settings.add("cache-seconds", engine.cache_seconds, 0, 31536000, "How long others may cache a result");
+}
+
+void add_access_settings(Settings& settings, Config& config) {
+  settings.add("keys", config.keys, "File of keys, `NAME KEY` or `NAME KEY manage` a line; SIGHUP reads it again");
+  settings.add_flag("allow-open", config.allow_open, "Listen beyond loopback without keys");
+  settings.add("cors-origins", config.cors_origins, "Origins whose pages may use the service, or *")->delimiter(',');
+}
+
+void add_log_settings(Settings& settings, Config& config) {
+  settings.add("log-level", config.log_level, "Least severity that is logged")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
+  const std::map<std::string, LogFormat> formats{{"text", LogFormat::text}, {"json", LogFormat::json}};
+  settings.add("log-format", config.log_format, "text (key=value) or json")
+      ->default_str("text")
+      ->transform(CLI::CheckedTransformer(formats).description("{text,json}"));
+}
+
+bool is_loopback(const std::string& host) {
+  return host == "localhost" || host == "::1" ||
+         (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string::npos);
+}
+
+/// What single settings cannot say. Throws CLI::ValidationError.
+void check_together(const Config& config) {
+  if (config.keys.empty() && !config.allow_open && !is_loopback(config.http.host))
+    throw CLI::ValidationError("--host",
+                               config.http.host +
+                                   " can be reached by others, and no keys are asked for. Give --keys FILE, or "
+                                   "--allow-open if that is meant.");
+}
 
 }  // namespace
 
 ConfigOutcome parse_config(int argc, const char* const* argv) {
   ConfigOutcome outcome;
   Config& config = outcome.config;
+  config.engine.limits.max_compute_seconds = 60;
+  config.engine.limits.max_compute_bytes = 2ULL << 30;
   CLI::App app{"papilio-server: refines Draco meshes over HTTP where they are curved, visible and large on screen."};
   app.footer(
       "It prints `listening on http://HOST:PORT` on standard output and logs to standard error.\n"
-      "SIGTERM or SIGINT lets running requests finish, then ends with status 0.");
+      "SIGTERM or SIGINT lets running requests finish, then ends with status 0; SIGHUP reads the keys again.");
   app.set_version_flag("--version", "papilio-server " PAPILIO_VERSION);
   app.option_defaults()->always_capture_default();
 
-  constexpr uint64_t most_bytes = 4ULL << 30;
-  constexpr uint64_t most_faces = 1ULL << 30;
   Settings settings(app);
-  settings.add("host", config.http.host, "Address to listen on; 0.0.0.0 for all");
-  settings.add("port", config.http.port, 0, 65535, "Port to listen on; 0 picks a free one");
-  settings.add("max-body-bytes", config.http.max_body_bytes, uint64_t{1}, most_bytes, "Largest request body: 413");
-  settings.add("max-header-bytes", config.http.max_header_bytes, uint64_t{1024}, uint64_t{1} << 20,
-               "Longest request line and header fields together: 431");
-  settings.add("max-input-faces", config.limits.max_input_faces, uint64_t{1}, most_faces,
-               "Most faces of a mesh sent: 413");
-  settings.add("max-input-vertices", config.limits.max_input_vertices, uint64_t{1}, most_faces,
-               "Most vertices of a mesh sent: 413");
-  settings.add("max-output-faces", config.limits.max_output_faces, uint64_t{1}, most_faces,
-               "Most faces of a result: 507");
-  settings.add("slots", config.slots, 0, 1024, "Requests computed at once; 0: one a core");
-  settings.add("queue", config.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
-  settings.add("connections", config.http.threads, 1, 10000, "Connections served at once");
-  settings.add("idle-seconds", config.http.idle_seconds, 1, 3600, "An idle connection is closed after this");
-  settings.add("read-seconds", config.http.read_seconds, 1, 3600, "Longest wait for the next bytes of a request");
-  settings.add("write-seconds", config.http.write_seconds, 1, 3600, "Longest wait for a client to take more bytes");
-  settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");
-  settings.add("log-level", config.log_level, "Least severity that is logged")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
+  add_http_settings(settings, config.http);
+  add_limits(settings, config);
+  add_store_settings(settings, config.engine);
+  add_access_settings(settings, config);
+  add_log_settings(settings, config);
 
   try {
     app.parse(argc, argv);
+    check_together(config);
   } catch (const CLI::ParseError& error) {
     outcome.exit = true;
     outcome.status = app.exit(error) == 0 ? 0 : 2;
     if (outcome.status != 0) name_environment_twins(app);
   }
-  if (config.slots == 0) config.slots = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (config.engine.slots == 0)
+    config.engine.slots = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  config.engine.max_body_bytes = config.http.max_body_bytes;
+  config.engine.keyed = !config.keys.empty();
   return outcome;
 }
 

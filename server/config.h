@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "proto/limits.h"
+#include "server/engine.h"
 #include "server/http/http.h"
+#include "server/log.h"
 
 namespace papilio::server {
 
@@ -11,11 +14,14 @@ namespace papilio::server {
 /// `PAPILIO_MAX_BODY_BYTES`): default, then environment, then flag.
 struct Config {
   HttpOptions http;
-  proto::Limits limits;
-  int slots = 0;           ///< requests computed at once; 0: one a core
-  int queue = 16;          ///< requests that may wait for a slot; more are refused with 429
-  int drain_seconds = 30;  ///< longest wait for running requests after SIGTERM
+  EngineOptions engine;
+  std::string keys;                       ///< file of keys; empty: none are asked for
+  bool allow_open = false;                ///< listen beyond loopback without keys
+  std::vector<std::string> cors_origins;  ///< whose pages may use the service
+  uint64_t max_memory_bytes = 0;          ///< address space of the process; 0: as much as the other settings may need
+  int drain_seconds = 30;                 ///< longest wait for running requests after SIGTERM
   std::string log_level = "info";
+  LogFormat log_format = LogFormat::text;
 };
 
 /// How `parse_config` ended.

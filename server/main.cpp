@@ -1,40 +1,70 @@
 #include <pthread.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "server/address_space.h"
 #include "server/config.h"
+#include "server/cors.h"
+#include "server/endpoints.h"
+#include "server/keys.h"
 #include "server/log.h"
-#include "server/service.h"
 
 using namespace papilio::server;
 
 namespace {
 
-/// The signals that end the program; blocked in every thread, so that only `sigwait` sees them.
-sigset_t block_stop_signals() {
+/// Signals that only `sigwait` is to see: blocked in every thread.
+sigset_t block_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // a client or a store that goes away shows in the result of a call
   return signals;
 }
 
+void reload(Keys* keys) {
+  if (keys == nullptr) return;
+  try {
+    keys->reload();
+    log_event("info", "keys", {{"read", keys->size()}});
+  } catch (const std::exception& error) {
+    log_event("error", "keys", {{"kept", keys->size()}, {"reason", error.what()}});
+  }
+}
+
+/// Returns the signal that is to end the program.
+int wait_for_end(const sigset_t& signals, Keys* keys) {
+  for (int signal = 0;;) {
+    sigwait(&signals, &signal);
+    if (signal != SIGHUP) return signal;
+    reload(keys);
+  }
+}
+
 int serve(const Config& config) {
-  const sigset_t stop_signals = block_stop_signals();
-  start_log(config.log_level);
+  const sigset_t signals = block_signals();
+  start_log(config.log_level, config.log_format);
+  limit_address_space(config);
+  const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
+  const Cors cors(config.cors_origins);
+  Engine engine(config.engine);
   HttpOptions http = config.http;
-  http.on_finished = log_request;
-  Service service(config.limits, http.max_body_bytes, config.slots, config.queue);
+  if (keys) http.authorize = [&](const Request& request, Access access) { return keys->authorize(request, access); };
+  http.decorate = [&](const Request& request, Response& response) { cors.decorate(request, response); };
+  http.on_finished = [&](const Finished& request) {
+    engine.metrics().count_request(request);
+    log_request(request);
+  };
   HttpServer server(http);
-  service.add_routes(server);
+  add_endpoints(server, engine);
   const int port = server.bind();
   std::string listener_failure;
   std::thread listener([&] {
@@ -47,16 +77,20 @@ int serve(const Config& config) {
   });
   std::cout << "listening on http://" << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']')
             << ':' << port << std::endl;
-  spdlog::info("msg=start version={} slots={} queue={}", PAPILIO_VERSION, config.slots, config.queue);
+  log_event("info", "start",
+            {{"version", PAPILIO_VERSION},
+             {"slots", config.engine.slots},
+             {"queue", config.engine.queue},
+             {"store", std::string(engine.store().kind())},
+             {"keys", keys ? keys->size() : 0}});
 
-  int signal = 0;
-  sigwait(&stop_signals, &signal);
-  spdlog::info("msg=draining signal={} running={}", signal, server.running());
-  pthread_sigmask(SIG_UNBLOCK, &stop_signals, nullptr);  // a second signal ends the program at once
+  const int signal = wait_for_end(signals, keys.get());
+  log_event("info", "draining", {{"signal", signal}, {"running", server.running()}});
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second signal ends the program at once
   const bool complete = server.drain(config.drain_seconds);
   listener.join();
   if (!listener_failure.empty()) throw std::runtime_error(listener_failure);
-  spdlog::info("msg=stopped complete={}", complete);
+  log_event("info", "stopped", {{"complete", complete ? "true" : "false"}});
   return complete ? 0 : 1;
 }
 

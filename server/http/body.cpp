@@ -80,10 +80,20 @@ void BodyReader::read_exactly(uint64_t count, std::string& bytes) {
   if (count > limit_ - bytes.size()) throw too_large(limit_);
   while (count > 0) {
     const std::string_view some = connection_.peek().substr(0, count);
+    hold(bytes.size() + some.size());
     bytes += some;
     count -= some.size();
     connection_.consume(some.size());
   }
+}
+
+/// In steps, so that the counter that all requests share is seldom touched.
+void BodyReader::hold(uint64_t bytes) {
+  constexpr uint64_t step = 256 << 10;
+  if (held_ != nullptr && !held_->grow_to((bytes + step - 1) / step * step))
+    throw Problem(Code::busy,
+                  "The bodies of all requests together take too much memory. Try again after the time in "
+                  "Retry-After.");
 }
 
 void BodyReader::read_chunks(std::string& bytes) {

@@ -14,7 +14,7 @@ bool Exchange::receive() {
   parse_head(text, head_);
   id_ = request_id(head_.field("X-Request-Id"));
   framing_ = framing_of(head_);
-  body_.emplace(connection_, framing_, options_.max_body_bytes);
+  body_.emplace(connection_, framing_, options_.max_body_bytes, &held_);
   return true;
 }
 
@@ -22,6 +22,12 @@ void Exchange::refuse_unreadable() const { server::refuse_unreadable(head_, fram
 
 bool Exchange::may_keep_alive() const {
   return body_ && body_->complete() && head_.minor_version == 1 && !head_.lists("Connection", "close");
+}
+
+std::string Exchange::path_parameter(std::string_view name) const {
+  for (const auto& [known, value] : path_parameters_)
+    if (known == name) return value;
+  return {};
 }
 
 std::string Exchange::content_type() const {

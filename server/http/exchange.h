@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/http/body.h"
+#include "server/http/byte_budget.h"
 #include "server/http/connection.h"
 #include "server/http/head.h"
 #include "server/http/http.h"
@@ -13,7 +14,9 @@ namespace papilio::server {
 /// One request on its connection, as the handlers see it.
 class Exchange final : public Request {
  public:
-  Exchange(Connection& connection, const HttpOptions& options) : connection_(connection), options_(options) {}
+  /// `held`: what its body takes of the memory for all bodies.
+  Exchange(Connection& connection, const HttpOptions& options, ByteBudget& held)
+      : connection_(connection), options_(options), held_(held) {}
 
   /// Reads and parses the head. False when the client closed before its end. Throws `Problem`.
   bool receive();
@@ -23,9 +26,11 @@ class Exchange final : public Request {
   /// False for as long as any of this one's are left: they would be executed as a request.
   [[nodiscard]] bool may_keep_alive() const;
   [[nodiscard]] const Head& head() const { return head_; }
+  void set_path_parameters(Fields parameters) { path_parameters_ = std::move(parameters); }
 
   [[nodiscard]] const std::string& method() const override { return head_.method; }
   [[nodiscard]] const std::string& path() const override { return head_.path; }
+  [[nodiscard]] std::string path_parameter(std::string_view name) const override;
   [[nodiscard]] const Fields& query() const override { return head_.query; }
   [[nodiscard]] std::string header(std::string_view name) const override { return head_.field(name); }
   [[nodiscard]] const std::string& remote_address() const override { return connection_.remote_address(); }
@@ -37,7 +42,9 @@ class Exchange final : public Request {
  private:
   Connection& connection_;
   const HttpOptions& options_;
+  ByteBudget::Share held_;
   Head head_;
+  Fields path_parameters_;
   std::string id_;
   Framing framing_;
   std::optional<BodyReader> body_;  ///< empty until the framing is known

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <set>
 
+#include "server/http/byte_budget.h"
 #include "server/http/connection.h"
 #include "server/http/gate.h"
 #include "server/http/listener.h"
@@ -23,7 +24,7 @@ struct HttpServer::Impl {
       connections.insert(&connection);
     }
     try {
-      Session(connection, options, routes, gate, listener).run();
+      Session(connection, options, held, routes, gate, listener).run();
     } catch (...) {
       // Out of memory outside of a handler: this connection is lost, its thread goes on to the next.
     }
@@ -39,6 +40,7 @@ struct HttpServer::Impl {
   }
 
   const HttpOptions options;
+  ByteBudget held{options.max_held_bytes};
   Routes routes;
   Gate gate;
   std::mutex mutex;
@@ -50,9 +52,8 @@ HttpServer::HttpServer(HttpOptions options) : impl_(std::make_unique<Impl>(std::
 
 HttpServer::~HttpServer() { stop(); }
 
-void HttpServer::add(const std::string& method, const std::string& path, Handler handler,
-                     WhileDraining while_draining) {
-  impl_->routes.add(method, path, std::move(handler), while_draining);
+void HttpServer::add(const std::string& method, const std::string& path, Handler handler, const RouteOptions& options) {
+  impl_->routes.add(method, path, std::move(handler), options);
 }
 
 int HttpServer::bind() { return impl_->listener.open(impl_->options.host, impl_->options.port); }

@@ -41,6 +41,8 @@ class Request {
   virtual ~Request() = default;
   [[nodiscard]] virtual const std::string& method() const = 0;
   [[nodiscard]] virtual const std::string& path() const = 0;
+  /// What stands in the place of `{name}` in the route's path; "" when the route has no such place.
+  [[nodiscard]] virtual std::string path_parameter(std::string_view name) const = 0;
   /// Query fields, percent-decoded, duplicates kept, in their original order.
   [[nodiscard]] virtual const Fields& query() const = 0;
   /// A header field's value, "" when absent. Names are matched without regard to case.
@@ -86,10 +88,25 @@ using Handler = std::function<Response(Request&)>;
 /// What becomes of a route's new requests once the server drains.
 enum class WhileDraining { refuse, answer };
 
+/// Who may call a route, where keys are asked for at all.
+enum class Access {
+  open,    ///< anyone
+  use,     ///< any key
+  manage,  ///< a key with the right to manage
+};
+
+struct RouteOptions {
+  WhileDraining while_draining = WhileDraining::refuse;
+  Access access = Access::open;
+};
+
 /// What the log gets to know of a finished request.
 struct Finished {
   std::string id, method, remote_address;
-  std::string path;  ///< as it was sent, without the query: visible ASCII, which cannot break a log's lines
+  std::string path;    ///< as it was sent, without the query: visible ASCII, which cannot break a log's lines
+  std::string route;   ///< the path as it was added, "" when there is no such route
+  std::string client;  ///< as `HttpOptions::authorize` named it
+  std::string trace;   ///< the trace id of a valid `traceparent` (which the answer repeats), else ""
   int status = 0;
   uint64_t bytes_in = 0, bytes_out = 0;
   double milliseconds = 0;
@@ -102,14 +119,19 @@ struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 8080;                        ///< 0: any free one
   uint64_t max_body_bytes = 64u << 20;    ///< larger: 413, before it is read where a length is declared
+  uint64_t max_held_bytes = 512u << 20;   ///< bodies held in memory at once, of all requests together: 429
   uint64_t max_header_bytes = 32u << 10;  ///< request line and header fields together: 431
   int threads = 64;                       ///< connections served at once; each holds a thread
   int idle_seconds = 5;            ///< an idle connection is closed after this, or when others wait for its thread
   int read_seconds = 10;           ///< for a whole head, and for each 1 KiB times this of a body: 408
   int write_seconds = 30;          ///< longest wait for the client to take the next bytes of an answer
   int keep_alive_requests = 1000;  ///< requests on one connection
+  /// Who is asking: a name for the log. Throws `Problem` unauthorized or forbidden. Empty: everybody may do all.
+  std::function<std::string(const Request&, Access)> authorize{};
+  /// May add headers to any answer, refusals too, before it is sent.
+  std::function<void(const Request&, Response&)> decorate{};
   /// Called after each answer, from the connection's thread. Must not throw.
-  std::function<void(const Finished&)> on_finished;
+  std::function<void(const Finished&)> on_finished{};
 };
 
 /// An HTTP/1.1 server: add routes, bind, run, drain. `add` before `bind`; `drain` and `stop` may be called
@@ -121,10 +143,9 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// Exact path, any method (HEAD follows GET, OPTIONS lists the path's methods). Unknown paths answer 404,
-  /// known ones with another method 405 with `Allow`.
-  void add(const std::string& method, const std::string& path, Handler handler,
-           WhileDraining while_draining = WhileDraining::refuse);
+  /// Any method (HEAD follows GET, OPTIONS lists the path's methods). A segment `{name}` of the path stands for any
+  /// text; paths without one come first. Unknown paths answer 404, known ones with another method 405 with `Allow`.
+  void add(const std::string& method, const std::string& path, Handler handler, const RouteOptions& options = {});
   /// Binds and listens; returns the port. Throws std::runtime_error with the reason, naming host and port.
   int bind();
   /// Serves until `stop` or `drain` is done; returns at once when one was called before. Call after `bind`.

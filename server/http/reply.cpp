@@ -151,8 +151,8 @@ Response problem_response(const proto::Problem& problem, const std::string& requ
   response.status = problem.status();
   response.content_type = "application/problem+json";
   response.headers.emplace_back("Cache-Control", "no-store");
-  if (problem.code() == proto::Code::busy || problem.code() == proto::Code::draining)
-    response.headers.emplace_back("Retry-After", "1");
+  if (problem.status() == 429 || problem.status() == 503) response.headers.emplace_back("Retry-After", "1");
+  if (problem.status() == 401) response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"papilio\"");
   response.body = problem.json(request_id);
   return response;
 }

@@ -1,7 +1,9 @@
 #include "server/http/session.h"
 
 #include <chrono>
+#include <new>
 #include <optional>
+#include <string_view>
 
 #include "server/http/reply.h"
 
@@ -13,6 +15,19 @@ using proto::Problem;
 
 Problem internal() {
   return {Code::internal, "The server failed on this request; its log tells more under the request id."};
+}
+
+/// The trace id of a `traceparent` (W3C Trace Context, version 00), "" when it is not one.
+std::string trace_id(const std::string& traceparent) {
+  const auto is_hex = [](std::string_view text) {
+    return text.find_first_not_of("0123456789abcdef") == std::string_view::npos &&
+           text.find_first_not_of('0') != std::string_view::npos;
+  };
+  const std::string_view text = traceparent;
+  const bool valid = text.size() == 55 && text.starts_with("00-") && text[35] == '-' && text[52] == '-' &&
+                     is_hex(text.substr(3, 32)) && is_hex(text.substr(36, 16)) &&
+                     text.substr(53).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return valid ? std::string(text.substr(3, 32)) : "";
 }
 
 /// A request counts as running from its complete head until its answer is sent and logged.
@@ -46,20 +61,27 @@ bool Session::answer_one(bool last) {
   const auto start = Connection::Clock::now();
   const uint64_t in_before = connection_.bytes_in();
   const uint64_t out_before = connection_.bytes_out();
-  Exchange exchange(connection_, options_);
+  Exchange exchange(connection_, options_, held_);
   Finished finished;
   std::optional<Pass> pass;
   Response response;
   try {
     if (!exchange.receive()) return false;
     pass.emplace(gate_);
-    const Route& route = routes_.find(exchange.method(), exchange.path());
+    RouteMatch match = routes_.find(exchange.method(), exchange.path());
+    finished.route = std::move(match.pattern);
+    exchange.set_path_parameters(std::move(match.parameters));
+    const RouteOptions& route = match.route->options;
     if (!pass->entered() && route.while_draining == WhileDraining::refuse)
       throw Problem(Code::draining, "This server is shutting down; ask another one.");
+    if (options_.authorize) finished.client = options_.authorize(exchange, route.access);
     exchange.refuse_unreadable();
-    response = route.handler(exchange);
+    response = match.route->handler(exchange);
   } catch (const Problem& problem) {
     response = refusal(exchange, problem, finished);
+  } catch (const std::bad_alloc&) {
+    response =
+        refusal(exchange, Problem(Code::out_of_memory, "There is not enough memory for this request now."), finished);
   } catch (const std::exception& error) {
     response = refusal(exchange, internal(), finished);
     finished.detail = error.what();
@@ -67,6 +89,9 @@ bool Session::answer_one(bool last) {
     response = refusal(exchange, internal(), finished);
     finished.detail = "an exception of an unknown kind";
   }
+  finished.trace = trace_id(exchange.header("traceparent"));
+  if (!finished.trace.empty()) response.headers.emplace_back("traceparent", exchange.header("traceparent"));
+  if (options_.decorate) options_.decorate(exchange, response);
 
   const bool keep_alive = !last && exchange.may_keep_alive() && !gate_.closed() && !listener_.others_wait();
   const bool sent = send_reply(connection_, response,

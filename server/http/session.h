@@ -14,9 +14,9 @@ namespace papilio::server {
 /// The requests of one connection, one after the other.
 class Session {
  public:
-  Session(Connection& connection, const HttpOptions& options, const Routes& routes, Gate& gate,
+  Session(Connection& connection, const HttpOptions& options, ByteBudget& held, const Routes& routes, Gate& gate,
           const Listener& listener)
-      : connection_(connection), options_(options), routes_(routes), gate_(gate), listener_(listener) {}
+      : connection_(connection), options_(options), held_(held), routes_(routes), gate_(gate), listener_(listener) {}
 
   void run();
 
@@ -27,6 +27,7 @@ class Session {
 
   Connection& connection_;
   const HttpOptions& options_;
+  ByteBudget& held_;
   const Routes& routes_;
   Gate& gate_;
   const Listener& listener_;

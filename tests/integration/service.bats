@@ -59,7 +59,7 @@ teardown() {
   run "$server" --port "${url##*:}"
   [ "$status" = 1 ]
   [[ $output == *"${url##*:}"* ]]
-  run "$server" --host 192.0.2.1 --port 0
+  run "$server" --host 192.0.2.1 --port 0 --allow-open
   [ "$status" = 1 ]
   [[ $output == *192.0.2.1* ]]
 }

@@ -63,3 +63,4 @@ if [[ ! -d $deps/openmesh ]]; then
 fi
 
 [[ $meshes == no ]] || "$here/real_meshes.sh"
+[[ " $* " != *" test "* ]] || "$here/openapi_linter.sh"

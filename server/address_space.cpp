@@ -1,0 +1,49 @@
+#include "server/address_space.h"
+
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace papilio::server {
+namespace {
+
+constexpr uint64_t stack_bytes = 8ULL << 20;
+constexpr uint64_t arena_bytes = 128ULL << 20;  ///< glibc's malloc maps so much at a time for each of 8 arenas a core
+constexpr uint64_t base_bytes = 1ULL << 30;     ///< the program, its libraries
+/// A level, the levels above it, and what is encoded from it.
+constexpr uint64_t levels_held = 3;
+constexpr uint64_t unlimited_compute_bytes = 8ULL << 30;
+
+constexpr bool is_sanitized =
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    true;
+#else
+    false;
+#endif
+
+}  // namespace
+
+uint64_t address_space_needed(const Config& config) {
+  const EngineOptions& engine = config.engine;
+  const uint64_t compute =
+      engine.limits.max_compute_bytes > 0 ? engine.limits.max_compute_bytes : unlimited_compute_bytes;
+  const uint64_t slots = static_cast<uint64_t>(engine.slots);
+  const uint64_t threads = static_cast<uint64_t>(config.http.threads) + slots;
+  const uint64_t store = engine.store.address == "memory" ? engine.store.bytes : 0;
+  return base_bytes + threads * stack_bytes + slots * (8 * arena_bytes + levels_held * compute) +
+         config.http.max_held_bytes + store + engine.result_cache_bytes + engine.mesh_cache_bytes;
+}
+
+void limit_address_space(const Config& config) {
+  if (is_sanitized) return;
+  const uint64_t bytes = config.max_memory_bytes > 0 ? config.max_memory_bytes : address_space_needed(config);
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? bytes : std::min<rlim_t>(bytes, limit.rlim_max);
+  if (::setrlimit(RLIMIT_AS, &limit) != 0)
+    throw std::runtime_error(std::string("--max-memory-bytes: ") + std::strerror(errno));
+}
+
+}  // namespace papilio::server

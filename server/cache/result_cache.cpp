@@ -1,0 +1,81 @@
+#include "server/cache/result_cache.h"
+
+#include <chrono>
+
+#include "proto/problem.h"
+
+namespace papilio::server {
+
+using proto::Code;
+using proto::Problem;
+
+ResultCache::Answer ResultCache::get_or_make(const std::string& key, const std::function<Result(const Question&)>& make,
+                                             const Question& client_gone) {
+  for (;;) {
+    if (Result kept = kept_.get(key)) return {std::move(kept), Source::kept};
+    std::shared_ptr<Flight> flight;
+    bool first = false;
+    {
+      const std::lock_guard lock(mutex_);
+      std::shared_ptr<Flight>& entry = flights_[key];
+      first = entry == nullptr;
+      if (first)
+        entry = std::make_shared<Flight>();
+      else
+        ++entry->waiting;
+      flight = entry;
+    }
+    if (first) return make_for_all(key, *flight, make, client_gone);
+    if (Result result = wait_for(flight, client_gone)) return {std::move(result), Source::shared};
+  }
+}
+
+ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& flight,
+                                              const std::function<Result(const Question&)>& make,
+                                              const Question& client_gone) {
+  const auto abandoned = [&] {
+    if (!client_gone()) return false;
+    const std::lock_guard lock(mutex_);
+    return flight.waiting == 0;
+  };
+  Result result;
+  std::exception_ptr failure;
+  try {
+    result = make(abandoned);
+    kept_.put(key, result, result->draco.size());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    flight.done = true;
+    flight.result = result;
+    flight.failure = failure;
+    flights_.erase(key);
+  }
+  landed_.notify_all();
+  if (failure) std::rethrow_exception(failure);
+  return {std::move(result), Source::made};
+}
+
+/// Null when the one who made it gave up: then it is to be made anew.
+ResultCache::Result ResultCache::wait_for(const std::shared_ptr<Flight>& flight, const Question& client_gone) {
+  std::unique_lock lock(mutex_);
+  while (!landed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return flight->done; })) {
+    lock.unlock();
+    const bool gone = client_gone();
+    lock.lock();
+    if (!gone || flight->done) continue;
+    --flight->waiting;
+    throw Problem(Code::cancelled, "The client went away while its result was made for another.");
+  }
+  if (!flight->failure) return flight->result;
+  try {
+    std::rethrow_exception(flight->failure);
+  } catch (const Problem& problem) {
+    if (problem.code() == Code::cancelled) return nullptr;
+    throw;
+  }
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,51 @@
+#include "server/engine.h"
+
+#include <chrono>
+
+#include "proto/problem.h"
+
+namespace papilio::server {
+
+using proto::Code;
+using proto::Problem;
+
+Engine::Engine(const EngineOptions& options)
+    : options_(options),
+      admission_(options.slots, options.queue),
+      store_(open_store(options.store)),
+      results_(options.result_cache_bytes) {}
+
+std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& abandoned) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto slot = admission_.enter(abandoned);
+  metrics_.observe_wait(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  return slot;
+}
+
+proto::EncodedLevel Engine::run(proto::Refinement& refinement, const proto::RefinementHooks& hooks) {
+  const uint64_t faces = refinement.coarse_faces();
+  proto::EncodedLevel made = refinement.run(hooks);
+  metrics_.count_refinement(faces, made.statistics);
+  return made;
+}
+
+std::unique_ptr<proto::Refinement> Engine::refinement_of(const std::string& id, const proto::Parameters& parameters) {
+  const MeshStore::Bytes mesh = store_->get(id);
+  if (mesh == nullptr)
+    throw Problem(Code::mesh_not_found, "No mesh is stored under this id. Send it to POST /v1/meshes.");
+  return std::make_unique<proto::Refinement>(*mesh, parameters, options_.limits);
+}
+
+std::string Engine::metrics_text() {
+  Gauges gauges{.slots = options_.slots,
+                .computing = admission_.computing(),
+                .waiting = admission_.waiting(),
+                .result_cache_bytes = results_.bytes()};
+  if (const auto usage = store_->usage()) {
+    gauges.store_meshes = usage->meshes;
+    gauges.store_bytes = usage->bytes;
+  }
+  return metrics_.text(gauges);
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "proto/limits.h"
+#include "proto/refinement.h"
+#include "server/admission.h"
+#include "server/cache/result_cache.h"
+#include "server/http/http.h"
+#include "server/metrics.h"
+#include "server/store/mesh_store.h"
+
+namespace papilio::server {
+
+/// How the service's parts are sized.
+struct EngineOptions {
+  proto::Limits limits;
+  uint64_t max_body_bytes = 64u << 20;       ///< told in /v1/info; the HTTP server holds to it
+  int slots = 0;                             ///< requests computed at once; 0: one a core
+  int queue = 16;                            ///< requests that may wait for a slot
+  StoreOptions store;                        ///
+  uint64_t result_cache_bytes = 256u << 20;  ///< results of stored meshes
+  uint64_t mesh_cache_bytes = 512u << 20;    ///< stored meshes, decoded and partly refined
+  int cache_seconds = 86400;                 ///< how long others may cache a result
+  bool keyed = false;                        ///< keys are asked for, so that nobody else may keep what is answered
+};
+
+/// What the routes share: the work and what it is kept in. Threads may share it.
+class Engine {
+ public:
+  explicit Engine(const EngineOptions& options);
+
+  [[nodiscard]] const EngineOptions& options() const { return options_; }
+  [[nodiscard]] Admission& admission() { return admission_; }
+  [[nodiscard]] MeshStore& store() { return *store_; }
+  [[nodiscard]] ResultCache& results() { return results_; }
+  [[nodiscard]] Metrics& metrics() { return metrics_; }
+  [[nodiscard]] const proto::Limits& limits() const { return options_.limits; }
+
+  /// Waits for a slot; throws as `Admission::enter`.
+  [[nodiscard]] std::shared_ptr<Admission::Slot> enter(const std::function<bool()>& abandoned);
+  /// Runs a refinement to its end, and counts it. Throws `Problem`.
+  [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, const proto::RefinementHooks& hooks);
+  /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
+  [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
+                                                                 const proto::Parameters& parameters);
+  [[nodiscard]] std::string metrics_text();
+
+ private:
+  const EngineOptions options_;
+  Admission admission_;
+  std::unique_ptr<MeshStore> store_;
+  ResultCache results_;
+  Metrics metrics_;
+};
+
+}  // namespace papilio::server

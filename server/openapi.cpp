@@ -1,0 +1,348 @@
+#include "server/openapi.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "proto/parameters.h"
+#include "proto/problem.h"
+#include "server/endpoints.h"
+#include "server/routes/refined_answer.h"
+#include "server/routes/service_routes.h"
+
+namespace papilio::server {
+namespace {
+
+using nlohmann::ordered_json;
+using proto::ParameterInfo;
+using proto::ParameterType;
+
+ordered_json reference(const std::string& where) { return {{"$ref", "#/components/" + where}}; }
+ordered_json schema_reference(const std::string& name) { return reference("schemas/" + name); }
+
+// Parameters
+
+/// An integer where it is one: JSON tells 3 from 3.0.
+ordered_json number(double value) {
+  return value == static_cast<double>(static_cast<int64_t>(value)) ? ordered_json(static_cast<int64_t>(value))
+                                                                   : ordered_json(value);
+}
+
+ordered_json parameter_schema(const ParameterInfo& info) {
+  if (info.type == ParameterType::boolean) return {{"type", "boolean"}};
+  if (info.type == ParameterType::choice) return {{"type", "string"}, {"enum", info.choices}};
+  const ordered_json one{{"type", info.type == ParameterType::integer ? "integer" : "number"},
+                         {"minimum", number(info.min)},
+                         {"maximum", number(info.max)}};
+  if (info.type != ParameterType::numbers) return one;
+  return {{"type", "array"}, {"items", one}, {"minItems", info.least}, {"maxItems", info.most}};
+}
+
+std::string parameter_description(const ParameterInfo& info) {
+  std::string text(info.description);
+  text += ". Default: " + proto::describe_default(info);
+  if (!info.unit.empty()) text += " (" + std::string(info.unit) + ")";
+  return text + ".";
+}
+
+/// "view.eye" is "view_eye" among the components, whose names have no dots by custom.
+std::string component_name(std::string_view parameter) {
+  std::string name(parameter);
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
+ordered_json query_parameters() {
+  ordered_json all = ordered_json::object();
+  for (const ParameterInfo& info : proto::parameter_table()) {
+    ordered_json& row = all[component_name(info.name)];
+    row = {{"name", info.name},
+           {"in", "query"},
+           {"description", parameter_description(info)},
+           {"schema", parameter_schema(info)}};
+    if (info.type == ParameterType::numbers) row.update({{"style", "form"}, {"explode", false}});
+  }
+  return all;
+}
+
+/// The same as one JSON object, dots being levels.
+ordered_json parameters_schema() {
+  ordered_json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", ordered_json::object()}};
+  for (const ParameterInfo& info : proto::parameter_table()) {
+    ordered_json one = parameter_schema(info);
+    one["description"] = parameter_description(info);
+    const size_t dot = info.name.find('.');
+    const std::string first(info.name.substr(0, dot));
+    ordered_json& properties = schema["properties"];
+    if (dot == std::string_view::npos) {
+      properties[first] = one;
+      continue;
+    }
+    if (!properties.contains(first)) properties[first] = {{"type", "object"}, {"additionalProperties", false}};
+    properties[first]["properties"][std::string(info.name.substr(dot + 1))] = one;
+  }
+  return schema;
+}
+
+// Schemas
+
+ordered_json integer_schema(const std::string& description) {
+  return {{"type", "integer"}, {"minimum", 0}, {"description", description}};
+}
+
+ordered_json problem_schema() {
+  std::vector<std::string_view> codes;
+  for (const proto::ProblemKind& kind : proto::problem_kinds()) codes.push_back(kind.name);
+  return {{"type", "object"},
+          {"description", "RFC 9457"},
+          {"required", {"type", "code", "title", "status", "detail"}},
+          {"properties",
+           {{"type", {{"type", "string"}, {"description", "urn:papilio:problem: and the code"}}},
+            {"code", {{"type", "string"}, {"enum", codes}}},
+            {"title", {{"type", "string"}}},
+            {"status", {{"type", "integer"}}},
+            {"detail", {{"type", "string"}, {"description", "What is wrong here, and what to do"}}},
+            {"parameter", {{"type", "string"}, {"description", "The parameter at fault, if one is"}}},
+            {"request_id", {{"type", "string"}}}}}};
+}
+
+ordered_json description_schema() {
+  return {{"type", "object"},
+          {"required", {"id", "bytes", "vertices", "faces", "found", "refined"}},
+          {"properties",
+           {{"id", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}},
+            {"bytes", integer_schema("Size of the stored bytes")},
+            {"vertices", integer_schema("After equal points were welded")},
+            {"faces", integer_schema("Without degenerate ones")},
+            {"found",
+             {{"type", "object"},
+              {"description", "Defects by name, and how many of each"},
+              {"additionalProperties", {{"type", "integer"}}}}},
+            {"refined", {{"type", "string"}, {"description", "Path of its refinements"}}}}}};
+}
+
+ordered_json info_schema(const EngineOptions& options) {
+  ordered_json limits{{"type", "object"}, {"properties", ordered_json::object()}};
+  for (const NamedLimit& limit : named_limits(options)) {
+    limits["properties"][std::string(limit.name)] = {
+        {"type", "integer"}, {"description", limit.description}, {"const", limit.value}};
+    limits["required"].push_back(limit.name);
+  }
+  return {{"type", "object"},
+          {"required", {"name", "version", "schemes", "limits", "parameters"}},
+          {"properties",
+           {{"name", {{"type", "string"}}},
+            {"version", {{"type", "string"}}},
+            {"schemes", {{"type", "array"}, {"items", {{"type", "string"}}}}},
+            {"limits", limits},
+            {"parameters", {{"type", "array"}, {"items", {{"type", "object"}}}}}}}};
+}
+
+ordered_json schemas(const EngineOptions& options) {
+  return {
+      {"Parameters", parameters_schema()},
+      {"Problem", problem_schema()},
+      {"Description", description_schema()},
+      {"Info", info_schema(options)},
+      {"Health", {{"type", "object"}, {"required", {"status"}}, {"properties", {{"status", {{"type", "string"}}}}}}}};
+}
+
+// Answers
+
+ordered_json header(const std::string& type, const std::string& description) {
+  return {{"description", description}, {"schema", {{"type", type}}}};
+}
+
+ordered_json headers() {
+  return {{"X-Request-Id", header("string", "The client's own when it sent a sane one, else a fresh one")},
+          {"Papilio-Vertices", header("integer", "Vertices of the mesh")},
+          {"Papilio-Faces", header("integer", "Faces of the mesh")},
+          {"Papilio-Levels", header("integer", "The last level that changed the mesh")},
+          {"Papilio-Stop-Reason",
+           {{"description", "Why there is no further level"},
+            {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget"}}}}}},
+          {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
+          {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
+          {"Papilio-Found", header("string", "Defects of the coarse mesh and how many of each")},
+          {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
+          {"ETag", header("string", "Strong")},
+          {"Cache-Control", header("string", "What caches may do with the answer")},
+          {"Location", header("string", "Path of the mesh")},
+          {"Retry-After", header("integer", "Seconds to wait before the next try")}};
+}
+
+ordered_json header_references(const std::vector<std::string>& names) {
+  ordered_json all = ordered_json::object();
+  for (const std::string& name : names) all[name] = reference("headers/" + name);
+  return all;
+}
+
+ordered_json content(const std::vector<std::string>& types, const ordered_json& schema) {
+  ordered_json all = ordered_json::object();
+  for (const std::string& type : types) all[type] = {{"schema", schema}};
+  return all;
+}
+
+const ordered_json& binary() {
+  static const ordered_json schema = ordered_json::object();  // OpenAPI 3.1: bytes have a media type, but no schema
+  return schema;
+}
+
+ordered_json refined_answer() {
+  ordered_json types = content({draco_type, bytes_type}, binary());
+  types[multipart_type] = {
+      {"schema",
+       {{"type", "array"},
+        {"description",
+         "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
+         "and a JSON summary. A problem after the stream has begun is its last part."}}}};
+  return {{"description", "The refined mesh"},
+          {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
+                                         "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
+                                         "Papilio-Found", "Server-Timing", "ETag", "Cache-Control"})},
+          {"content", types}};
+}
+
+ordered_json json_answer(const std::string& description, const std::string& schema) {
+  return {{"description", description},
+          {"headers", header_references({"X-Request-Id"})},
+          {"content", content({json_type}, schema_reference(schema))}};
+}
+
+void add_successes(const Endpoint& endpoint, ordered_json& answers) {
+  const ordered_json not_modified{{"description", "If-None-Match has the ETag"},
+                                  {"headers", header_references({"ETag", "Cache-Control"})}};
+  switch (endpoint.output) {
+    case Output::refined:
+      answers["200"] = refined_answer();
+      if (endpoint.method == "GET") answers["304"] = not_modified;
+      break;
+    case Output::mesh:
+      answers["200"] = {{"description", "The stored bytes, or their description"},
+                        {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control"})},
+                        {"content", content({draco_type, bytes_type}, binary())}};
+      answers["200"]["content"][json_type] = {{"schema", schema_reference("Description")}};
+      answers["304"] = not_modified;
+      break;
+    case Output::description:
+      answers["201"] = json_answer("Stored", "Description");
+      answers["200"] = json_answer("It was stored already", "Description");
+      for (const char* status : {"200", "201"}) answers[status]["headers"].update(header_references({"Location"}));
+      break;
+    case Output::info:
+      answers["200"] = json_answer("What this server is", "Info");
+      break;
+    case Output::health:
+      answers["200"] = json_answer("Yes", "Health");
+      break;
+    case Output::metrics:
+      answers["200"] = {{"description", "Prometheus' text format"},
+                        {"content", {{"text/plain", {{"schema", {{"type", "string"}}}}}}}};
+      break;
+    case Output::openapi:
+      answers["200"] = {{"description", "OpenAPI 3.1"}, {"content", {{json_type, {{"schema", {{"type", "object"}}}}}}}};
+      break;
+    case Output::nothing:
+      answers["204"] = {{"description", "Done"}};
+      break;
+  }
+}
+
+/// Problems by their status, each with the codes that it stands for.
+void add_problems(const Endpoint& endpoint, ordered_json& answers) {
+  std::map<int, std::string> by_status;
+  std::vector<proto::Code> codes = endpoint.problems;
+  codes.insert(codes.end(), common_problems().begin(), common_problems().end());
+  std::ranges::sort(codes);
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  for (const proto::Code code : codes) {
+    const proto::ProblemKind& kind = proto::problem_kind(code);
+    std::string& text = by_status[kind.status];
+    text += (text.empty() ? "" : "; ") + std::string(kind.name) + ": " + std::string(kind.title);
+  }
+  for (const auto& [status, text] : by_status) {
+    ordered_json& answer = answers[std::to_string(status)];
+    answer = {{"description", text},
+              {"headers", header_references({"X-Request-Id"})},
+              {"content", content({"application/problem+json"}, schema_reference("Problem"))}};
+    if (status == 429 || status == 503) answer["headers"].update(header_references({"Retry-After"}));
+  }
+}
+
+ordered_json request_body(Input input) {
+  ordered_json types;
+  if (input == Input::parameters) types = content({json_type}, schema_reference("Parameters"));
+  if (input == Input::mesh || input == Input::mesh_or_form) types = content({draco_type, bytes_type}, binary());
+  if (input == Input::mesh_or_form)
+    types["multipart/form-data"] = {{"schema",
+                                     {{"type", "object"},
+                                      {"required", {"mesh"}},
+                                      {"properties",
+                                       {{"mesh", {{"type", "string"}, {"contentMediaType", draco_type}}},
+                                        {"params", schema_reference("Parameters")}}}}}};
+  return {{"required", true}, {"content", types}};
+}
+
+ordered_json operation(const Endpoint& endpoint) {
+  ordered_json one{{"operationId", endpoint.name}, {"summary", endpoint.summary}};
+  if (endpoint.access == Access::open) one["security"] = ordered_json::array();
+  if (endpoint.access == Access::manage)
+    one["description"] = "Where the server asks for keys, this takes one with the right to manage.";
+  ordered_json parameters = ordered_json::array();
+  if (endpoint.path.find("{id}") != std::string_view::npos) parameters.push_back(reference("parameters/id"));
+  if (endpoint.parameters)
+    for (const ParameterInfo& info : proto::parameter_table())
+      parameters.push_back(reference("parameters/" + component_name(info.name)));
+  if (!parameters.empty()) one["parameters"] = parameters;
+  if (endpoint.input != Input::none) one["requestBody"] = request_body(endpoint.input);
+  one["responses"] = ordered_json::object();
+  add_successes(endpoint, one["responses"]);
+  add_problems(endpoint, one["responses"]);
+  return one;
+}
+
+}  // namespace
+
+std::string openapi_json(const EngineOptions& options) {
+  ordered_json document{
+      {"openapi", "3.1.0"},
+      {"info",
+       {{"title", "Papilio"},
+        {"version", PAPILIO_VERSION},
+        {"summary", "Refines Draco meshes where they are curved, visible and large on screen"},
+        {"description",
+         "HEAD follows GET, and OPTIONS answers, everywhere. Parameters that are not known are refused."},
+        {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
+      {"servers", {{{"url", "/"}}}},
+      {"security", {{{"key", ordered_json::array()}}, ordered_json::object()}},
+      {"paths", ordered_json::object()}};
+  for (const Endpoint& endpoint : endpoints()) {
+    std::string method(endpoint.method);
+    std::ranges::transform(method, method.begin(), [](unsigned char c) { return std::tolower(c); });
+    document["paths"][std::string(endpoint.path)][method] = operation(endpoint);
+  }
+  ordered_json parameters{{"id",
+                           {{"name", "id"},
+                            {"in", "path"},
+                            {"required", true},
+                            {"description", "SHA-256 of the mesh's bytes"},
+                            {"schema", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}}}}};
+  parameters.update(query_parameters());
+  document["components"] = {
+      {"schemas", schemas(options)},
+      {"parameters", parameters},
+      {"headers", headers()},
+      {"securitySchemes",
+       {{"key", {{"type", "http"}, {"scheme", "bearer"}, {"description", "Only where the server asks for keys"}}}}}};
+  return document.dump(2) + "\n";
+}
+
+Response openapi_route(Engine& engine, Request& /*request*/) {
+  Response response;
+  response.content_type = json_type;
+  response.headers = {{"Cache-Control", "no-cache"}};
+  response.body = openapi_json(engine.options());
+  return response;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,110 @@
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "proto/multipart.h"
+#include "proto/problem.h"
+#include "server/routes/refined_answer.h"
+
+namespace papilio::server {
+namespace {
+
+using proto::Code;
+using proto::EncodedLevel;
+using proto::Part;
+using proto::Problem;
+
+/// The way of the parts from the thread that makes them to the one that sends them.
+class Outbox {
+ public:
+  void put(Part part) {
+    const std::lock_guard lock(mutex_);
+    parts_.push_back(std::move(part));
+    changed_.notify_one();
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_one();
+  }
+  /// Nothing when none has come in `longest`, or none will come.
+  std::optional<Part> take(std::chrono::milliseconds longest) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, longest, [&] { return !parts_.empty() || closed_; });
+    if (parts_.empty()) return std::nullopt;
+    Part part = std::move(parts_.front());
+    parts_.pop_front();
+    return part;
+  }
+  [[nodiscard]] bool finished() const {
+    const std::lock_guard lock(mutex_);
+    return closed_ && parts_.empty();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Part> parts_;
+  bool closed_ = false;
+};
+
+Part level_part(const EncodedLevel& level) {
+  Part part{{{"Content-Type", draco_type}}, level.draco};
+  for (auto& header : proto::statistics_headers(level.statistics)) part.headers.push_back(std::move(header));
+  return part;
+}
+
+/// Makes all parts of the stream; never throws.
+void make_parts(Engine& engine, proto::Refinement& refinement, const std::string& request_id,
+                const std::function<bool()>& abandoned, Outbox& outbox) {
+  const auto fail = [&](const Problem& problem) {
+    outbox.put({{{"Content-Type", "application/problem+json"}}, problem.json(request_id)});
+  };
+  try {
+    const EncodedLevel last = engine.run(
+        refinement,
+        {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level)); }, .cancelled = abandoned});
+    outbox.put({{{"Content-Type", json_type}}, proto::statistics_json(last.statistics)});
+  } catch (const Problem& problem) {
+    fail(problem);
+  } catch (const std::exception&) {
+    fail(Problem(Code::internal, "Something failed inside the server. The request id finds it in the log."));
+  }
+}
+
+constexpr std::chrono::milliseconds check_interval{50};
+
+}  // namespace
+
+Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admission::Slot> slot,
+                      std::shared_ptr<proto::Refinement> refinement) {
+  const proto::MultipartWriter writer;
+  Response response;
+  response.content_type = writer.content_type();
+  response.headers = {{"Vary", "Accept"}, {"Cache-Control", "no-store"}};
+  response.stream = [&engine, &request, writer, slot = std::move(slot),
+                     refinement = std::move(refinement)](Sink& sink) mutable {
+    Outbox outbox;
+    std::atomic<bool> gone = false;
+    const std::jthread maker([&] {
+      make_parts(
+          engine, *refinement, request.id(), [&] { return gone.load(); }, outbox);
+      refinement.reset();
+      slot.reset();
+      outbox.close();
+    });
+    while (!outbox.finished()) {
+      const std::optional<Part> part = outbox.take(check_interval);
+      gone = gone || request.client_gone() || (part && !sink.write(writer.part(*part)));
+    }
+    if (gone) throw Problem(Code::cancelled, "The client went away.");
+    sink.write(writer.end());
+  };
+  return response;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,210 @@
+#include "server/routes/mesh_routes.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/findings.h"
+#include "proto/parameters.h"
+#include "proto/problem.h"
+#include "proto/text.h"
+#include "server/accept.h"
+#include "server/http/head.h"
+#include "server/routes/refined_answer.h"
+#include "server/sha256.h"
+
+namespace papilio::server {
+
+using nlohmann::ordered_json;
+using proto::Code;
+using proto::Parameters;
+using proto::Problem;
+using proto::Refinement;
+
+namespace {
+
+Problem no_such_mesh() {
+  return {Code::mesh_not_found, "No mesh is stored under this id. Send it to POST /v1/meshes, which answers its id."};
+}
+
+std::string path_of(const std::string& id) { return "/v1/meshes/" + id; }
+
+/// What everybody may keep for ever: content under its own hash.
+std::string cache_control(const Engine& engine, int seconds, bool immutable) {
+  return std::string(engine.options().keyed ? "private" : "public") + ", max-age=" + std::to_string(seconds) +
+         (immutable ? ", immutable" : "");
+}
+
+std::string description(const std::string& id, size_t bytes, const Refinement& mesh) {
+  ordered_json document{{"id", id},
+                        {"bytes", bytes},
+                        {"vertices", mesh.coarse_vertices()},
+                        {"faces", mesh.coarse_faces()},
+                        {"found", ordered_json::object()},
+                        {"refined", path_of(id) + "/refined"}};
+  for (const auto& [name, count] : proto::defects(mesh.found())) document["found"][std::string(name)] = count;
+  return document.dump(2) + "\n";
+}
+
+Response not_modified(const Fields& headers) {
+  Response response;
+  response.status = 304;
+  response.headers = headers;
+  return response;
+}
+
+Parameters unrefined() {
+  Parameters parameters;
+  parameters.options.levels = 0;
+  return parameters;
+}
+
+constexpr int year = 31'536'000;
+
+}  // namespace
+
+std::string mesh_id(const Request& request) {
+  std::string id = request.path_parameter("id");
+  if (!is_sha256(id)) throw no_such_mesh();
+  return id;
+}
+
+std::string entity_tag(const std::string& id, const Parameters& parameters, const std::string& type) {
+  const std::string made_by = std::string(PAPILIO_VERSION) + " " + std::string(proto::draco_version());
+  return '"' + sha256(made_by + '\n' + id + '\n' + proto::to_query(parameters) + '\n' + type).substr(0, 32) + '"';
+}
+
+bool none_match_has(const std::string& if_none_match, const std::string& tag) {
+  std::string_view rest = if_none_match;
+  while (!rest.empty()) {
+    std::string_view item = trimmed(rest.substr(0, rest.find(',')));
+    rest.remove_prefix(
+        std::min(rest.size(), rest.find(',') == std::string_view::npos ? rest.size() : rest.find(',') + 1));
+    if (item.starts_with("W/")) item.remove_prefix(2);
+    if (item == tag || item == "*") return true;
+  }
+  return false;
+}
+
+Response store_mesh(Engine& engine, Request& request) {
+  if (!request.query().empty())
+    throw Problem(Code::unknown_parameter, "Storing a mesh takes no parameters; they come with the refinement.",
+                  proto::shorten(request.query().front().first));
+  const std::string type = request.content_type();
+  if (type != draco_type && type != bytes_type)
+    throw Problem(Code::unsupported_media_type,
+                  "Bodies of type " + proto::quote(type) +
+                      " are not stored. Send a Draco file with -H 'Content-Type: application/x-draco'.");
+  engine.admission().refuse_when_full();
+  const std::string mesh = request.read_body().bytes;
+  const std::string id = sha256(mesh);
+  std::string described;
+  {
+    const auto slot = engine.enter([&] { return request.client_gone(); });
+    described = description(id, mesh.size(), Refinement(mesh, unrefined(), engine.limits()));
+  }
+  Response response;
+  response.status = engine.store().put(id, mesh) ? 201 : 200;
+  response.content_type = json_type;
+  response.headers = {{"Location", path_of(id)}, {"Cache-Control", "no-store"}};
+  response.body = std::move(described);
+  return response;
+}
+
+Response stored_mesh(Engine& engine, Request& request) {
+  const std::string id = mesh_id(request);
+  const std::string accept = request.header("Accept");
+  const auto type = negotiate(accept, {draco_type, bytes_type, json_type});
+  if (!type)
+    throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) +
+                                            ", but a mesh is application/x-draco or application/octet-stream, and its "
+                                            "description application/json.");
+  // By the type too: two representations never share a tag.
+  const std::string tag = '"' + id.substr(0, 32) + (type == draco_type ? "" : type == bytes_type ? "-b" : "-j") + '"';
+  Response response;
+  response.headers = {{"ETag", tag}, {"Cache-Control", cache_control(engine, year, true)}, {"Vary", "Accept"}};
+  if (none_match_has(request.header("If-None-Match"), tag) && engine.store().contains(id))
+    return not_modified(response.headers);
+  const MeshStore::Bytes mesh = engine.store().get(id);
+  if (mesh == nullptr) throw no_such_mesh();
+  response.content_type = *type;
+  if (type == json_type) {
+    const auto slot = engine.enter([&] { return request.client_gone(); });
+    response.body = description(id, mesh->size(), Refinement(*mesh, unrefined(), engine.limits()));
+  } else {
+    response.body = *mesh;
+  }
+  return response;
+}
+
+Response delete_mesh(Engine& engine, Request& request) {
+  if (!engine.store().remove(mesh_id(request))) throw no_such_mesh();
+  Response response;
+  response.status = 204;
+  return response;
+}
+
+namespace {
+
+Parameters read_parameters(Request& request) {
+  if (request.method() != "POST") return proto::parse_query(request.query());
+  if (!request.query().empty())
+    throw Problem(Code::bad_request, "With POST, parameters belong into the JSON body, not into the query.");
+  if (request.content_type() != json_type)
+    throw Problem(Code::unsupported_media_type,
+                  "Send the parameters as JSON, with -H 'Content-Type: application/json'.");
+  return proto::parse_json(request.read_body().bytes);
+}
+
+/// Answers from the cache go on while the store is away.
+bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
+  try {
+    return engine.store().contains(id);
+  } catch (const Problem& problem) {
+    if (problem.code() == Code::store_unavailable && engine.results().get(key) != nullptr) return true;
+    throw;
+  }
+}
+
+ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
+                                 const Parameters& parameters, const std::string& key) {
+  const auto make = [&](const std::function<bool()>& abandoned) {
+    const auto slot = engine.enter(abandoned);
+    const auto refinement = engine.refinement_of(id, parameters);
+    return std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}));
+  };
+  ResultCache::Answer answer = engine.results().get_or_make(key, make, [&] { return request.client_gone(); });
+  engine.metrics().count_lookup(Metrics::Cache::results, answer.source == ResultCache::Source::kept);
+  if (answer.source == ResultCache::Source::shared) engine.metrics().count_shared();
+  return answer;
+}
+
+}  // namespace
+
+Response refined_mesh(Engine& engine, Request& request) {
+  const std::string id = mesh_id(request);
+  const std::string type = negotiate_refined(request);
+  const Parameters parameters = read_parameters(request);
+  const std::string key = entity_tag(id, parameters, "");  // the bytes are the same whatever their type is called
+  if (!is_stored(engine, id, key)) throw no_such_mesh();
+  if (type == multipart_type) {
+    auto slot = engine.enter([&] { return request.client_gone(); });
+    return level_stream(engine, request, std::move(slot), engine.refinement_of(id, parameters));
+  }
+  const bool cacheable = request.method() != "POST";
+  const std::string tag = entity_tag(id, parameters, type);
+  const Fields validators{{"ETag", tag},
+                          {"Cache-Control", cacheable ? cache_control(engine, engine.options().cache_seconds, false)
+                                                      : std::string("no-store")}};
+  if (cacheable && none_match_has(request.header("If-None-Match"), tag)) {
+    Fields headers = validators;
+    headers.emplace_back("Vary", "Accept");
+    return not_modified(headers);
+  }
+  const ResultCache::Answer answer = find_or_make(engine, request, id, parameters, key);
+  proto::EncodedLevel level = *answer.result;
+  if (answer.source == ResultCache::Source::kept) level.statistics.times = {};  // no time was spent on this request
+  Response response = refined_response(std::move(level), type);
+  response.headers.insert(response.headers.end(), validators.begin(), validators.end());
+  return response;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,28 @@
+#include "server/routes/refined_answer.h"
+
+#include "proto/problem.h"
+#include "proto/text.h"
+#include "server/accept.h"
+
+namespace papilio::server {
+
+std::string negotiate_refined(const Request& request) {
+  const std::string accept = request.header("Accept");
+  const auto type = negotiate(accept, {draco_type, bytes_type, multipart_type});
+  if (!type)
+    throw proto::Problem(proto::Code::not_acceptable, "Accept is " + proto::quote(accept) +
+                                                          ", but the answer can only be application/x-draco, "
+                                                          "application/octet-stream or multipart/mixed.");
+  return *type;
+}
+
+Response refined_response(proto::EncodedLevel made, const std::string& type) {
+  Response response;
+  response.content_type = type;
+  response.headers = {{"Vary", "Accept"}};
+  for (auto& header : proto::statistics_headers(made.statistics)) response.headers.push_back(std::move(header));
+  response.body = std::move(made.draco);
+  return response;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "proto/refinement.h"
+#include "server/engine.h"
+#include "server/http/http.h"
+
+// What all routes that answer a refined mesh have in common.
+
+namespace papilio::server {
+
+inline constexpr const char* draco_type = "application/x-draco";
+inline constexpr const char* bytes_type = "application/octet-stream";
+inline constexpr const char* multipart_type = "multipart/mixed";
+inline constexpr const char* json_type = "application/json";
+
+/// Which form of the answer the client likes best: draco_type, bytes_type or multipart_type. Throws `Problem`
+/// not_acceptable.
+[[nodiscard]] std::string negotiate_refined(const Request& request);
+
+/// The mesh with its statistics as headers. The caller adds what caches may do with it.
+[[nodiscard]] Response refined_response(proto::EncodedLevel made, const std::string& type);
+
+/// Streams each level as it is made, and a JSON summary. The work is done on a thread of its own, so that the slot is
+/// free as soon as it is done, however slowly the client reads; it stops within a check when the client goes away. Once
+/// a stream has begun its status is sent; what goes wrong then comes as its last part, `application/problem+json`.
+[[nodiscard]] Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admission::Slot> slot,
+                                    std::shared_ptr<proto::Refinement> refinement);
+
+}  // namespace papilio::server

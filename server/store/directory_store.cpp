@@ -1,0 +1,194 @@
+#include "server/store/directory_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+
+#include "proto/problem.h"
+#include "server/log.h"
+#include "server/sha256.h"
+
+namespace papilio::server {
+
+namespace fs = std::filesystem;
+using proto::Code;
+using proto::Problem;
+
+namespace {
+
+constexpr std::string_view extension = ".drc";
+constexpr std::string_view unfinished = ".part";
+constexpr std::chrono::minutes longest_write{10};  ///< what is unfinished for longer was interrupted
+
+/// The operator's log has the reason, the client only what concerns it.
+Problem unavailable(const fs::path& path, const std::string& reason) {
+  log_event("error", "store", {{"path", path.string()}, {"reason", reason}});
+  return {Code::store_unavailable,
+          "The store of meshes cannot be used at present. Try again after the time in "
+          "Retry-After."};
+}
+
+Problem unavailable(const fs::path& path) { return unavailable(path, std::strerror(errno)); }
+
+/// A descriptor that is closed in the end.
+class File {
+ public:
+  File(const fs::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0640)) {}
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  [[nodiscard]] bool sync() const { return ::fsync(fd_) == 0; }
+  [[nodiscard]] bool write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) return false;
+      if (written > 0) bytes.remove_prefix(static_cast<size_t>(written));
+    }
+    return true;
+  }
+
+ private:
+  const int fd_;
+};
+
+std::string random_suffix() {
+  std::random_device random;
+  return std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(unfinished);
+}
+
+bool is_stale(const fs::directory_entry& file) {
+  std::error_code error;
+  const auto written = file.last_write_time(error);
+  return !error && fs::file_time_type::clock::now() - written > longest_write;
+}
+
+}  // namespace
+
+DirectoryStore::DirectoryStore(fs::path directory, uint64_t budget)
+    : directory_(std::move(directory)), budget_(budget) {
+  std::error_code error;
+  fs::create_directories(directory_, error);
+  const fs::path probe = directory_ / random_suffix();
+  if (!File(probe, O_WRONLY | O_CREAT | O_EXCL).is_open())
+    throw std::runtime_error("cannot write into the store's directory " + directory_.string() + ": " +
+                             std::strerror(errno));
+  fs::remove(probe, error);
+  for (const fs::directory_entry& file : fs::recursive_directory_iterator(directory_))
+    if (file.path().extension() == unfinished && is_stale(file)) fs::remove(file, error);
+  count_files();
+}
+
+fs::path DirectoryStore::file_of(const std::string& id) const {
+  return directory_ / id.substr(0, 2) / (id + std::string(extension));
+}
+
+bool DirectoryStore::put(const std::string& id, std::string_view bytes) {
+  const fs::path file = file_of(id);
+  std::error_code error;
+  if (contains(id)) return false;
+  make_room(bytes.size());
+  fs::create_directories(file.parent_path(), error);
+  const fs::path part = file.parent_path() / random_suffix();
+  bool written = false;
+  {
+    const File out(part, O_WRONLY | O_CREAT | O_EXCL);
+    written = out.is_open() && out.write(bytes) && out.sync();
+  }
+  if (!written || ::rename(part.c_str(), file.c_str()) != 0) {
+    const bool is_full = errno == ENOSPC || errno == EDQUOT;
+    const Problem problem = unavailable(part);
+    fs::remove(part, error);
+    if (is_full)
+      throw Problem(Code::store_full, "The store's disk is full. Delete meshes, or ask the operator for room.");
+    throw problem;
+  }
+  if (!File(file.parent_path(), O_RDONLY | O_DIRECTORY).sync()) throw unavailable(file);
+  const std::lock_guard lock(mutex_);
+  ++usage_.meshes;
+  usage_.bytes += bytes.size();
+  return true;
+}
+
+bool DirectoryStore::contains(const std::string& id) {
+  std::error_code error;
+  return fs::exists(file_of(id), error);
+}
+
+MeshStore::Bytes DirectoryStore::get(const std::string& id) {
+  const fs::path file = file_of(id);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    if (errno != ENOENT) throw unavailable(file);
+    return nullptr;
+  }
+  auto bytes =
+      std::make_shared<const std::string>(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  if (in.bad()) throw unavailable(file, "reading failed");
+  if (sha256(*bytes) == id) return bytes;
+  log_event("error", "store",
+            {{"path", file.string()}, {"reason", "the content is not what the name says; the file is taken away"}});
+  remove(id);
+  return nullptr;
+}
+
+bool DirectoryStore::remove(const std::string& id) {
+  const fs::path file = file_of(id);
+  std::error_code error;
+  const uint64_t bytes = fs::file_size(file, error);
+  if (error) return false;
+  if (!fs::remove(file, error)) {
+    if (error) throw unavailable(file, error.message());
+    return false;
+  }
+  const std::lock_guard lock(mutex_);
+  usage_.meshes -= std::min<uint64_t>(usage_.meshes, 1);
+  usage_.bytes -= std::min(usage_.bytes, bytes);
+  return true;
+}
+
+void DirectoryStore::count_files() {
+  Usage counted;
+  std::error_code error;
+  for (auto file = fs::recursive_directory_iterator(directory_, error); file != fs::recursive_directory_iterator();
+       file.increment(error)) {
+    if (error) break;
+    std::error_code gone;
+    const uint64_t bytes = file->is_regular_file(gone) ? file->file_size(gone) : 0;
+    if (gone || file->path().extension() != extension) continue;
+    ++counted.meshes;
+    counted.bytes += bytes;
+  }
+  const std::lock_guard lock(mutex_);
+  usage_ = counted;
+}
+
+void DirectoryStore::make_room(uint64_t bytes) {
+  const auto fits = [&] {
+    const std::lock_guard lock(mutex_);
+    return usage_.bytes + bytes <= budget_;
+  };
+  if (fits()) return;
+  count_files();
+  if (!fits())
+    throw Problem(Code::store_full,
+                  "The store of " + std::to_string(budget_) +
+                      " bytes has no room for this mesh. Delete meshes, or ask the operator for room.");
+}
+
+std::optional<MeshStore::Usage> DirectoryStore::usage() {
+  const std::lock_guard lock(mutex_);
+  return usage_;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,189 @@
+#include "server/store/redis_store.h"
+
+#include <hiredis/hiredis.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "proto/problem.h"
+#include "server/log.h"
+
+namespace papilio::server {
+
+using proto::Code;
+using proto::Problem;
+
+namespace {
+
+constexpr timeval longest_wait{2, 0};
+
+Problem unavailable(std::string_view reason) {
+  log_event("error", "store", {{"kind", "redis"}, {"reason", std::string(reason)}});
+  return {Code::store_unavailable,
+          "The store of meshes does not answer. Try again after the time in Retry-After; "
+          "POST /v1/refine works without it."};
+}
+
+std::string key_of(const std::string& id) { return "papilio:mesh:" + id; }
+
+bool parse_integer(std::string_view text, int most, int& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && value >= 0 && value <= most;
+}
+
+bool has_error(const redisReply& reply, std::string_view kind) {
+  return reply.type == REDIS_REPLY_ERROR && std::string_view(reply.str, reply.len).starts_with(kind);
+}
+
+}  // namespace
+
+std::optional<RedisAddress> parse_redis_address(std::string_view text) {
+  constexpr std::string_view unix_scheme = "redis+unix:";
+  constexpr std::string_view scheme = "redis://";
+  RedisAddress address;
+  if (text.starts_with(unix_scheme)) {
+    address.path = text.substr(unix_scheme.size());
+    return address.path.empty() ? std::nullopt : std::optional(address);
+  }
+  if (!text.starts_with(scheme)) return std::nullopt;
+  text.remove_prefix(scheme.size());
+  if (const size_t at = text.rfind('@'); at != std::string_view::npos) {
+    const std::string_view secret = text.substr(0, at);
+    const size_t colon = secret.find(':');
+    if (colon == std::string_view::npos) return std::nullopt;
+    address.user = secret.substr(0, colon);
+    address.password = secret.substr(colon + 1);
+    text.remove_prefix(at + 1);
+  }
+  if (const size_t slash = text.find('/'); slash != std::string_view::npos) {
+    if (slash + 1 < text.size() && !parse_integer(text.substr(slash + 1), 1 << 20, address.database))
+      return std::nullopt;
+    text = text.substr(0, slash);
+  }
+  if (const size_t colon = text.rfind(':'); colon != std::string_view::npos && !text.ends_with(']')) {
+    if (!parse_integer(text.substr(colon + 1), 65535, address.port)) return std::nullopt;
+    text = text.substr(0, colon);
+  }
+  if (text.starts_with('[') && text.ends_with(']')) text = text.substr(1, text.size() - 2);
+  address.host = text;
+  return address.host.empty() ? std::nullopt : std::optional(address);
+}
+
+void RedisStore::ContextDeleter::operator()(redisContext* context) const { redisFree(context); }
+void RedisStore::ReplyDeleter::operator()(redisReply* reply) const { freeReplyObject(reply); }
+
+RedisStore::RedisStore(RedisAddress address, uint64_t budget, int seconds)
+    : address_(std::move(address)), budget_(budget), seconds_(seconds) {}
+RedisStore::~RedisStore() = default;
+
+bool RedisStore::put(const std::string& id, std::string_view bytes) {
+  if (contains(id)) return false;
+  if (used_memory() + bytes.size() > budget_)
+    throw Problem(Code::store_full,
+                  "The store of " + std::to_string(budget_) +
+                      " bytes has no room for this mesh. Delete meshes, or ask the operator for room.");
+  const std::string key = key_of(id);
+  const std::string seconds = std::to_string(seconds_);
+  std::vector<std::string_view> words{"SET", key, bytes, "NX"};
+  if (seconds_ > 0) words.insert(words.end(), {"EX", seconds});
+  const Reply reply = ask(words);
+  if (has_error(*reply, "OOM"))
+    throw Problem(Code::store_full, "The store of meshes is full. Delete meshes, or ask the operator for room.");
+  if (reply->type == REDIS_REPLY_ERROR) throw unavailable({reply->str, reply->len});
+  return reply->type != REDIS_REPLY_NIL;  // nil: another server has added it since
+}
+
+bool RedisStore::contains(const std::string& id) {
+  const std::string key = key_of(id);
+  const std::string seconds = std::to_string(seconds_);
+  const Reply reply = seconds_ > 0 ? ask({"EXPIRE", key, seconds}) : ask({"EXISTS", key});
+  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable({reply->str, reply->len});
+  return reply->integer > 0;
+}
+
+MeshStore::Bytes RedisStore::get(const std::string& id) {
+  const std::string key = key_of(id);
+  const std::string seconds = std::to_string(seconds_);
+  const Reply reply = seconds_ > 0 ? ask({"GETEX", key, "EX", seconds}) : ask({"GET", key});
+  if (reply->type == REDIS_REPLY_NIL) return nullptr;
+  if (reply->type != REDIS_REPLY_STRING)
+    throw unavailable(reply->type == REDIS_REPLY_ERROR ? std::string_view(reply->str, reply->len) : "an odd answer");
+  return std::make_shared<const std::string>(reply->str, reply->len);
+}
+
+bool RedisStore::remove(const std::string& id) {
+  const Reply reply = ask({"DEL", key_of(id)});
+  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable({reply->str, reply->len});
+  return reply->integer > 0;
+}
+
+uint64_t RedisStore::used_memory() {
+  const Reply reply = ask({"INFO", "memory"});
+  constexpr std::string_view field = "\nused_memory:";
+  const std::string_view text = reply->type == REDIS_REPLY_STRING ? std::string_view(reply->str, reply->len) : "";
+  const size_t at = text.find(field);
+  uint64_t bytes = 0;
+  if (at == std::string_view::npos) throw unavailable("INFO memory was not answered");
+  std::from_chars(text.data() + at + field.size(), text.data() + text.size(), bytes);
+  return bytes;
+}
+
+RedisStore::Context RedisStore::connect() const {
+  Context context(address_.host.empty() ? redisConnectUnixWithTimeout(address_.path.c_str(), longest_wait)
+                                        : redisConnectWithTimeout(address_.host.c_str(), address_.port, longest_wait));
+  if (context == nullptr || context->err != 0) throw unavailable(context ? context->errstr : "out of memory");
+  redisSetTimeout(context.get(), longest_wait);
+  const auto require = [&](const std::vector<std::string_view>& words) {
+    const Reply reply = ask_on(*context, words);
+    if (reply == nullptr) throw unavailable(context->errstr);
+    if (reply->type == REDIS_REPLY_ERROR) throw unavailable({reply->str, reply->len});
+  };
+  if (!address_.user.empty())
+    require({"AUTH", address_.user, address_.password});
+  else if (!address_.password.empty())
+    require({"AUTH", address_.password});
+  if (address_.database != 0) require({"SELECT", std::to_string(address_.database)});
+  return context;
+}
+
+RedisStore::Reply RedisStore::ask_on(redisContext& context, const std::vector<std::string_view>& words) {
+  std::vector<const char*> texts;
+  std::vector<size_t> sizes;
+  for (const std::string_view word : words) {
+    texts.push_back(word.data());
+    sizes.push_back(word.size());
+  }
+  return Reply(
+      static_cast<redisReply*>(redisCommandArgv(&context, static_cast<int>(words.size()), texts.data(), sizes.data())));
+}
+
+RedisStore::Context RedisStore::take_idle() {
+  const std::lock_guard lock(mutex_);
+  if (idle_.empty()) return nullptr;
+  Context context = std::move(idle_.back());
+  idle_.pop_back();
+  return context;
+}
+
+RedisStore::Reply RedisStore::ask(const std::vector<std::string_view>& words) {
+  Context context = take_idle();
+  Reply reply;
+  if (context != nullptr) reply = ask_on(*context, words);
+  if (reply == nullptr) {
+    if (context != nullptr) {  // Redis has been away: the other connections are lost too
+      const std::lock_guard lock(mutex_);
+      idle_.clear();
+    }
+    context = connect();
+    reply = ask_on(*context, words);
+  }
+  if (reply == nullptr) throw unavailable(context->errstr);
+  // While it loads its data from disk Redis answers, but not what was asked.
+  if (has_error(*reply, "LOADING") || has_error(*reply, "NOAUTH")) throw unavailable({reply->str, reply->len});
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(context));
+  return reply;
+}
+
+}  // namespace papilio::server

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "server/store/mesh_store.h"
+
+struct redisContext;
+struct redisReply;
+
+namespace papilio::server {
+
+/// Where a Redis server is.
+struct RedisAddress {
+  std::string host;  ///< empty: `path` is a Unix socket
+  int port = 6379;
+  std::string path;
+  std::string user, password;
+  int database = 0;
+};
+
+/// Reads "redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE]" or "redis+unix:PATH"; nothing when it is neither.
+[[nodiscard]] std::optional<RedisAddress> parse_redis_address(std::string_view text);
+
+/// Keeps meshes in Redis, under "papilio:mesh:ID"; several servers share them. Every question has a bound of two
+/// seconds. A lost connection is made anew at the next question; while Redis is away every question is answered with
+/// store_unavailable.
+class RedisStore final : public MeshStore {
+ public:
+  /// `budget`: no mesh is added that would bring the memory Redis uses past it. `seconds`: a mesh that is not used for
+  /// so long goes; 0: never.
+  RedisStore(RedisAddress address, uint64_t budget, int seconds);
+  ~RedisStore() override;
+  RedisStore(const RedisStore&) = delete;
+  RedisStore& operator=(const RedisStore&) = delete;
+
+  bool put(const std::string& id, std::string_view bytes) override;
+  bool contains(const std::string& id) override;
+  Bytes get(const std::string& id) override;
+  bool remove(const std::string& id) override;
+  [[nodiscard]] std::string_view kind() const override { return "redis"; }
+  [[nodiscard]] std::optional<Usage> usage() override { return std::nullopt; }  // not asked for at each scrape
+
+ private:
+  struct ContextDeleter {
+    void operator()(redisContext* context) const;
+  };
+  struct ReplyDeleter {
+    void operator()(redisReply* reply) const;
+  };
+  using Context = std::unique_ptr<redisContext, ContextDeleter>;
+  using Reply = std::unique_ptr<redisReply, ReplyDeleter>;
+
+  /// One question, with its words; on a connection that turns out to be lost it is asked once more on a new one.
+  Reply ask(const std::vector<std::string_view>& words);
+  [[nodiscard]] Context connect() const;
+  [[nodiscard]] static Reply ask_on(redisContext& context, const std::vector<std::string_view>& words);
+  Context take_idle();
+  uint64_t used_memory();
+
+  const RedisAddress address_;
+  const uint64_t budget_;
+  const int seconds_;
+  std::mutex mutex_;
+  std::vector<Context> idle_;  ///< guarded by mutex_
+};
+
+}  // namespace papilio::server
