@@ -26,6 +26,9 @@ stop_server() {
   wait "$server_pid"
 }
 
+# free_port: one that nobody listens on.
+free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+
 # request ARGUMENT...: curl with these; sets $status, and keeps $headers and $body (files).
 request() {
   headers=$BATS_TEST_TMPDIR/headers
@@ -39,7 +42,7 @@ field() { jq -r ".$1" "$body"; }
 
 # expect_problem STATUS CODE: a problem document that says what to do, under the request's id, not to be cached.
 expect_problem() {
-  [[ $status == "$1" ]] || { echo "status $status, not $1"; cat "$body"; return 1; }
+  [[ $status == "$1" ]] || { echo "status $status, not $1"; head -c 500 "$body" | cat -v; return 1; }
   [[ $(header Content-Type) == application/problem+json ]]
   [[ $(header Cache-Control) == no-store ]]
   [[ $(field code) == "$2" ]] || { echo "code $(field code), not $2"; return 1; }
@@ -50,6 +53,10 @@ expect_problem() {
   detail=$(field detail)
   ((${#detail} > 20)) || { echo "detail: $detail"; return 1; }
 }
+
+# upload [FILE]: stores a mesh; coarse_id: the id of the coarse one.
+upload() { request -H "$draco" --data-binary @"${1:-$coarse}" "$url/v1/meshes"; }
+coarse_id() { sha256sum <"$coarse" | cut -d' ' -f1; }
 
 # decoded_faces FILE: what Debian's independent decoder finds in it.
 decoded_faces() {

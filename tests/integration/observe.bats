@@ -1,0 +1,125 @@
+#!/usr/bin/env bats
+# What operators see: metrics, logs, the OpenAPI document.
+
+load helpers
+
+setup_file() { start_server --log-format json --max-output-faces 100000 --max-input-faces 5000; }
+teardown_file() { stop_server; }
+
+metric() { sed -n "s/^papilio_$1 //p" "$body"; }
+
+@test "metrics count requests, refusals, faces, stages, lookups" {
+  upload
+  request "$url/v1/meshes/$(coarse_id)/refined?levels=1"
+  request "$url/v1/meshes/$(coarse_id)/refined?levels=1"
+  request "$url/v1/refine?levels=x" -H "$draco" --data-binary @"$coarse"
+  request "$url/v1/refine?levels=1" -H "$draco" --data-binary @"$coarse"
+  request "$url/nowhere/to/be/found"
+  request -X BREW "$url/v1/info"
+  request "$url/metrics"
+  [ "$status" = 200 ]
+  [[ $(header Content-Type) == 'text/plain; version=0.0.4'* ]]
+  [ "$(metric 'requests_total{method="POST",route="\/v1\/meshes",status="201"}')" = 1 ]
+  [ "$(metric 'requests_total{method="GET",route="\/v1\/meshes\/{id}\/refined",status="200"}')" = 2 ]
+  [ "$(metric 'requests_total{method="GET",route="none",status="404"}')" = 1 ]
+  [ "$(metric 'requests_total{method="other",route="none",status="405"}')" = 1 ]
+  [ "$(metric 'problems_total{code="bad_parameter"}')" = 1 ]
+  [ "$(metric faces_in_total)" = 1200 ]
+  [ "$(metric faces_out_total)" = 4800 ]
+  [ "$(metric 'cache_lookups_total{cache="results",outcome="hit"}')" = 1 ]
+  [ "$(metric 'cache_lookups_total{cache="results",outcome="miss"}')" = 1 ]
+  for stage in decode refine encode; do [ "$(metric "stage_seconds_count{stage=\"$stage\"}")" = 2 ]; done
+  (($(metric 'stage_seconds_count{stage="queue"}') == 3))
+  [ "$(metric slots_busy)" = 0 ]
+  [ "$(metric queue_length)" = 0 ]
+  [ "$(metric store_meshes)" = 1 ]
+  (($(metric 'cache_bytes{cache="results"}') > 1000))
+  grep -q '^process_resident_memory_bytes [1-9]' "$body"
+  # What a scraper expects of the format: each name is described before it is used.
+  ! grep -vE '^(# .*|[a-z_]+(\{([a-z_]+="[^"]*",?)+\})? [0-9.e+-]+|[a-z_]+_bucket\{.*\} [0-9]+)$' "$body" | grep .
+}
+
+@test "one JSON object a line in the log, with the id, the route's answer and the trace" {
+  trace=4bf92f3577b34da6a3ce929d0e0e4736
+  request -H 'X-Request-Id: 1e5' -H "traceparent: 00-$trace-00f067aa0ba902b7-01" -H "$draco" \
+    --data-binary @"$coarse" "$url/v1/refine?levels=x%22%7D"
+  [ "$(header traceparent)" = "00-$trace-00f067aa0ba902b7-01" ]
+  request -H 'traceparent: 00-none-of-it' "$url/v1/info"
+  [ -z "$(header traceparent)" ]
+  request "$url/health"
+  jq -es 'all(.time != null and .level != null and .msg != null)' "$BATS_FILE_TMPDIR/server.log"
+  jq -es --arg trace "$trace" 'map(select(.id == "1e5")) == [.[] | select(.trace == $trace)] and
+    (map(select(.id == "1e5")) | length == 1 and .[0].status == 400 and .[0].code == "bad_parameter" and
+      .[0].method == "POST" and .[0].path == "/v1/refine" and (.[0].ms | type) == "number" and .[0].in > 100)' \
+    "$BATS_FILE_TMPDIR/server.log"
+  ! grep -q '"path":"/health"' "$BATS_FILE_TMPDIR/server.log"
+}
+
+@test "the OpenAPI document passes a linter that is not ours" {
+  request "$url/openapi.json"
+  [ "$status" = 200 ]
+  [ "$(field openapi)" = 3.1.0 ]
+  cp "$body" "$BATS_TEST_TMPDIR/openapi.json"
+  cd "$BATS_TEST_TMPDIR"
+  REDOCLY_TELEMETRY=off REDOCLY_SUPPRESS_UPDATE_NOTICE=true \
+    "$PAPILIO_MESHES/../redocly/node_modules/.bin/redocly" lint openapi.json
+}
+
+@test "each operation of the document is there, and nothing else answers" {
+  request "$url/openapi.json"
+  cp "$body" "$BATS_TEST_TMPDIR/openapi.json"
+  jq -r '.paths | to_entries[] | .key as $path | .value | keys[] | "\(.) \($path)"' "$BATS_TEST_TMPDIR/openapi.json" \
+    >"$BATS_TEST_TMPDIR/operations"
+  (($(wc -l <"$BATS_TEST_TMPDIR/operations") >= 11))
+  while read -r method path; do
+    method=${method^^}
+    request -X "$method" -H "$draco" -d x "$url${path//\{id\}/$(coarse_id)}"
+    [[ $status != 405 && $(field code 2>/dev/null || true) != not_found ]]
+    request -X OPTIONS "$url${path//\{id\}/$(coarse_id)}"
+    [[ ", $(header Allow)," == *" $method,"* ]]
+    # No method is there that the document does not have, but for those it says are everywhere.
+    for allowed in $(header Allow | tr -d ,); do
+      [[ $allowed == OPTIONS || $allowed == HEAD ]] || grep -qxF "${allowed,,} $path" "$BATS_TEST_TMPDIR/operations"
+    done
+  done <"$BATS_TEST_TMPDIR/operations"
+}
+
+@test "the document has the parameters, limits and errors that the server has" {
+  request "$url/openapi.json"
+  cp "$body" "$BATS_TEST_TMPDIR/openapi.json"
+  request "$url/v1/info"
+  # Every parameter, by name, range and choices, in the query and in the JSON object.
+  jq -e --slurpfile info "$body" '
+    .components as $c
+    | [$info[0].parameters[] | . as $p
+      | ($c.parameters | map(select(.name == $p.name))[0].schema | if .type == "array" then .items else . end) as $query
+      | ($c.schemas.Parameters.properties | getpath($p.name | split(".") | join(" properties ") | split(" "))
+          | if .type == "array" then .items else . end) as $json
+      | $query.minimum == $p.min and $query.maximum == $p.max and $query.enum == $p.choices
+        and $json.minimum == $p.min and $json.maximum == $p.max and $json.enum == $p.choices]
+    | length > 20 and all' "$BATS_TEST_TMPDIR/openapi.json"
+  [ "$(field 'parameters | length')" = "$(jq '.components.parameters | length - 1' "$BATS_TEST_TMPDIR/openapi.json")" ]
+  # Every limit, by its value here.
+  jq -e --slurpfile info "$body" '.components.schemas.Info.properties.limits.properties
+    | map_values(.const) | . == $info[0].limits and .max_output_faces == 100000 and .max_input_faces == 5000' \
+    "$BATS_TEST_TMPDIR/openapi.json"
+  # Errors that come are among those of their operation.
+  declared() { jq -e --arg path "$1" --arg method "$2" --arg status "$3" --arg code "$4" \
+    '.paths[$path][$method].responses[$status].description | contains($code + ":")' "$BATS_TEST_TMPDIR/openapi.json"; }
+  request "$url/v1/refine?levels=9" -H "$draco" --data-binary @"$coarse"
+  declared /v1/refine post "$status" "$(field code)"
+  request "$url/v1/refine" -H "$draco" -d x
+  declared /v1/refine post "$status" "$(field code)"
+  request "$url/v1/refine" -H 'Content-Type: text/html' -d x
+  declared /v1/refine post "$status" "$(field code)"
+  request -X DELETE "$url/v1/meshes/x"
+  declared '/v1/meshes/{id}' delete "$status" "$(field code)"
+  request -H 'Accept: text/html' "$url/v1/meshes/x/refined"
+  declared '/v1/meshes/{id}/refined' get "$status" "$(field code)"
+}
+
+@test "every error code is documented somewhere" {
+  request "$url/openapi.json"
+  jq -e '.components.schemas.Problem.properties.code.enum as $codes
+    | [.paths[][].responses[].description] | join("; ") as $all | $codes | length > 25 and all(. as $c | $all | contains($c + ":"))' "$body"
+}

@@ -1,0 +1,182 @@
+#!/usr/bin/env bats
+# Where meshes are stored, and what becomes of them: memory, a directory, a real Redis; results made once.
+
+load helpers
+
+teardown() {
+  if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then stop_server; fi
+  if [[ -n ${redis_pid:-} ]]; then stop_redis; fi
+}
+
+@test "equal requests in flight are computed once" {
+  start_server --slots 2
+  upload
+  requests=()
+  for i in {1..6}; do requests+=(-o "$BATS_TEST_TMPDIR/$i.drc" "$url/v1/meshes/$(coarse_id)/refined?levels=6"); done
+  curl -sS --noproxy '*' --parallel --parallel-immediate --parallel-max 6 "${requests[@]}"
+  for i in {2..6}; do cmp "$BATS_TEST_TMPDIR/1.drc" "$BATS_TEST_TMPDIR/$i.drc"; done
+  request "$url/metrics"
+  [ "$(sed -n 's/^papilio_stage_seconds_count{stage="refine"} //p' "$body")" = 1 ]
+}
+
+@test "the memory store forgets what was used longest ago" {
+  start_server --store-bytes 3000 # two of them, with what an entry takes, and not three
+  for faces in 1 2 3; do
+    "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/$faces.drc" --levels 0 --output.position_bits $((8 + faces))
+    upload "$BATS_TEST_TMPDIR/$faces.drc"
+    [ "$status" = 201 ]
+  done
+  request "$url/v1/meshes/$(sha256sum <"$BATS_TEST_TMPDIR/1.drc" | cut -d' ' -f1)"
+  expect_problem 404 mesh_not_found
+  request "$url/v1/meshes/$(sha256sum <"$BATS_TEST_TMPDIR/3.drc" | cut -d' ' -f1)"
+  [ "$status" = 200 ]
+  "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/large.drc" --levels 2
+  upload "$BATS_TEST_TMPDIR/large.drc"
+  expect_problem 507 store_full
+}
+
+@test "the directory store outlives kill -9, and says so when it is full or damaged" {
+  store=$BATS_TEST_TMPDIR/meshes
+  start_server --store "directory:$store"
+  upload
+  [ "$status" = 201 ]
+  kill -KILL "$server_pid"
+  wait "$server_pid" || true
+  mkdir -p "$store/00"
+  touch -d '1 hour ago' "$store/00/1-2.part" # what an interrupted write leaves
+  start_server --store "directory:$store" --store-bytes 2000
+  [ ! -e "$store/00/1-2.part" ]
+  request "$url/v1/meshes/$(coarse_id)"
+  cmp "$body" "$coarse"
+  "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/other.drc" --levels 0
+  upload "$BATS_TEST_TMPDIR/other.drc"
+  expect_problem 507 store_full
+  file=$store/$(coarse_id | cut -c1-2)/$(coarse_id).drc
+  printf 'x' | dd of="$file" bs=1 seek=700 conv=notrunc status=none
+  request "$url/v1/meshes/$(coarse_id)"
+  expect_problem 404 mesh_not_found
+  grep -q 'the content is not what the name says' "$BATS_FILE_TMPDIR/server.log"
+  upload # it can be sent again
+  [ "$status" = 201 ]
+  request "$url/v1/meshes/$(coarse_id)"
+  cmp "$body" "$coarse"
+  [ -z "$(find "$store" -name '*.part')" ]
+}
+
+@test "kill -9 in the middle of uploads leaves whole meshes only" {
+  store=$BATS_TEST_TMPDIR/meshes
+  for round in 1 2 3; do
+    start_server --store "directory:$store"
+    for bits in {8..16}; do
+      (
+        "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/$round-$bits.drc" --levels "$round" --output.position_bits "$bits"
+        curl -s --noproxy '*' -o /dev/null -w '%{http_code}' -H "$draco" \
+          --data-binary @"$BATS_TEST_TMPDIR/$round-$bits.drc" "$url/v1/meshes" >"$BATS_TEST_TMPDIR/$round-$bits.code"
+      ) 3>&- &
+    done
+    sleep 0.0$round
+    kill -KILL "$server_pid"
+    wait || true
+  done
+  while read -r file; do [ "$(sha256sum <"$file" | cut -d' ' -f1)" = "$(basename "$file" .drc)" ]; done \
+    < <(find "$store" -name '*.drc')
+  start_server --store "directory:$store"
+  for code in "$BATS_TEST_TMPDIR"/*.code; do # what was acknowledged is there
+    grep -q 201 "$code" || continue
+    request "$url/v1/meshes/$(sha256sum <"${code%.code}.drc" | cut -d' ' -f1)"
+    [ "$status" = 200 ]
+  done
+}
+
+@test "a store that cannot be opened is refused in words, without its password" {
+  run "$server" --port 0 --store directory:/proc/nothing
+  [ "$status" = 1 ]
+  [[ $output == *"/proc/nothing"* ]]
+  run "$server" --port 0 --store ftp://user:secret@host/
+  [ "$status" = 1 ]
+  [[ $output == *"--store"* && $output != *secret* ]]
+}
+
+# start_redis [ARGUMENT...]: sets $redis_port and $redis_pid.
+start_redis() {
+  redis_port=${redis_port:-$(free_port)}
+  redis-server --port "$redis_port" --bind 127.0.0.1 --save '' --appendonly yes --dir "$BATS_TEST_TMPDIR" "$@" \
+    >"$BATS_TEST_TMPDIR/redis.log" 2>&1 3>&- &
+  redis_pid=$!
+  for _ in {1..100}; do
+    [[ $(redis-cli -p "$redis_port" ${redis_password:+--no-auth-warning -a "$redis_password"} ping 2>/dev/null) != PONG ]] || return 0
+    sleep 0.1
+  done
+  cat "$BATS_TEST_TMPDIR/redis.log" >&2
+  return 1
+}
+stop_redis() {
+  kill -TERM "$redis_pid"
+  wait "$redis_pid" || true
+  redis_pid=
+}
+
+@test "Redis: shared by servers, with a life that use prolongs" {
+  redis_password=of-the-test
+  start_redis --requirepass "$redis_password"
+  store=redis://:$redis_password@127.0.0.1:$redis_port/3
+  start_server --store "$store" --store-seconds 1000
+  first=$url
+  first_pid=$server_pid
+  upload
+  [ "$status" = 201 ]
+  key=papilio:mesh:$(coarse_id)
+  ask_redis() { redis-cli --no-auth-warning -a "$redis_password" -p "$redis_port" -n 3 "$@"; }
+  (($(ask_redis ttl "$key") > 990))
+  ask_redis expire "$key" 5
+  start_server --store "$store" --store-seconds 1000
+  request "$url/v1/meshes/$(coarse_id)"
+  cmp "$body" "$coarse"
+  (($(ask_redis ttl "$key") > 990)) # it was used
+  upload
+  [ "$status" = 200 ]
+  request -X DELETE "$url/v1/meshes/$(coarse_id)"
+  [ "$status" = 204 ]
+  request "$first/v1/meshes/$(coarse_id)"
+  expect_problem 404 mesh_not_found
+  kill -TERM "$first_pid"
+  wait "$first_pid"
+}
+
+@test "Redis away: a clear 503 while it is, nothing lost once it is back" {
+  start_redis
+  start_server --store "redis://127.0.0.1:$redis_port"
+  upload
+  [ "$status" = 201 ]
+  request "$url/v1/meshes/$(coarse_id)/refined?levels=1"
+  [ "$status" = 200 ]
+  stop_redis
+  request "$url/v1/meshes/$(coarse_id)"
+  expect_problem 503 store_unavailable
+  [[ $(header Retry-After) =~ ^[0-9]+$ ]]
+  upload
+  expect_problem 503 store_unavailable
+  request -X DELETE "$url/v1/meshes/$(coarse_id)"
+  expect_problem 503 store_unavailable
+  request "$url/v1/meshes/$(coarse_id)/refined?levels=1" # still in the cache
+  [ "$status" = 200 ]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1" # needs no store
+  [ "$status" = 200 ]
+  server_is_well
+  start_redis
+  request "$url/v1/meshes/$(coarse_id)"
+  [ "$status" = 200 ]
+  cmp "$body" "$coarse"
+}
+
+@test "Redis full: refused by our limit and by its own" {
+  start_redis --maxmemory 3mb --maxmemory-policy noeviction
+  start_server --store "redis://127.0.0.1:$redis_port" --store-bytes 1024
+  upload
+  expect_problem 507 store_full
+  stop_server
+  start_server --store "redis://127.0.0.1:$redis_port"
+  redis-cli -p "$redis_port" setrange fill 4000000 x >/dev/null || true
+  upload
+  expect_problem 507 store_full
+}
