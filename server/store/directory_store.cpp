@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::string_view extension = ".drc";
 constexpr std::string_view unfinished = ".part";
+constexpr std::chrono::minutes count_interval{1};
 constexpr std::chrono::minutes longest_write{10};  ///< what is unfinished for longer was interrupted
 
 /// The operator's log has the reason, the client only what concerns it.
@@ -171,12 +172,13 @@ void DirectoryStore::count_files() {
   }
   const std::lock_guard lock(mutex_);
   usage_ = counted;
+  counted_ = std::chrono::steady_clock::now();
 }
 
 void DirectoryStore::make_room(uint64_t bytes) {
   const auto fits = [&] {
     const std::lock_guard lock(mutex_);
-    return usage_.bytes + bytes <= budget_;
+    return usage_.bytes + bytes <= budget_ && std::chrono::steady_clock::now() - counted_ < count_interval;
   };
   if (fits()) return;
   count_files();

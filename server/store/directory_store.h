@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <mutex>
 
@@ -30,7 +31,9 @@ class DirectoryStore final : public MeshStore {
   const std::filesystem::path directory_;
   const uint64_t budget_;
   std::mutex mutex_;
-  Usage usage_;  ///< guarded by mutex_; others may write into the directory, so it is counted anew before a refusal
+  /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a refusal.
+  Usage usage_;
+  std::chrono::steady_clock::time_point counted_;
 };
 
 }  // namespace papilio::server

@@ -264,8 +264,7 @@ class HttpServerTest : public ::testing::Test {
   }
 
   void add_routes() {
-    server_->add(
-        "GET", "/alive", [](Request&) { return text("alive"); }, WhileDraining::answer);
+    server_->add("GET", "/alive", [](Request&) { return text("alive"); }, {.while_draining = WhileDraining::answer});
     server_->add("GET", "/hello", [](Request& r) { return text("hello " + r.method()); });
     server_->add("GET", "/count", [this](Request&) {
       ++counted_;

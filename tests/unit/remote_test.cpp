@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "server/service.h"
+#include "server/endpoints.h"
 #include "tests/support/draco_tools.h"
 #include "tests/support/shapes.h"
 
@@ -20,8 +20,15 @@ class RemoteTest : public ::testing::Test {
     return options;
   }
 
-  RemoteTest() : service_({.max_output_faces = 2000}, 1 << 20, 2, 4), server_(options()) {
-    service_.add_routes(server_);
+  static server::EngineOptions engine_options() {
+    server::EngineOptions options;
+    options.limits.max_output_faces = 2000;
+    options.slots = 2;
+    options.queue = 4;
+    return options;
+  }
+  RemoteTest() : engine_(engine_options()), server_(options()) {
+    server::add_endpoints(server_, engine_);
     url_ = "http://127.0.0.1:" + std::to_string(server_.bind());
     thread_ = std::thread([this] { server_.run(); });
   }
@@ -31,7 +38,7 @@ class RemoteTest : public ::testing::Test {
   }
 
   std::string coarse_ = test::encode_with_draco(test::icosahedron(), test::Method::edgebreaker);
-  server::Service service_;
+  server::Engine engine_;
   server::HttpServer server_;
   std::string url_;
   std::thread thread_;

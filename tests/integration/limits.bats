@@ -1,0 +1,128 @@
+#!/usr/bin/env bats
+# What one request, and all together, may cost: time, memory, bodies; and that the next one is served.
+
+load helpers
+
+teardown() {
+  if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then server_is_well && stop_server; fi
+}
+
+is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
+
+@test "a refinement that takes longer than the limit is stopped, alone or as a stream" {
+  start_server --max-compute-seconds 1 --max-output-faces 100000000 --max-compute-bytes 0
+  "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --levels 4
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/fine.drc" "$url/v1/refine?levels=4&flatness=1"
+  expect_problem 507 takes_too_long
+  [[ $(field detail) == *'1 seconds'* ]]
+  request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$BATS_TEST_TMPDIR/fine.drc" \
+    "$url/v1/refine?levels=4&flatness=1"
+  [ "$status" = 200 ]
+  grep -aq '"code": "takes_too_long"' "$body"
+}
+
+@test "a refinement that would take more memory than the limit is refused with the number" {
+  start_server --max-compute-bytes 50000000
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1"
+  expect_problem 507 result_too_large
+  [[ $(field detail) == *MiB*47* ]]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3&flatness=1"
+  [ "$status" = 200 ]
+}
+
+@test "the address space is bounded: what no limit foresaw fails for itself" {
+  ! is_sanitized || skip "sanitizers reserve terabytes"
+  start_server --slots 1 --connections 4 --max-memory-bytes 400000000 --max-compute-bytes 0
+  [ "$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")" = 400000000 ]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&output.normals=true"
+  [[ $(field code) == result_too_large || $(field code) == out_of_memory ]]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3"
+  [ "$status" = 200 ]
+}
+
+@test "by default the address space is what the settings may need" {
+  ! is_sanitized || skip "sanitizers reserve terabytes"
+  start_server --slots 1
+  small=$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")
+  stop_server
+  start_server --slots 2
+  (($(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits") > small + (2 << 30)))
+}
+
+@test "bodies together have a limit: the one too many is refused, the others go on" {
+  start_server --max-held-bytes 3000000
+  head -c 2000000 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
+  # One holds two of three megabytes, and waits with the rest.
+  exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
+  { printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 2000001\r\n\r\n'
+    cat "$BATS_TEST_TMPDIR/bytes"; } >&5
+  for _ in {1..50}; do
+    request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
+    [ "$status" != 429 ] || break
+  done
+  expect_problem 429 busy
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  printf x >&5
+  answer=$(timeout 20 head -1 <&5)
+  exec 5>&-
+  [[ $answer == *' 422 '* ]]
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
+  expect_problem 422 mesh_not_draco
+}
+
+@test "a stream's slot is free again before a slow client has read it" {
+  start_server --slots 1 --queue 0
+  # The answer of megabytes is not read at all, and fits into no socket's buffer.
+  exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
+  { printf 'POST /v1/refine?levels=6&output.position_bits=16 HTTP/1.1\r\nHost: x\r\nAccept: multipart/mixed\r\n'
+    printf 'Content-Type: application/x-draco\r\nContent-Length: %d\r\n\r\n' "$(stat -c %s "$coarse")"
+    cat "$coarse"; } >&5
+  for _ in {1..300}; do
+    request "$url/metrics"
+    ! grep -q '^papilio_stage_seconds_count{stage="encode"} 1' "$body" || break
+    sleep 0.1
+  done
+  for _ in {1..50}; do
+    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
+    [ "$status" = 429 ] || break
+    sleep 0.1
+  done
+  [ "$status" = 200 ]
+  timeout 60 cat <&5 >"$BATS_TEST_TMPDIR/stream" & # and then it gets all of it
+  reader=$!
+  for _ in {1..300}; do
+    ! grep -aq '"stop_reason"' "$BATS_TEST_TMPDIR/stream" || break
+    sleep 0.1
+  done
+  kill "$reader"
+  exec 5>&-
+  [ "$(grep -ac '^Papilio-Faces: ' "$BATS_TEST_TMPDIR/stream")" = 7 ]
+}
+
+@test "a client that goes away from a stream, or from a stored mesh, stops the work" {
+  start_server --slots 1 --queue 0
+  upload
+  for path in "/v1/meshes/$(coarse_id)/refined?levels=6&flatness=1&growth=2" \
+    "/v1/meshes/$(coarse_id)/refined?levels=6&flatness=1&growth=2&view.eye=0,0,30&view.edge_pixels=0"; do
+    for accept in application/x-draco multipart/mixed; do
+      curl -sS --noproxy '*' -o /dev/null -H "Accept: $accept" "$url$path" 3>&- &
+      leaver=$!
+      for _ in {1..500}; do
+        request "$url/metrics"
+        ! grep -q '^papilio_slots_busy 1' "$body" || break
+      done
+      kill -KILL "$leaver"
+      wait "$leaver" || true
+      for _ in {1..300}; do
+        request "$url/metrics"
+        ! grep -q '^papilio_slots_busy 0' "$body" || break
+        sleep 0.1
+      done
+      grep -q '^papilio_slots_busy 0' "$body"
+    done
+  done
+  # None was carried out to its end.
+  ! grep -q '^papilio_stage_seconds_count{stage="encode"}' "$body"
+  [ "$(awk '/^papilio_problems_total.code="(cancelled|not_sent)"/ { n += $2 } END { print n }' "$body")" = 4 ]
+}

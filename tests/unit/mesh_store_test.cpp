@@ -1,0 +1,135 @@
+#include "server/store/mesh_store.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+#include <vector>
+
+#include "proto/problem.h"
+#include "server/sha256.h"
+#include "server/store/redis_store.h"
+
+namespace papilio::server {
+namespace {
+
+namespace fs = std::filesystem;
+using proto::Code;
+using proto::Problem;
+
+class StoreTest : public testing::TestWithParam<const char*> {
+ protected:
+  StoreTest() : folder_(fs::temp_directory_path() / ("papilio-store-" + std::to_string(::getpid()))) {}
+  ~StoreTest() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::unique_ptr<MeshStore> open(uint64_t bytes = 1 << 20) const {
+    const std::string kind = GetParam();
+    return open_store({.address = kind == "directory" ? "directory:" + folder_.string() : kind, .bytes = bytes});
+  }
+  const fs::path folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, StoreTest, testing::Values("memory", "directory"));
+
+TEST_P(StoreTest, GivesBackWhatWasPut) {
+  const auto store = open();
+  EXPECT_EQ(store->kind(), GetParam());
+  std::string bytes(5000, '\0');  // not text: with zeros in it
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+  const std::string id = sha256(bytes);
+  EXPECT_EQ(store->get(id), nullptr);
+  EXPECT_FALSE(store->contains(id));
+  EXPECT_TRUE(store->put(id, bytes));
+  EXPECT_FALSE(store->put(id, bytes));
+  EXPECT_TRUE(store->contains(id));
+  EXPECT_EQ(*store->get(id), bytes);
+  EXPECT_EQ(store->usage()->meshes, 1U);
+  EXPECT_TRUE(store->remove(id));
+  EXPECT_FALSE(store->remove(id));
+  EXPECT_EQ(store->get(id), nullptr);
+  EXPECT_EQ(store->usage()->bytes, 0U);
+}
+
+TEST_P(StoreTest, RefusesWhatCannotFit) {
+  const auto store = open(2000);
+  const std::string bytes(3000, 'x');
+  try {
+    store->put(sha256(bytes), bytes);
+    FAIL();
+  } catch (const Problem& problem) {
+    EXPECT_EQ(problem.code(), Code::store_full);
+  }
+}
+
+TEST_P(StoreTest, ThreadsPutTheSameMeshAtOnce) {
+  const auto store = open();
+  const std::string bytes(100000, 'm');
+  const std::string id = sha256(bytes);
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20; ++i) {
+        store->put(id, bytes);
+        const MeshStore::Bytes got = store->get(id);
+        EXPECT_TRUE(got == nullptr || *got == bytes);
+        if (i % 5 == 0) store->remove(id);
+      }
+    });
+  threads.clear();
+  store->put(id, bytes);
+  EXPECT_EQ(*store->get(id), bytes);
+}
+
+using DirectoryStoreTest = StoreTest;
+INSTANTIATE_TEST_SUITE_P(Directory, DirectoryStoreTest, testing::Values("directory"));
+
+TEST_P(DirectoryStoreTest, OthersMayUseTheDirectory) {
+  const auto one = open();
+  const auto two = open();
+  const std::string id = sha256("mesh");
+  one->put(id, "mesh");
+  EXPECT_EQ(*two->get(id), "mesh");
+  two->remove(id);
+  EXPECT_EQ(one->get(id), nullptr);
+}
+
+TEST_P(DirectoryStoreTest, WhatOthersTookAwayIsRoomAgain) {
+  const auto one = open(1000);
+  const auto two = open(1000);
+  const std::string large(900, 'a');
+  const std::string other(900, 'b');
+  one->put(sha256(large), large);
+  EXPECT_THROW(one->put(sha256(other), other), Problem);
+  two->remove(sha256(large));
+  EXPECT_TRUE(one->put(sha256(other), other));
+}
+
+TEST_P(DirectoryStoreTest, WhatWasThereBeforeCounts) {
+  const std::string large(900, 'a');
+  open(1000)->put(sha256(large), large);
+  const auto later = open(1000);
+  EXPECT_EQ(later->usage()->bytes, 900U);
+  EXPECT_THROW(later->put(sha256("other"), std::string(900, 'b')), Problem);
+}
+
+TEST(RedisAddress, IsRead) {
+  const auto plain = parse_redis_address("redis://cache");
+  EXPECT_EQ(plain->host, "cache");
+  EXPECT_EQ(plain->port, 6379);
+  const auto full = parse_redis_address("redis://user:p@ss:word@cache.example:6380/3");
+  EXPECT_EQ(full->user, "user");
+  EXPECT_EQ(full->password, "p@ss:word");
+  EXPECT_EQ(full->host, "cache.example");
+  EXPECT_EQ(full->port, 6380);
+  EXPECT_EQ(full->database, 3);
+  EXPECT_EQ(parse_redis_address("redis://[::1]:7000")->host, "::1");
+  EXPECT_EQ(parse_redis_address("redis://[::1]:7000")->port, 7000);
+  EXPECT_EQ(parse_redis_address("redis+unix:/run/redis.sock")->path, "/run/redis.sock");
+  for (const char* bad : {"redis://", "redis:", "redis+unix:", "redis://host:port", "redis://host:70000",
+                          "redis://host/one", "redis://user@host", "http://host"})
+    EXPECT_FALSE(parse_redis_address(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace papilio::server

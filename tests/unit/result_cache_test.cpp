@@ -1,0 +1,160 @@
+#include "server/cache/result_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <latch>
+#include <thread>
+#include <vector>
+
+#include "proto/problem.h"
+
+namespace papilio::server {
+namespace {
+
+using proto::Code;
+using proto::Problem;
+using Source = ResultCache::Source;
+
+constexpr uint64_t enough = 1 << 20;
+
+bool stays() { return false; }
+
+ResultCache::Result result(const std::string& bytes) {
+  return std::make_shared<const proto::EncodedLevel>(proto::EncodedLevel{bytes, {}});
+}
+
+TEST(ResultCache, MakesOnceAndKeeps) {
+  ResultCache cache(enough);
+  int made = 0;
+  const auto make = [&](const ResultCache::Question&) {
+    ++made;
+    return result("bytes");
+  };
+  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+  const ResultCache::Answer again = cache.get_or_make("a", make, stays);
+  EXPECT_EQ(again.source, Source::kept);
+  EXPECT_EQ(again.result->draco, "bytes");
+  EXPECT_EQ(cache.get_or_make("b", make, stays).source, Source::made);
+  EXPECT_EQ(made, 2);
+}
+
+TEST(ResultCache, WithoutABudgetNothingIsKept) {
+  ResultCache cache(0);
+  const auto make = [&](const ResultCache::Question&) { return result("bytes"); };
+  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+}
+
+TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
+  ResultCache cache(enough);
+  constexpr int others = 5;
+  std::atomic<int> made = 0;
+  std::atomic<int> shared = 0;
+  std::latch begun(1);
+  std::atomic<int> asked = 0;
+  const auto make = [&](const ResultCache::Question&) {
+    ++made;
+    begun.count_down();
+    while (asked < others) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // they are at the door: let them in
+    return result("bytes");
+  };
+  std::jthread maker([&] { EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made); });
+  begun.wait();
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < others; ++i)
+    threads.emplace_back([&] {
+      ++asked;
+      const ResultCache::Answer answer = cache.get_or_make("a", make, stays);
+      EXPECT_EQ(answer.result->draco, "bytes");
+      if (answer.source == Source::shared) ++shared;
+    });
+  threads.clear();
+  maker.join();
+  EXPECT_EQ(made, 1);
+  EXPECT_GT(shared, 0);
+}
+
+TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
+  ResultCache cache(enough);
+  const auto fail = [](const ResultCache::Question&) -> ResultCache::Result {
+    throw Problem(Code::result_too_large, "Ask for fewer levels, please.");
+  };
+  EXPECT_THROW((void)cache.get_or_make("a", fail, stays), Problem);
+  const auto make = [](const ResultCache::Question&) { return result("bytes"); };
+  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+}
+
+/// The client of the one that makes the result goes away: the work stops when nobody waits, and goes on when somebody
+/// does.
+TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
+  ResultCache cache(enough);
+  const auto give_up = [](const ResultCache::Question& abandoned) -> ResultCache::Result {
+    if (abandoned()) throw Problem(Code::cancelled, "The client went away.");
+    return result("bytes");
+  };
+  EXPECT_THROW((void)cache.get_or_make("a", give_up, [] { return true; }), Problem);
+
+  std::latch begun(1);
+  std::atomic<bool> joined = false;
+  const auto wait_for_company = [&](const ResultCache::Question& abandoned) {
+    begun.count_down();
+    while (abandoned()) std::this_thread::yield();  // until somebody waits
+    return result("for the other");
+  };
+  std::jthread leaver([&] { (void)cache.get_or_make("b", wait_for_company, [] { return true; }); });
+  begun.wait();
+  const ResultCache::Answer answer = cache.get_or_make(
+      "b", [](const ResultCache::Question&) { return result("made anew"); }, stays);
+  EXPECT_EQ(answer.result->draco, "for the other");
+}
+
+TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
+  ResultCache cache(enough);
+  std::latch begun(1);
+  std::latch end(1);
+  std::jthread maker([&] {
+    (void)cache.get_or_make(
+        "a",
+        [&](const ResultCache::Question&) {
+          begun.count_down();
+          end.wait();
+          return result("bytes");
+        },
+        stays);
+  });
+  begun.wait();
+  const auto never = [](const ResultCache::Question&) -> ResultCache::Result {
+    ADD_FAILURE();
+    return nullptr;
+  };
+  EXPECT_THROW((void)cache.get_or_make("a", never, [] { return true; }), Problem);
+  end.count_down();
+}
+
+TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
+  ResultCache cache(enough);
+  std::latch begun(1);
+  std::atomic<bool> waits = false;
+  std::jthread leaver([&] {
+    EXPECT_THROW((void)cache.get_or_make(
+                     "a",
+                     [&](const ResultCache::Question&) -> ResultCache::Result {
+                       begun.count_down();
+                       while (!waits) std::this_thread::yield();
+                       std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                       throw Problem(Code::cancelled, "The client went away.");
+                     },
+                     stays),
+                 Problem);
+  });
+  begun.wait();
+  waits = true;
+  const ResultCache::Answer answer = cache.get_or_make(
+      "a", [](const ResultCache::Question&) { return result("made anew"); }, stays);
+  EXPECT_EQ(answer.result->draco, "made anew");
+}
+
+}  // namespace
+}  // namespace papilio::server
