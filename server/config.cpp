@@ -58,6 +58,12 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
   Settings settings(app);
   settings.add("host", config.http.host, "Address to listen on; 0.0.0.0 for all");
   settings.add("port", config.http.port, 0, 65535, "Port to listen on; 0 picks a free one");
+  CLI::Option* const certificate =
+      settings.add("tls-cert", config.http.tls_cert, "PEM file of a certificate and its intermediates: HTTPS only");
+  settings.add("tls-key", config.http.tls_key, "PEM file of its key, without a passphrase")
+      ->needs(certificate->check(CLI::ExistingFile))
+      ->check(CLI::ExistingFile);
+  certificate->needs("--tls-key");
   settings.add("max-body-bytes", config.http.max_body_bytes, uint64_t{1}, most_bytes, "Largest request body: 413");
   settings.add("max-header-bytes", config.http.max_header_bytes, uint64_t{1024}, uint64_t{1} << 20,
                "Longest request line and header fields together: 431");

@@ -45,8 +45,9 @@ int serve(const Config& config) {
       kill(getpid(), SIGTERM);  // wakes the wait below
     }
   });
-  std::cout << "listening on http://" << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']')
-            << ':' << port << std::endl;
+  std::cout << "listening on " << (http.tls_cert.empty() ? "http" : "https") << "://"
+            << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']') << ':' << port
+            << std::endl;
   spdlog::info("msg=start version={} slots={} queue={}", PAPILIO_VERSION, config.slots, config.queue);
 
   int signal = 0;

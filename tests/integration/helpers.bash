@@ -15,7 +15,7 @@ start_server() {
     [[ ! -s $BATS_FILE_TMPDIR/server.out ]] || break
     sleep 0.1
   done
-  url=$(sed -n '1s/^listening on \(http:.*\)$/\1/p' "$BATS_FILE_TMPDIR/server.out")
+  url=$(sed -n '1s/^listening on \(https\?:.*\)$/\1/p' "$BATS_FILE_TMPDIR/server.out")
   [[ -n $url ]] || { cat "$BATS_FILE_TMPDIR/server.log" >&2; return 1; }
   export url server_pid
 }
