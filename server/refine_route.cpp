@@ -110,6 +110,7 @@ Response refine_route(Request& request, const proto::Limits& limits, Admission& 
   Response response;
   response.headers = {{"Cache-Control", "no-store"}, {"Vary", "Accept"}};
   if (*type == multipart_type) {
+    response.headers.emplace_back("X-Accel-Buffering", "no");  // a proxy is to pass each level on as it comes
     const proto::MultipartWriter writer;
     response.content_type = writer.content_type();
     // The slot goes along, and is given back when the stream is done.

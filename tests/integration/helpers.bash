@@ -61,3 +61,14 @@ decoded_faces() {
 server_is_well() {
   [[ $(curl -sS --noproxy '*' --max-time 10 "$url/health" | jq -r .status) == alive ]]
 }
+
+# exchange PORT: sends standard input as it is, and prints all that comes back. Fails when the other side neither closes
+# nor resets the connection; what is left unsent when it closes early does not matter.
+exchange() {
+  local fd
+  exec {fd}<>"/dev/tcp/127.0.0.1/$1"
+  cat 2>/dev/null >&"$fd" || true
+  until_closed "$fd"
+  exec {fd}>&-
+}
+until_closed() { timeout 30 cat <&"$1" 2>/dev/null || (($? != 124)); }
