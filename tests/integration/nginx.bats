@@ -3,6 +3,7 @@
 
 bats_require_minimum_version 1.5.0
 load helpers
+PATH=$PATH:/usr/sbin # where nginx is
 
 # start_proxy NAME [SED-EXPRESSION]...: nginx with the shipped files, on a free port, in front of $url; sets $proxy and
 # $proxy_pid. The expressions change nginx.conf, and each must.
