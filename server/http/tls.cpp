@@ -14,7 +14,7 @@ namespace {
 
 /// OpenSSL's words for the first thing that went wrong, and forgets them all.
 std::string reason() {
-  const unsigned long error = ERR_get_error();  // NOLINT(google-runtime-int): OpenSSL's type
+  const unsigned long error = ERR_get_error();
   std::array<char, 256> text{};
   ERR_error_string_n(error, text.data(), text.size());
   const char* words = ERR_reason_error_string(error);
@@ -38,7 +38,7 @@ int no_passphrase(char* /*into*/, int /*size*/, int /*writing*/, void* /*unused*
 
 std::shared_ptr<SSL_CTX> make_context(const std::string& certificate_file, const std::string& key_file) {
   ERR_clear_error();
-  const std::shared_ptr<SSL_CTX> context(SSL_CTX_new(TLS_server_method()), SSL_CTX_free);
+  std::shared_ptr<SSL_CTX> context(SSL_CTX_new(TLS_server_method()), SSL_CTX_free);
   if (!context) throw std::bad_alloc();
   SSL_CTX* const c = context.get();
   SSL_CTX_set_min_proto_version(c, TLS1_2_VERSION);
@@ -46,7 +46,7 @@ std::shared_ptr<SSL_CTX> make_context(const std::string& certificate_file, const
   SSL_CTX_set_cipher_list(c, "ECDHE+AESGCM:ECDHE+CHACHA20");
   SSL_CTX_set_options(
       c, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION | SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_PRIORITIZE_CHACHA);
-  SSL_CTX_set_session_cache_mode(c, SSL_SESS_CACHE_OFF);  // tickets resume sessions without the server's memory
+  SSL_CTX_set_session_cache_mode(c, SSL_SESS_CACHE_OFF);  // tickets need none, and get a new key with each reload
   // Without AUTO_RETRY a read ends after each record, so that a flood of records without data cannot outlast deadlines.
   SSL_CTX_clear_mode(c, SSL_MODE_AUTO_RETRY);
   SSL_CTX_set_mode(c, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);

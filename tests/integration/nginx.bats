@@ -278,11 +278,25 @@ revalidate() {
   eventually logged 'id=streamer .*code=not_sent'
 }
 
+at_work() { request "$url/ready" && [[ $status == 503 ]]; }
+
+@test "what the server says when it is busy comes through, with Retry-After" {
+  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+  running=$!
+  eventually at_work
+  request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=0"
+  kill -KILL "$running"
+  wait "$running" || true
+  expect_problem 429 busy
+  [ "$(header Retry-After)" = 1 ]
+  idle() { ! at_work; }
+  eventually idle
+}
+
 @test "a client that goes away stops its work behind the proxy" {
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
     "$proxy/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
   running=$!
-  at_work() { request "$url/ready" && [[ $status == 503 ]]; }
   eventually at_work
   kill -KILL "$running"
   wait "$running" || true
