@@ -52,6 +52,12 @@ constexpr uint64_t most_faces = 1ULL << 30;
 void add_http_settings(Settings& settings, HttpOptions& http) {
   settings.add("host", http.host, "Address to listen on; 0.0.0.0 for all");
   settings.add("port", http.port, 0, 65535, "Port to listen on; 0 picks a free one");
+  CLI::Option* const certificate =
+      settings.add("tls-cert", http.tls_cert, "PEM file of a certificate and its intermediates: HTTPS only");
+  settings.add("tls-key", http.tls_key, "PEM file of its key, without a passphrase")
+      ->needs(certificate->check(CLI::ExistingFile))
+      ->check(CLI::ExistingFile);
+  certificate->needs("--tls-key");
   settings.add("max-body-bytes", http.max_body_bytes, uint64_t{1}, most_bytes, "Largest request body: 413");
   settings.add("max-held-bytes", http.max_held_bytes, uint64_t{1}, most_kept,
                "Most bytes of all bodies that are held at once: 429");
@@ -134,7 +140,8 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
   CLI::App app{"papilio-server: refines Draco meshes over HTTP where they are curved, visible and large on screen."};
   app.footer(
       "It prints `listening on http://HOST:PORT` on standard output and logs to standard error.\n"
-      "SIGTERM or SIGINT lets running requests finish, then ends with status 0; SIGHUP reads the keys again.");
+      "SIGTERM or SIGINT lets running requests finish, then ends with status 0; SIGHUP reads keys and\ncertificate "
+      "again.");
   app.set_version_flag("--version", "papilio-server " PAPILIO_VERSION);
   app.option_defaults()->always_capture_default();
 

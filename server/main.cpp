@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <exception>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -30,22 +31,23 @@ sigset_t block_signals() {
   return signals;
 }
 
-void reload(Keys* keys) {
-  if (keys == nullptr) return;
+/// Reads a part of the configuration again; what cannot be read stays as it was.
+void reload(std::string_view what, const std::function<void()>& read) {
   try {
-    keys->reload();
-    log_event("info", "keys", {{"read", keys->size()}});
+    read();
+    log_event("info", "reload", {{"what", std::string(what)}, {"done", "true"}});
   } catch (const std::exception& error) {
-    log_event("error", "keys", {{"kept", keys->size()}, {"reason", error.what()}});
+    log_event("error", "reload", {{"what", std::string(what)}, {"done", "false"}, {"reason", error.what()}});
   }
 }
 
 /// Returns the signal that is to end the program.
-int wait_for_end(const sigset_t& signals, Keys* keys) {
+int wait_for_end(const sigset_t& signals, HttpServer& server, Keys* keys) {
   for (int signal = 0;;) {
     sigwait(&signals, &signal);
     if (signal != SIGHUP) return signal;
-    reload(keys);
+    if (keys != nullptr) reload("keys", [&] { keys->reload(); });
+    reload("certificate", [&] { server.reload_certificate(); });
   }
 }
 
@@ -75,8 +77,9 @@ int serve(const Config& config) {
       kill(getpid(), SIGTERM);  // wakes the wait below
     }
   });
-  std::cout << "listening on http://" << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']')
-            << ':' << port << std::endl;
+  std::cout << "listening on " << (http.tls_cert.empty() ? "http" : "https") << "://"
+            << (http.host.find(':') == std::string::npos ? http.host : '[' + http.host + ']') << ':' << port
+            << std::endl;
   log_event("info", "start",
             {{"version", PAPILIO_VERSION},
              {"slots", config.engine.slots},
@@ -84,7 +87,7 @@ int serve(const Config& config) {
              {"store", std::string(engine.store().kind())},
              {"keys", keys ? keys->size() : 0}});
 
-  const int signal = wait_for_end(signals, keys.get());
+  const int signal = wait_for_end(signals, server, keys.get());
   log_event("info", "draining", {{"signal", signal}, {"running", server.running()}});
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second signal ends the program at once
   const bool complete = server.drain(config.drain_seconds);

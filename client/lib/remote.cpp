@@ -36,13 +36,17 @@ ServerError error_from(int status, const std::string& body) {
 }
 
 ServerError no_answer(const std::string& origin, httplib::Error error) {
-  return {0, "",
-          "No answer from " + origin + " (" + httplib::to_string(error) +
-              "). Is papilio-server running there, and is the address right?"};
+  std::string advice = "Is papilio-server running there, and is the address right?";
+  if (error == httplib::Error::SSLServerVerification)
+    advice = "Its certificate is not of this name, or is not signed by one that is trusted here; --ca names another.";
+  if (error == httplib::Error::SSLLoadingCerts)
+    advice = "The certificates of --ca cannot be read; it names a PEM file.";
+  return {0, "", "No answer from " + origin + " (" + httplib::to_string(error) + "). " + advice};
 }
 
-httplib::Client connect(const std::string& origin) {
+httplib::Client connect(const std::string& origin, const std::string& ca_file) {
   httplib::Client client(origin);
+  if (!ca_file.empty()) client.set_ca_cert_path(ca_file);
   client.set_connection_timeout(10);
   client.set_read_timeout(600);
   client.set_write_timeout(60);
@@ -81,7 +85,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
 
 }  // namespace
 
-Remote::Remote(const std::string& url) {
+Remote::Remote(const std::string& url, std::string ca_file) : ca_file_(std::move(ca_file)) {
   static const std::regex form(R"((https?://[^/?#\s]+)(/[^?#\s]*)?)");
   std::smatch match;
   if (!std::regex_match(url, match, form))
@@ -93,7 +97,7 @@ Remote::Remote(const std::string& url) {
 }
 
 proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
-  httplib::Client client = connect(origin_);
+  httplib::Client client = connect(origin_, ca_file_);
   const std::string path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
   auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
   for (int attempt = 1; attempt < most_attempts && answer && answer->status == busy_status; ++attempt) {
@@ -137,7 +141,7 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
     return true;
   };
 
-  httplib::Client client = connect(origin_);
+  httplib::Client client = connect(origin_, ca_file_);
   try {
     const auto answer = client.send(request);
     if (!answer) throw no_answer(origin_, answer.error());

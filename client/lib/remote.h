@@ -26,9 +26,10 @@ class ServerError : public std::runtime_error {
 /// A Papilio server. One object may be used by one thread at a time.
 class Remote {
  public:
-  /// `url`: "http://host:port", optionally with a path in front of /v1. Throws std::invalid_argument when it
-  /// is not a URL.
-  explicit Remote(const std::string& url);
+  /// `url`: "http://host:port" or "https://…", optionally with a path in front of /v1. Over HTTPS the server's
+  /// certificate must be of its host's name, and signed by one in `ca_file` (PEM), or in the system's store when that
+  /// is "". Throws std::invalid_argument when it is not a URL.
+  explicit Remote(const std::string& url, std::string ca_file = {});
 
   /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. A busy server is
   /// asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
@@ -40,8 +41,9 @@ class Remote {
                      const std::function<void(const proto::Part&)>& on_part) const;
 
  private:
-  std::string origin_;  ///< "http://host:port"
-  std::string prefix_;  ///< path without a slash at its end
+  std::string origin_;   ///< "http://host:port"
+  std::string prefix_;   ///< path without a slash at its end
+  std::string ca_file_;  ///< "": the system's store
 };
 
 }  // namespace papilio::client

@@ -5,11 +5,11 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include "proto/problem.h"
 
@@ -38,23 +38,26 @@ std::string peer_address(int fd) {
 
 }  // namespace
 
-Connection::Connection(int fd, std::chrono::seconds read_wait, std::chrono::seconds write_wait)
-    : fd_(fd), read_wait_(read_wait), write_wait_(write_wait), remote_address_(peer_address(fd)) {
+Connection::Connection(std::unique_ptr<Transport> transport, std::chrono::seconds read_wait,
+                       std::chrono::seconds write_wait)
+    : transport_(std::move(transport)),
+      read_wait_(read_wait),
+      write_wait_(write_wait),
+      remote_address_(peer_address(transport_->fd())) {
   // The socket is writable again once little is left unsent, not once a third of a buffer of megabytes is free: so a
   // client that reads slowly is told from one that does not read.
   const int unsent = 64 << 10;
-  ::setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+  ::setsockopt(transport_->fd(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
 }
-
-Connection::~Connection() { ::close(fd_); }
 
 bool Connection::wait(short events, Clock::time_point deadline) const {
   for (;;) {
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
-    pollfd one{fd_, events, 0};
-    const int ready = ::poll(&one, 1, static_cast<int>(std::max(left, milliseconds(0)).count()));
+    if (left <= milliseconds(0)) return false;
+    pollfd one{transport_->fd(), events, 0};
+    const int ready = ::poll(&one, 1, static_cast<int>(left.count()));
     if (ready > 0) return true;
-    if (ready == 0 || errno != EINTR) return false;
+    if (ready < 0 && errno != EINTR) return false;
   }
 }
 
@@ -62,14 +65,14 @@ Connection::Received Connection::receive(Clock::time_point deadline) {
   buffer_.erase(0, begin_);
   begin_ = 0;
   const size_t held = buffer_.size();
-  while (wait(POLLIN, deadline)) {
+  for (;;) {
     buffer_.resize(held + receive_bytes);
-    const ssize_t count = ::recv(fd_, buffer_.data() + held, receive_bytes, MSG_DONTWAIT);
-    buffer_.resize(held + static_cast<size_t>(std::max<ssize_t>(count, 0)));
-    if (count > 0) return Received::bytes;
-    if (count == 0 || (errno != EAGAIN && errno != EINTR)) return Received::closed;
+    const Transport::Step step = transport_->read(buffer_.data() + held, receive_bytes);
+    buffer_.resize(held + step.bytes);
+    if (step.bytes > 0) return Received::bytes;
+    if (step.wait_for == 0) return Received::closed;
+    if (!wait(step.wait_for, deadline)) return Received::timeout;
   }
-  return Received::timeout;
 }
 
 bool Connection::wait_for_request(std::chrono::seconds idle, const std::function<bool()>& give_up) {
@@ -135,28 +138,22 @@ void Connection::consume(size_t count) {
 
 bool Connection::write(std::string_view bytes, bool more) {
   while (!bytes.empty() && !broken_) {
-    const int flags = MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0);
-    const ssize_t count = ::send(fd_, bytes.data(), bytes.size(), flags);
-    if (count > 0) {
-      bytes.remove_prefix(static_cast<size_t>(count));
-      bytes_out_ += static_cast<uint64_t>(count);
-    } else if (errno == EAGAIN) {
-      broken_ = !wait(POLLOUT, Clock::now() + write_wait_);
-    } else if (errno != EINTR) {
-      broken_ = true;
-    }
+    const Transport::Step step = transport_->write(bytes, more);
+    bytes.remove_prefix(step.bytes);
+    bytes_out_ += step.bytes;
+    if (step.bytes == 0) broken_ = step.wait_for == 0 || !wait(step.wait_for, Clock::now() + write_wait_);
   }
   return !broken_;
 }
 
-bool Connection::peer_gone() const {
-  pollfd one{fd_, POLLRDHUP, 0};
-  return broken_ || (::poll(&one, 1, 0) > 0 && (one.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0);
-}
+bool Connection::peer_gone() { return broken_ || transport_->peer_gone(); }
 
 void Connection::linger() {
   if (broken_) return;
-  ::shutdown(fd_, SHUT_WR);
+  const auto write_deadline = Clock::now() + write_wait_;
+  for (short wait_for = transport_->end_writing().wait_for; wait_for != 0;
+       wait_for = transport_->end_writing().wait_for)
+    if (!wait(wait_for, write_deadline)) return;
   const auto deadline = Clock::now() + std::min(read_wait_, longest_linger);
   do {
     buffer_.clear();
@@ -164,6 +161,6 @@ void Connection::linger() {
   } while (Clock::now() < deadline && receive(deadline) == Received::bytes);
 }
 
-void Connection::abort() const { ::shutdown(fd_, SHUT_RDWR); }
+void Connection::abort() const { ::shutdown(transport_->fd(), SHUT_RDWR); }
 
 }  // namespace papilio::server

@@ -3,8 +3,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
+
+#include "server/http/transport.h"
 
 namespace papilio::server {
 
@@ -14,19 +17,18 @@ class Connection {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Takes the socket over. `read_wait` bounds a whole head, and each stretch of a body: in every `read_wait`
+  /// `read_wait` bounds a whole head, and each stretch of a body: in every `read_wait`
   /// at least a kilobyte a second must arrive, so that a client which drips single bytes cannot hold its
   /// thread.
-  Connection(int fd, std::chrono::seconds read_wait, std::chrono::seconds write_wait);
-  ~Connection();
+  Connection(std::unique_ptr<Transport> transport, std::chrono::seconds read_wait, std::chrono::seconds write_wait);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   /// From the socket alone: nothing that a client writes into a header changes it.
   [[nodiscard]] const std::string& remote_address() const { return remote_address_; }
 
-  /// Waits for the first byte of a request. False when the client has closed or kept silent for `idle`, or
-  /// once `give_up` (asked a few times a second) says so.
+  /// Waits for the first byte of a request, a TLS handshake before it included. False when the client has closed or
+  /// brought none within `idle`, or once `give_up` (asked a few times a second) says so.
   bool wait_for_request(std::chrono::seconds idle, const std::function<bool()>& give_up);
   /// The head up to and with its empty line; "" when the client closed before its end. Throws
   /// headers_too_large past `limit` bytes, request_timeout, and bad_request at a line feed without its
@@ -45,7 +47,7 @@ class Connection {
   /// comes at once, and may share a packet with this.
   bool write(std::string_view bytes, bool more = false);
   /// True once the client has closed its side (a half-close counts) or the connection is lost.
-  [[nodiscard]] bool peer_gone() const;
+  [[nodiscard]] bool peer_gone();
 
   /// Lets the client read the answer before the socket goes, though it is still sending: without this the
   /// unread bytes reset the connection and the answer is lost.
@@ -58,10 +60,11 @@ class Connection {
 
  private:
   enum class Received { bytes, closed, timeout };
+  /// False once the deadline has passed, ready or not.
   [[nodiscard]] bool wait(short events, Clock::time_point deadline) const;
   Received receive(Clock::time_point deadline);
 
-  const int fd_;
+  const std::unique_ptr<Transport> transport_;
   const std::chrono::seconds read_wait_;
   const std::chrono::seconds write_wait_;
   std::string remote_address_;

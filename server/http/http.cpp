@@ -1,6 +1,7 @@
 #include "server/http/http.h"
 
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "server/http/byte_budget.h"
@@ -9,27 +10,25 @@
 #include "server/http/listener.h"
 #include "server/http/routes.h"
 #include "server/http/session.h"
+#include "server/http/tls.h"
 
 namespace papilio::server {
 
 struct HttpServer::Impl {
   explicit Impl(HttpOptions given)
-      : options(std::move(given)), listener(options.threads, [this](int fd) { serve(fd); }) {}
+      : options(std::move(given)), listener(options.threads, [this](int fd) { serve(fd); }) {
+    if (!options.tls_cert.empty()) tls.emplace(options.tls_cert, options.tls_key);
+  }
 
   void serve(int fd) {
-    Connection connection(fd, std::chrono::seconds(options.read_seconds), std::chrono::seconds(options.write_seconds));
-    {
-      const std::lock_guard lock(mutex);
-      if (listener.closed()) return;
-      connections.insert(&connection);
-    }
     try {
-      Session(connection, options, held, routes, gate, listener).run();
+      Connection connection(tls ? tls->transport(fd) : plain_transport(fd), std::chrono::seconds(options.read_seconds),
+                            std::chrono::seconds(options.write_seconds));
+      const Listed listed(*this, connection);
+      if (!listener.closed()) Session(connection, options, held, routes, gate, listener).run();
     } catch (...) {
       // Out of memory outside of a handler: this connection is lost, its thread goes on to the next.
     }
-    const std::lock_guard lock(mutex);
-    connections.erase(&connection);
   }
 
   void stop() {
@@ -39,8 +38,28 @@ struct HttpServer::Impl {
     for (Connection* connection : connections) connection->abort();
   }
 
+  /// A connection that `stop` cuts, for as long as this lives.
+  class Listed {
+   public:
+    Listed(Impl& impl, Connection& connection) : impl_(impl), connection_(connection) {
+      const std::lock_guard lock(impl_.mutex);
+      impl_.connections.insert(&connection_);
+    }
+    ~Listed() {
+      const std::lock_guard lock(impl_.mutex);
+      impl_.connections.erase(&connection_);
+    }
+    Listed(const Listed&) = delete;
+    Listed& operator=(const Listed&) = delete;
+
+   private:
+    Impl& impl_;
+    Connection& connection_;
+  };
+
   const HttpOptions options;
   ByteBudget held{options.max_held_bytes};
+  std::optional<TlsContext> tls;
   Routes routes;
   Gate gate;
   std::mutex mutex;
@@ -59,6 +78,10 @@ void HttpServer::add(const std::string& method, const std::string& path, Handler
 int HttpServer::bind() { return impl_->listener.open(impl_->options.host, impl_->options.port); }
 
 void HttpServer::run() { impl_->listener.run(); }
+
+void HttpServer::reload_certificate() {
+  if (impl_->tls) impl_->tls->reload();
+}
 
 int HttpServer::running() const { return impl_->gate.running(); }
 

@@ -118,6 +118,8 @@ struct Finished {
 struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 8080;                        ///< 0: any free one
+  std::string tls_cert;                   ///< PEM file of a certificate and its intermediates; "": plain HTTP
+  std::string tls_key;                    ///< PEM file of its key; given when tls_cert is
   uint64_t max_body_bytes = 64u << 20;    ///< larger: 413, before it is read where a length is declared
   uint64_t max_held_bytes = 512u << 20;   ///< bodies held in memory at once, of all requests together: 429
   uint64_t max_header_bytes = 32u << 10;  ///< request line and header fields together: 431
@@ -138,6 +140,7 @@ struct HttpOptions {
 /// from any thread. `run` must have returned before the server is destroyed.
 class HttpServer {
  public:
+  /// Throws std::runtime_error when the certificate or its key cannot be used, naming the setting.
   explicit HttpServer(HttpOptions options);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
@@ -151,6 +154,9 @@ class HttpServer {
   /// Serves until `stop` or `drain` is done; returns at once when one was called before. Call after `bind`.
   /// Throws std::runtime_error when connections can no longer be accepted.
   void run();
+  /// Reads certificate and key anew, for the connections made from then on; nothing without TLS. Any thread may call
+  /// it. Throws std::runtime_error when they cannot be used; the old ones then stay.
+  void reload_certificate();
   /// Requests being answered now.
   [[nodiscard]] int running() const;
   /// Refuses new requests with 503 `draining` from now on (but for routes added with `answer`), waits until

@@ -130,18 +130,27 @@ class ConnectionSink final : public Sink {
   ConnectionSink(Connection& connection, bool chunked) : connection_(connection), chunked_(chunked) {}
 
   bool write(std::string_view bytes) override {
-    if (connection_.peer_gone()) return false;
+    lost_ = lost_ || connection_.peer_gone();
+    if (lost_) return false;
     if (bytes.empty()) return true;  // an empty chunk would end the answer
-    if (!chunked_) return connection_.write(bytes);
+    lost_ = !(chunked_ ? write_chunk(bytes) : connection_.write(bytes));
+    return !lost_;
+  }
+
+  /// The client was seen to be gone while the stream was written: it has not got all of it.
+  [[nodiscard]] bool lost() const { return lost_; }
+
+ private:
+  bool write_chunk(std::string_view bytes) {
     std::array<char, 16> size{};
     const char* end = std::to_chars(size.begin(), size.end(), bytes.size(), 16).ptr;
     return connection_.write({size.data(), static_cast<size_t>(end - size.data())}, true) &&
            connection_.write("\r\n", true) && connection_.write(bytes, true) && connection_.write("\r\n");
   }
 
- private:
   Connection& connection_;
   const bool chunked_;
+  bool lost_ = false;
 };
 
 }  // namespace
@@ -169,7 +178,7 @@ bool send_reply(Connection& connection, const Response& response, const Delivery
   } catch (...) {
     return false;  // without its last chunk the answer shows itself as cut short
   }
-  return !delivery.chunked || connection.write("0\r\n\r\n");
+  return !sink.lost() && (!delivery.chunked || connection.write("0\r\n\r\n"));
 }
 
 }  // namespace papilio::server

@@ -85,7 +85,9 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
   const proto::MultipartWriter writer;
   Response response;
   response.content_type = writer.content_type();
-  response.headers = {{"Vary", "Accept"}, {"Cache-Control", "no-store"}};
+  response.headers = {{"Vary", "Accept"},
+                      {"Cache-Control", "no-store"},
+                      {"X-Accel-Buffering", "no"}};  // a proxy is to pass each level on as it comes
   response.stream = [&engine, &request, writer, slot = std::move(slot),
                      refinement = std::move(refinement)](Sink& sink) mutable {
     Outbox outbox;

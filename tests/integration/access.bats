@@ -98,10 +98,10 @@ END
   echo 'short x' >"$keys"
   kill -HUP "$server_pid"
   for _ in {1..50}; do
-    ! grep -q 'level=error msg=keys' "$BATS_FILE_TMPDIR/server.log" || break
+    ! grep -q 'level=error msg=reload' "$BATS_FILE_TMPDIR/server.log" || break
     sleep 0.1
   done
-  grep -q 'level=error msg=keys kept=2 .*at least 16' "$BATS_FILE_TMPDIR/server.log"
+  grep -q 'level=error msg=reload what=keys .*at least 16' "$BATS_FILE_TMPDIR/server.log"
   as operator "$url/metrics"
   [ "$status" = 200 ]
   cp "$BATS_TEST_TMPDIR/before" "$keys"

@@ -15,7 +15,7 @@ start_server() {
     [[ ! -s $BATS_FILE_TMPDIR/server.out ]] || break
     sleep 0.1
   done
-  url=$(sed -n '1s/^listening on \(http:.*\)$/\1/p' "$BATS_FILE_TMPDIR/server.out")
+  url=$(sed -n '1s/^listening on \(https\?:.*\)$/\1/p' "$BATS_FILE_TMPDIR/server.out")
   [[ -n $url ]] || { cat "$BATS_FILE_TMPDIR/server.log" >&2; return 1; }
   export url server_pid
 }
@@ -68,3 +68,14 @@ decoded_faces() {
 server_is_well() {
   [[ $(curl -sS --noproxy '*' --max-time 10 "$url/health" | jq -r .status) == alive ]]
 }
+
+# exchange PORT: sends standard input as it is, and prints all that comes back. Fails when the other side neither closes
+# nor resets the connection; what is left unsent when it closes early does not matter.
+exchange() {
+  local fd
+  exec {fd}<>"/dev/tcp/127.0.0.1/$1"
+  cat 2>/dev/null >&"$fd" || true
+  until_closed "$fd"
+  exec {fd}>&-
+}
+until_closed() { timeout 30 cat <&"$1" 2>/dev/null || (($? != 124)); }

@@ -92,6 +92,16 @@ TEST_F(HttpServerTest, StreamSeesThatTheClientIsGone) {
   EXPECT_EQ(finished(2).at(1).code, "not_sent");
 }
 
+TEST_F(HttpServerTest, StreamWhoseClientIsGoneIsLoggedAsNotSent) {
+  start();
+  Client client(port_);
+  client.send(get("/pour"));
+  EXPECT_EQ(client.receive(true).status, 200);
+  client.close_sending();  // what is written could still be
+  while (client.skip(65536)) continue;
+  EXPECT_EQ(finished(1).at(0).code, "not_sent");
+}
+
 TEST_F(HttpServerTest, ClientThatReadsSlowlyIsServed) {
   // 80 KB a second: far too little to free a third of the socket's megabytes within a second.
   options_.write_seconds = 1;

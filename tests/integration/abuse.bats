@@ -1,0 +1,253 @@
+#!/usr/bin/env bats
+# Traps that others fell into, each against the real server: first those of HTTP libraries, then those of Draco's decoder.
+# More rows are in errors.bats, service.bats, nginx.bats and the unit tests of server/http.
+
+bats_require_minimum_version 1.5.0
+load helpers
+
+setup() { start_server "${arguments[@]}"; }
+teardown() {
+  if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then
+    server_is_well
+    stop_server
+  fi
+}
+
+port() { echo "${url##*:}"; }
+post() { request -H "$draco" --data-binary @"$1" "${@:2}"; }
+peak_kilobytes() { sed -n 's/^VmHWM:[[:space:]]*\([0-9]*\) kB/\1/p' "/proc/$server_pid/status"; }
+
+# stays_within MEGABYTES COMMAND...: how much more memory the server ever held than before.
+stays_within() {
+  local before after
+  before=$(peak_kilobytes)
+  "${@:2}"
+  after=$(peak_kilobytes)
+  ((after - before < $1 * 1024)) || { echo "from $before to $after kB"; return 1; }
+}
+
+# HTTP
+
+@test "gzip: a small body that would unpack to a large one is not unpacked" {
+  head -c 100000000 /dev/zero | gzip -1 >"$BATS_TEST_TMPDIR/bomb"
+  stays_within 50 post "$BATS_TEST_TMPDIR/bomb" -H 'Content-Encoding: gzip' "$url/v1/refine"
+  expect_problem 415 unsupported_encoding
+}
+
+@test "Content-Length too large: refused while none of the body has come" {
+  printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 99999999999\r\n\r\n' \
+    >"$BATS_TEST_TMPDIR/head"
+  exchange "$(port)" <"$BATS_TEST_TMPDIR/head" >"$BATS_TEST_TMPDIR/answer"
+  [[ $(head -1 "$BATS_TEST_TMPDIR/answer") == 'HTTP/1.1 413 '* ]]
+  grep -q '"code": "body_too_large"' "$BATS_TEST_TMPDIR/answer"
+}
+
+@test "chunked past the limit: refused while it comes, and not kept" {
+  stop_server
+  start_server --max-body-bytes 1000000
+  head -c 60000000 /dev/zero >"$BATS_TEST_TMPDIR/large"
+  stays_within 50 post "$BATS_TEST_TMPDIR/large" -H 'Transfer-Encoding: chunked' "$url/v1/refine"
+  expect_problem 413 body_too_large
+}
+
+@test "REMOTE_ADDR and its like: who claims another address does not reach the log with it" {
+  request -H 'REMOTE_ADDR: 6.6.6.6' -H 'Remote-Addr: 6.6.6.6' -H 'X-Forwarded-For: 6.6.6.6' -H 'X-Real-IP: 6.6.6.6' \
+    -H 'Forwarded: for=6.6.6.6' -H 'X-Request-Id: forger' "$url/v1/info"
+  [ "$status" = 200 ]
+  stop_server
+  grep -q 'id=forger .* remote=127\.0\.0\.1' "$BATS_FILE_TMPDIR/server.log"
+  run ! grep -F 6.6.6.6 "$BATS_FILE_TMPDIR/server.log"
+}
+
+@test "idle connections, three times as many as there are threads, leave room for others" {
+  stop_server
+  start_server --connections 4 --idle-seconds 3600
+  local fds=() fd line
+  for _ in {1..12}; do
+    exec {fd}<>"/dev/tcp/127.0.0.1/$(port)"
+    printf 'GET /health HTTP/1.1\r\nHost: x\r\n\r\n' >&"$fd"
+    read -r -t 20 line <&"$fd" # answered; and then idle
+    [[ $line == 'HTTP/1.1 200 '* ]]
+    fds+=("$fd")
+  done
+  server_is_well
+  post "$coarse" "$url/v1/refine?levels=0"
+  [ "$status" = 200 ]
+  for fd in "${fds[@]}"; do exec {fd}>&-; done
+}
+
+@test "SIGTERM during a stream: it arrives whole" {
+  mkfifo "$BATS_TEST_TMPDIR/stream"
+  curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" \
+    "$url/v1/refine?levels=6" 3>&- &
+  running=$!
+  exec 5<"$BATS_TEST_TMPDIR/stream"
+  head -c 100 <&5 >"$BATS_TEST_TMPDIR/whole"
+  kill -TERM "$server_pid"
+  cat <&5 >>"$BATS_TEST_TMPDIR/whole"
+  exec 5<&-
+  wait "$running"    # curl says when a stream is cut short
+  wait "$server_pid" # 0: nothing was
+  server_pid=
+  [ "$(grep -ac '^Papilio-Faces: ' "$BATS_TEST_TMPDIR/whole")" = 7 ]
+  tail -c 4 "$BATS_TEST_TMPDIR/whole" | cmp - <(printf -- '--\r\n')
+}
+
+@test "200 clients that connect at once are all answered" {
+  curl -sS --noproxy '*' --parallel --parallel-immediate --parallel-max 200 -o "$BATS_TEST_TMPDIR/#1" \
+    -w '%{http_code} %{num_connects}\n' -H 'Connection: close' "$url/v1/info?[1-200]" >"$BATS_TEST_TMPDIR/codes"
+  [ "$(grep -c '^200 1$' "$BATS_TEST_TMPDIR/codes")" = 200 ]
+}
+
+@test "curl's default form type, above the size at which libraries begin to parse it: refused in words" {
+  head -c 100000 /dev/zero >"$BATS_TEST_TMPDIR/form"
+  request --data-binary @"$BATS_TEST_TMPDIR/form" "$url/v1/refine"
+  expect_problem 415 unsupported_media_type
+}
+
+# post_form BOUNDARY-PARAMETER FORM: the form as printf reads it, the mesh in place of MESH.
+post_form() {
+  # shellcheck disable=SC2059
+  { printf -- "${2%MESH*}"; cat "$coarse"; printf -- "${2#*MESH}"; } >"$BATS_TEST_TMPDIR/form"
+  request -H "Content-Type: multipart/form-data; $1" --data-binary @"$BATS_TEST_TMPDIR/form" "$url/v1/refine"
+}
+
+@test "multipart in odd but lawful shapes" {
+  post "$coarse" "$url/v1/refine?levels=1"
+  mv "$body" "$BATS_TEST_TMPDIR/plain"
+  local mesh='Content-Disposition: form-data; name="mesh"' params='\r\nContent-Disposition: form-data; name=params\r\n\r\n{"levels": 1}\r\n'
+  local shapes=(
+    "boundary=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\n"
+    "boundary=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--"                                    # no line's end at the end
+    "boundary=b|preamble\r\n\r\n--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\nepilogue --b"
+    "boundary=b|--b  \t\r\n$mesh\r\n\r\nMESH\r\n--b \r\n${params#'\r\n'}--b-- \r\n"             # white space after it
+    "boundary=\"a (b)+c?=/:.\"|--a (b)+c?=/:.\r\n$mesh\r\n\r\nMESH\r\n--a (b)+c?=/:.$params--a (b)+c?=/:.--\r\n"
+    "charset=utf-8; BOUNDARY=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\n"
+    "boundary=b|--b$params--b\r\n$mesh\r\n\r\nMESH\r\n--b--\r\n"                                 # the other order
+    "boundary=b|--b\r\ncontent-type: x/y\r\ncontent-disposition:form-data;filename=\"a;name=no.drc\";name=mesh\r\nX-Else: 1\r\n\r\nMESH\r\n--b$params--b--\r\n"
+    "boundary=b|--b\r\n$mesh; filename=\"\\\\\"--b.drc\"; filename*=UTF-8''%%e2%%82%%ac\r\n\r\nMESH\r\n--b$params--b--\r\n"
+    "boundary=$(printf 'x%.0s' {1..70})|--$(printf 'x%.0s' {1..70})\r\n$mesh\r\n\r\nMESH\r\n--$(printf 'x%.0s' {1..70})$params--$(printf 'x%.0s' {1..70})--\r\n"
+  )
+  local shape
+  for shape in "${shapes[@]}"; do
+    post_form "${shape%%|*}" "${shape#*|}"
+    [ "$status" = 200 ] || { echo "$shape"; cat "$body"; return 1; }
+    cmp "$body" "$BATS_TEST_TMPDIR/plain"
+  done
+}
+
+@test "multipart that could be read in two ways, or has no end, is refused" {
+  local mesh='Content-Disposition: form-data; name="mesh"' form
+  for form in "--b\r\n$mesh\r\n\r\nMESH" "--b\r\n$mesh\r\n\r\nMESH\r\n--b" "--bad\r\n$mesh\r\n\r\nMESH\r\n--bad--" \
+    "--b\n$mesh\n\nMESH\n--b--\n" "--b\r\nContent-Type: x/y\r\n\r\nMESH\r\n--b--" "--b--\r\nMESH"; do
+    post_form boundary=b "$form"
+    expect_problem 400 bad_request
+  done
+  post_form "boundary=$(printf 'x%.0s' {1..71})" "--b\r\n$mesh\r\n\r\nMESH\r\n--b--"
+  expect_problem 400 bad_request
+}
+
+# Draco
+
+# stream NAME: a file with that stream of tests/support/draco_bytes.py; its name goes to $stream.
+stream() {
+  stream=$BATS_TEST_TMPDIR/$1.drc
+  python3 "$BATS_TEST_DIRNAME/../support/draco_bytes.py" "$1" >"$stream"
+}
+
+@test "streams built byte by byte are read when they are good" {
+  stream good
+  post "$stream" "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Faces)" = 8 ]
+  stream metadata_good
+  post "$stream" "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+}
+
+@test "memory bombs: streams of 70 bytes that declare 100 million faces, old bitstreams and new" {
+  for version in 1.0 1.1 1.2 1.3 1.4 1.5 2.0 2.1; do
+    stream "bomb_$version"
+    stays_within 20 post "$stream" "$url/v1/refine"
+    expect_problem 422 mesh_unsupported
+  done
+  for kind in edgebreaker sequential; do
+    stream "bomb_$kind"
+    stays_within 20 post "$stream" "$url/v1/refine"
+    expect_problem 413 mesh_too_large
+  done
+  # That they are alive: Draco's own program dies of them with a gigabyte to spend.
+  for name in bomb_1.0 bomb_1.5 bomb_2.1 bomb_edgebreaker; do
+    stream "$name"
+    run bash -c "ulimit -c 0 -v 1000000; exec draco_decoder -i '$stream' -o '$BATS_TEST_TMPDIR/out.obj'"
+    ((status >= 128))
+  done
+}
+
+@test "memory bombs: what the limits allow costs no more than a mesh of that size" {
+  for kind in edgebreaker sequential; do
+    stream "limit_$kind"
+    stays_within 150 post "$stream" "$url/v1/refine"
+    expect_problem 422 mesh_not_draco
+  done
+}
+
+@test "a decode that succeeds with a face's index out of range" {
+  stream index_out_of_range
+  post "$stream" "$url/v1/refine"
+  expect_problem 422 mesh_unusable
+  [[ $(field detail) == *'Face 1 '* ]]
+}
+
+@test "POSITION missing, of four or two components, of integers" {
+  for name in no_position four_components two_components integers; do
+    stream "$name"
+    post "$stream" "$url/v1/refine"
+    expect_problem 422 mesh_unsupported
+    [[ $(field detail) == *POSITION* ]]
+  done
+}
+
+@test "coordinates that are NaN or infinite" {
+  for name in nan infinity; do
+    stream "$name"
+    post "$stream" "$url/v1/refine"
+    expect_problem 422 mesh_unusable
+    [[ $(field detail) == *'Point 3 '* ]]
+  done
+}
+
+@test "isolated points are left out, and said to have been" {
+  stream isolated_points
+  post "$stream" "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Vertices)" = 9 ]
+  [[ $(header Papilio-Found) == *isolated_points=2* ]]
+}
+
+@test "metadata: nested 100,000 deep, and counts of four milliards of entries, blocks and bytes" {
+  stream metadata_deep
+  stays_within 20 post "$stream" "$url/v1/refine"
+  expect_problem 422 mesh_unsupported
+  for name in metadata_entries metadata_blocks metadata_long_value; do
+    stream "$name"
+    stays_within 20 post "$stream" "$url/v1/refine"
+    expect_problem 422 mesh_not_draco
+  done
+}
+
+@test "cut short at every byte" {
+  stream good
+  local size
+  size=$(stat -c %s "$stream")
+  local transfers=()
+  for ((length = 0; length < size; ++length)); do
+    head -c "$length" "$stream" >"$BATS_TEST_TMPDIR/cut$length"
+    ((length == 0)) || transfers+=(--next)
+    transfers+=(-sS --noproxy '*' --max-time 60 -o "$BATS_TEST_TMPDIR/answer$length" -w '%{http_code}\n' -H "$draco"
+      --data-binary @"$BATS_TEST_TMPDIR/cut$length" "$url/v1/refine")
+  done
+  curl "${transfers[@]}" >"$BATS_TEST_TMPDIR/codes"
+  [ "$(grep -c '^422$' "$BATS_TEST_TMPDIR/codes")" = "$size" ]
+  [ "$(cat "$BATS_TEST_TMPDIR"/answer* | grep -c '"code": "mesh_not_draco"')" = "$size" ]
+}

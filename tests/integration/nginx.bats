@@ -1,0 +1,391 @@
+#!/usr/bin/env bats
+# docker/nginx.conf in a real nginx in front of a real server: what it refuses, and what it lets through unharmed.
+
+bats_require_minimum_version 1.5.0
+load helpers
+PATH=$PATH:/usr/sbin # where nginx is
+
+# start_proxy NAME [SED-EXPRESSION]...: nginx with the shipped files, on a free port, in front of $url; sets $proxy and
+# $proxy_pid. The expressions change nginx.conf, and each must.
+start_proxy() {
+  local folder=$BATS_FILE_TMPDIR/$1 before
+  shift
+  mkdir -p "$folder/conf"
+  cp -r "$BATS_TEST_DIRNAME/../../docker/nginx.conf" "$BATS_TEST_DIRNAME/../../docker/nginx" "$folder/conf"
+  for expression in "$@"; do
+    before=$(md5sum <"$folder/conf/nginx.conf")
+    sed -i "$expression" "$folder/conf/nginx.conf"
+    [[ $(md5sum <"$folder/conf/nginx.conf") != "$before" ]] || { echo "changes nothing: $expression" >&2; return 1; }
+  done
+  sed -i "s/127\.0\.0\.1:8080/${url#http://}/" "$folder/conf/nginx/upstream.conf"
+  grep -qF "server ${url#http://} " "$folder/conf/nginx/upstream.conf"
+  local as_root=()
+  ((EUID != 0)) || as_root=(-g 'user root;') # the workers must get into the test's folder
+  for _ in {1..20}; do # nginx takes no port 0
+    proxy_port=$((RANDOM % 20000 + 20000))
+    sed -i "s/^listen .*/listen 127.0.0.1:$proxy_port;/" "$folder/conf/nginx/listen.conf"
+    nginx -p "$folder" -c "$folder/conf/nginx.conf" "${as_root[@]}" >"$folder/access.log" 2>"$folder/error.log" 3>&- &
+    proxy_pid=$!
+    for _ in {1..100}; do
+      if curl -sS --noproxy '*' -o "$folder/first" "http://127.0.0.1:$proxy_port/health" 2>/dev/null; then
+        export proxy=http://127.0.0.1:$proxy_port proxy_port proxy_pid
+        return 0
+      fi
+      kill -0 "$proxy_pid" 2>/dev/null || break
+      sleep 0.1
+    done
+  done
+  cat "$folder/error.log" >&2
+  return 1
+}
+
+stop_proxy() {
+  kill -TERM "$1"
+  wait "$1" 2>/dev/null || true
+}
+
+# One server and one proxy for most tests: its times are shorter, and one address may ask more than 20 times a second.
+setup_file() {
+  start_server --max-body-bytes 70000000 --read-seconds 2 --slots 1 --queue 0
+  start_proxy main 's/\(client_header_timeout\|client_body_timeout\) 10s/\1 2s/' 's/keepalive_timeout 15s/keepalive_timeout 1s/' \
+    's/lingering_time 5s/lingering_time 1s/' 's/rate=20r/rate=100000r/' 's/burst=40/burst=10000/'
+}
+teardown_file() {
+  stop_proxy "$proxy_pid"
+  stop_server
+}
+teardown() { proxy_is_well; }
+
+proxy_is_well() { [[ $(curl -sS --noproxy '*' --max-time 10 "$proxy/health" | jq -r .status) == alive ]]; }
+
+# eventually COMMAND...: within 20 s it succeeds.
+eventually() {
+  for _ in {1..200}; do
+    if "$@"; then return 0; fi
+    sleep 0.1
+  done
+  return 1
+}
+logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
+
+@test "the same bytes as without it, in both forms" {
+  for accept in application/x-draco multipart/mixed; do
+    request -H "$draco" -H "Accept: $accept" --data-binary @"$coarse" "$url/v1/refine?levels=3"
+    mv "$body" "$BATS_TEST_TMPDIR/direct"
+    request -H "$draco" -H "Accept: $accept" --data-binary @"$coarse" "$proxy/v1/refine?levels=3"
+    [ "$status" = 200 ]
+    # The boundary is random, and times are measured.
+    strip='/^--papilio/d; /^Server-Timing: /d; /^Content-Length: /d; /"milliseconds"/,/}/d'
+    cmp <(sed "$strip" "$body") <(sed "$strip" "$BATS_TEST_TMPDIR/direct")
+    [ -z "$(header X-Accel-Buffering)" ]
+    [ "$(header Server)" = nginx ] # and no version
+  done
+}
+
+@test "what the server refuses comes through as it is" {
+  request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=11"
+  expect_problem 400 bad_parameter
+  request "$proxy/nowhere"
+  expect_problem 404 not_found
+  request -H "$draco" -H 'Range: bytes=0-9' --data-binary @"$coarse" "$proxy/v1/refine"
+  expect_problem 416 range_not_supported
+  request -H "$draco" -H 'Content-Encoding: gzip' --data-binary @"$coarse" "$proxy/v1/refine"
+  expect_problem 415 unsupported_encoding
+}
+
+@test "the request's id goes from end to end; what is no id is replaced" {
+  request -H 'X-Request-Id: end-to-end.1' "$proxy/nowhere"
+  [ "$(header X-Request-Id)" = end-to-end.1 ]
+  eventually logged 'id=end-to-end.1 .*status=404'
+  grep -q 'id=end-to-end.1 ' "$BATS_FILE_TMPDIR/main/access.log"
+  request -H 'X-Request-Id: a b"c' "$proxy/nowhere"
+  made=$(header X-Request-Id)
+  [[ $made =~ ^[0-9a-f]{32}$ ]]
+  eventually logged "id=$made "
+}
+
+@test "a flood of headers is refused: one too large, too many, an address too long" {
+  request -H "X-Large: $(head -c 9000 /dev/zero | tr '\0' x)" "$proxy/health"
+  expect_problem 431 headers_too_large
+  many=()
+  for i in {1..800}; do many+=(-H "X-$i: $(head -c 50 /dev/zero | tr '\0' x)"); done
+  request "${many[@]}" "$proxy/health"
+  expect_problem 431 headers_too_large
+  request "$proxy/$(head -c 9000 /dev/zero | tr '\0' x)"
+  expect_problem 414 uri_too_long
+}
+
+@test "slow heads are closed without reaching the server, and others are served meanwhile" {
+  local fds=() fd
+  for _ in {1..50}; do
+    exec {fd}<>"/dev/tcp/127.0.0.1/$proxy_port"
+    printf 'GET /slow-head HTTP/1.1\r\nHost: x\r\nX-Drip: ' >&"$fd"
+    fds+=("$fd")
+  done
+  proxy_is_well
+  request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=0"
+  [ "$status" = 200 ]
+  for fd in "${fds[@]}"; do
+    until_closed "$fd" >"$BATS_TEST_TMPDIR/answer"
+    [ ! -s "$BATS_TEST_TMPDIR/answer" ]
+    exec {fd}>&-
+  done
+  run ! logged slow-head
+}
+
+@test "a slow body is closed without reaching the server" {
+  printf 'POST /slow-body HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\nDRACO' >"$BATS_TEST_TMPDIR/slow"
+  exchange "$proxy_port" <"$BATS_TEST_TMPDIR/slow" >"$BATS_TEST_TMPDIR/answer"
+  run ! logged slow-body
+}
+
+@test "too many requests at once from one address: 429, while another address is served" {
+  local fds=() fd
+  for _ in {1..32}; do # nginx's limit_conn
+    exec {fd}<>"/dev/tcp/127.0.0.1/$proxy_port"
+    printf 'POST /slow-body HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\nDRACO' >&"$fd"
+    fds+=("$fd")
+  done
+  too_many() { request "$proxy/health" && [[ $status == 429 ]]; }
+  eventually too_many
+  expect_problem 429 too_many_requests
+  [ "$(header Retry-After)" = 1 ]
+  request --interface 127.0.0.2 "$proxy/health"
+  [ "$status" = 200 ]
+  for fd in "${fds[@]}"; do exec {fd}>&-; done
+  eventually proxy_is_well
+}
+
+@test "too many requests a second from one address: 429, with the rate that is shipped" {
+  many() { curl -sS --noproxy '*' --parallel --parallel-max 20 -o "$BATS_TEST_TMPDIR/#1" -w '%{http_code}\n' \
+    "$proxy/v1/info?[1-300]" >"$BATS_TEST_TMPDIR/codes"; }
+  beside rate "$url" many
+  (($(grep -c 200 "$BATS_TEST_TMPDIR/codes") >= 40))
+  (($(grep -c 429 "$BATS_TEST_TMPDIR/codes") > 0))
+  [ "$(grep -cvE '200|429' "$BATS_TEST_TMPDIR/codes")" = 0 ]
+  [ "$(grep -l too_many_requests "$BATS_TEST_TMPDIR"/[0-9]* | wc -l)" = "$(grep -c 429 "$BATS_TEST_TMPDIR/codes")" ]
+}
+
+@test "a body too large is refused by its length, and while it comes in chunks" {
+  head -c 68000000 /dev/zero >"$BATS_TEST_TMPDIR/large"
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large" "$proxy/too-large"
+  expect_problem 413 body_too_large
+  request -H "$draco" -H 'Transfer-Encoding: chunked' --data-binary @"$BATS_TEST_TMPDIR/large" "$proxy/too-large"
+  expect_problem 413 body_too_large
+  run ! logged too-large
+}
+
+@test "metrics are not for the outside, however they are spelt" {
+  for path in /metrics //metrics /%6detrics /./metrics /x/../metrics '/metrics?x=1'; do
+    request --path-as-is "$proxy$path"
+    expect_problem 404 not_found
+  done
+  run ! logged metrics
+}
+
+# beside NAME URL COMMAND...: runs the command with $proxy a second nginx in front of the URL.
+beside() {
+  local name=$1 kept_url=$url kept_proxy=$proxy kept_pid=$proxy_pid outcome=0
+  url=$2
+  start_proxy "$name" 's/worker_processes auto/worker_processes 1/' || return # which keeps its connections to itself
+  url=$kept_url
+  "${@:3}" || outcome=$?
+  stop_proxy "$proxy_pid"
+  proxy=$kept_proxy
+  proxy_pid=$kept_pid
+  return "$outcome"
+}
+
+# beside_stub NAME COMMAND...: in front of tests/support/stub_server.py.
+beside_stub() {
+  local outcome=0
+  python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >"$BATS_TEST_TMPDIR/stub" 3>&- &
+  local stub_pid=$!
+  eventually test -s "$BATS_TEST_TMPDIR/stub"
+  beside "$1" "http://127.0.0.1:$(cat "$BATS_TEST_TMPDIR/stub")" "${@:2}" || outcome=$?
+  kill "$stub_pid"
+  wait "$stub_pid" 2>/dev/null || true
+  return "$outcome"
+}
+
+@test "without a server behind it: 502 in our form" {
+  beside alone http://127.0.0.1:1 request_to /v1/info
+  expect_problem 502 bad_gateway
+}
+request_to() { request "${@:2}" "$proxy$1"; }
+
+@test "what the server sees: the trace, the real address, the id" {
+  beside_stub seen request_to /x -H 'traceparent: 00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01' \
+    -H 'X-Forwarded-For: 6.6.6.6' -H 'X-Request-Id: mine'
+  grep -q '^traceparent: 00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01' "$body"
+  grep -q '^X-Forwarded-For: 127.0.0.1' "$body"
+  grep -q '^X-Request-Id: mine' "$body"
+  run ! grep -q 6.6.6.6 "$body"
+}
+
+@test "a request whose connection fails is sent once more, POST too" {
+  beside_stub retry request_to /drop --data-binary x # on the connection that start_proxy's question has left
+  [ "$status" = 200 ]
+  [ "$(header Count)" = 1 ]
+}
+
+expect_cached() { # PATH STATUS [CURL-ARGUMENT...]
+  request "${@:3}" "$proxy$1"
+  [[ $status == 200 && $(header X-Cache-Status) == "$2" ]] || { echo "$1: $status $(header X-Cache-Status)"; return 1; }
+}
+use_cache() {
+  local open=/v1/meshes/public_max-age=600/refined closed=/v1/meshes/private_max-age=600/refined
+  expect_cached "$open?levels=1" MISS &&
+    expect_cached "$open?levels=1" HIT &&
+    expect_cached "$open?levels=1" HIT -I &&
+    expect_cached "$open?levels=2" MISS &&
+    expect_cached "$open?levels=1" BYPASS -H 'Authorization: Bearer x' &&
+    expect_cached "$open?levels=1" BYPASS -H 'X-Api-Key: x' &&
+    expect_cached "$open?levels=3" BYPASS -H 'Authorization: Bearer x' &&
+    expect_cached "$open?levels=3" MISS &&
+    expect_cached "$closed?levels=1" MISS &&
+    expect_cached "$closed?levels=1" MISS &&
+    expect_cached /v1/meshes/max-age=600/refined MISS &&
+    expect_cached /v1/meshes/max-age=600/refined MISS &&
+    request -X POST --data-binary x "$proxy$open?levels=1" && [[ $(header Count) == 3 ]] &&
+    request -H 'If-None-Match: "tag"' "$proxy$open?levels=1" && [[ $status == 304 && $(header X-Cache-Status) == HIT ]]
+}
+revalidate() {
+  local short=/v1/meshes/public_max-age=1/refined
+  expect_cached "$short" MISS && sleep 2.1 && expect_cached "$short" REVALIDATED && [[ -s $body ]]
+}
+
+@test "the cache holds what is public and nothing else" {
+  beside_stub cache use_cache
+}
+
+@test "a cached answer whose time is over is asked for again with its ETag" {
+  beside_stub revalidate revalidate
+}
+
+@test "a stream's first level arrives while later ones are still to be made; leaving stops the work" {
+  mkfifo "$BATS_TEST_TMPDIR/stream"
+  curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: streamer' \
+    --data-binary @"$coarse" "$proxy/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+  running=$!
+  exec 5<"$BATS_TEST_TMPDIR/stream"
+  first=$(head -c 1000 <&5 | tr -d '\0')
+  [[ $first == *'Papilio-Faces: 600'* ]]
+  # We leave: had the last level been made already, nothing would be cut short.
+  kill -KILL "$running"
+  wait "$running" || true
+  exec 5<&-
+  eventually logged 'id=streamer .*code=not_sent'
+}
+
+at_work() { request "$url/ready" && [[ $status == 503 ]]; }
+
+@test "what the server says when it is busy comes through, with Retry-After" {
+  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+  running=$!
+  eventually at_work
+  request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=0"
+  kill -KILL "$running"
+  wait "$running" || true
+  expect_problem 429 busy
+  [ "$(header Retry-After)" = 1 ]
+  idle() { ! at_work; }
+  eventually idle
+}
+
+@test "a client that goes away stops its work behind the proxy" {
+  curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
+    "$proxy/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+  running=$!
+  eventually at_work
+  kill -KILL "$running"
+  wait "$running" || true
+  eventually logged 'id=leaver .* status=499 .*code=cancelled'
+}
+
+# smuggle NAME HEAD BODY: sends both (escapes as printf's). It is one request, whose body looks like another, or none.
+smuggle() {
+  # shellcheck disable=SC2059
+  printf "$2\r\n\r\n$3" | exchange "$proxy_port" >"$BATS_TEST_TMPDIR/answer"
+  if [[ $(grep -ac '^HTTP/1.1 [2-5]' "$BATS_TEST_TMPDIR/answer") != 1 ]] ||
+    { grep -aq '^HTTP/1.1 [45]' "$BATS_TEST_TMPDIR/answer" && ! grep -aq '^Content-Type: application/problem+json' "$BATS_TEST_TMPDIR/answer"; }; then
+    echo "$1:"
+    cat "$BATS_TEST_TMPDIR/answer"
+    return 1
+  fi
+}
+
+@test "no request is smuggled past nginx" {
+  # That an honest request of this name would be seen:
+  request "$proxy/admin-smuggled-control"
+  eventually logged admin-smuggled-control
+  local hidden='GET /admin-smuggled HTTP/1.1\r\nHost: x\r\n\r\n' length chunk post
+  # shellcheck disable=SC2059
+  length=$(printf "$hidden" | wc -c)
+  post='POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco'
+  chunk="$(printf '%x' "$length")\r\n$hidden\r\n0\r\n\r\n"
+  smuggle both "$post\r\nContent-Length: $((length + 5))\r\nTransfer-Encoding: chunked" "0\r\n\r\n$hidden"
+  smuggle both-turned "$post\r\nTransfer-Encoding: chunked\r\nContent-Length: $((length + 5))" "0\r\n\r\n$hidden"
+  smuggle two-lengths "$post\r\nContent-Length: $length\r\nContent-Length: 0" "$hidden"
+  smuggle two-lengths-turned "$post\r\nContent-Length: 0\r\nContent-Length: $length" "$hidden"
+  smuggle list "$post\r\nContent-Length: $length, 0" "$hidden"
+  smuggle plus "$post\r\nContent-Length: +$length" "$hidden"
+  smuggle xchunked "$post\r\nTransfer-Encoding: xchunked\r\nContent-Length: $length" "$hidden"
+  smuggle percent "$post\r\nTransfer-Encoding: %%63hunked\r\nContent-Length: $length" "$hidden"
+  smuggle two-encodings "$post\r\nTransfer-Encoding: chunked\r\nTransfer-Encoding: identity" "$chunk"
+  smuggle encodings "$post\r\nTransfer-Encoding: identity, chunked" "$chunk"
+  smuggle vertical-tab "$post\r\nTransfer-Encoding: \vchunked\r\nContent-Length: $length" "$hidden"
+  smuggle space-before-colon "$post\r\nTransfer-Encoding : chunked\r\nContent-Length: $length" "$hidden"
+  smuggle space-length "$post\r\nContent-Length : $length" "$hidden"
+  smuggle fold "$post\r\nX: y\r\n Content-Length: $length" "$hidden"
+  smuggle folded-encoding "$post\r\nTransfer-Encoding:\r\n chunked\r\nContent-Length: $length" "$hidden"
+  smuggle bare-feed "$post\r\nX: y\nContent-Length: $length" "$hidden"
+  smuggle bare-feed-encoding "$post\nTransfer-Encoding: chunked\r\nContent-Length: $length" "$hidden"
+  smuggle bare-return "$post\r\nX: y\rContent-Length: $length" "$hidden"
+  smuggle underscore "$post\r\nContent_Length: 0\r\nContent-Length: $length" "$hidden"
+  smuggle nul "$post\r\nX: a\\0b\r\nContent-Length: $length" "$hidden"
+  smuggle extension "$post\r\nTransfer-Encoding: chunked" "$(printf '%x' "$length");a=b\r\n$hidden\r\n0\r\n\r\n"
+  smuggle extension-feed "$post\r\nTransfer-Encoding: chunked" "$(printf '%x' "$length");a\n$hidden\r\n0\r\n\r\n"
+  smuggle zeros "$post\r\nTransfer-Encoding: chunked" "0000000000000$chunk"
+  smuggle huge-size "$post\r\nTransfer-Encoding: chunked" "100000000000000$(printf '%x' "$length")\r\n$hidden\r\n0\r\n\r\n"
+  smuggle negative "$post\r\nTransfer-Encoding: chunked" "-1\r\n$hidden\r\n0\r\n\r\n"
+  smuggle hexadecimal "$post\r\nTransfer-Encoding: chunked" "0x$(printf '%x' "$length")\r\n$hidden\r\n0\r\n\r\n"
+  smuggle no-feed-after-chunk "$post\r\nTransfer-Encoding: chunked" "1\r\nxx\r\n$hidden\r\n0\r\n\r\n"
+  smuggle trailer "$post\r\nTransfer-Encoding: chunked" "0\r\nContent-Length: 5\r\nX: $hidden"
+  smuggle http10 "POST /v1/refine HTTP/1.0\r\nHost: x\r\nTransfer-Encoding: chunked\r\nContent-Length: $length" "$hidden"
+  smuggle get-with-body "GET /health HTTP/1.1\r\nHost: x\r\nContent-Length: $length" "$hidden"
+  smuggle expect "$post\r\nExpect: 100-continue\r\nContent-Length: $length" "$hidden"
+  smuggle refused "POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: $length" "$hidden"
+  smuggle upgrade "GET /health HTTP/1.1\r\nHost: x\r\nConnection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\nContent-Length: $length" "$hidden"
+  smuggle hop "$post\r\nConnection: Content-Length\r\nContent-Length: $length" "$hidden"
+  smuggle method "TRACE /health HTTP/1.1\r\nHost: x\r\nContent-Length: $length" "$hidden"
+  smuggle garbage "nonsense\r\nHost: x" "$hidden"
+  smuggle query "GET /health?%%0d%%0a%%0d%%0aGET%%20/admin-smuggled HTTP/1.1\r\nHost: x" ''
+  proxy_is_well
+  run ! logged 'path="/admin-smuggled"'
+  run ! grep 'path="/admin-smuggled"' "$BATS_FILE_TMPDIR/main/access.log"
+}
+
+@test "with tls.conf in listen.conf's place it speaks TLS" {
+  folder=$BATS_FILE_TMPDIR/tls
+  kept=$proxy
+  kept_pid=$proxy_pid
+  openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=x \
+    -addext subjectAltName=IP:127.0.0.1 -keyout "$BATS_TEST_TMPDIR/key" -out "$BATS_TEST_TMPDIR/certificate" 2>/dev/null
+  start_proxy tls
+  stop_proxy "$proxy_pid"
+  sed "s|8443|127.0.0.1:$proxy_port|; s|/etc/papilio/tls.crt|$BATS_TEST_TMPDIR/certificate|
+    s|/etc/papilio/tls.key|$BATS_TEST_TMPDIR/key|" "$folder/conf/nginx/tls.conf" >"$folder/conf/nginx/listen.conf"
+  as_root=()
+  ((EUID != 0)) || as_root=(-g 'user root;')
+  nginx -p "$folder" -c "$folder/conf/nginx.conf" "${as_root[@]}" >"$folder/access.log" 2>"$folder/error.log" 3>&- &
+  tls_pid=$!
+  speaks_tls() { curl -sS --noproxy '*' --cacert "$BATS_TEST_TMPDIR/certificate" "https://127.0.0.1:$proxy_port/health"; }
+  eventually speaks_tls
+  request --cacert "$BATS_TEST_TMPDIR/certificate" -H "$draco" --data-binary @"$coarse" "https://127.0.0.1:$proxy_port/v1/refine?levels=0"
+  stop_proxy "$tls_pid"
+  proxy=$kept
+  proxy_pid=$kept_pid
+  [ "$status" = 200 ]
+  [[ $(head -1 "$headers") == HTTP/2* ]]
+}
