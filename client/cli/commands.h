@@ -4,6 +4,7 @@
 #include <string>
 
 #include "client/lib/compare.h"
+#include "client/lib/remote.h"
 #include "proto/parameters.h"
 
 // What the subcommands do, one function each. Failures are exceptions; `main` turns them into words and an
@@ -15,7 +16,7 @@ struct RefineFlags {
   std::string input;       ///< mesh file or folder
   std::string output;      ///< mesh file, folder, or "-" for standard output
   std::string server;      ///< URL; empty: refine in this process
-  std::string ca;          ///< PEM file of the certificates trusted for an https server; empty: the system's
+  RemoteOptions remote;    ///< how that server is spoken to
   std::string to = "drc";  ///< kind of the results of a folder
   int jobs = 1;            ///< meshes of a folder refined at once
   bool json = false;       ///< statistics as JSON on standard output

@@ -45,8 +45,12 @@ void add_refine(CLI::App& app) {
   command->add_option("-o,--output", flags->output, "File whose extension names its kind, folder, or - (Draco)")
       ->required();
   command->add_option("--server", flags->server, "Refine there instead of here: http://host:port or https://");
-  command->add_option("--ca", flags->ca, "PEM file of the certificates to trust for https, instead of the system's")
+  command
+      ->add_option("--ca", flags->remote.ca_file,
+                   "PEM file of the certificates to trust for https, instead of the system's")
       ->check(CLI::ExistingFile);
+  command->add_option("--key", flags->remote.key, "Key that the server asks for; safer in the environment")
+      ->envname("PAPILIO_KEY");
   command->add_option("--to", flags->to, "Kind of the results of a folder")
       ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl"}))
       ->capture_default_str();

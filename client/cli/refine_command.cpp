@@ -24,7 +24,7 @@ using proto::EncodedLevel;
 
 /// Here or there: both go the same way from the same stream, so the bytes are the same.
 EncodedLevel refine_stream(const std::string& draco, const RefineFlags& flags) {
-  if (!flags.server.empty()) return Remote(flags.server, flags.ca).refine(draco, flags.parameters);
+  if (!flags.server.empty()) return Remote(flags.server, flags.remote).refine(draco, flags.parameters);
   constexpr proto::Limits own_limits{face_count_limit, face_count_limit, face_count_limit};
   return proto::Refinement(draco, flags.parameters, own_limits).run();
 }

@@ -44,9 +44,10 @@ ServerError no_answer(const std::string& origin, httplib::Error error) {
   return {0, "", "No answer from " + origin + " (" + httplib::to_string(error) + "). " + advice};
 }
 
-httplib::Client connect(const std::string& origin, const std::string& ca_file) {
+httplib::Client connect(const std::string& origin, const RemoteOptions& options) {
   httplib::Client client(origin);
-  if (!ca_file.empty()) client.set_ca_cert_path(ca_file);
+  if (!options.ca_file.empty()) client.set_ca_cert_path(options.ca_file);
+  if (!options.key.empty()) client.set_bearer_token_auth(options.key);
   client.set_connection_timeout(10);
   client.set_read_timeout(600);
   client.set_write_timeout(60);
@@ -85,7 +86,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
 
 }  // namespace
 
-Remote::Remote(const std::string& url, std::string ca_file) : ca_file_(std::move(ca_file)) {
+Remote::Remote(const std::string& url, RemoteOptions options) : options_(std::move(options)) {
   static const std::regex form(R"((https?://[^/?#\s]+)(/[^?#\s]*)?)");
   std::smatch match;
   if (!std::regex_match(url, match, form))
@@ -97,7 +98,7 @@ Remote::Remote(const std::string& url, std::string ca_file) : ca_file_(std::move
 }
 
 proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
-  httplib::Client client = connect(origin_, ca_file_);
+  httplib::Client client = connect(origin_, options_);
   const std::string path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
   auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
   for (int attempt = 1; attempt < most_attempts && answer && answer->status == busy_status; ++attempt) {
@@ -141,7 +142,7 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
     return true;
   };
 
-  httplib::Client client = connect(origin_, ca_file_);
+  httplib::Client client = connect(origin_, options_);
   try {
     const auto answer = client.send(request);
     if (!answer) throw no_answer(origin_, answer.error());

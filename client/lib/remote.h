@@ -23,13 +23,19 @@ class ServerError : public std::runtime_error {
   std::string code_;
 };
 
+/// How a server is spoken to.
+struct RemoteOptions {
+  std::string ca_file{};  ///< PEM file of the certificates to trust over HTTPS; "": the system's
+  std::string key{};      ///< sent as `Authorization: Bearer`; "": none
+};
+
 /// A Papilio server. One object may be used by one thread at a time.
 class Remote {
  public:
   /// `url`: "http://host:port" or "https://…", optionally with a path in front of /v1. Over HTTPS the server's
-  /// certificate must be of its host's name, and signed by one in `ca_file` (PEM), or in the system's store when that
-  /// is "". Throws std::invalid_argument when it is not a URL.
-  explicit Remote(const std::string& url, std::string ca_file = {});
+  /// certificate must be of its host's name, and signed by one that is trusted. Throws std::invalid_argument when it is
+  /// not a URL.
+  explicit Remote(const std::string& url, RemoteOptions options = {});
 
   /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. A busy server is
   /// asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
@@ -41,9 +47,9 @@ class Remote {
                      const std::function<void(const proto::Part&)>& on_part) const;
 
  private:
-  std::string origin_;   ///< "http://host:port"
-  std::string prefix_;   ///< path without a slash at its end
-  std::string ca_file_;  ///< "": the system's store
+  std::string origin_;  ///< "http://host:port"
+  std::string prefix_;  ///< path without a slash at its end
+  RemoteOptions options_;
 };
 
 }  // namespace papilio::client

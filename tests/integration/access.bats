@@ -67,6 +67,15 @@ END
   ! grep -qE '(viewer|operator|nobody)-key' "$BATS_FILE_TMPDIR/server.log"
 }
 
+@test "the command line shows its key, and says when it needs one" {
+  run "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --server "$url" --levels 1
+  [ "$status" = 1 ]
+  [[ $output == *"A key is needed"* ]]
+  PAPILIO_KEY=viewer-key-0123456789 "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --server "$url" --levels 1
+  "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/here.drc" --levels 1
+  cmp "$BATS_TEST_TMPDIR/fine.drc" "$BATS_TEST_TMPDIR/here.drc"
+}
+
 @test "with keys, only the client itself may keep what is answered" {
   as viewer -H "$draco" --data-binary @"$coarse" "$url/v1/meshes"
   as viewer "$url/v1/meshes/$(coarse_id)/refined?levels=1"

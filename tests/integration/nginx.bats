@@ -263,6 +263,31 @@ revalidate() {
   beside_stub revalidate revalidate
 }
 
+@test "refinements of a stored mesh are made once, then sent by the proxy; HEAD and 304 too" {
+  request -H "$draco" --data-binary @"$coarse" "$proxy/v1/meshes"
+  [[ $status == 201 || $status == 200 ]]
+  refined="$proxy$(header Location)/refined?levels=2&w=0.01"
+  request -H 'X-Request-Id: asked-first' "$refined"
+  [ "$status" = 200 ]
+  [ "$(header X-Cache-Status)" = MISS ]
+  tag=$(header ETag)
+  cp "$body" "$BATS_TEST_TMPDIR/first"
+  request -H 'X-Request-Id: asked-second' "$refined"
+  [ "$(header X-Cache-Status)" = HIT ]
+  [ "$(header ETag)" = "$tag" ]
+  cmp "$body" "$BATS_TEST_TMPDIR/first"
+  request -I -H 'X-Request-Id: asked-third' "$refined"
+  [ "$(header X-Cache-Status)" = HIT ]
+  request -H "If-None-Match: $tag" -H 'X-Request-Id: asked-fourth' "$refined"
+  [ "$status" = 304 ]
+  request -H 'Accept: application/octet-stream' -H 'X-Request-Id: asked-otherwise' "$refined" # another representation
+  [ "$(header X-Cache-Status)" = MISS ]
+  [ "$(header ETag)" != "$tag" ]
+  logged 'id=asked-first '
+  logged 'id=asked-otherwise '
+  ! logged 'id=asked-\(second\|third\|fourth\) '
+}
+
 @test "a stream's first level arrives while later ones are still to be made; leaving stops the work" {
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: streamer' \
