@@ -42,12 +42,12 @@ void reload(std::string_view what, const std::function<void()>& read) {
 }
 
 /// Returns the signal that is to end the program.
-int wait_for_end(const sigset_t& signals, HttpServer& server, Keys* keys) {
+int wait_for_end(const sigset_t& signals, const Config& config, HttpServer& server, Keys* keys) {
   for (int signal = 0;;) {
     sigwait(&signals, &signal);
     if (signal != SIGHUP) return signal;
     if (keys != nullptr) reload("keys", [&] { keys->reload(); });
-    reload("certificate", [&] { server.reload_certificate(); });
+    if (!config.http.tls_cert.empty()) reload("certificate", [&] { server.reload_certificate(); });
   }
 }
 
@@ -87,7 +87,7 @@ int serve(const Config& config) {
              {"store", std::string(engine.store().kind())},
              {"keys", keys ? keys->size() : 0}});
 
-  const int signal = wait_for_end(signals, server, keys.get());
+  const int signal = wait_for_end(signals, config, server, keys.get());
   log_event("info", "draining", {{"signal", signal}, {"running", server.running()}});
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second signal ends the program at once
   const bool complete = server.drain(config.drain_seconds);

@@ -13,21 +13,25 @@ ResultCache::Answer ResultCache::get_or_make(const std::string& key, const std::
                                              const Question& client_gone) {
   for (;;) {
     if (Result kept = kept_.get(key)) return {std::move(kept), Source::kept};
-    std::shared_ptr<Flight> flight;
     bool first = false;
-    {
-      const std::lock_guard lock(mutex_);
-      std::shared_ptr<Flight>& entry = flights_[key];
-      first = entry == nullptr;
-      if (first)
-        entry = std::make_shared<Flight>();
-      else
-        ++entry->waiting;
-      flight = entry;
-    }
+    const std::shared_ptr<Flight> flight = join(key, first);
     if (first) return make_for_all(key, *flight, make, client_gone);
     if (Result result = wait_for(flight, client_gone)) return {std::move(result), Source::shared};
   }
+}
+
+std::shared_ptr<ResultCache::Flight> ResultCache::join(const std::string& key, bool& first) {
+  const std::lock_guard lock(mutex_);
+  const auto found = flights_.find(key);
+  first = found == flights_.end();
+  if (first) return flights_.emplace(key, std::make_shared<Flight>()).first->second;
+  if (waiting_ >= most_waiting_)
+    throw Problem(Code::busy,
+                  "Too many requests wait for results in the making. Try again after the time in "
+                  "Retry-After.");
+  ++waiting_;
+  ++found->second->waiting;
+  return found->second;
 }
 
 ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& flight,
@@ -66,9 +70,11 @@ ResultCache::Result ResultCache::wait_for(const std::shared_ptr<Flight>& flight,
     const bool gone = client_gone();
     lock.lock();
     if (!gone || flight->done) continue;
+    --waiting_;
     --flight->waiting;
     throw Problem(Code::cancelled, "The client went away while its result was made for another.");
   }
+  --waiting_;
   if (!flight->failure) return flight->result;
   try {
     std::rethrow_exception(flight->failure);

@@ -20,7 +20,8 @@ class ResultCache {
   using Result = std::shared_ptr<const proto::EncodedLevel>;
   using Question = std::function<bool()>;
 
-  explicit ResultCache(uint64_t budget) : kept_(budget) {}
+  /// At most `most_waiting` requests wait for results that others make: each holds a connection's thread.
+  ResultCache(uint64_t budget, int most_waiting) : kept_(budget), most_waiting_(most_waiting) {}
 
   /// How an answer was come by.
   enum class Source {
@@ -55,12 +56,15 @@ class ResultCache {
 
   Answer make_for_all(const std::string& key, Flight& flight, const std::function<Result(const Question&)>& make,
                       const Question& client_gone);
+  [[nodiscard]] std::shared_ptr<Flight> join(const std::string& key, bool& first);
   [[nodiscard]] Result wait_for(const std::shared_ptr<Flight>& flight, const Question& client_gone);
 
   Lru<const proto::EncodedLevel> kept_;
+  const int most_waiting_;
   std::mutex mutex_;
   std::condition_variable landed_;
   std::map<std::string, std::shared_ptr<Flight>> flights_;  ///< guarded by mutex_, as are the flights
+  int waiting_ = 0;                                         ///< guarded by mutex_: for all flights together
 };
 
 }  // namespace papilio::server

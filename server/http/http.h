@@ -123,7 +123,7 @@ struct HttpOptions {
   uint64_t max_body_bytes = 64u << 20;    ///< larger: 413, before it is read where a length is declared
   uint64_t max_held_bytes = 512u << 20;   ///< bodies held in memory at once, of all requests together: 429
   uint64_t max_header_bytes = 32u << 10;  ///< request line and header fields together: 431
-  int threads = 64;                       ///< connections served at once; each holds a thread
+  int threads = 128;                      ///< connections served at once; each holds a thread
   int idle_seconds = 5;            ///< an idle connection is closed after this, or when others wait for its thread
   int read_seconds = 10;           ///< for a whole head, and for each 1 KiB times this of a body: 408
   int write_seconds = 30;          ///< longest wait for the client to take the next bytes of an answer

@@ -31,7 +31,8 @@ class DirectoryStore final : public MeshStore {
   const std::filesystem::path directory_;
   const uint64_t budget_;
   std::mutex mutex_;
-  /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a refusal.
+  /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a
+  /// refusal.
   Usage usage_;
   std::chrono::steady_clock::time_point counted_;
 };

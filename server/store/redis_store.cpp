@@ -3,7 +3,7 @@
 #include <hiredis/hiredis.h>
 #include <sys/time.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <charconv>
 
 #include "proto/problem.h"
@@ -17,12 +17,18 @@ using proto::Problem;
 namespace {
 
 constexpr timeval longest_wait{2, 0};
+constexpr std::chrono::seconds away_interval{1};
 
-Problem unavailable(std::string_view reason) {
-  log_event("error", "store", {{"kind", "redis"}, {"reason", std::string(reason)}});
+Problem no_answer() {
   return {Code::store_unavailable,
           "The store of meshes does not answer. Try again after the time in Retry-After; "
           "POST /v1/refine works without it."};
+}
+
+/// The operator's log has the reason.
+Problem unavailable(std::string_view reason) {
+  log_event("error", "store", {{"kind", "redis"}, {"reason", std::string(reason)}});
+  return no_answer();
 }
 
 std::string key_of(const std::string& id) { return "papilio:mesh:" + id; }
@@ -129,14 +135,21 @@ uint64_t RedisStore::used_memory() {
   return bytes;
 }
 
-RedisStore::Context RedisStore::connect() const {
+Problem RedisStore::away(std::string_view reason) {
+  const std::lock_guard lock(mutex_);
+  away_until_ = std::chrono::steady_clock::now() + away_interval;
+  idle_.clear();  // lost too
+  return unavailable(reason);
+}
+
+RedisStore::Context RedisStore::connect() {
   Context context(address_.host.empty() ? redisConnectUnixWithTimeout(address_.path.c_str(), longest_wait)
                                         : redisConnectWithTimeout(address_.host.c_str(), address_.port, longest_wait));
-  if (context == nullptr || context->err != 0) throw unavailable(context ? context->errstr : "out of memory");
+  if (context == nullptr || context->err != 0) throw away(context ? context->errstr : "out of memory");
   redisSetTimeout(context.get(), longest_wait);
   const auto require = [&](const std::vector<std::string_view>& words) {
     const Reply reply = ask_on(*context, words);
-    if (reply == nullptr) throw unavailable(context->errstr);
+    if (reply == nullptr) throw away(context->errstr);
     if (reply->type == REDIS_REPLY_ERROR) throw unavailable({reply->str, reply->len});
   };
   if (!address_.user.empty())
@@ -158,8 +171,10 @@ RedisStore::Reply RedisStore::ask_on(redisContext& context, const std::vector<st
       static_cast<redisReply*>(redisCommandArgv(&context, static_cast<int>(words.size()), texts.data(), sizes.data())));
 }
 
+/// Null when there is none. Throws while Redis is known to be away.
 RedisStore::Context RedisStore::take_idle() {
   const std::lock_guard lock(mutex_);
+  if (std::chrono::steady_clock::now() < away_until_) throw no_answer();
   if (idle_.empty()) return nullptr;
   Context context = std::move(idle_.back());
   idle_.pop_back();
@@ -169,18 +184,20 @@ RedisStore::Context RedisStore::take_idle() {
 RedisStore::Reply RedisStore::ask(const std::vector<std::string_view>& words) {
   Context context = take_idle();
   Reply reply;
-  if (context != nullptr) reply = ask_on(*context, words);
-  if (reply == nullptr) {
-    if (context != nullptr) {  // Redis has been away: the other connections are lost too
-      const std::lock_guard lock(mutex_);
-      idle_.clear();
-    }
+  if (context != nullptr) {
+    errno = 0;
+    reply = ask_on(*context, words);
+    // Redis closes idle connections, and does so when it is restarted; one that keeps silent is asked only once.
+    const bool was_closed = reply == nullptr && errno != EAGAIN && errno != EWOULDBLOCK;
+    if (was_closed) context = nullptr;
+  }
+  if (context == nullptr) {
     context = connect();
     reply = ask_on(*context, words);
   }
-  if (reply == nullptr) throw unavailable(context->errstr);
+  if (reply == nullptr) throw away(context->errstr);
   // While it loads its data from disk Redis answers, but not what was asked.
-  if (has_error(*reply, "LOADING") || has_error(*reply, "NOAUTH")) throw unavailable({reply->str, reply->len});
+  if (has_error(*reply, "LOADING") || has_error(*reply, "NOAUTH")) throw away({reply->str, reply->len});
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(context));
   return reply;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "proto/problem.h"
 #include "server/store/mesh_store.h"
 
 struct redisContext;
@@ -24,8 +26,8 @@ struct RedisAddress {
 [[nodiscard]] std::optional<RedisAddress> parse_redis_address(std::string_view text);
 
 /// Keeps meshes in Redis, under "papilio:mesh:ID"; several servers share them. Every question has a bound of two
-/// seconds. A lost connection is made anew at the next question; while Redis is away every question is answered with
-/// store_unavailable.
+/// seconds. A lost connection is made anew. While Redis is away every question is answered with store_unavailable, and
+/// only one a second waits to find out.
 class RedisStore final : public MeshStore {
  public:
   /// `budget`: no mesh is added that would bring the memory Redis uses past it. `seconds`: a mesh that is not used for
@@ -54,16 +56,19 @@ class RedisStore final : public MeshStore {
 
   /// One question, with its words; on a connection that turns out to be lost it is asked once more on a new one.
   Reply ask(const std::vector<std::string_view>& words);
-  [[nodiscard]] Context connect() const;
+  [[nodiscard]] Context connect();
   [[nodiscard]] static Reply ask_on(redisContext& context, const std::vector<std::string_view>& words);
-  Context take_idle();
+  [[nodiscard]] Context take_idle();
+  /// Takes note that Redis is away, and gives the words for it.
+  [[nodiscard]] proto::Problem away(std::string_view reason);
   uint64_t used_memory();
 
   const RedisAddress address_;
   const uint64_t budget_;
   const int seconds_;
   std::mutex mutex_;
-  std::vector<Context> idle_;  ///< guarded by mutex_
+  std::vector<Context> idle_;                         ///< guarded by mutex_
+  std::chrono::steady_clock::time_point away_until_;  ///< guarded by mutex_: not asked before
 };
 
 }  // namespace papilio::server

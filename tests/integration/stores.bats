@@ -164,9 +164,25 @@ stop_redis() {
   [ "$status" = 200 ]
   server_is_well
   start_redis
-  request "$url/v1/meshes/$(coarse_id)"
+  for _ in {1..50}; do # it is asked again once a second
+    request "$url/v1/meshes/$(coarse_id)"
+    [ "$status" = 503 ] || break
+    sleep 0.1
+  done
   [ "$status" = 200 ]
   cmp "$body" "$coarse"
+  kill -STOP "$redis_pid" # it keeps silent
+  request "$url/v1/meshes/$(coarse_id)"
+  expect_problem 503 store_unavailable
+  for _ in {1..8}; do curl -sS --noproxy '*' -o /dev/null "$url/v1/meshes/$(coarse_id)" 3>&- & done
+  server_is_well
+  kill -CONT "$redis_pid"
+  for _ in {1..50}; do
+    request "$url/v1/meshes/$(coarse_id)"
+    [ "$status" = 503 ] || break
+    sleep 0.1
+  done
+  [ "$status" = 200 ]
 }
 
 @test "Redis full: refused by our limit and by its own" {

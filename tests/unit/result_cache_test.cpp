@@ -25,7 +25,7 @@ ResultCache::Result result(const std::string& bytes) {
 }
 
 TEST(ResultCache, MakesOnceAndKeeps) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   int made = 0;
   const auto make = [&](const ResultCache::Question&) {
     ++made;
@@ -40,14 +40,14 @@ TEST(ResultCache, MakesOnceAndKeeps) {
 }
 
 TEST(ResultCache, WithoutABudgetNothingIsKept) {
-  ResultCache cache(0);
+  ResultCache cache(0, 8);
   const auto make = [&](const ResultCache::Question&) { return result("bytes"); };
   EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
   EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
 }
 
 TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   constexpr int others = 5;
   std::atomic<int> made = 0;
   std::atomic<int> shared = 0;
@@ -77,7 +77,7 @@ TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
 }
 
 TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   const auto fail = [](const ResultCache::Question&) -> ResultCache::Result {
     throw Problem(Code::result_too_large, "Ask for fewer levels, please.");
   };
@@ -89,7 +89,7 @@ TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
 /// The client of the one that makes the result goes away: the work stops when nobody waits, and goes on when somebody
 /// does.
 TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   const auto give_up = [](const ResultCache::Question& abandoned) -> ResultCache::Result {
     if (abandoned()) throw Problem(Code::cancelled, "The client went away.");
     return result("bytes");
@@ -111,7 +111,7 @@ TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
 }
 
 TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   std::latch begun(1);
   std::latch end(1);
   std::jthread maker([&] {
@@ -133,8 +133,30 @@ TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
   end.count_down();
 }
 
+TEST(ResultCache, OnlySoManyMayWait) {
+  ResultCache cache(enough, 1);
+  std::latch begun(1);
+  std::latch end(1);
+  const auto make = [&](const ResultCache::Question&) {
+    begun.count_down();
+    end.wait();
+    return result("bytes");
+  };
+  std::jthread maker([&] { (void)cache.get_or_make("a", make, stays); });
+  begun.wait();
+  std::atomic<bool> asked = false;
+  std::jthread waiter([&] {
+    EXPECT_EQ(cache.get_or_make("a", make, [&] { return !(asked = true); }).source, Source::shared);
+  });
+  while (!asked) std::this_thread::yield();  // its client is asked for while it waits
+  EXPECT_THROW((void)cache.get_or_make("a", make, stays), Problem);
+  end.count_down();
+  waiter.join();
+  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::kept);
+}
+
 TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
-  ResultCache cache(enough);
+  ResultCache cache(enough, 8);
   std::latch begun(1);
   std::atomic<bool> waits = false;
   std::jthread leaver([&] {
