@@ -77,6 +77,8 @@ stays_within() {
 }
 
 @test "SIGTERM during a stream: it arrives whole" {
+  stop_server
+  start_server --drain-seconds 3600
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" \
     "$url/v1/refine?levels=6" 3>&- &
