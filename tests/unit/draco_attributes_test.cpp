@@ -214,6 +214,23 @@ TEST(DracoAttributes, HardValuesDoNotBreakTheAnswer) {
   }
 }
 
+// Draco predicted them as if they were octahedral, two numbers each: values changed, and with one number it wrote past
+// the end of its memory.
+TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
+  std::mt19937 random(3);
+  for (uint32_t components = 1; components <= 4; ++components) {
+    FormattedMesh input = charted_cube();
+    std::vector<double> values(input.positions.size() * components);
+    for (double& value : values) value = std::uniform_int_distribution<int>(-128, 127)(random);
+    add_attribute(input, AttributeKind::normal, ValueType::int8, components, values);
+    const Mesh mesh = build_mesh(input);
+    for (int speed = 0; speed <= 10; ++speed) {
+      SCOPED_TRACE(std::to_string(components) + " at " + std::to_string(speed));
+      expect_same_corners(read_draco(write(mesh, mesh, input.format, {.speed = speed}), {}), input, input.format);
+    }
+  }
+}
+
 TEST(DracoAttributes, MeshesOfEveryKindSurvive) {
   TriangleMesh misoriented = icosahedron();
   std::swap(misoriented.triangles[3][0], misoriented.triangles[3][1]);
