@@ -231,6 +231,28 @@ TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
   }
 }
 
+// Draco made two billion orientations of texture coordinates from a stream of 255 bytes.
+TEST(DracoAttributes, OrientationsThatNobodyNeedsAreRefused) {
+  const FormattedMesh input = charted_cube();
+  const Mesh mesh = build_mesh(input);
+  const std::string sound = write(mesh, mesh, input.format, {.speed = 0});
+  const auto is_refused_at = [&](size_t place) {
+    std::string damaged = sound;
+    damaged.replace(place, 4, std::string("\0\0\0\1", 4));  // 2^24
+    try {
+      (void)read_draco(damaged, {});
+    } catch (const Problem& problem) {
+      return std::string_view(problem.what()).find("predicts") != std::string_view::npos;
+    } catch (const Error&) {
+    }
+    return false;
+  };
+  size_t refused = 0;
+  for (size_t place = 0; place + 4 <= sound.size(); ++place) refused += is_refused_at(place) ? 1 : 0;
+  EXPECT_GE(refused, 1U);
+  EXPECT_EQ(read_draco(sound, {}).format, input.format);
+}
+
 TEST(DracoAttributes, MeshesOfEveryKindSurvive) {
   TriangleMesh misoriented = icosahedron();
   std::swap(misoriented.triangles[3][0], misoriented.triangles[3][1]);
