@@ -10,21 +10,22 @@
 
 #include "proto/draco_attributes.h"
 #include "proto/draco_header.h"
+#include "proto/draco_orientations.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {
 namespace {
 
-/// One of Draco's decoders, stopped between the attributes' declarations and their values: 255 attributes of 255
-/// components may be declared, and a value that is the same everywhere takes next to no bytes.
+/// One of Draco's decoders, stopped where a few bytes would make it work without end: between the attributes'
+/// declarations and their values (255 attributes of 255 components may be declared, and a value that is the same
+/// everywhere takes next to no bytes), and where an attribute is predicted.
 template <class Decoder>
 class BoundedDecoder : public Decoder {
  public:
   std::unique_ptr<draco::Mesh> run(std::string_view bytes) {
-    draco::DecoderBuffer buffer;
-    buffer.Init(bytes.data(), bytes.size());
+    stream_.Init(bytes.data(), bytes.size());
     auto mesh = std::make_unique<draco::Mesh>();
-    const bool ok = this->Decode(draco::DecoderOptions(), &buffer, mesh.get()).ok();
+    const bool ok = this->Decode(draco::DecoderOptions(), &stream_, mesh.get()).ok();
     if (refusal_) throw Problem(*refusal_);
     return ok ? std::move(mesh) : nullptr;
   }
@@ -40,7 +41,19 @@ class BoundedDecoder : public Decoder {
     return Decoder::DecodeAllAttributes();
   }
 
-  std::optional<Problem> refusal_;
+  /// Draco asks for this once for each attribute that is predicted from the mesh, at the start of its values.
+  const draco::MeshAttributeIndicesEncodingData* GetAttributeEncodingData(int number) const override {
+    const auto* data = Decoder::GetAttributeEncodingData(number);
+    if (data == nullptr || has_sane_prediction(stream_, data->encoded_attribute_value_index_to_corner_map.size(),
+                                               this->point_cloud()->attribute(number)->num_components()))
+      return data;
+    refusal_.emplace(Code::mesh_not_draco,
+                     "The Draco stream predicts an attribute in a way that makes no sense. Encode the mesh again.");
+    return nullptr;
+  }
+
+  draco::DecoderBuffer stream_;
+  mutable std::optional<Problem> refusal_;
 };
 
 std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool edgebreaker) {

@@ -44,6 +44,11 @@ draco::Options explicit_quantization(const std::vector<float>& origin, float ran
   return options;
 }
 
+/// Whether Draco's octahedral coding takes it.
+bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
+  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
+}
+
 /// A mesh on its way to Draco.
 class Encoding {
  public:
@@ -69,6 +74,10 @@ class Encoding {
     if (is_too_large(attribute, format)) {
       options().SetAttributeInt(added, "prediction_scheme", draco::PREDICTION_NONE);
       encoder_.SetUseBuiltInAttributeCompression(false);  // of all attributes, there is no other way
+    } else if (format.kind == AttributeKind::normal && !is_unit_normal(attribute, format)) {
+      // Below speed 4 Draco predicts normals as if they were octahedral: integers that are not change, or it writes
+      // past the end of its memory.
+      options().SetAttributeInt(added, "prediction_scheme", draco::PREDICTION_DIFFERENCE);
     }
     return added;
   }
@@ -101,11 +110,6 @@ class Encoding {
   draco::ExpertEncoder encoder_;
   std::optional<VertexPoints> points_;
 };
-
-/// Whether Draco's octahedral coding takes it.
-bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
-  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
-}
 
 AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   AttributeEncoding::Grid grid;

@@ -23,7 +23,7 @@ for purpose in "$@"; do
     demo) meshes=yes packages+=(curl jq ca-certificates) ;;
     bench) meshes=yes packages+=(ca-certificates) ;;
     check) packages+=(clang-format clang-tidy shellcheck git jq) ;;
-    fuzz) meshes=yes packages+=(clang libclang-rt-dev ca-certificates) ;;
+    fuzz) packages+=(clang libclang-rt-dev dpkg-dev ca-certificates) ;;
     soak) meshes=yes packages+=(wrk curl jq ca-certificates) ;;
     *) die "unknown purpose '$purpose'" ;;
   esac

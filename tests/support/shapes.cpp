@@ -231,7 +231,7 @@ TriangleMesh random_manifold(std::mt19937& random) {
   for (Vec3f& p : mesh.positions)
     p += Vec3f{uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1)};
   std::ranges::shuffle(mesh.triangles, random);
-  for (Triangle& t : mesh.triangles) std::ranges::rotate(t, t.begin() + below(random, 3));
+  for (Triangle& t : mesh.triangles) std::rotate(t.begin(), t.begin() + below(random, 3), t.end());
   return mesh;
 }
 

@@ -214,6 +214,45 @@ TEST(DracoAttributes, HardValuesDoNotBreakTheAnswer) {
   }
 }
 
+// Draco predicted them as if they were octahedral, two numbers each: values changed, and with one number it wrote past
+// the end of its memory.
+TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
+  std::mt19937 random(3);
+  for (uint32_t components = 1; components <= 4; ++components) {
+    FormattedMesh input = charted_cube();
+    std::vector<double> values(input.positions.size() * components);
+    for (double& value : values) value = std::uniform_int_distribution<int>(-128, 127)(random);
+    add_attribute(input, AttributeKind::normal, ValueType::int8, components, values);
+    const Mesh mesh = build_mesh(input);
+    for (int speed = 0; speed <= 10; ++speed) {
+      SCOPED_TRACE(std::to_string(components) + " at " + std::to_string(speed));
+      expect_same_corners(read_draco(write(mesh, mesh, input.format, {.speed = speed}), {}), input, input.format);
+    }
+  }
+}
+
+// Draco made two billion orientations of texture coordinates from a stream of 255 bytes.
+TEST(DracoAttributes, OrientationsThatNobodyNeedsAreRefused) {
+  const FormattedMesh input = charted_cube();
+  const Mesh mesh = build_mesh(input);
+  const std::string sound = write(mesh, mesh, input.format, {.speed = 0});
+  const auto is_refused_at = [&](size_t place) {
+    std::string damaged = sound;
+    damaged.replace(place, 4, std::string("\0\0\0\1", 4));  // 2^24
+    try {
+      (void)read_draco(damaged, {});
+    } catch (const Problem& problem) {
+      return std::string_view(problem.what()).find("predicts") != std::string_view::npos;
+    } catch (const Error&) {
+    }
+    return false;
+  };
+  size_t refused = 0;
+  for (size_t place = 0; place + 4 <= sound.size(); ++place) refused += is_refused_at(place) ? 1 : 0;
+  EXPECT_GE(refused, 1U);
+  EXPECT_EQ(read_draco(sound, {}).format, input.format);
+}
+
 TEST(DracoAttributes, MeshesOfEveryKindSurvive) {
   TriangleMesh misoriented = icosahedron();
   std::swap(misoriented.triangles[3][0], misoriented.triangles[3][1]);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace papilio::fuzz {
+
+/// Takes values off an input's front; zeros once it is used up, so that every input means something.
+class ByteSource {
+ public:
+  ByteSource(const uint8_t* data, size_t size) : bytes_(data, size) {}
+
+  [[nodiscard]] size_t left() const { return bytes_.size(); }
+
+  template <class Number>
+  Number raw() {
+    Number number{};
+    const size_t size = std::min(sizeof number, bytes_.size());
+    if (size > 0) std::memcpy(&number, bytes_.data(), size);
+    bytes_ = bytes_.subspan(size);
+    return number;
+  }
+
+  bool flag() { return (raw<uint8_t>() & 1U) != 0; }
+  /// 0 to `most`.
+  uint32_t up_to(uint32_t most);
+  /// Between the two, often one of them.
+  double between(double low, double high);
+  /// Any number: small integers, which coincide, fractions, or whatever the bits are.
+  float coordinate();
+  std::string_view rest();
+
+ private:
+  std::span<const uint8_t> bytes_;
+};
+
+}  // namespace papilio::fuzz

@@ -1,0 +1,52 @@
+#include <algorithm>
+#include <cmath>
+
+#include "proto/draco_reader.h"
+#include "proto/draco_writer.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/soup.h"
+
+// What is written can be read: the same faces, positions no further off than half a cell of the grid, and to the bit
+// where they are sent exactly.
+
+using namespace papilio;
+
+namespace {
+
+double largest_difference(Vec3f a, Vec3f b) {
+  return std::max({std::abs(double{a.x} - b.x), std::abs(double{a.y} - b.y), std::abs(double{a.z} - b.z)});
+}
+
+void require_near(const std::vector<Vec3f>& some, const std::vector<Vec3f>& others, double distance) {
+  for (const Vec3f& p : some)
+    fuzz::require(std::ranges::any_of(others, [&](Vec3f q) { return largest_difference(p, q) <= distance; }),
+                  "every position is where one was");
+}
+
+void write_and_read(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
+  const Mesh mesh = build_mesh(soup);
+  const proto::QuantizationBox box = proto::quantization_box(mesh.positions);
+  const proto::FormattedMesh read =
+      proto::read_draco(proto::write_draco(mesh, box, output, proto::attribute_encoding(mesh, soup.format)), {});
+  fuzz::require(read.triangles.size() == mesh.topology.face_count(), "faces are kept");
+  const double cell = double{box.range} / ((1 << output.position_bits) - 1);
+  const double rounding = 1e-6 * (largest_difference(box.origin, {}) + box.range);
+  require_near(read.positions, mesh.positions, cell / 2 + rounding);
+  require_near(mesh.positions, read.positions, cell / 2 + rounding);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  fuzz::ByteSource bytes(data, size);
+  fuzz::unless_refused([&] {
+    const proto::OutputOptions output{8 + static_cast<int>(bytes.up_to(8)), static_cast<int>(bytes.up_to(10)),
+                                      bytes.flag()};
+    const proto::FormattedMesh soup = fuzz::take_soup(bytes);
+    const Mesh exact = build_mesh(proto::read_draco(proto::write_draco_exact(soup, soup.format), {}));
+    fuzz::require(exact.topology.face_count() == build_mesh(soup).topology.face_count(), "faces are kept exactly");
+    require_near(exact.positions, soup.positions, 0);
+    write_and_read(soup, output);
+  });
+  return 0;
+}

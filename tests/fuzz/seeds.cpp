@@ -1,0 +1,168 @@
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include "client/mesh_file/formats.h"
+#include "proto/draco_writer.h"
+#include "proto/multipart.h"
+#include "proto/parameters.h"
+#include "tests/support/charts.h"
+#include "tests/support/draco_tools.h"
+#include "tests/support/shapes.h"
+
+// fuzz_seeds FOLDER: writes what each target starts from into FOLDER/TARGET, and FOLDER/words, a dictionary.
+
+namespace papilio::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Seeds {
+ public:
+  explicit Seeds(fs::path folder) : folder_(std::move(folder)) {}
+
+  void add(const std::string& target, const std::string& bytes) {
+    fs::create_directories(folder_ / target);
+    write(folder_ / target / ("seed" + std::to_string(number_++)), bytes);
+  }
+  /// As libFuzzer reads dictionaries: "word" in quotes.
+  void add_words(const std::vector<std::string>& words) {
+    std::string lines;
+    for (const std::string& word : words) lines.append("\"").append(word).append("\"\n");
+    write(folder_ / "words", lines);
+  }
+
+ private:
+  static void write(const fs::path& path, const std::string& bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file << bytes;
+    file.close();
+    if (!file) throw std::runtime_error(path.string() + " cannot be written");
+  }
+
+  fs::path folder_;
+  int number_ = 0;
+};
+
+std::vector<TriangleMesh> shapes() {
+  return {test::tetrahedron(), test::cube(),        test::torus(6, 4),
+          test::grid(3, 3),    test::fan(5, false), test::join(test::tetrahedron(), test::octahedron(), 5)};
+}
+
+void add_meshes(Seeds& seeds) {
+  std::vector<std::string> streams;
+  for (const TriangleMesh& shape : shapes()) {
+    streams.push_back(test::encode_with_draco(shape, test::Method::edgebreaker, true));
+    streams.push_back(test::encode_with_draco(shape, test::Method::sequential));
+    streams.push_back(proto::write_draco_exact(shape));
+    for (const int speed : {0, 3, 5, 10}) {  // each has its own traversal and prediction
+      const proto::FormattedMesh charted = test::charted_cube();
+      const Mesh mesh = build_mesh(charted);
+      streams.push_back(proto::write_draco(mesh, proto::quantization_box(mesh.positions), {.speed = speed},
+                                           proto::attribute_encoding(mesh, charted.format)));
+      const Mesh plain = build_mesh(shape);
+      streams.push_back(proto::write_draco(plain, proto::quantization_box(plain.positions),
+                                           {.position_bits = 9, .speed = speed, .normals = true}));
+    }
+  }
+  for (const std::string& stream : streams)
+    for (const char* target : {"draco_decode", "draco_refine"}) seeds.add(target, stream);
+}
+
+void add_mesh_files(Seeds& seeds) {
+  proto::FormattedMesh mesh = test::charted_cube();
+  const auto add = [&](char format, const std::string& bytes) { seeds.add("mesh_files", format + bytes); };
+  add(0, client::format_obj(mesh, mesh.format));
+  add(1, client::format_ply(mesh, mesh.format));
+  add(1,
+      "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty float x\nproperty double y\nproperty int z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+      "property list uchar uint vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1.5 0 7 8 9\n3 0 1 2\n");
+  add(2, client::format_off(mesh));
+  add(3, client::format_stl(mesh));
+  add(3,
+      "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid s\n");
+}
+
+void add_parameters(Seeds& seeds) {
+  std::vector<std::string> words{"true",
+                                 "false",
+                                 "null",
+                                 "HTTP/1.1",
+                                 "Content-Length: ",
+                                 "Transfer-Encoding: chunked",
+                                 "boundary=",
+                                 "multipart/mixed",
+                                 "multipart/form-data",
+                                 "name=",
+                                 "Host: ",
+                                 "q=0.5"};
+  for (const proto::ParameterInfo& info : proto::parameter_table()) {
+    const std::string name(info.name);
+    std::string value = proto::describe_default(info);
+    if (!info.choices.empty()) value = info.choices.back();
+    seeds.add("parameters_query", "levels=2&" + name + "=" + value);
+    const size_t dot = name.find('.');
+    seeds.add("parameters_json", dot == std::string::npos ? "{\"" + name + "\": \"" + value + "\"}"
+                                                          : "{\"" + name.substr(0, dot) + "\": {\"" +
+                                                                name.substr(dot + 1) + "\": [1, 2, 3]}}");
+    words.push_back(name);
+    for (const std::string_view choice : info.choices) words.emplace_back(choice);
+  }
+  seeds.add("parameters_query", "view.eye=0,0,3&view.error_pixels=1&flatness=0.8,0.9&output.normals=true");
+  seeds.add("parameters_json", R"({"levels": 3, "flatness": [0.8, 0.9], "view": {"eye": [0, 0, 3], "fov_y": 40}})");
+  seeds.add_words(words);
+}
+
+void add_messages(Seeds& seeds) {
+  seeds.add("request_head",
+            "POST /v1/refine?levels=2&scheme=in%2Dplace HTTP/1.1\r\nHost: here\r\nContent-Length: 12\r\n"
+            "Content-Type: application/x-draco\r\nX-Request-Id: a\r\n\r\n");
+  seeds.add("request_head",
+            "GET http://here/v1/info HTTP/1.0\r\nTransfer-Encoding: chunked\r\nRange: bytes=0-1\r\n\r\n");
+  seeds.add("form",
+            "multipart/form-data; boundary=\"cut\"\nbefore\r\n--cut\r\nContent-Disposition: form-data; name=\"mesh\"; "
+            "filename=a.drc\r\nContent-Type: application/x-draco\r\n\r\nDRACO\r\n--cut\r\n"
+            "Content-Disposition: form-data; name=params\r\n\r\n{}\r\n--cut--\r\nafter");
+  const proto::MultipartWriter writer("cut");
+  seeds.add("multipart", "\x02" + writer.content_type() + "\n" +
+                             writer.part({{{"Content-Type", "application/x-draco"}, {"Papilio-Faces", "4"}}, "bytes"}) +
+                             writer.part({{{"Content-Type", "application/json"}}, "{}"}) + writer.end());
+  seeds.add("accept", "multipart/mixed;q=0.5, application/*, */*;q=0.1");
+}
+
+/// Of targets that make their own sense of bytes.
+void add_noise(Seeds& seeds) {
+  std::mt19937 random(1);
+  for (const char* target : {"refine_soup", "draco_round_trip"})
+    for (int i = 0; i < 20; ++i) {
+      std::string bytes(600, '\0');
+      for (char& byte : bytes) byte = static_cast<char>(random());
+      seeds.add(target, bytes);
+    }
+}
+
+}  // namespace
+}  // namespace papilio::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: fuzz_seeds FOLDER\n";
+    return 2;
+  }
+  try {
+    papilio::fuzz::Seeds seeds(argv[1]);
+    papilio::fuzz::add_meshes(seeds);
+    papilio::fuzz::add_mesh_files(seeds);
+    papilio::fuzz::add_parameters(seeds);
+    papilio::fuzz::add_messages(seeds);
+    papilio::fuzz::add_noise(seeds);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "fuzz_seeds: " << error.what() << '\n';
+    return 1;
+  }
+}
