@@ -139,7 +139,7 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
   config.engine.limits.max_compute_bytes = 2ULL << 30;
   CLI::App app{"papilio-server: refines Draco meshes over HTTP where they are curved, visible and large on screen."};
   app.footer(
-      "It prints `listening on http://HOST:PORT` on standard output and logs to standard error.\n"
+      "It prints `listening on http://HOST:PORT` (https:// with TLS) on standard output and logs to standard error.\n"
       "SIGTERM or SIGINT lets running requests finish, then ends with status 0; SIGHUP reads keys and\ncertificate "
       "again.");
   app.set_version_flag("--version", "papilio-server " PAPILIO_VERSION);
