@@ -123,3 +123,8 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   jq -e '.components.schemas.Problem.properties.code.enum as $codes
     | [.paths[][].responses[].description] | join("; ") as $all | $codes | length > 25 and all(. as $c | $all | contains($c + ":"))' "$body"
 }
+
+@test "README names every path" {
+  request "$url/openapi.json"
+  while read -r path; do grep -qF "$path" "$BATS_TEST_DIRNAME/../../README.md"; done < <(field 'paths | keys[]')
+}
