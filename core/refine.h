@@ -6,6 +6,7 @@
 #include "error.h"
 #include "mesh.h"
 #include "options.h"
+#include "prepared_mesh.h"
 
 // Refinement of a coarse triangle mesh by selective subdivision: Dong, Li, Kuo, "Refinement of 3D Meshes by
 // Selective Subdivision". This header is all that most callers need.
@@ -50,5 +51,10 @@ void check_room(uint64_t faces, const Options& options);
 /// hidden ones may be dropped, which moves the numbers of the others up. Re-entrant; no state is kept. Throws `Error`:
 /// bad_option, result_too_large (with the number), cancelled, out_of_memory.
 [[nodiscard]] Result refine(Mesh coarse, const Options& options, const Hooks& hooks = {});
+
+/// The same, to the bit, for a mesh that is refined more than once: what earlier calls made of it is used, and what
+/// this one makes is kept for later ones. May be called from several threads at once. Throws `Error` bad_option also
+/// where the mesh was prepared for other rules.
+[[nodiscard]] Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& hooks = {});
 
 }  // namespace papilio

@@ -6,6 +6,7 @@
 
 #include "deviation.h"
 #include "options.h"
+#include "region.h"
 
 // Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
 
@@ -39,15 +40,18 @@ class Selection {
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
 
-  /// The edges that flatness (with growth) and the view want split, of those that are marked already: the paper's
-  /// method, in its order. `level` is the one to be made, from 1. Marks [E].
-  void narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int level, EdgeMarks& marks) const;
-  /// Unmarks what the view does not show, however small it looks; all stays without one.
-  void cull_unseen(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
+  /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
+  /// edges (view.h). [E]
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+                                const Region& region) const;
+  /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
+  /// is the one to be made, from 1; `shown` as above. In ascending order.
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
+                                             const Region& region, const EdgeMarks& shown) const;
 
-  /// The error of each marked edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
+  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. [E]
-  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,
+  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
                                           float exact_from) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
@@ -84,8 +88,9 @@ struct WeighedEdge {
   float error;
   uint32_t faces;  ///< how many faces there are at the edge
 };
-/// Appends the edges of a level, with their errors [E].
-void append_edges(const Topology& mesh, const std::vector<float>& errors, std::vector<WeighedEdge>& edges);
+/// Appends the region's edges, with their errors [E].
+void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,
+                  std::vector<WeighedEdge>& edges);
 
 /// The least threshold, not below `least`, at which no more than `budget` faces come of the `faces` that are there
 /// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing

@@ -42,11 +42,6 @@ bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, do
          smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine;
 }
 
-unsigned mask_of(const HierarchyLevel& level, uint32_t face) {
-  const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
-  return level.split[edge[0]] | level.split[edge[1]] << 1U | level.split[edge[2]] << 2U;
-}
-
 }  // namespace
 
 double smallest_angle(const Mesh& mesh) {
@@ -71,21 +66,21 @@ uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned m
   return second < first || (second == first && second_is_lower) ? number + 1 : number;
 }
 
-void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle) {
+void avoid_slivers(LevelChoice& choice, double least_angle) {
+  const HierarchyLevel& level = *choice.level;
   const Topology& mesh = level.mesh.topology;
   const double most_cosine = std::cos(least_angle);
   const auto must_be_divided = [&](uint32_t f) {
-    const unsigned mask = mask_of(level, f);
-    return mask != 0 && mask != 7 && may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
-           may_be_split[mesh.edge[3 * f + 2]] != 0 && makes_slivers(level, f, mask, most_cosine);
+    const unsigned mask = choice.split_mask(f);
+    return mask != 0 && mask != 7 && choice.may_divide(f) && makes_slivers(level, f, mask, most_cosine);
   };
   std::vector<uint32_t> faces;
-  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+  for (uint32_t f : choice.region.faces)
     if (must_be_divided(f)) faces.push_back(f);
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) level.split[mesh.edge[h]] = 1;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.split[mesh.edge[h]] = 1;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
       if (const uint32_t t = mesh.twin[h]; t != none && must_be_divided(Topology::face(t)))
         faces.push_back(Topology::face(t));

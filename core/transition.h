@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hierarchy.h"
+#include "level_choice.h"
 #include "split_pattern.h"
 
 // Transition faces: the pieces into which one or two split edges cut a face of a red-green level.
@@ -19,7 +19,7 @@ namespace papilio {
 [[nodiscard]] double smallest_angle(const Mesh& mesh);
 
 /// Has the other edges of a face split too where pieces would have an angle under `least_angle` (radians) though the
-/// face itself has not, until no such face is left. Adds to `level.split`, edges in `may_be_split` only.
-void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle);
+/// face itself has not, until no such face is left. Adds to `choice.split`, edges of its region only.
+void avoid_slivers(LevelChoice& choice, double least_angle);
 
 }  // namespace papilio

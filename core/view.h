@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh.h"
+#include "region.h"
 #include "split_plan.h"
 
 namespace papilio {
@@ -69,9 +70,20 @@ class Camera {
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
 [[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera);
 
-/// Unmarks the edges that the view does not need, the paper's section 3.2: those all of whose faces have all
-/// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are
-/// turned away (so edges on the silhouette stay; a face without normal is never away), those that look
+/// The length of each vertex's longest edge. [V]
+[[nodiscard]] std::vector<double> longest_edges(const Mesh& mesh);
+
+/// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
+/// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
+/// edges on the silhouette are shown; a face without normal is never away). Shapes: normals [F], longest [V], marks
+/// [E].
+[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals,
+                                    const std::vector<double>& longest, const Camera& camera, const Region& region);
+
+/// Whether the edge looks at least so long, in pixels.
+[[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
+
+/// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks);
