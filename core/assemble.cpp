@@ -26,8 +26,8 @@ struct Fate {
 
 class Assembler {
  public:
-  explicit Assembler(std::span<const LevelChoice> levels)
-      : levels_(levels), vertex_count_(levels[0].level->mesh.topology.vertex_count) {
+  Assembler(std::span<const LevelChoice> levels, double most_cosine)
+      : levels_(levels), most_cosine_(most_cosine), vertex_count_(levels[0].level->mesh.topology.vertex_count) {
     for (size_t k = 0; k < levels.size(); ++k) decide(k);
     place();
   }
@@ -67,7 +67,7 @@ class Assembler {
       const unsigned mask = choice.split_mask(f);
       // What has children as support only is cut into the same four.
       const bool divided = mask == 7 && k + 1 < levels_.size() && choice.red[f] != 0;
-      fate.face[f] = divided ? Fate::divided : choose_transition(*choice.level, f, mask);
+      fate.face[f] = divided ? Fate::divided : choose_transition(*choice.level, f, mask, most_cosine_);
       fate.shown.push_back(f);
     }
     fates_.push_back(std::move(fate));
@@ -218,6 +218,7 @@ class Assembler {
   }
 
   std::span<const LevelChoice> levels_;
+  double most_cosine_;
   std::vector<Fate> fates_;
   uint32_t face_count_ = 0;
   uint32_t vertex_count_;
@@ -257,7 +258,7 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
   return faces;
 }
 
-Mesh assemble(std::span<const LevelChoice> levels) { return Assembler(levels).run(); }
+Mesh assemble(std::span<const LevelChoice> levels, double most_cosine) { return Assembler(levels, most_cosine).run(); }
 
 ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection) {
   ErrorLeft left(selection);
@@ -266,22 +267,24 @@ ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selec
     const LevelChoice& choice = levels[k];
     const HierarchyLevel& level = *choice.level;
     const std::vector<uint8_t> divided = find_divided(choice, above);
+    std::vector<uint8_t> was_added(level.mesh.topology.edge_count(), 0);
     const auto add = [&](uint32_t h) {
       const uint32_t e = level.mesh.topology.edge[h];
       if (choice.shown[e] == 0) return;
       if (choice.split[e] == 0) {
-        left.add(level.mesh, e, level.trial.at(e));
+        if (std::exchange(was_added[e], 1) != 0) return;
+        left.add(level.mesh, level.trial, e);
         return;
       }
       // Its halves may have been judged, though nothing below was wanted.
       const auto [first, second] = halves(levels, k, h);
       if (first == none || levels[k + 1].may_be_split[first] == 0 || levels[k + 1].may_be_split[second] == 0) {
-        left.add(level.mesh, e, level.trial.at(e), split_leaves);
+        left.add(level.mesh, level.trial, e, split_leaves);
         return;
       }
       const HierarchyLevel& below = *levels[k + 1].level;
       for (uint32_t half : {first, second})
-        if (levels[k + 1].shown[half] != 0) left.add(below.mesh, half, below.trial.at(half));
+        if (levels[k + 1].shown[half] != 0) left.add(below.mesh, below.trial, half);
     };
     for (uint32_t f : choice.region.faces)
       if (divided[f] == 0 && (k == 0 || above[level.parent[f / 4]] != 0))

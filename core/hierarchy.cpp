@@ -186,6 +186,7 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, from, parent, child, red, shared, longest) +
                    size(trial.normals, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
+  bytes += trial.deviations.bytes() + transitions.bytes();
   return bytes;
 }
 
@@ -194,6 +195,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   level.complete.assign(mesh.topology.vertex_count, 1);
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
     if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
+  level.transitions = Memo<uint32_t>(mesh.topology.face_count(), 0);
   level.mesh = std::move(mesh);
   return level;
 }
@@ -225,6 +227,7 @@ std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uin
 HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red) {
   HierarchyLevel below = LevelMaker(level, red).run();
   below.red = std::move(red);
+  below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
   return below;
 }
 

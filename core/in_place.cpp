@@ -71,7 +71,7 @@ class InPlace {
   void note_error() {
     ErrorLeft left(selection_);
     for (uint32_t e : region_.edges)
-      if (shown_[e] != 0) left.add(mesh_, e, trial_->at(e), targets_[e] != 0 ? split_leaves : 1);
+      if (shown_[e] != 0) left.add(mesh_, *trial_, e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
     result_.error_pixels = left.pixels();
   }
@@ -128,7 +128,7 @@ Result refine_uniformly(Mesh coarse, const Options& options, const Selection& se
     progress.poll();
     if (level == options.levels) {
       ErrorLeft left(selection);
-      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, e, trial.at(e), split_leaves);
+      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, trial, e, split_leaves);
       result.error = left.error();
     }
     mesh = split_mesh(std::move(mesh), trial.tried, trial.made);

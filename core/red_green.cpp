@@ -14,9 +14,6 @@ namespace {
 constexpr float never = -std::numeric_limits<float>::infinity();
 constexpr uint64_t bytes_per_face = 160;  // of a level's arrays and of what is computed on it
 
-/// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
-constexpr double sliver_share = 0.4;
-
 class RedGreen {
  public:
   RedGreen(Levels levels, const Options& options, const Selection& selection, const Progress& progress)
@@ -24,7 +21,7 @@ class RedGreen {
         selection_(selection),
         progress_(progress),
         levels_(std::move(levels)),
-        least_angle_(sliver_share * levels_.smallest_angle()),
+        most_cosine_(most_cosine_beside(levels_.smallest_angle())),
         threshold_(selection.threshold()) {}
 
   Result run() {
@@ -43,7 +40,7 @@ class RedGreen {
         progress_.require_room(count_assembled(choices_), level);
         result.levels = level;
         keep();
-        if (progress_.wants_levels()) latest = assemble(choices_);
+        if (progress_.wants_levels()) latest = assemble(choices_, most_cosine_);
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
@@ -98,7 +95,7 @@ class RedGreen {
     for (LevelChoice& choice : choices_)
       for (uint32_t e : choice.region.edges) choice.split[e] = choice.error[e] >= threshold ? 1 : 0;
     for (size_t k = choices_.size(); k-- > 0;) {
-      avoid_slivers(choices_[k], least_angle_);
+      avoid_slivers(choices_[k], most_cosine_);
       if (k > 0) carry_marks_up(choices_[k], choices_[k - 1]);
     }
   }
@@ -213,7 +210,8 @@ class RedGreen {
       result.stop_reason = StopReason::budget;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (!progress_.wants_levels()) latest = result.levels == 0 ? choices_[0].level->mesh : assemble(choices_);
+    if (!progress_.wants_levels())
+      latest = result.levels == 0 ? choices_[0].level->mesh : assemble(choices_, most_cosine_);
     result.mesh = std::move(latest);
   }
 
@@ -222,7 +220,7 @@ class RedGreen {
   const Progress& progress_;
   Levels levels_;
   std::vector<LevelChoice> choices_;  ///< [level]
-  double least_angle_;                ///< what transition faces keep to
+  double most_cosine_;                ///< what transition faces keep to
   float threshold_;
   std::vector<EdgeMarks> kept_;  ///< [level] what was split when a level last changed something
   bool out_of_budget_ = false;

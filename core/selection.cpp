@@ -10,6 +10,7 @@ namespace papilio {
 namespace {
 
 constexpr float never = -std::numeric_limits<float>::infinity();
+constexpr double unknown = -1;
 
 /// Never less than the deviation: the midpoint is on the surface.
 double distance_to_midpoint(const Mesh& mesh, uint32_t edge, Vec3f q) {
@@ -30,7 +31,15 @@ Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_e
     const TensionField field = tension_field(mesh.topology, trial.normals, options.tension);
     trial.made = butterfly(mesh.topology, mesh.positions, trial.tried, w, &field);
   }
+  trial.deviations = Memo<double>(trial.made.size(), unknown);
   return trial;
+}
+
+double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
+  const uint32_t rank = tried.before[edge];
+  double known = deviations.get(rank);
+  if (known == unknown) deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+  return known;
 }
 
 Selection::Selection(const Options& options, double diagonal)
@@ -85,15 +94,15 @@ std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const
   std::vector<float> errors(mesh.topology.edge_count(), never);
   for (uint32_t e : wanted) {
     errors[e] = measure_.error(mesh, trial.normals, e, distance_to_midpoint(mesh, e, trial.at(e)));
-    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, deviation(mesh, e, trial.at(e)));
+    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }
   return errors;
 }
 
-void ErrorLeft::add(const Mesh& mesh, uint32_t edge, Vec3f q, double share) {
-  const double most = share * distance_to_midpoint(mesh, edge, q);
+void ErrorLeft::add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share) {
+  const double most = share * distance_to_midpoint(mesh, edge, trial.at(edge));
   if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
-  const double distance = share * deviation(mesh, edge, q);
+  const double distance = share * trial.deviation_at(mesh, edge);
   distance_ = std::max(distance_, distance);
   pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
 }

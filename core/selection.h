@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deviation.h"
+#include "memo.h"
 #include "options.h"
 #include "region.h"
 
@@ -18,8 +19,11 @@ struct Trial {
   std::vector<Vec3f> normals;  ///< [F]
   SplitPlan tried;             ///< the edges whose new vertices were computed
   std::vector<Vec3f> made;     ///< [tried.count()]
+  Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); negative: unknown
 
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
+  /// That of a tried edge. `mesh` is the one tried.
+  [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
 };
 
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
@@ -70,8 +74,8 @@ class Selection {
 class ErrorLeft {
  public:
   explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
-  /// An edge that stays, whose new vertex would be q, or, with share 1/4, one of the last level that was split.
-  void add(const Mesh& mesh, uint32_t edge, Vec3f q, double share = 1);
+  /// A tried edge that stays, or, with share 1/4, one of the last level that was split.
+  void add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share = 1);
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 

@@ -185,6 +185,7 @@ EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const
 }
 
 bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
+  if (edge_pixels == 0) return true;
   const uint32_t h = mesh.topology.half_edge[edge];
   return !(camera.projected_length(to_double(mesh.positions[mesh.topology.origin[h]]),
                                    to_double(mesh.positions[mesh.topology.tip(h)])) < edge_pixels);
