@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "grow_level.h"
 #include "transition.h"
 
 namespace papilio {
@@ -46,21 +47,24 @@ void Levels::deepen(const std::vector<uint8_t>& red) {
     if (make_with_known(*known, red)) return;
     known_.resize(depth);  // this one takes its place
   }
-  make(red, may_keep(red));
+  make(red);
 }
 
 bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red) {
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
-  make(std::move(red), true);
-  const HierarchyLevel& level = *levels_.back();
+  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red)));
   std::vector<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent[f / 4];
-    moved[f] = level.child[moved_.empty() ? parent : moved_[parent]] + f % 4;
+    moved[f] = level->child[moved_.empty() ? parent : moved_[parent]] + f % 4;
   }
   moved_ = std::move(moved);
+  progress_.poll();
+  level->longest = longest_edges(level->mesh);
+  try_grown_level(*level, options_, known, moved_);
+  add_kept(level);
   return true;
 }
 
@@ -72,15 +76,22 @@ bool Levels::may_keep(const std::vector<uint8_t>& red) const {
   return bytes <= prepared_->budget_;
 }
 
-void Levels::make(std::vector<uint8_t> red, bool is_kept) {
-  auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red)));
+void Levels::make(const std::vector<uint8_t>& red) {
+  const bool is_kept = may_keep(red);
+  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), red));
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
   level->trial =
       try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level));
+  if (is_kept)
+    add_kept(level);
+  else
+    levels_.push_back(level);
+}
+
+void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
   levels_.push_back(std::move(level));
-  if (!is_kept) return;
   ++to_keep_;
   has_grown_ = true;
 }

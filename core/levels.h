@@ -34,7 +34,8 @@ class Levels {
   /// is done, where that is more than may be kept.
   bool make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red);
   [[nodiscard]] bool may_keep(const std::vector<uint8_t>& red) const;
-  void make(std::vector<uint8_t> red, bool is_kept);
+  void make(const std::vector<uint8_t>& red);
+  void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
   const Options& options_;
   const Progress& progress_;

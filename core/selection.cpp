@@ -10,28 +10,21 @@ namespace papilio {
 namespace {
 
 constexpr float never = -std::numeric_limits<float>::infinity();
-constexpr double unknown = -1;
-
-/// Never less than the deviation: the midpoint is on the surface.
-double distance_to_midpoint(const Mesh& mesh, uint32_t edge, Vec3f q) {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  const Vec3d ends =
-      to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]);
-  return length(to_double(q) - 0.5 * ends);
-}
 
 }  // namespace
 
+std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals, const Options& options,
+                                 const SplitPlan& plan) {
+  const auto w = static_cast<float>(options.w);
+  if (options.tension == Tension::off) return butterfly(mesh.topology, mesh.positions, plan, w);
+  const TensionField field = tension_field(mesh.topology, normals, options.tension);
+  return butterfly(mesh.topology, mesh.positions, plan, w, &field);
+}
+
 Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges) {
   Trial trial{.normals = face_normals(mesh), .tried = SplitPlan(try_edges), .made = {}};
-  const auto w = static_cast<float>(options.w);
-  if (options.tension == Tension::off) {
-    trial.made = butterfly(mesh.topology, mesh.positions, trial.tried, w);
-  } else {
-    const TensionField field = tension_field(mesh.topology, trial.normals, options.tension);
-    trial.made = butterfly(mesh.topology, mesh.positions, trial.tried, w, &field);
-  }
-  trial.deviations = Memo<double>(trial.made.size(), unknown);
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried);
+  trial.deviations = Memo<double>(trial.made.size(), Trial::unknown);
   return trial;
 }
 
@@ -93,18 +86,10 @@ std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const
                                      float exact_from) const {
   std::vector<float> errors(mesh.topology.edge_count(), never);
   for (uint32_t e : wanted) {
-    errors[e] = measure_.error(mesh, trial.normals, e, distance_to_midpoint(mesh, e, trial.at(e)));
+    errors[e] = measure_.error(mesh, trial.normals, e, trial.most_deviation_at(mesh, e));
     if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }
   return errors;
-}
-
-void ErrorLeft::add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share) {
-  const double most = share * distance_to_midpoint(mesh, edge, trial.at(edge));
-  if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
-  const double distance = share * trial.deviation_at(mesh, edge);
-  distance_ = std::max(distance_, distance);
-  pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
 }
 
 void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,

@@ -19,13 +19,21 @@ struct Trial {
   std::vector<Vec3f> normals;  ///< [F]
   SplitPlan tried;             ///< the edges whose new vertices were computed
   std::vector<Vec3f> made;     ///< [tried.count()]
-  Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); negative: unknown
+  Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
 
+  static constexpr double unknown = -1;
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
+  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const {
+    return length(to_double(at(edge)) - midpoint(mesh, edge));
+  }
 };
 
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
+[[nodiscard]] std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals,
+                                               const Options& options, const SplitPlan& plan);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
 
@@ -75,7 +83,13 @@ class ErrorLeft {
  public:
   explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
   /// A tried edge that stays, or, with share 1/4, one of the last level that was split.
-  void add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share = 1);
+  void add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share = 1) {
+    const double most = share * trial.most_deviation_at(mesh, edge);
+    if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
+    const double distance = share * trial.deviation_at(mesh, edge);
+    distance_ = std::max(distance_, distance);
+    pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
+  }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 

@@ -14,9 +14,6 @@ namespace {
 /// edge-on.
 constexpr double away_epsilon = 1e-3;
 
-/// However near the near plane is: what it is multiplied by stays a number.
-constexpr double most_pixels_per_unit = 1e200;
-
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void require(bool good, const char* option, const char* what) {
@@ -139,12 +136,6 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   const auto [ax, ay] = project(a);
   const auto [bx, by] = project(b);
   return std::hypot(bx - ax, by - ay);
-}
-
-double Camera::pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
-
-double Camera::pixels_per_unit_at(double depth) const {
-  return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
 }
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -49,7 +50,7 @@ class Camera {
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
   /// on it.
-  [[nodiscard]] double pixels_per_unit(Vec3d point) const;
+  [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
 
  private:
   struct Plane {
@@ -57,7 +58,12 @@ class Camera {
     double offset;  ///< a point p is inside when normal.p >= offset
   };
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
-  [[nodiscard]] double pixels_per_unit_at(double depth) const;
+  [[nodiscard]] double pixels_per_unit_at(double depth) const {
+    return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
+  }
+
+  /// However near the near plane is: what it is multiplied by stays a number.
+  static constexpr double most_pixels_per_unit = 1e200;
 
   bool perspective_;
   Vec3d eye_, right_, up_, forward_;
