@@ -59,6 +59,10 @@ void check_room(uint64_t faces, const Options& options) {
   for (int level = 1; level <= options.levels; ++level) progress.require_room(faces *= 4, level);
 }
 
+bool uses_hierarchy(const Options& options) {
+  return options.scheme == Scheme::red_green && (options.levels == 0 || !Selection(options, 1).is_uniform());
+}
+
 Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
   check_options(options);
   check_room(coarse.topology.face_count(), options);

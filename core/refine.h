@@ -47,6 +47,9 @@ struct Result {
 /// done.
 void check_room(uint64_t faces, const Options& options);
 
+/// Whether a prepared mesh makes this request cheaper: it is neither uniform nor in place.
+[[nodiscard]] bool uses_hierarchy(const Options& options);
+
 /// Refines the mesh. Vertices of `coarse` keep their numbers and their positions to the bit; with `simplify_hidden`
 /// hidden ones may be dropped, which moves the numbers of the others up. Re-entrant; no state is kept. Throws `Error`:
 /// bad_option, result_too_large (with the number), cancelled, out_of_memory.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "core/refine.h"
 #include "proto/limits.h"
 #include "proto/parameters.h"
+#include "proto/prepared_mesh.h"
 
 // The whole way from a Draco mesh to a refined Draco mesh. Server and client both go it, so local and remote
 // results are the same bytes.
@@ -51,22 +53,24 @@ class Refinement {
  public:
   /// Throws `Problem`, also where it is certain from the start that the result would pass a limit.
   Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
+  /// The same answers, to the byte, of a mesh that is refined more than once.
+  Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits);
 
-  [[nodiscard]] uint32_t coarse_faces() const { return coarse_.topology.face_count(); }
-  [[nodiscard]] uint32_t coarse_vertices() const { return coarse_.topology.vertex_count; }
+  [[nodiscard]] uint32_t coarse_faces() const { return coarse().mesh.topology.face_count(); }
+  [[nodiscard]] uint32_t coarse_vertices() const { return coarse().mesh.topology.vertex_count; }
 
   /// Refines and encodes; call once. Returns the last level. Throws `Problem`, and what the hooks throw.
   [[nodiscard]] EncodedLevel run(const RefinementHooks& hooks = {});
 
  private:
+  [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
+  Result refine_coarse(const Hooks& hooks);
 
   Options options_;
   OutputOptions output_;
-  Mesh coarse_;
-  BuildReport found_;
-  QuantizationBox box_;
-  AttributeEncoding attributes_;
+  DecodedMesh decoded_;                           ///< unless it is
+  std::shared_ptr<const PreparedMesh> prepared_;  ///< prepared
   StageTimes times_;
 };
 
