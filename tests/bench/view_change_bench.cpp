@@ -20,7 +20,8 @@ constexpr int steps = 36;
 
 class Orbit {
  public:
-  explicit Orbit(proto::QueryFields criteria) : criteria_(std::move(criteria)) {
+  Orbit(proto::QueryFields criteria, bool whole, bool first_round)
+      : criteria_(std::move(criteria)), whole_(whole), first_round_(first_round) {
     const TriangleMesh mesh = test::real_mesh(mesh_name);
     draco_ = proto::write_draco_exact(mesh);
     const Box box = bounding_box(mesh.positions);
@@ -28,6 +29,18 @@ class Orbit {
     distance_ = 1.2 * box.diagonal();
   }
 
+  /// Seconds of the next view's request, or of the refinement in it: of its own, or of the stored mesh.
+  double turn_cold() {
+    cold_step_ = cold_step_ % steps + 1;
+    return time_of([&] { return proto::Refinement(draco_, at(cold_step_), {}).run(); });
+  }
+  double turn_stored() {
+    if (stored_ == nullptr || (first_round_ && stored_step_ == steps)) store();
+    stored_step_ = stored_step_ % steps + 1;
+    return time_of([&] { return ask_stored(stored_step_); });
+  }
+
+ private:
   [[nodiscard]] proto::Parameters at(double step) const {
     const double angle = 2 * std::numbers::pi * step / steps;
     const Vec3d eye = target_ + distance_ * Vec3d{std::sin(angle), 0.3, std::cos(angle)};
@@ -36,56 +49,47 @@ class Orbit {
     fields.emplace_back("view.target", text(target_));
     return proto::parse_query(fields);
   }
-  [[nodiscard]] proto::EncodedLevel cold(int step) const { return proto::Refinement(draco_, at(step), {}).run(); }
-  [[nodiscard]] proto::EncodedLevel stored(int step) const { return proto::Refinement(stored_, at(step), {}).run(); }
-  void store() { stored_ = std::make_shared<const proto::PreparedMesh>(draco_, proto::Limits{}, byte_budget); }
-  void serve_a_round() {
-    store();
-    for (int step = 0; step < steps; ++step) (void)proto::Refinement(stored_, at(step + 0.5), {}).run();
-  }
-  [[nodiscard]] bool is_stored() const { return stored_ != nullptr; }
-
- private:
   static std::string text(Vec3d p) {
     return std::to_string(p.x) + ',' + std::to_string(p.y) + ',' + std::to_string(p.z);
   }
 
+  [[nodiscard]] proto::EncodedLevel ask_stored(double step) const {
+    return proto::Refinement(stored_, at(step), {}).run();
+  }
+  /// And serves what was served before the time is taken.
+  void store() {
+    stored_ = std::make_shared<const proto::PreparedMesh>(draco_, proto::Limits{}, byte_budget);
+    if (first_round_)
+      (void)ask_stored(0);
+    else
+      for (int step = 0; step < steps; ++step) (void)ask_stored(step + 0.5);
+  }
+
+  [[nodiscard]] double time_of(const std::function<proto::EncodedLevel()>& request) const {
+    proto::EncodedLevel level;
+    const double all = seconds([&] { level = request(); });
+    return whole_ ? all : level.statistics.times.refine / 1e3;
+  }
+
   proto::QueryFields criteria_;
+  bool whole_, first_round_;
   std::string draco_;
   Vec3d target_;
   double distance_ = 0;
   std::shared_ptr<const proto::PreparedMesh> stored_;
+  int cold_step_ = 0, stored_step_ = 0;
 };
 
-/// Seconds of the whole request, or of the refinement in it.
-double time_of(const std::function<proto::EncodedLevel()>& request, bool whole) {
-  proto::EncodedLevel level;
-  const double all = seconds([&] { level = request(); });
-  return whole ? all : level.statistics.times.refine / 1e3;
-}
-
 void add_orbit(const std::string& name, const proto::QueryFields& criteria, bool whole, bool first_round) {
-  const auto orbit = std::make_shared<Orbit>(criteria);
-  const auto turn = [first_round, step = first_round ? 0 : -1]() mutable {
-    step = (step + 1) % steps;
-    return step;
-  };
-  add({.name = "view_change/" + name + (whole ? "" : "/refinement") + (first_round ? "/first round" : ""),
+  const auto orbit = std::make_shared<Orbit>(criteria, whole, first_round);
+  std::string row = "view_change/" + name;
+  if (!whole) row += "/refinement";
+  if (first_round) row += "/first round";
+  add({.name = row,
        .divisor = 1e6,
        .unit = "ms",
-       .ours =
-           [orbit, turn, whole, first_round]() mutable {
-             int step = turn();
-             if (!first_round && !orbit->is_stored()) orbit->serve_a_round();
-             if (first_round && (step == 0 || !orbit->is_stored())) {
-               orbit->store();
-               (void)orbit->stored(0);
-               step = step == 0 ? turn() : step;
-             }
-             return time_of([&] { return orbit->stored(step); }, whole);
-           },
-       .peer = [orbit, turn,
-                whole]() mutable { return time_of([&, step = turn()] { return orbit->cold(step); }, whole); }});
+       .ours = [orbit] { return orbit->turn_stored(); },
+       .peer = [orbit] { return orbit->turn_cold(); }});
 }
 
 }  // namespace
