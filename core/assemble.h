@@ -3,20 +3,20 @@
 #include <cstdint>
 #include <span>
 
-#include "hierarchy.h"
+#include "level_choice.h"
 
 namespace papilio {
 
 /// Faces of the mesh that the levels give with the edges that each has marked as split.
-[[nodiscard]] uint64_t count_assembled(std::span<const HierarchyLevel> levels);
+[[nodiscard]] uint64_t count_assembled(std::span<const LevelChoice> levels);
 
 /// That mesh: faces with three split edges give way to their children, those with one or two are cut (transition.h).
-/// All but the last level must have children. Faces lie where their coarse face lies; vertices are those of the coarse
-/// mesh, then those of each level in the order of its edges. Arrays follow from the levels' by formula, without a
-/// search (but for edges of three faces or more).
-[[nodiscard]] Mesh assemble(std::span<const HierarchyLevel> levels);
+/// Each level below the first is made of what the one above has marked red. Faces lie where their coarse face lies;
+/// vertices are those of the coarse mesh, then those of each level in the order of its edges. Arrays follow from the
+/// levels' by formula, without a search (but for edges of three faces or more). `most_cosine`: see transition.h.
+[[nodiscard]] Mesh assemble(std::span<const LevelChoice> levels, double most_cosine);
 
 /// The largest deviation left in that mesh.
-[[nodiscard]] ErrorLeft error_left(std::span<const HierarchyLevel> levels, const Selection& selection);
+[[nodiscard]] ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection);
 
 }  // namespace papilio

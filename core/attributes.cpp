@@ -111,21 +111,24 @@ uint64_t bytes_per_face_of(const PointAttributes& attributes) {
   return numbers + 2 * components * sizeof(double) * attributes.point_count / faces + 1;
 }
 
-std::vector<uint32_t> split_points(const Topology& mesh, const SplitPlan& plan, PointAttributes& attributes) {
+std::vector<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const std::vector<uint32_t>& faces,
+                                   PointAttributes& attributes) {
   std::vector<uint32_t> made(mesh.half_edge_count(), none);
   const std::vector<uint32_t>& point = attributes.point;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-    if (!plan.is_split(mesh.edge[h]) || point[h] == none) continue;
+  const auto split_half_edge = [&](uint32_t h) {
+    if (split[mesh.edge[h]] == 0) return;
     const uint32_t p = point[h];
     const uint32_t q = point[Topology::next(h)];
     const uint32_t t = mesh.twin[h];
     if (t != none && t < h && made[t] != none && point[Topology::next(t)] == p && point[t] == q) {
       made[h] = made[t];
-      continue;
+      return;
     }
     made[h] = attributes.point_count++;
     for (Attribute& attribute : attributes.attributes) append_mean(attribute, p, q);
-  }
+  };
+  for (uint32_t f : faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) split_half_edge(h);
   return made;
 }
 

@@ -93,6 +93,7 @@ class Butterfly {
     const uint32_t k = fan.valence();
     const Real* s = weights.ring(k);
     for (uint32_t i = 0; i < k; ++i) {
+      if (!plan_.is_split(mesh_.edge[fan.spokes[i]])) continue;
       if (tensed_ && k > 2) {
         add_opinion(fan.spokes[i], tensed_->interior_spoke(fan, s, i));
         continue;

@@ -15,11 +15,6 @@ TriangleCorners corners(const Mesh& mesh, uint32_t h) {
   return {at(mesh.topology.origin[h]), at(mesh.topology.tip(h)), at(mesh.topology.apex(h))};
 }
 
-Vec3d midpoint(const Mesh& mesh, uint32_t edge) {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  return 0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
-}
-
 /// Infinity is kept for what is not to be reached: a budget's threshold where nothing fits.
 float to_finite(double number) {
   return static_cast<float>(std::min<double>(std::numeric_limits<float>::max(), number));
@@ -43,10 +38,6 @@ ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, 
     threshold_ = 1;
   else
     threshold_ = static_cast<float>(tolerated_ > 0 ? tolerance : tolerated_pixels_);
-}
-
-double ErrorMeasure::pixels(const Mesh& mesh, uint32_t edge, double distance) const {
-  return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));
 }
 
 float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const {

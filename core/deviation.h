@@ -11,6 +11,11 @@
 
 namespace papilio {
 
+[[nodiscard]] inline Vec3d midpoint(const Mesh& mesh, uint32_t edge) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return 0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
+}
+
 /// Distance from the edge's new vertex q to the surface as it is there: to the nearer of the edge's faces; on a curve
 /// (boundary, shared, crease) to the edge itself. A vertex that slides inside a flat face does not move the surface.
 /// In the mesh's unit.
@@ -28,7 +33,9 @@ class ErrorMeasure {
   /// The number, for a deviation at the edge. `normals` [F].
   [[nodiscard]] float error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const;
   /// The deviation in pixels of the view; 0 without one.
-  [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const;
+  [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const {
+    return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));
+  }
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
  private:

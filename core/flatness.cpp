@@ -1,5 +1,7 @@
 #include "flatness.h"
 
+#include <optional>
+
 #include "curve.h"
 #include "normals.h"
 
@@ -25,15 +27,17 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, const Region& region,
+                      EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
-  const CurveNeighbours curves(topology);
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+  std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
+  for (uint32_t e : region.edges) {
     const uint32_t h = topology.half_edge[e];
     const uint32_t t = topology.twin[h];
     if (topology.kind[e] == EdgeKind::cut) continue;  // no curve: what lies beyond its ends is not known
     if (topology.kind[e] != EdgeKind::smooth) {
-      if (turns(mesh, curves, h, threshold)) marks[e] = 1;
+      if (!curves) curves.emplace(topology);
+      if (turns(mesh, *curves, h, threshold)) marks[e] = 1;
       continue;
     }
     const Vec3f n1 = normals[Topology::face(h)];
@@ -42,25 +46,32 @@ void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, doubl
   }
 }
 
-void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks) {
+  mark_by_flatness(mesh, normals, threshold, whole_region(mesh.topology), marks);
+}
+
+void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {
   if (growth == Growth::off) return;
   const EdgeMarks seeds = marks;
   if (growth == Growth::faces) {
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-      if (seeds[mesh.edge[h]] == 0) continue;
-      marks[mesh.edge[Topology::next(h)]] = 1;
-      marks[mesh.edge[Topology::previous(h)]] = 1;
-    }
+    for (uint32_t f : region.faces)
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        if (seeds[mesh.edge[h]] == 0) continue;
+        marks[mesh.edge[Topology::next(h)]] = 1;
+        marks[mesh.edge[Topology::previous(h)]] = 1;
+      }
     return;
   }
-  std::vector<bool> touched(mesh.vertex_count);
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+  std::vector<uint8_t> touched(mesh.vertex_count, 0);
+  for (uint32_t e : region.edges) {
     if (seeds[e] == 0) continue;
-    touched[mesh.origin[mesh.half_edge[e]]] = true;
-    touched[mesh.tip(mesh.half_edge[e])] = true;
+    touched[mesh.origin[mesh.half_edge[e]]] = 1;
+    touched[mesh.tip(mesh.half_edge[e])] = 1;
   }
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e)
-    if (touched[mesh.origin[mesh.half_edge[e]]] || touched[mesh.tip(mesh.half_edge[e])]) marks[e] = 1;
+  for (uint32_t e : region.edges)
+    if (touched[mesh.origin[mesh.half_edge[e]]] != 0 || touched[mesh.tip(mesh.half_edge[e])] != 0) marks[e] = 1;
 }
+
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) { grow(mesh, growth, whole_region(mesh), marks); }
 
 }  // namespace papilio

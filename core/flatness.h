@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mesh.h"
+#include "region.h"
 #include "split_plan.h"
 
 namespace papilio {
@@ -11,7 +12,9 @@ namespace papilio {
 /// `threshold` (less 4e-7, the rounding of float normals, so that what is flat stays whole at 1 too). An edge
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is marked when the curve turns by more than
 /// acos(threshold) at one of its ends. A cut edge is never marked; an edge at a face without area is not marked on that
-/// face's account. Shapes: normals [F], marks [E], only ever set.
+/// face's account. Of a mesh only the region is looked at. Shapes: normals [F], marks [E], only ever set.
+void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, const Region& region,
+                      EdgeMarks& marks);
 void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks);
 
 /// How far marks spread, the paper's section 3.1.2.
@@ -21,7 +24,9 @@ enum class Growth {
   vertices = 2,  ///< to all edges at the two ends of a marked edge
 };
 
-/// Marks the 1-neighbouring edges of each marked edge (one step: new marks do not spread again). Marks [E].
+/// Marks the 1-neighbouring edges of each marked edge (one step: new marks do not spread again). Within the region, of
+/// which all marked edges are. Marks [E].
+void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks);
 void grow(const Topology& mesh, Growth growth, EdgeMarks& marks);
 
 }  // namespace papilio

@@ -26,10 +26,9 @@ class Ranks {
 /// Splits faces in four, as split() does where all are split, leaving the other faces out.
 class LevelMaker {
  public:
-  LevelMaker(HierarchyLevel& above, const std::vector<uint8_t>& red)
+  LevelMaker(const HierarchyLevel& above, const std::vector<uint8_t>& red)
       : above_(above),
         mesh_(above.mesh.topology),
-        red_(red),
         support_(with_neighbours(mesh_, red)),
         faces_(support_),
         edges_(used_edges()),
@@ -39,6 +38,7 @@ class LevelMaker {
     make_vertices();
     make_edges();
     make_faces();
+    note_shared();
     return std::move(below_);
   }
 
@@ -113,14 +113,12 @@ class LevelMaker {
     out.origin.resize(count);
     out.twin.resize(count);
     out.edge.resize(count);
-    below_.candidate.resize(count / 3);
     below_.parent.resize(faces_.count());
-    above_.child.assign(mesh_.face_count(), none);
+    below_.child.assign(mesh_.face_count(), none);
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (!faces_.has(f)) continue;
-      above_.child[f] = 4 * faces_[f];
+      below_.child[f] = 4 * faces_[f];
       below_.parent[faces_[f]] = f;
-      std::fill_n(below_.candidate.begin() + 4 * faces_[f], 4, red_[f]);
       split_face(f);
     }
   }
@@ -149,6 +147,15 @@ class LevelMaker {
     }
   }
 
+  void note_shared() {
+    for (uint32_t parent : above_.shared) {
+      if (!faces_.has(Topology::face(parent))) continue;
+      for (uint32_t half = 0; half < 2; ++half)
+        below_.shared.push_back(12 * faces_[Topology::face(parent)] +
+                                split_pattern(7, false).outer[2 * (parent % 3) + half]);
+    }
+  }
+
   [[nodiscard]] uint32_t outer_twin(uint32_t h, uint32_t half) const {
     static const SplitPattern& red = split_pattern(7, false);
     const uint32_t t = mesh_.twin[h];
@@ -158,9 +165,8 @@ class LevelMaker {
 
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 
-  HierarchyLevel& above_;
+  const HierarchyLevel& above_;
   const Topology& mesh_;
-  const std::vector<uint8_t>& red_;
   const std::vector<uint8_t> support_;
   const Ranks faces_, edges_, vertices_;
   HierarchyLevel below_;
@@ -173,19 +179,32 @@ bool HierarchyLevel::is_complete(uint32_t edge) const {
   return complete[mesh.topology.origin[h]] != 0 && complete[mesh.topology.tip(h)] != 0;
 }
 
+uint64_t HierarchyLevel::bytes() const {
+  const auto size = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
+  const Topology& t = mesh.topology;
+  uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
+                   size(complete, from, parent, child, red, shared, longest) +
+                   size(trial.normals, trial.tried.before, trial.made) + size(mesh.attributes.point);
+  for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
+  bytes += trial.deviations.bytes() + transitions.bytes();
+  return bytes;
+}
+
 HierarchyLevel coarsest_level(Mesh mesh) {
   HierarchyLevel level;
   level.complete.assign(mesh.topology.vertex_count, 1);
-  level.candidate.assign(mesh.topology.face_count(), 1);
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+    if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
+  level.transitions = Memo<uint32_t>(mesh.topology.face_count(), 0);
   level.mesh = std::move(mesh);
   return level;
 }
 
-EdgeMarks edges_of_candidates(const HierarchyLevel& level) {
+EdgeMarks edges_below_red(const HierarchyLevel& level) {
   EdgeMarks marks = complete_edges(level);
   const Topology& mesh = level.mesh.topology;
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-    if (level.candidate[Topology::face(h)] == 0) marks[mesh.edge[h]] = 0;
+    if (level.red[level.parent[h / 12]] == 0) marks[mesh.edge[h]] = 0;
   return marks;
 }
 
@@ -205,8 +224,11 @@ std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uin
   return marks;
 }
 
-HierarchyLevel refine_level(HierarchyLevel& level, const std::vector<uint8_t>& red) {
-  return LevelMaker(level, red).run();
+HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red) {
+  HierarchyLevel below = LevelMaker(level, red).run();
+  below.red = std::move(red);
+  below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
+  return below;
 }
 
 }  // namespace papilio

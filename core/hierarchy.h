@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "memo.h"
 #include "mesh.h"
 #include "selection.h"
 #include "split_plan.h"
@@ -12,39 +13,44 @@
 // give them but for the gaps. A face that may be split needs exact positions in the two rings of faces round it. So
 // not only what is split gets children, but every face that shares a vertex with it ("support"): the two rings round a
 // child of T lie inside the children of T's one ring, and the next level has what it needs in turn.
+//
+// Nothing here depends on a view or on what is chosen: a level once made is read by any number of requests, each of
+// which may use less of it than is held (level_choice.h). Numbers keep their order however much is held, and so does
+// all that is made of them.
 
 namespace papilio {
 
 struct HierarchyLevel {
-  Mesh mesh;                       ///< faces held; where others of the level are missing, edges are EdgeKind::cut
-  std::vector<uint8_t> complete;   ///< [V] whether all the level's faces at the vertex are held
-  std::vector<uint8_t> candidate;  ///< [F] whether the face may be shown: all at level 0, then children of red faces
-  std::vector<uint32_t> from;      ///< [V] a vertex of the level above, or its vertex count plus the edge split
-  std::vector<uint32_t> parent;    ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
-  std::vector<uint32_t> child;     ///< [F] first of the face's four children in the level below; `none`
-  Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give
-  /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
-  /// infinity where nothing wants it.
-  std::vector<float> error;
-  EdgeMarks split;  ///< [E] what is split for the result
+  Mesh mesh;                           ///< faces held; where others of the level are missing, edges are EdgeKind::cut
+  std::vector<uint8_t> complete;       ///< [V] whether all the level's faces at the vertex are held
+  std::vector<uint32_t> from;          ///< [V] a vertex of the level above, or its vertex count plus the edge split
+  std::vector<uint32_t> parent;        ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
+  std::vector<uint32_t> child;         ///< [F of the level above] first of the face's four children here; `none`
+  std::vector<uint8_t> red;            ///< [F of the level above] whose children are held with the rings round them
+  std::vector<uint32_t> shared;        ///< the half-edges at shared edges
+  Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give, where tried
+  std::vector<double> longest;         ///< [V] edges (view.h); empty where no view asked
+  Memo<uint32_t> transitions;          ///< [F] what is known of its transition faces (transition.h)
 
   /// Whether every face at the edge is held, and so are the rings round its ends.
   [[nodiscard]] bool is_complete(uint32_t edge) const;
+  /// What it takes in memory.
+  [[nodiscard]] uint64_t bytes() const;
 };
 
 /// Level 0: all of the mesh.
 [[nodiscard]] HierarchyLevel coarsest_level(Mesh mesh);
 
-/// The edges all of whose faces may be shown: the only ones that may be split for the result. [E]
-[[nodiscard]] EdgeMarks edges_of_candidates(const HierarchyLevel& level);
+/// The edges all of whose faces are children of red ones. [E]
+[[nodiscard]] EdgeMarks edges_below_red(const HierarchyLevel& level);
 /// The edges whose new vertex can be computed. [E]
 [[nodiscard]] EdgeMarks complete_edges(const HierarchyLevel& level);
 
 /// The faces that share a vertex with a marked one, themselves included. Marks [F].
 [[nodiscard]] std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uint8_t>& faces);
 
-/// Makes the next level: the children of the faces marked `red` (candidates there) and of all their neighbours. Every
-/// edge of these must have been tried. Sets `level.child`.
-[[nodiscard]] HierarchyLevel refine_level(HierarchyLevel& level, const std::vector<uint8_t>& red);
+/// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
+/// must have been tried.
+[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red);
 
 }  // namespace papilio

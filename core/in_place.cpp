@@ -34,10 +34,14 @@ class InPlace {
   int find_targets() {
     if (result_.levels == options_.levels && options_.levels > 0) return 0;  // its split edges are noted already
     trial_.emplace(try_split(mesh_, options_, EdgeMarks(mesh_.topology.edge_count(), 1)));
+    region_ = whole_region(mesh_.topology);
+    shown_ = selection_.shown(mesh_, trial_->normals,
+                              selection_.camera() == nullptr ? std::vector<double>{} : longest_edges(mesh_), region_);
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
-      targets_.assign(mesh_.topology.edge_count(), 1);
-      selection_.narrow(mesh_, trial_->normals, level, targets_);
-      if (selection_.is_by_error()) keep_largest_errors();
+      const std::vector<uint32_t> wanted = selection_.wanted(mesh_, trial_->normals, level, region_, shown_);
+      targets_.assign(mesh_.topology.edge_count(), 0);
+      for (uint32_t e : wanted) targets_[e] = 1;
+      if (selection_.is_by_error()) keep_largest_errors(wanted);
       if (SplitPlan(targets_).count() > 0) {
         note_error();
         return level;
@@ -49,12 +53,12 @@ class InPlace {
     return 0;
   }
 
-  void keep_largest_errors() {
-    const std::vector<float> errors = selection_.errors(mesh_, *trial_, targets_, selection_.threshold());
+  void keep_largest_errors(const std::vector<uint32_t>& wanted) {
+    const std::vector<float> errors = selection_.errors(mesh_, *trial_, wanted, selection_.threshold());
     float threshold = selection_.threshold();
     if (options_.max_faces > 0) {
       std::vector<WeighedEdge> edges;
-      append_edges(mesh_.topology, errors, edges);
+      append_edges(mesh_.topology, region_, errors, edges);
       threshold = threshold_within(std::move(edges), threshold, mesh_.topology.face_count(), options_.max_faces);
       if (threshold > selection_.threshold()) {
         out_of_budget_ = true;
@@ -66,10 +70,8 @@ class InPlace {
 
   void note_error() {
     ErrorLeft left(selection_);
-    EdgeMarks seen(targets_.size(), 1);
-    selection_.cull_unseen(mesh_, trial_->normals, seen);
-    for (uint32_t e = 0; e < seen.size(); ++e)
-      if (seen[e] != 0) left.add(mesh_, e, trial_->at(e), targets_[e] != 0 ? split_leaves : 1);
+    for (uint32_t e : region_.edges)
+      if (shown_[e] != 0) left.add(mesh_, *trial_, e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
     result_.error_pixels = left.pixels();
   }
@@ -93,6 +95,8 @@ class InPlace {
   Mesh mesh_;
   Result result_;
   std::optional<Trial> trial_;
+  Region region_;    ///< all of the mesh
+  EdgeMarks shown_;  ///< by the view
   EdgeMarks targets_;
   bool out_of_budget_ = false;
 };
@@ -124,7 +128,7 @@ Result refine_uniformly(Mesh coarse, const Options& options, const Selection& se
     progress.poll();
     if (level == options.levels) {
       ErrorLeft left(selection);
-      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, e, trial.at(e), split_leaves);
+      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, trial, e, split_leaves);
       result.error = left.error();
     }
     mesh = split_mesh(std::move(mesh), trial.tried, trial.made);

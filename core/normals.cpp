@@ -12,13 +12,15 @@ Vec3d area_normal(const Mesh& mesh, uint32_t f) {
 
 }  // namespace
 
+Vec3f face_normal(const Mesh& mesh, uint32_t face) {
+  const Vec3d n = area_normal(mesh, face);
+  const double size = length(n);
+  return size > 0 ? to_float((1 / size) * n) : Vec3f{};
+}
+
 std::vector<Vec3f> face_normals(const Mesh& mesh) {
   std::vector<Vec3f> normals(mesh.topology.face_count());
-  for (uint32_t f = 0; f < normals.size(); ++f) {
-    const Vec3d n = area_normal(mesh, f);
-    const double size = length(n);
-    if (size > 0) normals[f] = to_float((1 / size) * n);
-  }
+  for (uint32_t f = 0; f < normals.size(); ++f) normals[f] = face_normal(mesh, f);
   return normals;
 }
 

@@ -10,6 +10,9 @@ namespace papilio {
 /// neither tiny nor large meshes lose theirs.
 [[nodiscard]] std::vector<Vec3f> face_normals(const Mesh& mesh);
 
+/// That of one face.
+[[nodiscard]] Vec3f face_normal(const Mesh& mesh, uint32_t face);
+
 /// Unit normal of each vertex [V]: its faces' normals weighted by area; (0, 0, 1) where they cancel out or
 /// there are none.
 [[nodiscard]] std::vector<Vec3f> vertex_normals(const Mesh& mesh);

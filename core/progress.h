@@ -32,6 +32,11 @@ class Progress {
                                                " faces; the limit is " + std::to_string(limit) +
                                                ". Ask for fewer levels or refine less of the mesh.");
   }
+  /// Whether so many faces are certain to pass both of the others.
+  [[nodiscard]] bool has_plenty(uint64_t faces, uint64_t bytes_per_face) const {
+    return faces <= std::min(options_.face_limit, face_count_limit) &&
+           (options_.memory_limit == 0 || faces * bytes_per_face <= options_.memory_limit);
+  }
   /// Throws `Error` result_too_large when the level's arrays, so many faces of them, take too much memory.
   void require_memory(uint64_t faces, uint64_t bytes_per_face, int level) const {
     const uint64_t bytes = faces * bytes_per_face;

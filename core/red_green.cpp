@@ -5,7 +5,7 @@
 
 #include "assemble.h"
 #include "attributes.h"
-#include "hierarchy.h"
+#include "level_choice.h"
 #include "transition.h"
 
 namespace papilio {
@@ -14,76 +14,77 @@ namespace {
 constexpr float never = -std::numeric_limits<float>::infinity();
 constexpr uint64_t bytes_per_face = 160;  // of a level's arrays and of what is computed on it
 
-/// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
-constexpr double sliver_share = 0.4;
-
 class RedGreen {
  public:
-  RedGreen(const Options& options, const Selection& selection, const Progress& progress)
-      : options_(options), selection_(selection), progress_(progress), threshold_(selection.threshold()) {}
+  RedGreen(Levels levels, const Options& options, const Selection& selection, const Progress& progress)
+      : options_(options),
+        selection_(selection),
+        progress_(progress),
+        levels_(std::move(levels)),
+        most_cosine_(most_cosine_beside(levels_.smallest_angle())),
+        threshold_(selection.threshold()) {}
 
-  Result run(Mesh coarse) {
-    least_angle_ = sliver_share * smallest_angle(coarse);
-    levels_.push_back(coarsest_level(std::move(coarse)));
+  Result run() {
+    choices_.push_back(choose_coarsest(levels_.deepest()));
     Mesh latest;  // the last level that changed something, when the caller wants to see levels
-    if (progress_.wants_levels()) latest = levels_[0].mesh;
+    if (progress_.wants_levels()) latest = choices_[0].level->mesh;
     Result result;
     for (int level = 1; level <= std::max(options_.levels, 1); ++level) {
       progress_.poll();
-      try_level();
+      weigh_edges();
       progress_.poll();
-      if (options_.levels == 0) break;  // tried for the sake of the error that is reported
+      if (options_.levels == 0) break;  // weighed for the sake of the error that is reported
       const bool changes = choose();
       if (changes) {
         progress_.report(result.levels, latest);
-        progress_.require_room(count_assembled(levels_), level);
+        progress_.require_room(count_assembled(choices_), level);
         result.levels = level;
         keep();
-        if (progress_.wants_levels()) latest = assemble(levels_);
+        if (progress_.wants_levels()) latest = assemble(choices_, most_cosine_);
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
+    levels_.hand_back();
     finish(result, std::move(latest));
     return result;
   }
 
  private:
-  /// Computes what splitting the lowest level would give, and the errors of its edges.
-  void try_level() {
-    HierarchyLevel& level = levels_.back();
-    const bool is_last = static_cast<int>(levels_.size()) >= options_.levels;
-    may_be_split_.push_back(edges_of_candidates(level));
-    EdgeMarks wanted = may_be_split_.back();
-    level.trial = try_split(level.mesh, options_, is_last ? wanted : complete_edges(level));
-    selection_.narrow(level.mesh, level.trial.normals, static_cast<int>(levels_.size()), wanted);
+  /// Finds how much the edges of the lowest level want to be split.
+  void weigh_edges() {
+    LevelChoice& choice = choices_.back();
+    const HierarchyLevel& level = *choice.level;
+    choice.shown = selection_.shown(level.mesh, level.trial.normals, level.longest, choice.region);
+    const std::vector<uint32_t> wanted = selection_.wanted(
+        level.mesh, level.trial.normals, static_cast<int>(choices_.size()), choice.region, choice.shown);
     if (selection_.is_by_error()) {
-      level.error = selection_.errors(level.mesh, level.trial, wanted, options_.max_faces > 0 ? 0 : threshold_);
+      choice.error = selection_.errors(level.mesh, level.trial, wanted, options_.max_faces > 0 ? 0 : threshold_);
     } else {
-      level.error.assign(wanted.size(), never);
-      for (size_t e = 0; e < wanted.size(); ++e)
-        if (wanted[e] != 0) level.error[e] = threshold_;
+      choice.error.assign(level.mesh.topology.edge_count(), never);
+      for (uint32_t e : wanted) choice.error[e] = threshold_;
     }
-    level.split.assign(level.error.size(), 0);
   }
 
   /// Decides what is split. True when the lowest level changes anything.
   bool choose() {
     if (selection_.is_by_error())
-      for (size_t k = levels_.size() - 1; k > 0; --k) carry_up(levels_[k], levels_[k - 1]);
+      for (size_t k = choices_.size() - 1; k > 0; --k) carry_up(choices_[k], choices_[k - 1]);
     threshold_ = selection_.threshold();
     split_from(threshold_);
     if (options_.max_faces > 0) keep_within_budget();
-    return std::ranges::any_of(levels_.back().split, [](uint8_t mark) { return mark != 0; });
+    return std::ranges::any_of(choices_.back().split, [](uint8_t mark) { return mark != 0; });
   }
 
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
-  static void carry_up(const HierarchyLevel& below, HierarchyLevel& above) {
-    for (size_t group = 0; group < below.parent.size(); ++group) {
-      float needed = never;
-      for (size_t h = 12 * group; h < 12 * group + 12; ++h)
-        needed = std::max(needed, below.error[below.mesh.topology.edge[h]]);
+  static void carry_up(const LevelChoice& below, LevelChoice& above) {
+    const Topology& mesh = below.level->mesh.topology;
+    for (uint32_t f : below.region.faces) {
+      const float needed = std::max(
+          {below.error[mesh.edge[3 * f]], below.error[mesh.edge[3 * f + 1]], below.error[mesh.edge[3 * f + 2]]});
+      if (needed == never) continue;
+      const uint32_t parent = below.level->parent[f / 4];
       for (uint32_t i = 0; i < 3; ++i) {
-        float& error = above.error[above.mesh.topology.edge[3 * below.parent[group] + i]];
+        float& error = above.error[above.level->mesh.topology.edge[3 * parent + i]];
         error = std::max(error, needed);
       }
     }
@@ -91,29 +92,29 @@ class RedGreen {
 
   /// Marks what has at least this error, and what that needs so that no transition face becomes a sliver.
   void split_from(float threshold) {
-    for (HierarchyLevel& level : levels_)
-      for (size_t e = 0; e < level.error.size(); ++e) level.split[e] = level.error[e] >= threshold ? 1 : 0;
-    for (size_t k = levels_.size(); k-- > 0;) {
-      avoid_slivers(levels_[k], may_be_split_[k], least_angle_);
-      if (k > 0) carry_marks_up(levels_[k], levels_[k - 1]);
+    for (LevelChoice& choice : choices_)
+      for (uint32_t e : choice.region.edges) choice.split[e] = choice.error[e] >= threshold ? 1 : 0;
+    for (size_t k = choices_.size(); k-- > 0;) {
+      avoid_slivers(choices_[k], most_cosine_);
+      if (k > 0) carry_marks_up(choices_[k], choices_[k - 1]);
     }
   }
 
-  static void carry_marks_up(const HierarchyLevel& below, HierarchyLevel& above) {
-    for (size_t h = 0; h < below.mesh.topology.edge.size(); ++h) {
-      if (below.split[below.mesh.topology.edge[h]] == 0) continue;
-      const uint32_t parent = below.parent[h / 12];
-      for (uint32_t i = 0; i < 3; ++i) above.split[above.mesh.topology.edge[3 * parent + i]] = 1;
+  static void carry_marks_up(const LevelChoice& below, LevelChoice& above) {
+    for (uint32_t f : below.region.faces) {
+      if (below.split_mask(f) == 0) continue;
+      const uint32_t parent = below.level->parent[f / 4];
+      for (uint32_t i = 0; i < 3; ++i) above.split[above.level->mesh.topology.edge[3 * parent + i]] = 1;
     }
   }
 
   /// Raises the threshold until no more is split than the budget allows. What avoiding slivers costs is known only
   /// afterwards; where it is too much, the errors themselves get that much less.
   void keep_within_budget() {
-    const uint64_t coarse = levels_[0].mesh.topology.face_count();
+    const uint64_t coarse = choices_[0].region.faces.size();
     const std::vector<WeighedEdge> edges = weighed_edges();
     uint64_t room = options_.max_faces;
-    for (uint64_t faces = count_assembled(levels_); faces > options_.max_faces; faces = count_assembled(levels_)) {
+    for (uint64_t faces = count_assembled(choices_); faces > options_.max_faces; faces = count_assembled(choices_)) {
       float raised = threshold_within(edges, selection_.threshold(), coarse, room);
       while (raised <= threshold_) {
         room -= std::min(room - coarse, faces - options_.max_faces);
@@ -127,7 +128,8 @@ class RedGreen {
 
   [[nodiscard]] std::vector<WeighedEdge> weighed_edges() const {
     std::vector<WeighedEdge> edges;
-    for (const HierarchyLevel& level : levels_) append_edges(level.mesh.topology, level.error, edges);
+    for (const LevelChoice& choice : choices_)
+      append_edges(choice.level->mesh.topology, choice.region, choice.error, edges);
     return edges;
   }
 
@@ -135,74 +137,90 @@ class RedGreen {
   /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
   void keep() {
     kept_.clear();
-    for (const HierarchyLevel& level : levels_) kept_.push_back(level.split);
+    for (const LevelChoice& choice : choices_) kept_.push_back(choice.split);
   }
 
   void bring_back_what_was_kept() {
-    for (size_t k = 0; k < levels_.size(); ++k)
+    for (size_t k = 0; k < choices_.size(); ++k)
       if (k < kept_.size())
-        levels_[k].split = std::move(kept_[k]);
+        choices_[k].split = std::move(kept_[k]);
       else
-        std::ranges::fill(levels_[k].split, 0);
+        std::ranges::fill(choices_[k].split, 0);
   }
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
-    const std::vector<uint8_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
-    const auto count = [](const std::vector<uint8_t>& marks) {
-      return static_cast<uint64_t>(std::ranges::count(marks, 1));
-    };
-    if (count(red) == 0) return false;
-    const uint64_t faces = 4 * count(with_neighbours(levels_.back().mesh.topology, red));
-    // What is held but not in the result is bounded too.
-    progress_.require_room(faces / 4, level + 1);
-    progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(levels_[0].mesh.attributes), level + 1);
-    if (faces > face_count_limit) progress_.require_room(faces, level + 1);
-    levels_.push_back(refine_level(levels_.back(), red));
+    const std::vector<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
+    if (red.empty()) return false;
+    mark_red(choices_.back(), red);
+    require_room_below(level + 1);
+    levels_.deepen(choices_.back().red);
+    choices_.push_back(choose_below(choices_.back(), levels_.deepest()));
     return true;
   }
 
-  [[nodiscard]] std::vector<uint8_t> faces_to_divide() const {
-    const HierarchyLevel& level = levels_.back();
-    std::vector<uint8_t> red(level.candidate);
-    for (uint32_t h = 0; h < level.mesh.topology.half_edge_count(); ++h)
-      if (level.split[level.mesh.topology.edge[h]] == 0) red[Topology::face(h)] = 0;
+  /// What is held but not in the result is bounded too. What is held for others, too, does not count.
+  void require_room_below(int level) const {
+    const LevelChoice& choice = choices_.back();
+    const Topology& mesh = choice.level->mesh.topology;
+    const uint64_t bytes = bytes_per_face + bytes_per_face_of(choices_[0].level->mesh.attributes);
+    if (progress_.has_plenty(4ULL * mesh.face_count(), bytes)) return;
+    uint64_t faces = 0;
+    for (uint32_t f = 0; f < mesh.face_count(); ++f) faces += choice.has_children(f) ? 4 : 0;
+    progress_.require_room(faces / 4, level);
+    progress_.require_memory(faces, bytes, level);
+    if (faces > face_count_limit) progress_.require_room(faces, level);
+  }
+
+  [[nodiscard]] std::vector<uint32_t> faces_to_divide() const {
+    const LevelChoice& choice = choices_.back();
+    std::vector<uint32_t> red;
+    std::ranges::copy_if(choice.region.faces, std::back_inserter(red),
+                         [&](uint32_t f) { return choice.split_mask(f) == 7; });
     return red;
   }
 
   /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
   /// error were tried too, and a tenth: results were the same.)
-  [[nodiscard]] std::vector<uint8_t> faces_to_look_into() const {
-    const HierarchyLevel& level = levels_.back();
-    const Topology& mesh = level.mesh.topology;
-    std::vector<uint8_t> faces(mesh.face_count(), 0);
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-      if (level.error[mesh.edge[h]] >= threshold_) faces[Topology::face(h)] = 1;
-    faces = with_neighbours(mesh, faces);
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-      if (may_be_split_.back()[mesh.edge[h]] == 0) faces[Topology::face(h)] = 0;
+  [[nodiscard]] std::vector<uint32_t> faces_to_look_into() const {
+    const LevelChoice& choice = choices_.back();
+    const Topology& mesh = choice.level->mesh.topology;
+    std::vector<uint8_t> touched(mesh.vertex_count, 0);
+    for (uint32_t f : choice.region.faces) {
+      if (choice.error[mesh.edge[3 * f]] < threshold_ && choice.error[mesh.edge[3 * f + 1]] < threshold_ &&
+          choice.error[mesh.edge[3 * f + 2]] < threshold_)
+        continue;
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+    }
+    std::vector<uint32_t> faces;
+    for (uint32_t f : choice.region.faces) {
+      const uint32_t* corner = &mesh.origin[size_t{3} * f];
+      if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0 && choice.may_divide(f))
+        faces.push_back(f);
+    }
     return faces;
   }
 
   void finish(Result& result, Mesh latest) {
     bring_back_what_was_kept();
-    const ErrorLeft left = error_left(levels_, selection_);
+    const ErrorLeft left = error_left(choices_, selection_);
     result.error = left.error();
     result.error_pixels = left.pixels();
     if (out_of_budget_)
       result.stop_reason = StopReason::budget;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (!progress_.wants_levels()) latest = result.levels == 0 ? std::move(levels_[0].mesh) : assemble(levels_);
+    if (!progress_.wants_levels())
+      latest = result.levels == 0 ? choices_[0].level->mesh : assemble(choices_, most_cosine_);
     result.mesh = std::move(latest);
   }
 
   const Options& options_;
   const Selection& selection_;
   const Progress& progress_;
-  std::vector<HierarchyLevel> levels_;
-  std::vector<EdgeMarks> may_be_split_;  ///< [level] the edges of candidates
-  double least_angle_ = 0;               ///< what transition faces keep to
+  Levels levels_;
+  std::vector<LevelChoice> choices_;  ///< [level]
+  double most_cosine_;                ///< what transition faces keep to
   float threshold_;
   std::vector<EdgeMarks> kept_;  ///< [level] what was split when a level last changed something
   bool out_of_budget_ = false;
@@ -210,8 +228,8 @@ class RedGreen {
 
 }  // namespace
 
-Result refine_red_green(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
-  return RedGreen(options, selection, progress).run(std::move(coarse));
+Result refine_red_green(Levels levels, const Options& options, const Selection& selection, const Progress& progress) {
+  return RedGreen(std::move(levels), options, selection, progress).run();
 }
 
 }  // namespace papilio

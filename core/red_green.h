@@ -1,12 +1,13 @@
 #pragma once
 
+#include "levels.h"
 #include "progress.h"
 #include "refine.h"
 #include "selection.h"
 
 namespace papilio {
 
-/// Refines by the red-green scheme: level by level down the hierarchy of the uniform subdivision (hierarchy.h), then
+/// Refines by the red-green scheme: level by level down the hierarchy of the uniform subdivision (`levels`), then
 /// closed in the result by transition faces. Every vertex is, to the bit, that of the uniform result, and neighbours
 /// differ by one level at most.
 ///
@@ -14,7 +15,7 @@ namespace papilio {
 /// wanted. With one, errors decide, and what lies deeper counts: an edge is also split when a face below needs it
 /// (as its own half, or so that neighbours do not differ by more than a level). So faces are divided only where
 /// something below still exceeds the tolerance, and elsewhere single edges are split.
-[[nodiscard]] Result refine_red_green(Mesh coarse, const Options& options, const Selection& selection,
+[[nodiscard]] Result refine_red_green(Levels levels, const Options& options, const Selection& selection,
                                       const Progress& progress);
 
 }  // namespace papilio

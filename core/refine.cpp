@@ -1,10 +1,10 @@
 #include "refine.h"
 
-#include <new>
 #include <string>
 
 #include "crease.h"
 #include "in_place.h"
+#include "memory_guard.h"
 #include "progress.h"
 #include "red_green.h"
 #include "selection.h"
@@ -13,18 +13,30 @@
 namespace papilio {
 namespace {
 
-Result run_scheme(Mesh mesh, const Options& options, const Selection& selection, const Progress& progress) {
+/// The mesh, with its creases marked, as the schemes take it: their own, or a prepared one.
+Levels levels_of(Mesh&& mesh, const Options& options, const Progress& progress) {
+  return {std::move(mesh), options, progress};
+}
+Levels levels_of(const PreparedMesh& prepared, const Options& options, const Progress& progress) {
+  return {prepared, options, progress};
+}
+Mesh mesh_of(Mesh&& mesh) { return std::move(mesh); }
+Mesh mesh_of(const PreparedMesh& prepared) { return prepared.coarse(); }
+
+template <class Coarse>
+Result run_scheme(Coarse&& coarse, const Options& options, const Selection& selection, const Progress& progress) {
   if (selection.is_uniform() && options.levels > 0)
-    return refine_uniformly(std::move(mesh), options, selection, progress);
-  if (options.scheme == Scheme::in_place) return refine_in_place(std::move(mesh), options, selection, progress);
-  return refine_red_green(std::move(mesh), options, selection, progress);
+    return refine_uniformly(mesh_of(std::forward<Coarse>(coarse)), options, selection, progress);
+  if (options.scheme == Scheme::in_place)
+    return refine_in_place(mesh_of(std::forward<Coarse>(coarse)), options, selection, progress);
+  return refine_red_green(levels_of(std::forward<Coarse>(coarse), options, progress), options, selection, progress);
 }
 
-Result run(Mesh mesh, const Options& options, const Hooks& hooks) {
-  const Selection selection(options, bounding_box(mesh.positions).diagonal());
+template <class Coarse>
+Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks& hooks) {
+  const Selection selection(options, diagonal);
   const Progress progress(options, hooks);
-  mark_creases(mesh, options.crease_angle);
-  Result result = run_scheme(std::move(mesh), options, selection, progress);
+  Result result = run_scheme(std::forward<Coarse>(coarse), options, selection, progress);
   if (options.simplify_hidden) {
     progress.poll();
     result.mesh =
@@ -47,16 +59,26 @@ void check_room(uint64_t faces, const Options& options) {
   for (int level = 1; level <= options.levels; ++level) progress.require_room(faces *= 4, level);
 }
 
+bool uses_hierarchy(const Options& options) {
+  return options.scheme == Scheme::red_green && (options.levels == 0 || !Selection(options, 1).is_uniform());
+}
+
 Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
   check_options(options);
   check_room(coarse.topology.face_count(), options);
-  try {
-    return run(std::move(coarse), options, hooks);
-  } catch (const std::bad_alloc&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this result. Ask for fewer levels.");
-  } catch (const std::length_error&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this result. Ask for fewer levels.");
-  }
+  return guard_memory([&] {
+    const double diagonal = bounding_box(coarse.positions).diagonal();
+    mark_creases(coarse, options.crease_angle);
+    return run(std::move(coarse), diagonal, options, hooks);
+  });
+}
+
+Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& hooks) {
+  check_options(options);
+  if (!coarse.suits(options))
+    throw Error(Fault::bad_option, "The mesh was prepared for another tension, w or crease angle.", "tension");
+  check_room(coarse.coarse().topology.face_count(), options);
+  return guard_memory([&] { return run(coarse, bounding_box(coarse.coarse().positions).diagonal(), options, hooks); });
 }
 
 }  // namespace papilio

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "mesh.h"
 #include "options.h"
+#include "prepared_mesh.h"
 
 // Refinement of a coarse triangle mesh by selective subdivision: Dong, Li, Kuo, "Refinement of 3D Meshes by
 // Selective Subdivision". This header is all that most callers need.
@@ -46,9 +47,17 @@ struct Result {
 /// done.
 void check_room(uint64_t faces, const Options& options);
 
+/// Whether a prepared mesh makes this request cheaper: it is neither uniform nor in place.
+[[nodiscard]] bool uses_hierarchy(const Options& options);
+
 /// Refines the mesh. Vertices of `coarse` keep their numbers and their positions to the bit; with `simplify_hidden`
 /// hidden ones may be dropped, which moves the numbers of the others up. Re-entrant; no state is kept. Throws `Error`:
 /// bad_option, result_too_large (with the number), cancelled, out_of_memory.
 [[nodiscard]] Result refine(Mesh coarse, const Options& options, const Hooks& hooks = {});
+
+/// The same, to the bit, for a mesh that is refined more than once: what earlier calls made of it is used, and what
+/// this one makes is kept for later ones. May be called from several threads at once. Throws `Error` bad_option also
+/// where the mesh was prepared for other rules.
+[[nodiscard]] Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& hooks = {});
 
 }  // namespace papilio

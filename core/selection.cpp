@@ -11,26 +11,28 @@ namespace {
 
 constexpr float never = -std::numeric_limits<float>::infinity();
 
-/// Never less than the deviation: the midpoint is on the surface.
-double distance_to_midpoint(const Mesh& mesh, uint32_t edge, Vec3f q) {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  const Vec3d ends =
-      to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]);
-  return length(to_double(q) - 0.5 * ends);
-}
-
 }  // namespace
+
+std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals, const Options& options,
+                                 const SplitPlan& plan) {
+  const auto w = static_cast<float>(options.w);
+  if (options.tension == Tension::off) return butterfly(mesh.topology, mesh.positions, plan, w);
+  const TensionField field = tension_field(mesh.topology, normals, options.tension);
+  return butterfly(mesh.topology, mesh.positions, plan, w, &field);
+}
 
 Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges) {
   Trial trial{.normals = face_normals(mesh), .tried = SplitPlan(try_edges), .made = {}};
-  const auto w = static_cast<float>(options.w);
-  if (options.tension == Tension::off) {
-    trial.made = butterfly(mesh.topology, mesh.positions, trial.tried, w);
-  } else {
-    const TensionField field = tension_field(mesh.topology, trial.normals, options.tension);
-    trial.made = butterfly(mesh.topology, mesh.positions, trial.tried, w, &field);
-  }
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried);
+  trial.deviations = Memo<double>(trial.made.size(), Trial::unknown);
   return trial;
+}
+
+double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
+  const uint32_t rank = tried.before[edge];
+  double known = deviations.get(rank);
+  if (known == unknown) deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+  return known;
 }
 
 Selection::Selection(const Options& options, double diagonal)
@@ -56,45 +58,46 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-void Selection::narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int level, EdgeMarks& marks) const {
+EdgeMarks Selection::shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+                           const Region& region) const {
+  if (camera_) return edges_shown(mesh, normals, longest, *camera_, region);
+  EdgeMarks all(mesh.topology.edge_count(), 0);
+  for (uint32_t e : region.edges) all[e] = 1;
+  return all;
+}
+
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
+                                        const Region& region, const EdgeMarks& shown) const {
+  EdgeMarks curved;
   if (!options_.flatness.empty()) {
-    EdgeMarks curved(marks.size(), 0);
-    mark_by_flatness(mesh, normals, flatness_of(level), curved);
-    for (size_t e = 0; e < marks.size(); ++e) curved[e] &= marks[e];
-    grow(mesh.topology, options_.growth, curved);
-    for (size_t e = 0; e < marks.size(); ++e) marks[e] &= curved[e];
+    curved.assign(mesh.topology.edge_count(), 0);
+    mark_by_flatness(mesh, normals, flatness_of(level), region, curved);
+    grow(mesh.topology, options_.growth, region, curved);
   }
-  if (camera_) cull_by_view(mesh, normals, *camera_, options_.view->edge_pixels, marks);
+  std::vector<uint32_t> wanted;
+  for (uint32_t e : region.edges)
+    if (shown[e] != 0 && (curved.empty() || curved[e] != 0) &&
+        (!camera_ || looks_long(mesh, e, *camera_, options_.view->edge_pixels)))
+      wanted.push_back(e);
+  return wanted;
 }
 
-void Selection::cull_unseen(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const {
-  if (camera_) cull_by_view(mesh, normals, *camera_, 0, marks);
-}
-
-std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,
+std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
                                      float exact_from) const {
-  std::vector<float> errors(marks.size(), never);
-  for (uint32_t e = 0; e < marks.size(); ++e) {
-    if (marks[e] == 0) continue;
-    errors[e] = measure_.error(mesh, trial.normals, e, distance_to_midpoint(mesh, e, trial.at(e)));
-    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, deviation(mesh, e, trial.at(e)));
+  std::vector<float> errors(mesh.topology.edge_count(), never);
+  for (uint32_t e : wanted) {
+    errors[e] = measure_.error(mesh, trial.normals, e, trial.most_deviation_at(mesh, e));
+    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }
   return errors;
 }
 
-void ErrorLeft::add(const Mesh& mesh, uint32_t edge, Vec3f q, double share) {
-  const double most = share * distance_to_midpoint(mesh, edge, q);
-  if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
-  const double distance = share * deviation(mesh, edge, q);
-  distance_ = std::max(distance_, distance);
-  pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
-}
-
-void append_edges(const Topology& mesh, const std::vector<float>& errors, std::vector<WeighedEdge>& edges) {
-  const size_t begin = edges.size();
-  edges.resize(begin + errors.size());
-  for (size_t e = 0; e < errors.size(); ++e) edges[begin + e] = {errors[e], 0};
-  for (uint32_t e : mesh.edge) ++edges[begin + e].faces;
+void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,
+                  std::vector<WeighedEdge>& edges) {
+  std::vector<uint32_t> faces(mesh.edge_count(), 0);
+  for (uint32_t f : region.faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) ++faces[mesh.edge[h]];
+  for (uint32_t e : region.edges) edges.push_back({errors[e], faces[e]});
 }
 
 float threshold_within(std::vector<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "deviation.h"
+#include "memo.h"
 #include "options.h"
+#include "region.h"
 
 // Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
 
@@ -17,10 +19,21 @@ struct Trial {
   std::vector<Vec3f> normals;  ///< [F]
   SplitPlan tried;             ///< the edges whose new vertices were computed
   std::vector<Vec3f> made;     ///< [tried.count()]
+  Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
 
+  static constexpr double unknown = -1;
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
+  /// That of a tried edge. `mesh` is the one tried.
+  [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
+  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const {
+    return length(to_double(at(edge)) - midpoint(mesh, edge));
+  }
 };
 
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
+[[nodiscard]] std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals,
+                                               const Options& options, const SplitPlan& plan);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
 
@@ -39,15 +52,18 @@ class Selection {
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
 
-  /// The edges that flatness (with growth) and the view want split, of those that are marked already: the paper's
-  /// method, in its order. `level` is the one to be made, from 1. Marks [E].
-  void narrow(const Mesh& mesh, const std::vector<Vec3f>& normals, int level, EdgeMarks& marks) const;
-  /// Unmarks what the view does not show, however small it looks; all stays without one.
-  void cull_unseen(const Mesh& mesh, const std::vector<Vec3f>& normals, EdgeMarks& marks) const;
+  /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
+  /// edges (view.h). [E]
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+                                const Region& region) const;
+  /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
+  /// is the one to be made, from 1; `shown` as above. In ascending order.
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
+                                             const Region& region, const EdgeMarks& shown) const;
 
-  /// The error of each marked edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
+  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. [E]
-  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const EdgeMarks& marks,
+  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
                                           float exact_from) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
@@ -66,8 +82,14 @@ class Selection {
 class ErrorLeft {
  public:
   explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
-  /// An edge that stays, whose new vertex would be q, or, with share 1/4, one of the last level that was split.
-  void add(const Mesh& mesh, uint32_t edge, Vec3f q, double share = 1);
+  /// A tried edge that stays, or, with share 1/4, one of the last level that was split.
+  void add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share = 1) {
+    const double most = share * trial.most_deviation_at(mesh, edge);
+    if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
+    const double distance = share * trial.deviation_at(mesh, edge);
+    distance_ = std::max(distance_, distance);
+    pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
+  }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 
@@ -84,8 +106,9 @@ struct WeighedEdge {
   float error;
   uint32_t faces;  ///< how many faces there are at the edge
 };
-/// Appends the edges of a level, with their errors [E].
-void append_edges(const Topology& mesh, const std::vector<float>& errors, std::vector<WeighedEdge>& edges);
+/// Appends the region's edges, with their errors [E].
+void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,
+                  std::vector<WeighedEdge>& edges);
 
 /// The least threshold, not below `least`, at which no more than `budget` faces come of the `faces` that are there
 /// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing

@@ -1,6 +1,7 @@
 #include "split.h"
 
 #include "attributes.h"
+#include "region.h"
 #include "split_pattern.h"
 
 namespace papilio {
@@ -96,7 +97,10 @@ class Splitter {
   }
 
   void split_corners(PointAttributes& attributes) const {
-    const std::vector<uint32_t> made = split_points(mesh_, plan_, attributes);
+    const Region all = whole_region(mesh_);
+    EdgeMarks targets(mesh_.edge_count());
+    for (uint32_t e : all.edges) targets[e] = plan_.is_split(e) ? 1 : 0;
+    const std::vector<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
     std::vector<uint32_t> point(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {

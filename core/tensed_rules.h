@@ -11,6 +11,26 @@
 
 namespace papilio {
 
+/// Sines and cosines round a ring, computed once.
+class RingAngles {
+ public:
+  RingAngles() {
+    for (uint32_t k = 3; k < stencil::harmonic_valence; ++k) {
+      const double theta = 2 * std::numbers::pi / k;
+      for (uint32_t j = 0; j < k; ++j) sine_[k][j] = std::sin(j * theta);
+      cosine_[k] = std::cos(theta);
+    }
+  }
+  /// The sines of the angles to the neighbours 0, 1, .. of K.
+  [[nodiscard]] const double* sines(uint32_t valence) const { return sine_[valence].data(); }
+  /// The cosine of the angle from one neighbour to the next.
+  [[nodiscard]] double cosine(uint32_t valence) const { return cosine_[valence]; }
+
+ private:
+  std::array<std::array<double, stencil::harmonic_valence>, stencil::harmonic_valence> sine_{};
+  std::array<double, stencil::harmonic_valence> cosine_{};
+};
+
 /// The butterfly's rules under tension (tension.h), for one level. Where every factor is 1 they are the plain rules but
 /// for rounding. Like those, each result depends on its stencil alone, to the bit.
 template <class Real>
@@ -33,18 +53,19 @@ class TensedRules {
   /// on the way.
   [[nodiscard]] Point interior_spoke(const Fan& fan, const Real* weights, uint32_t i) const {
     const uint32_t k = fan.valence();
-    const double theta = 2 * std::numbers::pi / k;
+    static const RingAngles angles;
+    const double* sine = angles.sines(k);
     const Point a = p_[fan.centre];
     const auto index = [&](uint32_t j) { return i + j < k ? i + j : i + j - k; };
     const auto u = [&](uint32_t j) { return p_[fan.ring[index(j)]] - a; };
     const auto factor = [&](uint32_t j) { return Real(field_.factor[mesh_.edge[fan.spokes[index(j)]]]); };
 
     double fold = 0;
-    for (uint32_t j = 1; 2 * j < k; ++j) fold += double(weights[j]) * std::sin(j * theta) / std::sin(theta);
+    for (uint32_t j = 1; 2 * j < k; ++j) fold += double(weights[j]) * sine[j] / sine[1];
     const Point u0 = u(0);
     const Point one = u(1);
     const Point last = u(k - 1);
-    Point q = a + Real(0.5) * u0 + (factor(0) * Real(fold)) * (one + last - Real(2 * std::cos(theta)) * u0);
+    Point q = a + Real(0.5) * u0 + (factor(0) * Real(fold)) * (one + last - Real(2 * angles.cosine(k)) * u0);
 
     std::array<Real, stencil::harmonic_valence> on_the_way{};  // product of the factors crossed to reach neighbour j
     Real product = 1;
@@ -56,8 +77,8 @@ class TensedRules {
     }
     for (uint32_t j = 2; j + 2 <= k; ++j) {
       const uint32_t steps = std::min(j, k - j);
-      const auto ahead = Real(std::sin(steps * theta) / std::sin(theta));
-      const auto behind = Real(std::sin((steps - 1) * theta) / std::sin(theta));
+      const auto ahead = Real(sine[steps] / sine[1]);
+      const auto behind = Real(sine[steps - 1] / sine[1]);
       const Point foreseen = ahead * (2 * j <= k ? one : last) - behind * u0;
       q += (on_the_way[j] * weights[j]) * (u(j) - foreseen);
     }

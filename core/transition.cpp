@@ -7,6 +7,9 @@
 namespace papilio {
 namespace {
 
+/// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
+constexpr double sliver_share = 0.4;
+
 /// The face's corners and, where an edge is in `mask`, its new vertex, numbered as in SplitPattern.
 std::array<Vec3d, 6> local_points(const HierarchyLevel& level, uint32_t face, unsigned mask) {
   const Topology& mesh = level.mesh.topology;
@@ -35,16 +38,36 @@ double smallest_angle_cosine(const SplitPattern& pattern, const std::array<Vec3d
   return largest;
 }
 
-bool makes_slivers(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
+// What is known of a face's transitions: three bits a mask, of which the lowest says whether the others are known.
+enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
+
+uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const std::array<Vec3d, 6> points = local_points(level, face, mask);
-  const uint8_t number = choose_transition(level, face, mask);
-  return smallest_angle_cosine(transition_pattern(number), points) > most_cosine &&
-         smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine;
+  uint32_t found = is_known;
+  double cosine = smallest_angle_cosine(split_pattern(mask, false), points);
+  if (mask == 3 || mask == 5 || mask == 6) {
+    const double second = smallest_angle_cosine(split_pattern(mask, true), points);
+    const uint32_t i = first_of_two_targets(mask);
+    const auto& origin = level.mesh.topology.origin;
+    const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
+    if (second < cosine || (second == cosine && second_is_lower)) {
+      found |= second_diagonal;
+      cosine = second;
+    }
+  }
+  if (cosine > most_cosine && smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine)
+    found |= has_sliver;
+  return found;
 }
 
-unsigned mask_of(const HierarchyLevel& level, uint32_t face) {
-  const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
-  return level.split[edge[0]] | level.split[edge[1]] << 1U | level.split[edge[2]] << 2U;
+/// For masks 1 to 6.
+uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
+  const unsigned shift = 3 * (mask - 1);
+  const uint32_t known = level.transitions.get(face);
+  if ((known >> shift & is_known) != 0) return known >> shift;
+  const uint32_t found = judge(level, face, mask, most_cosine);
+  level.transitions.put(face, known | found << shift);
+  return found;
 }
 
 }  // namespace
@@ -59,33 +82,28 @@ double smallest_angle(const Mesh& mesh) {
   return std::acos(std::min(largest, 1.0));
 }
 
-uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask) {
-  const auto number = static_cast<uint8_t>(2 * mask);
-  if (mask != 3 && mask != 5 && mask != 6) return number;
-  const std::array<Vec3d, 6> points = local_points(level, face, mask);
-  const double first = smallest_angle_cosine(split_pattern(mask, false), points);
-  const double second = smallest_angle_cosine(split_pattern(mask, true), points);
-  const uint32_t i = first_of_two_targets(mask);
-  const auto& origin = level.mesh.topology.origin;
-  const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
-  return second < first || (second == first && second_is_lower) ? number + 1 : number;
+double most_cosine_beside(double smallest_angle) { return std::cos(sliver_share * smallest_angle); }
+
+uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
+  if (mask == 0 || mask == 7) return static_cast<uint8_t>(2 * mask);
+  return static_cast<uint8_t>(2 * mask + ((transition(level, face, mask, most_cosine) & second_diagonal) != 0 ? 1 : 0));
 }
 
-void avoid_slivers(HierarchyLevel& level, const EdgeMarks& may_be_split, double least_angle) {
+void avoid_slivers(LevelChoice& choice, double most_cosine) {
+  const HierarchyLevel& level = *choice.level;
   const Topology& mesh = level.mesh.topology;
-  const double most_cosine = std::cos(least_angle);
   const auto must_be_divided = [&](uint32_t f) {
-    const unsigned mask = mask_of(level, f);
-    return mask != 0 && mask != 7 && may_be_split[mesh.edge[3 * f]] != 0 && may_be_split[mesh.edge[3 * f + 1]] != 0 &&
-           may_be_split[mesh.edge[3 * f + 2]] != 0 && makes_slivers(level, f, mask, most_cosine);
+    const unsigned mask = choice.split_mask(f);
+    return mask != 0 && mask != 7 && choice.may_divide(f) &&
+           (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
   std::vector<uint32_t> faces;
-  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+  for (uint32_t f : choice.region.faces)
     if (must_be_divided(f)) faces.push_back(f);
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) level.split[mesh.edge[h]] = 1;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.split[mesh.edge[h]] = 1;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
       if (const uint32_t t = mesh.twin[h]; t != none && must_be_divided(Topology::face(t)))
         faces.push_back(Topology::face(t));

@@ -14,9 +14,6 @@ namespace {
 /// edge-on.
 constexpr double away_epsilon = 1e-3;
 
-/// However near the near plane is: what it is multiplied by stays a number.
-constexpr double most_pixels_per_unit = 1e200;
-
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void require(bool good, const char* option, const char* what) {
@@ -41,38 +38,44 @@ void check(const View& view) {
 
 Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
 
-/// The vertices [V] that are inside, each with its longest edge as radius.
-std::vector<bool> find_inside(const Mesh& mesh, const Camera& camera) {
-  const Topology& topology = mesh.topology;
-  std::vector<double> radius_squared(topology.vertex_count, 0);
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
-    const uint32_t a = topology.origin[topology.half_edge[e]];
-    const uint32_t b = topology.tip(topology.half_edge[e]);
-    const Vec3d along = to_double(mesh.positions[b]) - to_double(mesh.positions[a]);
-    radius_squared[a] = std::max(radius_squared[a], dot(along, along));
-    radius_squared[b] = std::max(radius_squared[b], dot(along, along));
-  }
-  std::vector<bool> inside(topology.vertex_count);
-  for (uint32_t v = 0; v < topology.vertex_count; ++v)
-    inside[v] = !camera.is_outside(to_double(mesh.positions[v]), std::sqrt(radius_squared[v]));
-  return inside;
-}
-
 enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 
-/// What of the above holds for each face [F].
-std::vector<uint8_t> see_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
-  const std::vector<bool> inside = find_inside(mesh, camera);
-  const auto position = [&](uint32_t v) { return to_double(mesh.positions[v]); };
-  std::vector<uint8_t> faces(mesh.topology.face_count(), 0);
-  for (uint32_t f = 0; f < faces.size(); ++f) {
-    const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
-    if (inside[corner[0]] || inside[corner[1]] || inside[corner[2]]) faces[f] |= is_inside;
+/// Which faces the view shows.
+class Sight {
+ public:
+  /// `longest` [V] edges.
+  Sight(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest, const Camera& camera)
+      : mesh_(mesh),
+        normals_(normals),
+        longest_(longest),
+        camera_(camera),
+        inside_(mesh.topology.vertex_count, unknown) {}
+
+  /// What of the above holds for a face.
+  [[nodiscard]] uint8_t of_face(uint32_t f) {
+    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
+    uint8_t sight = 0;
+    if (is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2])) sight |= is_inside;
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
-    if (!has_normal(normals[f]) || !camera.is_away(centroid, to_double(normals[f]))) faces[f] |= is_towards;
+    if (!has_normal(normals_[f]) || !camera_.is_away(centroid, to_double(normals_[f]))) sight |= is_towards;
+    return sight;
   }
-  return faces;
-}
+
+ private:
+  static constexpr uint8_t unknown = 2;
+
+  [[nodiscard]] Vec3d position(uint32_t v) const { return to_double(mesh_.positions[v]); }
+  [[nodiscard]] bool is_vertex_inside(uint32_t v) {
+    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v]) ? 0 : 1;
+    return inside_[v] != 0;
+  }
+
+  const Mesh& mesh_;
+  const std::vector<Vec3f>& normals_;
+  const std::vector<double>& longest_;
+  const Camera& camera_;
+  std::vector<uint8_t> inside_;  ///< [V] or unknown
+};
 
 }  // namespace
 
@@ -135,35 +138,55 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   return std::hypot(bx - ax, by - ay);
 }
 
-double Camera::pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
-
-double Camera::pixels_per_unit_at(double depth) const {
-  return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
+std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
+  const std::vector<double> longest = longest_edges(mesh);
+  Sight sight(mesh, normals, longest, camera);
+  std::vector<bool> hidden(mesh.topology.face_count());
+  for (uint32_t f = 0; f < hidden.size(); ++f) hidden[f] = sight.of_face(f) != seen;
+  return hidden;
 }
 
-std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
-  const std::vector<uint8_t> seen_by = see_faces(mesh, normals, camera);
-  std::vector<bool> hidden(seen_by.size());
-  for (size_t f = 0; f < hidden.size(); ++f) hidden[f] = seen_by[f] != seen;
-  return hidden;
+std::vector<double> longest_edges(const Mesh& mesh) {
+  const Topology& topology = mesh.topology;
+  std::vector<double> longest(topology.vertex_count, 0);
+  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+    const uint32_t a = topology.origin[topology.half_edge[e]];
+    const uint32_t b = topology.tip(topology.half_edge[e]);
+    const Vec3d along = to_double(mesh.positions[b]) - to_double(mesh.positions[a]);
+    const double squared = dot(along, along);
+    longest[a] = std::max(longest[a], squared);
+    longest[b] = std::max(longest[b], squared);
+  }
+  for (double& l : longest) l = std::sqrt(l);
+  return longest;
+}
+
+EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+                      const Camera& camera, const Region& region) {
+  const Topology& topology = mesh.topology;
+  Sight sight(mesh, normals, longest, camera);
+  std::vector<uint8_t> seen_by(topology.edge_count(), 0);
+  for (uint32_t f : region.faces) {
+    const uint8_t of_face = sight.of_face(f);
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) seen_by[topology.edge[h]] |= of_face;
+  }
+  EdgeMarks marks(topology.edge_count(), 0);
+  for (uint32_t e : region.edges) marks[e] = seen_by[e] == seen ? 1 : 0;
+  return marks;
+}
+
+bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
+  if (edge_pixels == 0) return true;
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return !(camera.projected_length(to_double(mesh.positions[mesh.topology.origin[h]]),
+                                   to_double(mesh.positions[mesh.topology.tip(h)])) < edge_pixels);
 }
 
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
-  const Topology& topology = mesh.topology;
-  const auto position = [&](uint32_t v) { return to_double(mesh.positions[v]); };
-
-  const std::vector<uint8_t> faces = see_faces(mesh, normals, camera);
-  std::vector<uint8_t> seen_by(topology.edge_count(), 0);
-  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) seen_by[topology.edge[h]] |= faces[Topology::face(h)];
-
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
-    if (marks[e] == 0) continue;
-    const uint32_t h = topology.half_edge[e];
-    if (seen_by[e] != seen ||
-        camera.projected_length(position(topology.origin[h]), position(topology.tip(h))) < edge_pixels)
-      marks[e] = 0;
-  }
+  const EdgeMarks shown = edges_shown(mesh, normals, longest_edges(mesh), camera, whole_region(mesh.topology));
+  for (uint32_t e = 0; e < marks.size(); ++e)
+    if (marks[e] != 0 && (shown[e] == 0 || !looks_long(mesh, e, camera, edge_pixels))) marks[e] = 0;
 }
 
 }  // namespace papilio

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "mesh.h"
+#include "region.h"
 #include "split_plan.h"
 
 namespace papilio {
@@ -48,7 +50,7 @@ class Camera {
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
   /// on it.
-  [[nodiscard]] double pixels_per_unit(Vec3d point) const;
+  [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
 
  private:
   struct Plane {
@@ -56,7 +58,12 @@ class Camera {
     double offset;  ///< a point p is inside when normal.p >= offset
   };
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
-  [[nodiscard]] double pixels_per_unit_at(double depth) const;
+  [[nodiscard]] double pixels_per_unit_at(double depth) const {
+    return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
+  }
+
+  /// However near the near plane is: what it is multiplied by stays a number.
+  static constexpr double most_pixels_per_unit = 1e200;
 
   bool perspective_;
   Vec3d eye_, right_, up_, forward_;
@@ -69,9 +76,20 @@ class Camera {
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
 [[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera);
 
-/// Unmarks the edges that the view does not need, the paper's section 3.2: those all of whose faces have all
-/// three vertices outside (a vertex counts with its longest edge as radius), those all of whose faces are
-/// turned away (so edges on the silhouette stay; a face without normal is never away), those that look
+/// The length of each vertex's longest edge. [V]
+[[nodiscard]] std::vector<double> longest_edges(const Mesh& mesh);
+
+/// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
+/// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
+/// edges on the silhouette are shown; a face without normal is never away). Shapes: normals [F], longest [V], marks
+/// [E].
+[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals,
+                                    const std::vector<double>& longest, const Camera& camera, const Region& region);
+
+/// Whether the edge looks at least so long, in pixels.
+[[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
+
+/// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks);

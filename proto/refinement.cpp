@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "proto/draco_reader.h"
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
+#include "proto/wire_words.h"
 
 namespace papilio::proto {
 namespace {
@@ -45,37 +45,36 @@ std::string error_text(double error) {
   return {text.data(), end};
 }
 
-/// Runs `work` and puts the core's refusals, and memory that is not there, into the words of the wire.
-template <class Work>
-auto in_words_of_the_wire(Work work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    throw Problem(error);
-  } catch (const std::bad_alloc&) {
-    throw Problem(Code::result_too_large, "There is not enough memory for this result. Ask for fewer levels.");
-  }
-}
-
 }  // namespace
 
-Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
+Refinement::Refinement(const Parameters& parameters, const Limits& limits)
     : options_(parameters.options), output_(parameters.output), most_seconds_(limits.max_compute_seconds) {
-  Stopwatch watch;
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
-  in_words_of_the_wire([&] {
-    FormattedMesh input = read_draco(draco, limits);
-    coarse_ = build_mesh(input, &found_);
-    attributes_ = attribute_encoding(coarse_, std::move(input.format));
-  });
-  box_ = quantization_box(coarse_.positions);
-  in_words_of_the_wire([&] { check_room(coarse_.topology.face_count(), options_); });
+}
+
+Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
+    : Refinement(parameters, limits) {
+  Stopwatch watch;
+  decoded_ = decode_mesh(draco, limits);
+  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
   times_.decode = watch.lap();
+}
+
+Refinement::Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits)
+    : Refinement(parameters, limits) {
+  prepared_ = std::move(prepared);
+  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
 }
 
 EncodedLevel Refinement::run(const RefinementHooks& hooks) {
   return in_words_of_the_wire([&] { return run_core(hooks); });
+}
+
+Result Refinement::refine_coarse(const Hooks& hooks) {
+  if (!prepared_) return refine(std::move(decoded_.mesh), options_, hooks);
+  if (!uses_hierarchy(options_)) return refine(prepared_->decoded().mesh, options_, hooks);
+  return refine(*prepared_->under_rules_of(options_), options_, hooks);
 }
 
 EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
@@ -83,13 +82,13 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   EncodedLevel made;
   const auto encode = [&](const Mesh& mesh, int level) {
     times_.refine += watch.lap();
-    made.draco = write_draco(mesh, box_, output_, attributes_);
+    made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes);
     times_.encode += watch.lap();
     made.statistics.level = level;
     made.statistics.vertices = mesh.topology.vertex_count;
     made.statistics.faces = mesh.topology.face_count();
     made.statistics.times = times_;
-    made.statistics.found = found_;
+    made.statistics.found = coarse().found;
   };
 
   const auto stop = [&] {
@@ -107,7 +106,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   const auto poll = [&] {
     if (stop()) throw Problem(Code::cancelled, "The client went away.");
   };
-  const Result result = refine(std::move(coarse_), options_, core_hooks);
+  const Result result = refine_coarse(core_hooks);
   poll();
   made.statistics.stop_reason = result.stop_reason;
   made.statistics.error = result.error;

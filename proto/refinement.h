@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "core/refine.h"
 #include "proto/limits.h"
 #include "proto/parameters.h"
+#include "proto/prepared_mesh.h"
 
 // The whole way from a Draco mesh to a refined Draco mesh. Server and client both go it, so local and remote
 // results are the same bytes.
@@ -52,24 +54,27 @@ class Refinement {
  public:
   /// Throws `Problem`, also where it is certain from the start that the result would pass a limit.
   Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
+  /// The same answers, to the byte, of a mesh that is refined more than once.
+  Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits);
 
-  [[nodiscard]] uint32_t coarse_faces() const { return coarse_.topology.face_count(); }
-  [[nodiscard]] uint32_t coarse_vertices() const { return coarse_.topology.vertex_count; }
-  [[nodiscard]] const BuildReport& found() const { return found_; }
+  [[nodiscard]] uint32_t coarse_faces() const { return coarse().mesh.topology.face_count(); }
+  [[nodiscard]] uint32_t coarse_vertices() const { return coarse().mesh.topology.vertex_count; }
+  [[nodiscard]] const BuildReport& found() const { return coarse().found; }
 
   /// Refines and encodes; call once. Returns the last level. Throws `Problem`, and what the hooks throw.
   [[nodiscard]] EncodedLevel run(const RefinementHooks& hooks = {});
 
  private:
+  Refinement(const Parameters& parameters, const Limits& limits);
+  [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
   void require_time() const;
+  Result refine_coarse(const Hooks& hooks);
 
   Options options_;
   OutputOptions output_;
-  Mesh coarse_;
-  BuildReport found_;
-  QuantizationBox box_;
-  AttributeEncoding attributes_;
+  DecodedMesh decoded_;                           ///< unless it is
+  std::shared_ptr<const PreparedMesh> prepared_;  ///< prepared
   StageTimes times_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   int most_seconds_;

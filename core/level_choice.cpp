@@ -1,0 +1,55 @@
+#include "level_choice.h"
+
+namespace papilio {
+namespace {
+
+/// The edges all of whose faces are in the region. [E]
+EdgeMarks edges_of(const HierarchyLevel& level, const std::vector<uint32_t>& faces) {
+  const Topology& mesh = level.mesh.topology;
+  std::vector<uint8_t> is_in(mesh.face_count(), 0);
+  for (uint32_t f : faces) is_in[f] = 1;
+  EdgeMarks marks(mesh.edge_count(), 0);
+  for (uint32_t f : faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+      const uint32_t t = mesh.twin[h];
+      if (t == none || is_in[Topology::face(t)] != 0) marks[mesh.edge[h]] = 1;
+    }
+  for (uint32_t h : level.shared)
+    if (is_in[Topology::face(h)] == 0) marks[mesh.edge[h]] = 0;
+  return marks;
+}
+
+}  // namespace
+
+LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
+  LevelChoice choice;
+  choice.region = whole_region(level->mesh.topology);
+  choice.may_be_split.assign(level->mesh.topology.edge_count(), 1);
+  choice.split.assign(level->mesh.topology.edge_count(), 0);
+  choice.level = std::move(level);
+  return choice;
+}
+
+LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const HierarchyLevel> level) {
+  LevelChoice choice;
+  for (uint32_t f : above.region.faces)
+    if (above.red[f] != 0)
+      for (uint32_t c = 0; c < 4; ++c) choice.region.faces.push_back(level->child[f] + c);
+  choice.may_be_split = edges_of(*level, choice.region.faces);
+  choice.region.edges = marked(choice.may_be_split);
+  choice.split.assign(level->mesh.topology.edge_count(), 0);
+  choice.level = std::move(level);
+  return choice;
+}
+
+void mark_red(LevelChoice& choice, const std::vector<uint32_t>& faces) {
+  const Topology& mesh = choice.level->mesh.topology;
+  choice.red.assign(mesh.face_count(), 0);
+  choice.at_a_red.assign(mesh.vertex_count, 0);
+  for (uint32_t f : faces) {
+    choice.red[f] = 1;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.at_a_red[mesh.origin[h]] = 1;
+  }
+}
+
+}  // namespace papilio

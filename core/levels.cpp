@@ -1,0 +1,108 @@
+#include "levels.h"
+
+#include <algorithm>
+
+#include "grow_level.h"
+#include "transition.h"
+
+namespace papilio {
+namespace {
+
+/// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
+constexpr uint64_t bytes_per_kept_face = 112;
+
+bool covers(const std::vector<uint8_t>& known, const std::vector<uint8_t>& red) {
+  return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
+}
+
+}  // namespace
+
+Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
+    : options_(options), progress_(progress), smallest_angle_(papilio::smallest_angle(coarse)) {
+  auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
+  progress_.poll();
+  if (options.view) level->longest = longest_edges(level->mesh);
+  level->trial = try_split(level->mesh, options, complete_edges(*level));
+  levels_.push_back(std::move(level));
+}
+
+Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progress& progress)
+    : options_(options),
+      progress_(progress),
+      prepared_(&prepared),
+      known_(prepared.kept()),
+      levels_{known_[0]},
+      to_keep_(1),
+      smallest_angle_(prepared.smallest_angle_) {}
+
+void Levels::deepen(const std::vector<uint8_t>& red) {
+  const size_t depth = levels_.size();
+  if (depth < known_.size()) {
+    const std::shared_ptr<const HierarchyLevel> known = known_[depth];
+    if (moved_.empty() && covers(known->red, red)) {
+      levels_.push_back(known);
+      ++to_keep_;
+      return;
+    }
+    if (make_with_known(*known, red)) return;
+    known_.resize(depth);  // this one takes its place
+  }
+  make(red);
+}
+
+bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red) {
+  for (uint32_t f = 0; f < known.red.size(); ++f)
+    if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
+  if (!may_keep(red)) return false;
+  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red)));
+  std::vector<uint32_t> moved(known.mesh.topology.face_count());
+  for (uint32_t f = 0; f < moved.size(); ++f) {
+    const uint32_t parent = known.parent[f / 4];
+    moved[f] = level->child[moved_.empty() ? parent : moved_[parent]] + f % 4;
+  }
+  moved_ = std::move(moved);
+  progress_.poll();
+  level->longest = longest_edges(level->mesh);
+  try_grown_level(*level, options_, known, moved_);
+  add_kept(level);
+  return true;
+}
+
+bool Levels::may_keep(const std::vector<uint8_t>& red) const {
+  if (prepared_ == nullptr || to_keep_ < levels_.size()) return false;
+  const std::vector<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
+  uint64_t bytes = 4 * bytes_per_kept_face * static_cast<uint64_t>(std::ranges::count(support, 1));
+  for (const auto& level : levels_) bytes += level->bytes();
+  return bytes <= prepared_->budget_;
+}
+
+void Levels::make(const std::vector<uint8_t>& red) {
+  const bool is_kept = may_keep(red);
+  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), red));
+  progress_.poll();
+  if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
+  const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
+  level->trial =
+      try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level));
+  if (is_kept)
+    add_kept(level);
+  else
+    levels_.push_back(level);
+}
+
+void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
+  levels_.push_back(std::move(level));
+  ++to_keep_;
+  has_grown_ = true;
+}
+
+void Levels::hand_back() {
+  if (!has_grown_) return;
+  while (!moved_.empty() && levels_.size() < known_.size())
+    if (!make_with_known(*known_[levels_.size()], std::vector<uint8_t>(levels_.back()->mesh.topology.face_count(), 0)))
+      break;
+  levels_.resize(to_keep_);
+  prepared_->keep(std::move(levels_));
+}
+
+}  // namespace papilio

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hierarchy.h"
+#include "prepared_mesh.h"
+#include "progress.h"
+
+namespace papilio {
+
+/// The levels of the hierarchy that one request works on: made for it alone, or shared with others through a prepared
+/// mesh.
+class Levels {
+ public:
+  /// Made for this request: no more than it needs is computed. Level 0 is there and tried. Throws `Error` cancelled.
+  Levels(Mesh coarse, const Options& options, const Progress& progress);
+  /// Those of a prepared mesh, which must outlive this.
+  Levels(const PreparedMesh& prepared, const Options& options, const Progress& progress);
+
+  [[nodiscard]] const std::shared_ptr<const HierarchyLevel>& deepest() const { return levels_.back(); }
+  /// Of the coarse mesh, in radians.
+  [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
+
+  /// Adds a level that holds the children of the deepest one's faces marked `red` [F], and maybe others; its edges are
+  /// tried. Throws `Error` cancelled.
+  void deepen(const std::vector<uint8_t>& red);
+
+  /// Gives what was made to the prepared mesh, if there is one.
+  void hand_back();
+
+ private:
+  /// Adds a level for the children of these faces and of all that the known level of its depth has; false, and nothing
+  /// is done, where that is more than may be kept.
+  bool make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red);
+  [[nodiscard]] bool may_keep(const std::vector<uint8_t>& red) const;
+  void make(const std::vector<uint8_t>& red);
+  void add_kept(std::shared_ptr<const HierarchyLevel> level);
+
+  const Options& options_;
+  const Progress& progress_;
+  const PreparedMesh* prepared_ = nullptr;
+  KeptLevels known_;        ///< what was kept when the request began
+  KeptLevels levels_;       ///< what it works on
+  size_t to_keep_ = 0;      ///< how many of these may be kept
+  bool has_grown_ = false;  ///< one of those was made
+  /// Where the deepest level is made of more than the known one of its depth: [F of the known] the same face in it.
+  std::vector<uint32_t> moved_;
+  double smallest_angle_;
+};
+
+}  // namespace papilio

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <new>
+
+#include "core/error.h"
+#include "proto/problem.h"
+
+namespace papilio::proto {
+
+/// Runs `work` and puts the core's refusals, and memory that is not there, into the words of the wire.
+template <class Work>
+auto in_words_of_the_wire(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Problem(error);
+  } catch (const std::bad_alloc&) {
+    throw Problem(Code::result_too_large, "There is not enough memory for this result. Ask for fewer levels.");
+  }
+}
+
+}  // namespace papilio::proto
