@@ -176,6 +176,8 @@ class Assembler {
   void number_edges() {
     Topology& mesh = out_.topology;
     mesh.edge.resize(mesh.origin.size());
+    mesh.half_edge.reserve(mesh.origin.size() / 2 + vertex_count_ / 2);
+    mesh.kind.reserve(mesh.half_edge.capacity());
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared;
     for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
       const uint32_t t = mesh.twin[h];
@@ -252,9 +254,7 @@ std::pair<uint32_t, uint32_t> halves(std::span<const LevelChoice> levels, size_t
 uint64_t count_assembled(std::span<const LevelChoice> levels) {
   // A split edge may only be one all of whose faces are in the result: each of them becomes one more.
   uint64_t faces = levels[0].region.faces.size();
-  for (const LevelChoice& choice : levels)
-    for (uint32_t f : choice.region.faces)
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) faces += choice.split[choice.level->mesh.topology.edge[h]];
+  for (const LevelChoice& choice : levels) choice.visit_faces_of_split([&](uint32_t, uint32_t) { ++faces; });
   return faces;
 }
 
@@ -262,6 +262,8 @@ Mesh assemble(std::span<const LevelChoice> levels, double most_cosine) { return 
 
 ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection) {
   ErrorLeft left(selection);
+  std::vector<double> scales;
+  for (const LevelChoice& choice : levels) scales.push_back(selection.highest_pixels_per_unit(choice.level->box));
   std::vector<uint8_t> above;
   for (size_t k = 0; k < levels.size(); ++k) {
     const LevelChoice& choice = levels[k];
@@ -273,18 +275,18 @@ ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selec
       if (choice.shown[e] == 0) return;
       if (choice.split[e] == 0) {
         if (std::exchange(was_added[e], 1) != 0) return;
-        left.add(level.mesh, level.trial, e);
+        left.add(level.mesh, level.trial, scales[k], e);
         return;
       }
       // Its halves may have been judged, though nothing below was wanted.
       const auto [first, second] = halves(levels, k, h);
       if (first == none || levels[k + 1].may_be_split[first] == 0 || levels[k + 1].may_be_split[second] == 0) {
-        left.add(level.mesh, level.trial, e, split_leaves);
+        left.add(level.mesh, level.trial, scales[k], e, split_leaves);
         return;
       }
       const HierarchyLevel& below = *levels[k + 1].level;
       for (uint32_t half : {first, second})
-        if (levels[k + 1].shown[half] != 0) left.add(below.mesh, below.trial, half);
+        if (levels[k + 1].shown[half] != 0) left.add(below.mesh, below.trial, scales[k + 1], half);
     };
     for (uint32_t f : choice.region.faces)
       if (divided[f] == 0 && (k == 0 || above[level.parent[f / 4]] != 0))

@@ -40,6 +40,14 @@ ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, 
     threshold_ = static_cast<float>(tolerated_ > 0 ? tolerance : tolerated_pixels_);
 }
 
+float ErrorMeasure::most_error(double distance, double scale) const {
+  if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
+    return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
+  if (!view_->lights.empty()) return std::numeric_limits<float>::infinity();
+  const double seen = distance * scale;
+  return to_finite(tolerated_ == 0 ? seen : std::min(distance / tolerated_, seen / tolerated_pixels_));
+}
+
 float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);

@@ -32,6 +32,9 @@ class ErrorMeasure {
   [[nodiscard]] float threshold() const { return threshold_; }
   /// The number, for a deviation at the edge. `normals` [F].
   [[nodiscard]] float error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const;
+  /// No less than the error of an edge with no more than this deviation, where nothing is seen larger than at `scale`
+  /// pixels a unit. What lights make of it is not bounded: infinite with them.
+  [[nodiscard]] float most_error(double distance, double scale) const;
   /// The deviation in pixels of the view; 0 without one.
   [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const {
     return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));

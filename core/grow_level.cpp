@@ -43,12 +43,14 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
   const std::vector<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
 
   trial.made.resize(trial.tried.count());
-  trial.deviations = Memo<double>(trial.made.size(), Trial::unknown);
+  trial.forget();
   for (uint32_t e = 0; e < marks.size(); ++e) {
     if (!trial.tried.is_split(e)) continue;
     const uint32_t at = trial.tried.before[e];
     trial.made[at] = rank[e] == none ? made[rest.before[e]] : known.trial.made[rank[e]];
-    if (rank[e] != none) trial.deviations.put(at, known.trial.deviations.get(rank[e]));
+    if (rank[e] == none) continue;
+    trial.deviations.put(at, known.trial.deviations.get(rank[e]));
+    trial.bounds.put(at, known.trial.bounds.get(rank[e]));
   }
   for (uint32_t f = 0; f < moved.size(); ++f) level.transitions.put(moved[f], known.transitions.get(f));
 }

@@ -186,7 +186,7 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, from, parent, child, red, shared, longest) +
                    size(trial.normals, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
-  bytes += trial.deviations.bytes() + transitions.bytes();
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + transitions.bytes();
   return bytes;
 }
 
@@ -196,6 +196,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
     if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
   level.transitions = Memo<uint32_t>(mesh.topology.face_count(), 0);
+  level.box = bounding_box(mesh.positions);
   level.mesh = std::move(mesh);
   return level;
 }
@@ -228,6 +229,7 @@ HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> re
   HierarchyLevel below = LevelMaker(level, red).run();
   below.red = std::move(red);
   below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
+  below.box = bounding_box(below.mesh.positions);
   return below;
 }
 

@@ -30,6 +30,7 @@ struct HierarchyLevel {
   std::vector<uint32_t> shared;        ///< the half-edges at shared edges
   Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give, where tried
   std::vector<double> longest;         ///< [V] edges (view.h); empty where no view asked
+  Box box{};                           ///< of the vertices
   Memo<uint32_t> transitions;          ///< [F] what is known of its transition faces (transition.h)
 
   /// Whether every face at the edge is held, and so are the rings round its ends.

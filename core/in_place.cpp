@@ -35,8 +35,10 @@ class InPlace {
     if (result_.levels == options_.levels && options_.levels > 0) return 0;  // its split edges are noted already
     trial_.emplace(try_split(mesh_, options_, EdgeMarks(mesh_.topology.edge_count(), 1)));
     region_ = whole_region(mesh_.topology);
-    shown_ = selection_.shown(mesh_, trial_->normals,
-                              selection_.camera() == nullptr ? std::vector<double>{} : longest_edges(mesh_), region_);
+    box_ = bounding_box(mesh_.positions);
+    const bool has_view = selection_.camera() != nullptr;
+    shown_ = selection_.shown(mesh_, trial_->normals, has_view ? longest_edges(mesh_) : std::vector<double>{}, box_,
+                              region_);
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
       const std::vector<uint32_t> wanted = selection_.wanted(mesh_, trial_->normals, level, region_, shown_);
       targets_.assign(mesh_.topology.edge_count(), 0);
@@ -54,7 +56,7 @@ class InPlace {
   }
 
   void keep_largest_errors(const std::vector<uint32_t>& wanted) {
-    const std::vector<float> errors = selection_.errors(mesh_, *trial_, wanted, selection_.threshold());
+    const std::vector<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, selection_.threshold());
     float threshold = selection_.threshold();
     if (options_.max_faces > 0) {
       std::vector<WeighedEdge> edges;
@@ -71,7 +73,8 @@ class InPlace {
   void note_error() {
     ErrorLeft left(selection_);
     for (uint32_t e : region_.edges)
-      if (shown_[e] != 0) left.add(mesh_, *trial_, e, targets_[e] != 0 ? split_leaves : 1);
+      if (shown_[e] != 0)
+        left.add(mesh_, *trial_, selection_.highest_pixels_per_unit(box_), e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
     result_.error_pixels = left.pixels();
   }
@@ -95,7 +98,8 @@ class InPlace {
   Mesh mesh_;
   Result result_;
   std::optional<Trial> trial_;
-  Region region_;    ///< all of the mesh
+  Region region_;
+  Box box_;          ///< all of the mesh
   EdgeMarks shown_;  ///< by the view
   EdgeMarks targets_;
   bool out_of_budget_ = false;
@@ -128,7 +132,8 @@ Result refine_uniformly(Mesh coarse, const Options& options, const Selection& se
     progress.poll();
     if (level == options.levels) {
       ErrorLeft left(selection);
-      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, trial, e, split_leaves);
+      const double scale = selection.highest_pixels_per_unit(bounding_box(mesh.positions));
+      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, trial, scale, e, split_leaves);
       result.error = left.error();
     }
     mesh = split_mesh(std::move(mesh), trial.tried, trial.made);

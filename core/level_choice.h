@@ -19,7 +19,9 @@ struct LevelChoice {
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
   /// infinity where nothing wants it.
   std::vector<float> error;
-  EdgeMarks split;                ///< [E] what is split for the result
+  std::vector<uint32_t> candidates;   ///< the edges whose error reaches the least threshold there may be
+  EdgeMarks split;                    ///< [E] what is split for the result
+  std::vector<uint32_t> split_edges;  ///< the same as a list
   std::vector<uint8_t> red;       ///< [F] whose children are the region of the next choice; empty while there is none
   std::vector<uint8_t> at_a_red;  ///< [V] whether a red face is there
 
@@ -27,6 +29,35 @@ struct LevelChoice {
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
     const uint32_t* edge = &level->mesh.topology.edge[size_t{3} * face];
     return split[edge[0]] | split[edge[1]] << 1U | split[edge[2]] << 2U;
+  }
+  void split_edge(uint32_t edge) {
+    if (split[edge] != 0) return;
+    split[edge] = 1;
+    split_edges.push_back(edge);
+  }
+  void split_nothing() {
+    for (uint32_t e : split_edges) split[e] = 0;
+    split_edges.clear();
+  }
+  /// Calls `visit(face, edge)` for each face at each edge of a list, which are those that `is_listed`. Edges of the
+  /// region have all their faces there.
+  template <class IsListed, class Visit>
+  void visit_faces(const std::vector<uint32_t>& edges, const IsListed& is_listed, const Visit& visit) const {
+    const Topology& mesh = level->mesh.topology;
+    for (uint32_t e : edges) {
+      if (mesh.kind[e] == EdgeKind::shared) continue;
+      const uint32_t h = mesh.half_edge[e];
+      visit(Topology::face(h), e);
+      if (mesh.twin[h] != none) visit(Topology::face(mesh.twin[h]), e);
+    }
+    for (uint32_t h : level->shared)
+      if (is_listed(mesh.edge[h])) visit(Topology::face(h), mesh.edge[h]);
+  }
+  /// The same for the edges that are split.
+  template <class Visit>
+  void visit_faces_of_split(const Visit& visit) const {
+    visit_faces(
+        split_edges, [&](uint32_t e) { return split[e] != 0; }, visit);
   }
   /// Whether all the face's edges may be split.
   [[nodiscard]] bool may_divide(uint32_t face) const {

@@ -54,15 +54,18 @@ class RedGreen {
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
-    choice.shown = selection_.shown(level.mesh, level.trial.normals, level.longest, choice.region);
+    choice.shown = selection_.shown(level.mesh, level.trial.normals, level.longest, level.box, choice.region);
     const std::vector<uint32_t> wanted = selection_.wanted(
         level.mesh, level.trial.normals, static_cast<int>(choices_.size()), choice.region, choice.shown);
     if (selection_.is_by_error()) {
-      choice.error = selection_.errors(level.mesh, level.trial, wanted, options_.max_faces > 0 ? 0 : threshold_);
+      choice.error =
+          selection_.errors(level.mesh, level.trial, wanted, level.box, options_.max_faces > 0 ? 0 : threshold_);
     } else {
       choice.error.assign(level.mesh.topology.edge_count(), never);
       for (uint32_t e : wanted) choice.error[e] = threshold_;
     }
+    std::ranges::copy_if(wanted, std::back_inserter(choice.candidates),
+                         [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
   }
 
   /// Decides what is split. True when the lowest level changes anything.
@@ -72,28 +75,31 @@ class RedGreen {
     threshold_ = selection_.threshold();
     split_from(threshold_);
     if (options_.max_faces > 0) keep_within_budget();
-    return std::ranges::any_of(choices_.back().split, [](uint8_t mark) { return mark != 0; });
+    return !choices_.back().split_edges.empty();
   }
 
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
-  static void carry_up(const LevelChoice& below, LevelChoice& above) {
-    const Topology& mesh = below.level->mesh.topology;
-    for (uint32_t f : below.region.faces) {
-      const float needed = std::max(
-          {below.error[mesh.edge[3 * f]], below.error[mesh.edge[3 * f + 1]], below.error[mesh.edge[3 * f + 2]]});
-      if (needed == never) continue;
+  void carry_up(const LevelChoice& below, LevelChoice& above) const {
+    const float least = selection_.threshold();
+    const auto carry = [&](uint32_t f, uint32_t edge) {
       const uint32_t parent = below.level->parent[f / 4];
       for (uint32_t i = 0; i < 3; ++i) {
-        float& error = above.error[above.level->mesh.topology.edge[3 * parent + i]];
-        error = std::max(error, needed);
+        const uint32_t e = above.level->mesh.topology.edge[3 * parent + i];
+        if (above.error[e] < least) above.candidates.push_back(e);
+        above.error[e] = std::max(above.error[e], below.error[edge]);
       }
-    }
+    };
+    below.visit_faces(
+        below.candidates, [&](uint32_t e) { return below.error[e] >= least; }, carry);
   }
 
   /// Marks what has at least this error, and what that needs so that no transition face becomes a sliver.
   void split_from(float threshold) {
-    for (LevelChoice& choice : choices_)
-      for (uint32_t e : choice.region.edges) choice.split[e] = choice.error[e] >= threshold ? 1 : 0;
+    for (LevelChoice& choice : choices_) {
+      choice.split_nothing();
+      for (uint32_t e : choice.candidates)
+        if (choice.error[e] >= threshold) choice.split_edge(e);
+    }
     for (size_t k = choices_.size(); k-- > 0;) {
       avoid_slivers(choices_[k], most_cosine_);
       if (k > 0) carry_marks_up(choices_[k], choices_[k - 1]);
@@ -101,11 +107,10 @@ class RedGreen {
   }
 
   static void carry_marks_up(const LevelChoice& below, LevelChoice& above) {
-    for (uint32_t f : below.region.faces) {
-      if (below.split_mask(f) == 0) continue;
+    below.visit_faces_of_split([&](uint32_t f, uint32_t) {
       const uint32_t parent = below.level->parent[f / 4];
-      for (uint32_t i = 0; i < 3; ++i) above.split[above.level->mesh.topology.edge[3 * parent + i]] = 1;
-    }
+      for (uint32_t i = 0; i < 3; ++i) above.split_edge(above.level->mesh.topology.edge[3 * parent + i]);
+    });
   }
 
   /// Raises the threshold until no more is split than the budget allows. What avoiding slivers costs is known only
@@ -137,15 +142,15 @@ class RedGreen {
   /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
   void keep() {
     kept_.clear();
-    for (const LevelChoice& choice : choices_) kept_.push_back(choice.split);
+    for (const LevelChoice& choice : choices_) kept_.push_back(choice.split_edges);
   }
 
   void bring_back_what_was_kept() {
-    for (size_t k = 0; k < choices_.size(); ++k)
+    for (size_t k = 0; k < choices_.size(); ++k) {
+      choices_[k].split_nothing();
       if (k < kept_.size())
-        choices_[k].split = std::move(kept_[k]);
-      else
-        std::ranges::fill(choices_[k].split, 0);
+        for (uint32_t e : kept_[k]) choices_[k].split_edge(e);
+    }
   }
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
@@ -186,12 +191,11 @@ class RedGreen {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
     std::vector<uint8_t> touched(mesh.vertex_count, 0);
-    for (uint32_t f : choice.region.faces) {
-      if (choice.error[mesh.edge[3 * f]] < threshold_ && choice.error[mesh.edge[3 * f + 1]] < threshold_ &&
-          choice.error[mesh.edge[3 * f + 2]] < threshold_)
-        continue;
+    const auto is_large = [&](uint32_t e) { return choice.error[e] >= threshold_; };
+    choice.visit_faces(choice.candidates, is_large, [&](uint32_t f, uint32_t e) {
+      if (!is_large(e)) return;
       for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
-    }
+    });
     std::vector<uint32_t> faces;
     for (uint32_t f : choice.region.faces) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
@@ -222,7 +226,7 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  std::vector<EdgeMarks> kept_;  ///< [level] what was split when a level last changed something
+  std::vector<std::vector<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
   bool out_of_budget_ = false;
 };
 

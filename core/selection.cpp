@@ -1,6 +1,7 @@
 #include "selection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "butterfly.h"
@@ -24,8 +25,23 @@ std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& nor
 Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges) {
   Trial trial{.normals = face_normals(mesh), .tried = SplitPlan(try_edges), .made = {}};
   trial.made = make_vertices(mesh, trial.normals, options, trial.tried);
-  trial.deviations = Memo<double>(trial.made.size(), Trial::unknown);
+  trial.forget();
   return trial;
+}
+
+void Trial::forget() {
+  deviations = Memo<double>(made.size(), unknown);
+  bounds = Memo<float>(made.size(), unknown);
+}
+
+double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
+  const uint32_t rank = tried.before[edge];
+  float known = bounds.get(rank);
+  if (known == unknown) {
+    const auto distance = static_cast<float>(length(to_double(made[rank]) - midpoint(mesh, edge)));
+    bounds.put(rank, known = std::nextafter(distance, std::numeric_limits<float>::infinity()));
+  }
+  return known;
 }
 
 double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
@@ -59,8 +75,8 @@ bool Selection::later_level_is_finer(int level) const {
 }
 
 EdgeMarks Selection::shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
-                           const Region& region) const {
-  if (camera_) return edges_shown(mesh, normals, longest, *camera_, region);
+                           const Box& box, const Region& region) const {
+  if (camera_) return edges_shown(mesh, normals, longest, box, *camera_, region);
   EdgeMarks all(mesh.topology.edge_count(), 0);
   for (uint32_t e : region.edges) all[e] = 1;
   return all;
@@ -83,10 +99,14 @@ std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const std::vector<Vec3
 }
 
 std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
-                                     float exact_from) const {
+                                     const Box& box, float exact_from) const {
   std::vector<float> errors(mesh.topology.edge_count(), never);
+  const double scale = highest_pixels_per_unit(box);
   for (uint32_t e : wanted) {
-    errors[e] = measure_.error(mesh, trial.normals, e, trial.most_deviation_at(mesh, e));
+    const double most = trial.most_deviation_at(mesh, e);
+    errors[e] = measure_.most_error(most, scale);
+    if (errors[e] >= exact_from && !trial.knows_deviation_at(e))
+      errors[e] = measure_.error(mesh, trial.normals, e, most);
     if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }
   return errors;

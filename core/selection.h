@@ -20,15 +20,17 @@ struct Trial {
   SplitPlan tried;             ///< the edges whose new vertices were computed
   std::vector<Vec3f> made;     ///< [tried.count()]
   Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
+  Memo<float> bounds{};        ///< [tried.count()] no less than these; or unknown
 
-  static constexpr double unknown = -1;
+  static constexpr int unknown = -1;
+  /// Nothing is known yet of what was made.
+  void forget();
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
+  [[nodiscard]] bool knows_deviation_at(uint32_t edge) const { return deviations.get(tried.before[edge]) != unknown; }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
-  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const {
-    return length(to_double(at(edge)) - midpoint(mesh, edge));
-  }
+  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
@@ -51,20 +53,24 @@ class Selection {
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
+  /// No less than the view has anywhere in the box; 0 without one.
+  [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
+    return camera_ ? camera_->highest_pixels_per_unit(box) : 0;
+  }
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
-  /// edges (view.h). [E]
+  /// edges (view.h), `box` of the vertices. [E]
   [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
-                                const Region& region) const;
+                                const Box& box, const Region& region) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
   [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
                                              const Region& region, const EdgeMarks& shown) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
-  /// come out larger, but stay below it: they cost less. [E]
+  /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
   [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
-                                          float exact_from) const;
+                                          const Box& box, float exact_from) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;
@@ -82,10 +88,11 @@ class Selection {
 class ErrorLeft {
  public:
   explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
-  /// A tried edge that stays, or, with share 1/4, one of the last level that was split.
-  void add(const Mesh& mesh, const Trial& trial, uint32_t edge, double share = 1) {
+  /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
+  /// `highest_pixels_per_unit`.
+  void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
     const double most = share * trial.most_deviation_at(mesh, edge);
-    if (most <= distance_ && measure_.pixels(mesh, edge, most) <= pixels_) return;
+    if (most <= distance_ && most * scale <= pixels_) return;
     const double distance = share * trial.deviation_at(mesh, edge);
     distance_ = std::max(distance_, distance);
     pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));

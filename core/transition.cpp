@@ -98,12 +98,15 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
            (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
   std::vector<uint32_t> faces;
-  for (uint32_t f : choice.region.faces)
+  choice.visit_faces_of_split([&](uint32_t f, uint32_t) {
     if (must_be_divided(f)) faces.push_back(f);
+  });
+  std::ranges::sort(faces);  // the order decides where dividing one makes a sliver of another
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.split[mesh.edge[h]] = 1;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.split_edge(mesh.edge[h]);
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
       if (const uint32_t t = mesh.twin[h]; t != none && must_be_divided(Topology::face(t)))
         faces.push_back(Topology::face(t));

@@ -43,9 +43,11 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 /// Which faces the view shows.
 class Sight {
  public:
-  /// `longest` [V] edges.
-  Sight(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest, const Camera& camera)
-      : mesh_(mesh),
+  /// `longest` [V] edges; `box` of the vertices.
+  Sight(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest, const Box& box,
+        const Camera& camera)
+      : all_inside_(camera.is_inside(box)),
+        mesh_(mesh),
         normals_(normals),
         longest_(longest),
         camera_(camera),
@@ -55,7 +57,8 @@ class Sight {
   [[nodiscard]] uint8_t of_face(uint32_t f) {
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
     uint8_t sight = 0;
-    if (is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2])) sight |= is_inside;
+    if (all_inside_ || is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2]))
+      sight |= is_inside;
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
     if (!has_normal(normals_[f]) || !camera_.is_away(centroid, to_double(normals_[f]))) sight |= is_towards;
     return sight;
@@ -70,6 +73,7 @@ class Sight {
     return inside_[v] != 0;
   }
 
+  const bool all_inside_;
   const Mesh& mesh_;
   const std::vector<Vec3f>& normals_;
   const std::vector<double>& longest_;
@@ -111,7 +115,39 @@ bool Camera::is_outside(Vec3d centre, double radius) const {
   return std::ranges::any_of(planes_, [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
 }
 
-bool Camera::is_away(Vec3d point, Vec3d normal) const { return facing(point, normal) < -away_epsilon; }
+bool Camera::is_inside(const Box& box) const {
+  constexpr double margin = 1e-9;
+  const auto least = [&](const Plane& p) {
+    double sum = -p.offset;
+    double size = std::abs(p.offset);
+    const auto add = [&](double n, double low, double high) {
+      sum += std::min(n * low, n * high);
+      size += std::abs(n) * std::max(std::abs(low), std::abs(high));
+    };
+    add(p.normal.x, box.min.x, box.max.x);
+    add(p.normal.y, box.min.y, box.max.y);
+    add(p.normal.z, box.min.z, box.max.z);
+    return sum - margin * size;
+  };
+  return std::ranges::all_of(planes_, [&](const Plane& p) { return least(p) > 0; });
+}
+
+double Camera::highest_pixels_per_unit(const Box& box) const {
+  constexpr double rounding = 1 + 1e-9;
+  double depth = -dot(forward_, eye_);
+  const auto add = [&](double n, double low, double high) { depth += std::min(n * low, n * high); };
+  add(forward_.x, box.min.x, box.max.x);
+  add(forward_.y, box.min.y, box.max.y);
+  add(forward_.z, box.min.z, box.max.z);
+  return rounding * pixels_per_unit_at(depth);
+}
+
+/// The sine is compared as a square, without a root.
+bool Camera::is_away(Vec3d point, Vec3d normal) const {
+  const Vec3d sight = perspective_ ? point - eye_ : forward_;
+  const double along = dot(sight, normal);
+  return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
+}
 
 double Camera::facing(Vec3d point, Vec3d normal) const {
   if (!perspective_) return -dot(forward_, normal);
@@ -140,7 +176,7 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
   const std::vector<double> longest = longest_edges(mesh);
-  Sight sight(mesh, normals, longest, camera);
+  Sight sight(mesh, normals, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
   for (uint32_t f = 0; f < hidden.size(); ++f) hidden[f] = sight.of_face(f) != seen;
   return hidden;
@@ -162,9 +198,9 @@ std::vector<double> longest_edges(const Mesh& mesh) {
 }
 
 EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
-                      const Camera& camera, const Region& region) {
+                      const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
-  Sight sight(mesh, normals, longest, camera);
+  Sight sight(mesh, normals, longest, box, camera);
   std::vector<uint8_t> seen_by(topology.edge_count(), 0);
   for (uint32_t f : region.faces) {
     const uint8_t of_face = sight.of_face(f);
@@ -184,7 +220,8 @@ bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double ed
 
 void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
-  const EdgeMarks shown = edges_shown(mesh, normals, longest_edges(mesh), camera, whole_region(mesh.topology));
+  const EdgeMarks shown = edges_shown(mesh, normals, longest_edges(mesh), bounding_box(mesh.positions), camera,
+                                      whole_region(mesh.topology));
   for (uint32_t e = 0; e < marks.size(); ++e)
     if (marks[e] != 0 && (shown[e] == 0 || !looks_long(mesh, e, camera, edge_pixels))) marks[e] = 0;
 }

@@ -51,6 +51,10 @@ class Camera {
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
   /// on it.
   [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
+  /// No less than that of any point in the box.
+  [[nodiscard]] double highest_pixels_per_unit(const Box& box) const;
+  /// True when all of the box is certain to be inside of the five planes.
+  [[nodiscard]] bool is_inside(const Box& box) const;
 
  private:
   struct Plane {
@@ -81,10 +85,11 @@ class Camera {
 
 /// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
-/// edges on the silhouette are shown; a face without normal is never away). Shapes: normals [F], longest [V], marks
-/// [E].
+/// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
+/// longest [V], marks [E].
 [[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals,
-                                    const std::vector<double>& longest, const Camera& camera, const Region& region);
+                                    const std::vector<double>& longest, const Box& box, const Camera& camera,
+                                    const Region& region);
 
 /// Whether the edge looks at least so long, in pixels.
 [[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
