@@ -13,7 +13,8 @@ Engine::Engine(const EngineOptions& options)
     : options_(options),
       admission_(options.slots, options.queue),
       store_(open_store(options.store)),
-      results_(options.result_cache_bytes, options.queue) {}
+      results_(options.result_cache_bytes, options.queue),
+      meshes_(options.mesh_cache_bytes) {}
 
 std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& abandoned) {
   const auto begin = std::chrono::steady_clock::now();
@@ -30,17 +31,35 @@ proto::EncodedLevel Engine::run(proto::Refinement& refinement, const proto::Refi
 }
 
 std::unique_ptr<proto::Refinement> Engine::refinement_of(const std::string& id, const proto::Parameters& parameters) {
-  const MeshStore::Bytes mesh = store_->get(id);
-  if (mesh == nullptr)
+  return std::make_unique<proto::Refinement>(prepared(id), parameters, options_.limits);
+}
+
+std::shared_ptr<const proto::PreparedMesh> Engine::prepared(const std::string& id) {
+  std::shared_ptr<const proto::PreparedMesh> mesh = meshes_.get(id);
+  metrics_.count_lookup(Metrics::Cache::meshes, mesh != nullptr);
+  if (mesh != nullptr) {
+    count_again(id);
+    return mesh;
+  }
+  const MeshStore::Bytes bytes = store_->get(id);
+  if (bytes == nullptr)
     throw Problem(Code::mesh_not_found, "No mesh is stored under this id. Send it to POST /v1/meshes.");
-  return std::make_unique<proto::Refinement>(*mesh, parameters, options_.limits);
+  // One mesh may have a quarter of the cache, so that a few large ones are kept beside each other.
+  mesh = std::make_shared<const proto::PreparedMesh>(*bytes, options_.limits, options_.mesh_cache_bytes / 4);
+  meshes_.put(id, mesh, mesh->bytes());
+  return mesh;
+}
+
+void Engine::count_again(const std::string& id) {
+  if (const auto mesh = meshes_.get(id)) meshes_.put(id, mesh, mesh->bytes());
 }
 
 std::string Engine::metrics_text() {
   Gauges gauges{.slots = options_.slots,
                 .computing = admission_.computing(),
                 .waiting = admission_.waiting(),
-                .result_cache_bytes = results_.bytes()};
+                .result_cache_bytes = results_.bytes(),
+                .mesh_cache_bytes = meshes_.bytes()};
   if (const auto usage = store_->usage()) {
     gauges.store_meshes = usage->meshes;
     gauges.store_bytes = usage->bytes;

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "proto/limits.h"
+#include "proto/prepared_mesh.h"
 #include "proto/refinement.h"
 #include "server/admission.h"
+#include "server/cache/lru.h"
 #include "server/cache/result_cache.h"
 #include "server/http/http.h"
 #include "server/metrics.h"
@@ -47,13 +49,18 @@ class Engine {
   /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
                                                                  const proto::Parameters& parameters);
+  /// A stored mesh that has been refined takes more memory than before.
+  void count_again(const std::string& id);
   [[nodiscard]] std::string metrics_text();
 
  private:
+  [[nodiscard]] std::shared_ptr<const proto::PreparedMesh> prepared(const std::string& id);
+
   const EngineOptions options_;
   Admission admission_;
   std::unique_ptr<MeshStore> store_;
   ResultCache results_;
+  Lru<const proto::PreparedMesh> meshes_;
   Metrics metrics_;
 };
 

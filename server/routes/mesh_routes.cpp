@@ -169,7 +169,9 @@ ResultCache::Answer find_or_make(Engine& engine, const Request& request, const s
   const auto make = [&](const std::function<bool()>& abandoned) {
     const auto slot = engine.enter(abandoned);
     const auto refinement = engine.refinement_of(id, parameters);
-    return std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}));
+    auto made = std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}));
+    engine.count_again(id);
+    return made;
   };
   ResultCache::Answer answer = engine.results().get_or_make(key, make, [&] { return request.client_gone(); });
   engine.metrics().count_lookup(Metrics::Cache::results, answer.source == ResultCache::Source::kept);
