@@ -75,7 +75,10 @@ struct Response {
   /// Content-Length, Transfer-Encoding, Connection, Date and X-Request-Id are the server's own: ignored here.
   Fields headers;
   std::string body;
-  /// When set, the body is what this writes, sent chunked as it is written; `body` is ignored. It runs after
+  /// When set, this is the body: bytes that the handler shares with others, so that none are copied for a client that
+  /// takes its time. `body` is ignored.
+  std::shared_ptr<const std::string> shared;
+  /// When set, the body is what this writes, sent chunked as it is written; the others are ignored. It runs after
   /// the handler has returned, on the same thread, while the Request is still valid; not for HEAD. It must
   /// not throw: the answer would end there without its last chunk.
   std::function<void(Sink&)> stream;

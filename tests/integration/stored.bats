@@ -76,6 +76,18 @@ teardown_file() { stop_server; }
   [ "$(header ETag)" != "$tag" ] # another representation
 }
 
+@test "the bytes stay what they are; their description may change with the server" {
+  upload
+  request "$url/v1/meshes/$(coarse_id)"
+  [[ $(header Cache-Control) == *immutable* ]]
+  request -H 'Accept: application/json' "$url/v1/meshes/$(coarse_id)"
+  [[ $(header Cache-Control) == public,\ max-age=86400 ]]
+  tag=$(header ETag)
+  [[ $tag != *"$(coarse_id | cut -c1-32)"* ]]
+  request -H 'Accept: application/json' -H "If-None-Match: $tag" "$url/v1/meshes/$(coarse_id)"
+  [ "$status" = 304 ]
+}
+
 @test "HEAD has the headers of GET and no body" {
   upload
   for path in "/v1/meshes/$(coarse_id)" "/v1/meshes/$(coarse_id)/refined?levels=1"; do
