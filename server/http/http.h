@@ -45,7 +45,8 @@ class Request {
   [[nodiscard]] virtual std::string path_parameter(std::string_view name) const = 0;
   /// Query fields, percent-decoded, duplicates kept, in their original order.
   [[nodiscard]] virtual const Fields& query() const = 0;
-  /// A header field's value, "" when absent. Names are matched without regard to case.
+  /// A header field's value, "" when absent; several lines of one name are one list. Names are matched without regard
+  /// to case.
   [[nodiscard]] virtual std::string header(std::string_view name) const = 0;
   [[nodiscard]] virtual const std::string& remote_address() const = 0;
   /// `X-Request-Id`: the client's when it sent a sane one (1..64 of [A-Za-z0-9._-]), else a fresh random one.

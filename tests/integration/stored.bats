@@ -68,6 +68,10 @@ teardown_file() { stop_server; }
   [ ! -s "$body" ]
   request -H "If-None-Match: \"other\", W/$tag" "$refined?view.eye=0,0,3"
   [ "$status" = 304 ]
+  request -H 'If-None-Match: "other"' -H "If-None-Match: $tag" "$refined?view.eye=0,0,3" # one list, in two lines
+  [ "$status" = 304 ]
+  request -H 'Accept: text/html' -H 'Accept: application/x-draco' "$refined?view.eye=0,0,3"
+  [ "$status" = 200 ]
   request -H 'If-None-Match: "other"' "$refined?view.eye=0,0,3"
   [ "$status" = 200 ]
   request "$refined?view.eye=0,0,4"
