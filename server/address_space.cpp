@@ -12,6 +12,7 @@ namespace {
 constexpr uint64_t stack_bytes = 8ULL << 20;
 constexpr uint64_t arena_bytes = 128ULL << 20;  ///< glibc's malloc maps so much at a time for each of 8 arenas a core
 constexpr uint64_t base_bytes = 1ULL << 30;     ///< the program, its libraries
+constexpr uint64_t least_base_bytes = 128ULL << 20;
 /// A level, the levels above it, and what is encoded from it.
 constexpr uint64_t levels_held = 3;
 constexpr uint64_t unlimited_compute_bytes = 8ULL << 30;
@@ -23,17 +24,22 @@ constexpr bool is_sanitized =
     false;
 #endif
 
+uint64_t stacks(const Config& config) {
+  return (static_cast<uint64_t>(config.http.threads) + static_cast<uint64_t>(config.engine.slots)) * stack_bytes;
+}
+
 }  // namespace
+
+uint64_t address_space_of_threads(const Config& config) { return least_base_bytes + stacks(config); }
 
 uint64_t address_space_needed(const Config& config) {
   const EngineOptions& engine = config.engine;
   const uint64_t compute =
       engine.limits.max_compute_bytes > 0 ? engine.limits.max_compute_bytes : unlimited_compute_bytes;
   const uint64_t slots = static_cast<uint64_t>(engine.slots);
-  const uint64_t threads = static_cast<uint64_t>(config.http.threads) + slots;
   const uint64_t store = engine.store.address == "memory" ? engine.store.bytes : 0;
-  return base_bytes + threads * stack_bytes + slots * (8 * arena_bytes + levels_held * compute) +
-         config.http.max_held_bytes + store + engine.result_cache_bytes + engine.mesh_cache_bytes;
+  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) + config.http.max_held_bytes +
+         store + engine.result_cache_bytes + engine.mesh_cache_bytes;
 }
 
 void limit_address_space(const Config& config) {

@@ -4,6 +4,8 @@
 
 namespace papilio::server {
 
+/// Without so much the threads could not even start.
+[[nodiscard]] uint64_t address_space_of_threads(const Config& config);
 /// What the settings together may need, with room to spare: bodies, slots, caches, the store, a stack a thread.
 [[nodiscard]] uint64_t address_space_needed(const Config& config);
 

@@ -28,7 +28,6 @@ std::shared_ptr<Admission::Slot> Admission::enter(const std::function<bool()>& c
     if (free) break;
   }
   waiting_.erase(place);
-  ++computing_;
   changed_.notify_all();
   return std::make_shared<Slot>(*this);
 }

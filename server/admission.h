@@ -21,7 +21,8 @@ class Admission {
   /// Gives the slot back when it is destroyed.
   class Slot {
    public:
-    explicit Slot(Admission& admission) : admission_(&admission) {}
+    /// With the mutex held. What makes it counts it, so that none is counted that could not be made.
+    explicit Slot(Admission& admission) : admission_(&admission) { ++admission_->computing_; }
     ~Slot() { admission_->leave(); }
     Slot(const Slot&) = delete;
     Slot& operator=(const Slot&) = delete;

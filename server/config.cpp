@@ -7,6 +7,8 @@
 #include <map>
 #include <thread>
 
+#include "server/address_space.h"
+
 namespace papilio::server {
 namespace {
 
@@ -20,7 +22,10 @@ std::string environment_twin(std::string flag) {
 void name_environment_twins(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const char* value = option->get_envname().empty() ? nullptr : std::getenv(option->get_envname().c_str());
-    if (value != nullptr) std::cerr << "The environment has " << option->get_envname() << '=' << value << '\n';
+    if (value == nullptr) continue;
+    const bool may_hold_password = option->check_lname("store");
+    std::cerr << "The environment has " << option->get_envname() << (may_hold_password ? "" : "=")
+              << (may_hold_password ? "" : value) << '\n';
   }
 }
 
@@ -128,6 +133,15 @@ void check_together(const Config& config) {
                                config.http.host +
                                    " can be reached by others, and no keys are asked for. Give --keys FILE, or "
                                    "--allow-open if that is meant.");
+  if (config.http.max_held_bytes < config.http.max_body_bytes)
+    throw CLI::ValidationError("--max-held-bytes", "is " + std::to_string(config.http.max_held_bytes) +
+                                                       ", less than --max-body-bytes, which is " +
+                                                       std::to_string(config.http.max_body_bytes) +
+                                                       ": such a body could never be read.");
+  const uint64_t least = address_space_of_threads(config);
+  if (config.max_memory_bytes > 0 && config.max_memory_bytes < least)
+    throw CLI::ValidationError("--max-memory-bytes", "must be at least " + std::to_string(least) +
+                                                         " for the stacks of so many --connections and --slots; or 0.");
 }
 
 }  // namespace
@@ -154,14 +168,14 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
 
   try {
     app.parse(argc, argv);
+    if (config.engine.slots == 0)
+      config.engine.slots = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     check_together(config);
   } catch (const CLI::ParseError& error) {
     outcome.exit = true;
     outcome.status = app.exit(error) == 0 ? 0 : 2;
     if (outcome.status != 0) name_environment_twins(app);
   }
-  if (config.engine.slots == 0)
-    config.engine.slots = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   config.engine.max_body_bytes = config.http.max_body_bytes;
   config.engine.keyed = !config.keys.empty();
   return outcome;

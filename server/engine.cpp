@@ -13,7 +13,7 @@ Engine::Engine(const EngineOptions& options)
     : options_(options),
       admission_(options.slots, options.queue),
       store_(open_store(options.store)),
-      results_(options.result_cache_bytes, options.queue),
+      results_(options.result_cache_bytes, options.slots + options.queue),
       meshes_(options.mesh_cache_bytes) {}
 
 std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& abandoned) {

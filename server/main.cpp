@@ -31,6 +31,15 @@ sigset_t block_signals() {
   return signals;
 }
 
+/// From then on a second SIGTERM or SIGINT ends the program at once. SIGHUP stays blocked: a reload that comes while
+/// the last requests are answered must not cut them short.
+void unblock_end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGTERM, SIGINT}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
 /// Reads a part of the configuration again; what cannot be read stays as it was.
 void reload(std::string_view what, const std::function<void()>& read) {
   try {
@@ -89,7 +98,7 @@ int serve(const Config& config) {
 
   const int signal = wait_for_end(signals, config, server, keys.get());
   log_event("info", "draining", {{"signal", signal}, {"running", server.running()}});
-  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second signal ends the program at once
+  unblock_end_signals();
   const bool complete = server.drain(config.drain_seconds);
   listener.join();
   if (!listener_failure.empty()) throw std::runtime_error(listener_failure);

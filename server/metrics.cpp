@@ -95,10 +95,12 @@ void Metrics::count_request(const Finished& request) {
       .Add({{"route", route}, {"method", method_label(request.method)}, {"status", std::to_string(request.status)}})
       .Increment();
   f.request_seconds.Add({{"route", route}}, seconds).Observe(request.milliseconds / 1000);
-  if (!request.code.empty()) f.problems.Add({{"code", request.code}}).Increment();
+  if (!request.code.empty()) count_problem(request.code);
   f.bytes_in.Increment(static_cast<double>(request.bytes_in));
   f.bytes_out.Increment(static_cast<double>(request.bytes_out));
 }
+
+void Metrics::count_problem(const std::string& code) { families_->problems.Add({{"code", code}}).Increment(); }
 
 void Metrics::count_refinement(uint64_t faces_in, const proto::Statistics& made) {
   Families& f = *families_;

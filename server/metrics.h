@@ -28,6 +28,8 @@ class Metrics {
 
   enum class Cache { results, meshes };
   void count_request(const Finished& request);
+  /// One that came after the answer's status was sent.
+  void count_problem(const std::string& code);
   /// One refinement carried out, to its end.
   void count_refinement(uint64_t faces_in, const proto::Statistics& made);
   void count_lookup(Cache cache, bool hit);

@@ -167,7 +167,10 @@ ordered_json headers() {
           {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
           {"ETag", header("string", "Strong")},
           {"Cache-Control", header("string", "What caches may do with the answer")},
+          {"Vary", header("string", "Request headers that the answer depends on")},
           {"Location", header("string", "Path of the mesh")},
+          {"WWW-Authenticate", header("string", "How to show a key")},
+          {"Allow", header("string", "Methods of the path")},
           {"Retry-After", header("integer", "Seconds to wait before the next try")}};
 }
 
@@ -199,7 +202,7 @@ ordered_json refined_answer() {
   return {{"description", "The refined mesh"},
           {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
                                          "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
-                                         "Papilio-Found", "Server-Timing", "ETag", "Cache-Control"})},
+                                         "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
           {"content", types}};
 }
 
@@ -211,7 +214,7 @@ ordered_json json_answer(const std::string& description, const std::string& sche
 
 void add_successes(const Endpoint& endpoint, ordered_json& answers) {
   const ordered_json not_modified{{"description", "If-None-Match has the ETag"},
-                                  {"headers", header_references({"ETag", "Cache-Control"})}};
+                                  {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})}};
   switch (endpoint.output) {
     case Output::refined:
       answers["200"] = refined_answer();
@@ -219,7 +222,7 @@ void add_successes(const Endpoint& endpoint, ordered_json& answers) {
       break;
     case Output::mesh:
       answers["200"] = {{"description", "The stored bytes, or their description"},
-                        {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control"})},
+                        {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})},
                         {"content", content({draco_type, bytes_type}, binary())}};
       answers["200"]["content"][json_type] = {{"schema", schema_reference("Description")}};
       answers["304"] = not_modified;
@@ -265,6 +268,8 @@ void add_problems(const Endpoint& endpoint, ordered_json& answers) {
     answer = {{"description", text},
               {"headers", header_references({"X-Request-Id"})},
               {"content", content({"application/problem+json"}, schema_reference("Problem"))}};
+    if (status == 401) answer["headers"].update(header_references({"WWW-Authenticate"}));
+    if (status == 405) answer["headers"].update(header_references({"Allow"}));
     if (status == 429 || status == 503) answer["headers"].update(header_references({"Retry-After"}));
   }
 }

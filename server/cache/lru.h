@@ -34,10 +34,11 @@ class Lru {
     const std::lock_guard lock(mutex_);
     const bool is_new = !drop(key);
     if (bytes + entry_bytes > budget_) return is_new;
-    order_.push_front(key);
-    entries_.emplace(key, Entry{std::move(value), bytes + entry_bytes, order_.begin()});
+    std::list<std::string> place{key};
+    entries_.emplace(key, Entry{std::move(value), bytes + entry_bytes, place.begin()});
+    order_.splice(order_.begin(), place);  // last, since it cannot fail: both or neither have the key
     bytes_ += bytes + entry_bytes;
-    while (bytes_ > budget_) drop(std::string(order_.back()));
+    while (bytes_ > budget_) drop(order_.back());
     return is_new;
   }
 
@@ -68,6 +69,7 @@ class Lru {
     std::list<std::string>::iterator place;
   };
 
+  /// The key may be the one in `order_`.
   bool drop(const std::string& key) {
     const auto found = entries_.find(key);
     if (found == entries_.end()) return false;

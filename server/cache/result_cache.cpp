@@ -43,10 +43,15 @@ ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& fl
     return flight.waiting == 0;
   };
   Result result;
+  Source source = Source::kept;
   std::exception_ptr failure;
   try {
-    result = make(abandoned);
-    kept_.put(key, result, result->draco.size());
+    result = kept_.get(key);  // another flight may have landed between the caller's look there and this one's start
+    if (result == nullptr) {
+      source = Source::made;
+      result = make(abandoned);
+      kept_.put(key, result, result->draco.size());
+    }
   } catch (...) {
     failure = std::current_exception();
   }
@@ -59,7 +64,7 @@ ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& fl
   }
   landed_.notify_all();
   if (failure) std::rethrow_exception(failure);
-  return {std::move(result), Source::made};
+  return {std::move(result), source};
 }
 
 /// Null when the one who made it gave up: then it is to be made anew.

@@ -90,7 +90,7 @@ void BodyReader::read_exactly(uint64_t count, std::string& bytes) {
 /// In steps, so that the counter that all requests share is seldom touched.
 void BodyReader::hold(uint64_t bytes) {
   constexpr uint64_t step = 256 << 10;
-  if (held_ != nullptr && !held_->grow_to((bytes + step - 1) / step * step))
+  if (held_ != nullptr && !held_->grow_to(std::min((bytes + step - 1) / step * step, limit_)))
     throw Problem(Code::busy,
                   "The bodies of all requests together take too much memory. Try again after the time in "
                   "Retry-After.");

@@ -119,8 +119,15 @@ bool is_token(std::string_view text) {
 }
 
 std::string Head::field(std::string_view name) const {
-  const auto found = std::ranges::find_if(fields, [&](const auto& f) { return same_ignoring_case(f.first, name); });
-  return found == fields.end() ? "" : found->second;
+  std::string all;
+  bool is_first = true;
+  for (const auto& [known, value] : fields) {
+    if (!same_ignoring_case(known, name)) continue;
+    if (!is_first) all += ", ";
+    all += value;
+    is_first = false;
+  }
+  return all;
 }
 
 size_t Head::count(std::string_view name) const {

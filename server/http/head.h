@@ -28,7 +28,8 @@ struct Head {
   int minor_version = 1;
   Fields fields;
 
-  /// The first such field's value, "" when there is none.
+  /// The value of the field, "" when there is none; of several lines one list (RFC 9110, section 5.2), so that what
+  /// takes one value only refuses two.
   [[nodiscard]] std::string field(std::string_view name) const;
   [[nodiscard]] size_t count(std::string_view name) const;
   /// True when one such field's comma-separated list holds the token.

@@ -45,7 +45,8 @@ class Request {
   [[nodiscard]] virtual std::string path_parameter(std::string_view name) const = 0;
   /// Query fields, percent-decoded, duplicates kept, in their original order.
   [[nodiscard]] virtual const Fields& query() const = 0;
-  /// A header field's value, "" when absent. Names are matched without regard to case.
+  /// A header field's value, "" when absent; several lines of one name are one list. Names are matched without regard
+  /// to case.
   [[nodiscard]] virtual std::string header(std::string_view name) const = 0;
   [[nodiscard]] virtual const std::string& remote_address() const = 0;
   /// `X-Request-Id`: the client's when it sent a sane one (1..64 of [A-Za-z0-9._-]), else a fresh random one.
@@ -75,7 +76,10 @@ struct Response {
   /// Content-Length, Transfer-Encoding, Connection, Date and X-Request-Id are the server's own: ignored here.
   Fields headers;
   std::string body;
-  /// When set, the body is what this writes, sent chunked as it is written; `body` is ignored. It runs after
+  /// When set, this is the body: bytes that the handler shares with others, so that none are copied for a client that
+  /// takes its time. `body` is ignored.
+  std::shared_ptr<const std::string> shared;
+  /// When set, the body is what this writes, sent chunked as it is written; the others are ignored. It runs after
   /// the handler has returned, on the same thread, while the Request is still valid; not for HEAD. It must
   /// not throw: the answer would end there without its last chunk.
   std::function<void(Sink&)> stream;

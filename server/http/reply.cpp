@@ -88,6 +88,8 @@ std::string date() {
 
 bool has_body(int status) { return status >= 200 && status != 204 && status != 304; }
 
+const std::string& bytes_of(const Response& response) { return response.shared ? *response.shared : response.body; }
+
 bool is_of_the_connection(std::string_view name) {
   constexpr std::array<std::string_view, 5> names{"Connection", "Content-Length", "Transfer-Encoding", "Date",
                                                   "X-Request-Id"};
@@ -118,7 +120,7 @@ std::string reply_head(const Response& response, const Delivery& delivery) {
   }
   if (response.status >= 400 && !says_cache) add_field(head, "Cache-Control", "no-store");
   if (has_body(response.status)) {
-    if (!response.stream) add_field(head, "Content-Length", std::to_string(response.body.size()));
+    if (!response.stream) add_field(head, "Content-Length", std::to_string(bytes_of(response).size()));
     if (response.stream && delivery.chunked) add_field(head, "Transfer-Encoding", "chunked");
   }
   if (!delivery.keep_alive) add_field(head, "Connection", "close");
@@ -168,9 +170,9 @@ Response problem_response(const proto::Problem& problem, const std::string& requ
 
 bool send_reply(Connection& connection, const Response& response, const Delivery& delivery) {
   const bool with_body = has_body(response.status) && !delivery.head_only;
-  const bool with_bytes = with_body && !response.stream && !response.body.empty();
+  const bool with_bytes = with_body && !response.stream && !bytes_of(response).empty();
   if (!connection.write(reply_head(response, delivery), with_bytes)) return false;
-  if (with_bytes) return connection.write(response.body);
+  if (with_bytes) return connection.write(bytes_of(response));
   if (!with_body || !response.stream) return true;
   ConnectionSink sink(connection, delivery.chunked);
   try {

@@ -8,6 +8,7 @@
 
 #include "proto/multipart.h"
 #include "proto/problem.h"
+#include "server/log.h"
 #include "server/routes/refined_answer.h"
 
 namespace papilio::server {
@@ -58,7 +59,16 @@ Part level_part(const EncodedLevel& level) {
   return part;
 }
 
-/// Makes all parts of the stream; never throws.
+/// The status is sent, and was a good one: the log and the metrics get to know here what went wrong since.
+void report(Engine& engine, const std::string& request_id, Code code, const std::string& detail) {
+  const proto::ProblemKind& kind = proto::problem_kind(code);
+  engine.metrics().count_problem(std::string(kind.name));
+  log_event(kind.status >= 500 ? "error" : "info", "stream",
+            {{"id", request_id}, {"code", std::string(kind.name)}, {"detail", detail}});
+}
+
+/// Makes all parts of the stream, the last one a problem where it cannot be carried on. Throws only when there is no
+/// memory for that.
 void make_parts(Engine& engine, proto::Refinement& refinement, const std::string& request_id,
                 const std::function<bool()>& abandoned, Outbox& outbox) {
   const auto fail = [&](const Problem& problem) {
@@ -70,8 +80,11 @@ void make_parts(Engine& engine, proto::Refinement& refinement, const std::string
         {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level)); }, .cancelled = abandoned});
     outbox.put({{{"Content-Type", json_type}}, proto::statistics_json(last.statistics)});
   } catch (const Problem& problem) {
+    if (problem.code() == Code::cancelled) return;  // nobody reads it, and the one who sends says so
+    report(engine, request_id, problem.code(), problem.what());
     fail(problem);
-  } catch (const std::exception&) {
+  } catch (const std::exception& error) {
+    report(engine, request_id, Code::internal, error.what());
     fail(Problem(Code::internal, "Something failed inside the server. The request id finds it in the log."));
   }
 }
@@ -92,9 +105,14 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
                      refinement = std::move(refinement)](Sink& sink) mutable {
     Outbox outbox;
     std::atomic<bool> gone = false;
+    std::atomic<bool> failed = false;
     const std::jthread maker([&] {
-      make_parts(
-          engine, *refinement, request.id(), [&] { return gone.load(); }, outbox);
+      try {
+        make_parts(
+            engine, *refinement, request.id(), [&] { return gone.load(); }, outbox);
+      } catch (...) {
+        failed = true;
+      }
       refinement.reset();
       slot.reset();
       outbox.close();
@@ -104,6 +122,7 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
       gone = gone || request.client_gone() || (part && !sink.write(writer.part(*part)));
     }
     if (gone) throw Problem(Code::cancelled, "The client went away.");
+    if (failed) throw Problem(Code::out_of_memory, "The stream could not be carried on.");
     sink.write(writer.end());
   };
   return response;

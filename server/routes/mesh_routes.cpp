@@ -117,20 +117,25 @@ Response stored_mesh(Engine& engine, Request& request) {
     throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) +
                                             ", but a mesh is application/x-draco or application/octet-stream, and its "
                                             "description application/json.");
-  // By the type too: two representations never share a tag.
-  const std::string tag = '"' + id.substr(0, 32) + (type == draco_type ? "" : type == bytes_type ? "-b" : "-j") + '"';
+  // By the type too: two representations never share a tag. The description depends on who makes it, the bytes do not.
+  const bool describes = type == json_type;
+  const std::string tag =
+      describes ? entity_tag(id, unrefined(), *type) : '"' + id.substr(0, 32) + (type == draco_type ? "\"" : "-b\"");
   Response response;
-  response.headers = {{"ETag", tag}, {"Cache-Control", cache_control(engine, year, true)}, {"Vary", "Accept"}};
+  response.headers = {{"ETag", tag},
+                      {"Cache-Control", describes ? cache_control(engine, engine.options().cache_seconds, false)
+                                                  : cache_control(engine, year, true)},
+                      {"Vary", "Accept"}};
   if (none_match_has(request.header("If-None-Match"), tag) && engine.store().contains(id))
     return not_modified(response.headers);
   const MeshStore::Bytes mesh = engine.store().get(id);
   if (mesh == nullptr) throw no_such_mesh();
   response.content_type = *type;
-  if (type == json_type) {
+  if (describes) {
     const auto slot = engine.enter([&] { return request.client_gone(); });
     response.body = description(id, mesh->size(), Refinement(*mesh, unrefined(), engine.limits()));
   } else {
-    response.body = *mesh;
+    response.shared = mesh;
   }
   return response;
 }
@@ -202,9 +207,10 @@ Response refined_mesh(Engine& engine, Request& request) {
     return not_modified(headers);
   }
   const ResultCache::Answer answer = find_or_make(engine, request, id, parameters, key);
-  proto::EncodedLevel level = *answer.result;
-  if (answer.source == ResultCache::Source::kept) level.statistics.times = {};  // no time was spent on this request
-  Response response = refined_response(std::move(level), type);
+  proto::Statistics statistics = answer.result->statistics;
+  if (answer.source == ResultCache::Source::kept) statistics.times = {};  // no time was spent on this request
+  Response response = refined_response(statistics, type);
+  response.shared = {answer.result, &answer.result->draco};
   response.headers.insert(response.headers.end(), validators.begin(), validators.end());
   return response;
 }

@@ -67,7 +67,9 @@ Response refine_route(Engine& engine, Request& request) {
   auto slot = engine.enter(gone);
   auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
   if (type == multipart_type) return level_stream(engine, request, std::move(slot), std::move(refinement));
-  Response response = refined_response(engine.run(*refinement, {.cancelled = gone}), type);
+  proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone});
+  Response response = refined_response(made.statistics, type);
+  response.body = std::move(made.draco);
   response.headers.emplace_back("Cache-Control", "no-store");
   return response;
 }

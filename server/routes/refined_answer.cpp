@@ -16,12 +16,11 @@ std::string negotiate_refined(const Request& request) {
   return *type;
 }
 
-Response refined_response(proto::EncodedLevel made, const std::string& type) {
+Response refined_response(const proto::Statistics& made, const std::string& type) {
   Response response;
   response.content_type = type;
   response.headers = {{"Vary", "Accept"}};
-  for (auto& header : proto::statistics_headers(made.statistics)) response.headers.push_back(std::move(header));
-  response.body = std::move(made.draco);
+  for (auto& header : proto::statistics_headers(made)) response.headers.push_back(std::move(header));
   return response;
 }
 

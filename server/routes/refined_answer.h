@@ -20,8 +20,8 @@ inline constexpr const char* json_type = "application/json";
 /// not_acceptable.
 [[nodiscard]] std::string negotiate_refined(const Request& request);
 
-/// The mesh with its statistics as headers. The caller adds what caches may do with it.
-[[nodiscard]] Response refined_response(proto::EncodedLevel made, const std::string& type);
+/// The statistics of a mesh as headers. The caller adds the mesh, and what caches may do with it.
+[[nodiscard]] Response refined_response(const proto::Statistics& made, const std::string& type);
 
 /// Streams each level as it is made, and a JSON summary. The work is done on a thread of its own, so that the slot is
 /// free as soon as it is done, however slowly the client reads; it stops within a check when the client goes away. Once

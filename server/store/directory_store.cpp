@@ -63,10 +63,21 @@ class File {
   const int fd_;
 };
 
-std::string random_suffix() {
+/// "1234-5678.part"
+std::string part_name() {
   std::random_device random;
   return std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(unfinished);
 }
+
+// Whatever else lies below the directory belongs to somebody else.
+
+bool is_part(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  return file.extension() == unfinished && stem.find('-') != std::string::npos &&
+         stem.find_first_not_of("0123456789-") == std::string::npos;
+}
+
+bool is_mesh(const fs::path& file) { return file.extension() == extension && is_sha256(file.stem().string()); }
 
 bool is_stale(const fs::directory_entry& file) {
   std::error_code error;
@@ -80,13 +91,13 @@ DirectoryStore::DirectoryStore(fs::path directory, uint64_t budget)
     : directory_(std::move(directory)), budget_(budget) {
   std::error_code error;
   fs::create_directories(directory_, error);
-  const fs::path probe = directory_ / random_suffix();
+  const fs::path probe = directory_ / part_name();
   if (!File(probe, O_WRONLY | O_CREAT | O_EXCL).is_open())
     throw std::runtime_error("cannot write into the store's directory " + directory_.string() + ": " +
                              std::strerror(errno));
   fs::remove(probe, error);
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(directory_))
-    if (file.path().extension() == unfinished && is_stale(file)) fs::remove(file, error);
+    if (is_part(file.path()) && is_stale(file)) fs::remove(file, error);
   count_files();
 }
 
@@ -95,12 +106,20 @@ fs::path DirectoryStore::file_of(const std::string& id) const {
 }
 
 bool DirectoryStore::put(const std::string& id, std::string_view bytes) {
-  const fs::path file = file_of(id);
-  std::error_code error;
   if (contains(id)) return false;
-  make_room(bytes.size());
-  fs::create_directories(file.parent_path(), error);
-  const fs::path part = file.parent_path() / random_suffix();
+  const Room room(*this, bytes.size());
+  write(file_of(id), bytes);
+  const std::lock_guard lock(mutex_);
+  ++usage_.meshes;
+  usage_.bytes += bytes.size();
+  return true;
+}
+
+void DirectoryStore::write(const fs::path& file, std::string_view bytes) const {
+  std::error_code error;
+  const bool is_new = fs::create_directories(file.parent_path(), error);
+  if (is_new && !File(directory_, O_RDONLY | O_DIRECTORY).sync()) throw unavailable(directory_);
+  const fs::path part = file.parent_path() / part_name();
   bool written = false;
   {
     const File out(part, O_WRONLY | O_CREAT | O_EXCL);
@@ -115,15 +134,14 @@ bool DirectoryStore::put(const std::string& id, std::string_view bytes) {
     throw problem;
   }
   if (!File(file.parent_path(), O_RDONLY | O_DIRECTORY).sync()) throw unavailable(file);
-  const std::lock_guard lock(mutex_);
-  ++usage_.meshes;
-  usage_.bytes += bytes.size();
-  return true;
 }
 
 bool DirectoryStore::contains(const std::string& id) {
+  const fs::path file = file_of(id);
   std::error_code error;
-  return fs::exists(file_of(id), error);
+  const bool is_there = fs::exists(file, error);
+  if (error) throw unavailable(file, error.message());
+  return is_there;
 }
 
 MeshStore::Bytes DirectoryStore::get(const std::string& id) {
@@ -147,7 +165,8 @@ bool DirectoryStore::remove(const std::string& id) {
   const fs::path file = file_of(id);
   std::error_code error;
   const uint64_t bytes = fs::file_size(file, error);
-  if (error) return false;
+  if (error == std::errc::no_such_file_or_directory) return false;
+  if (error) throw unavailable(file, error.message());
   if (!fs::remove(file, error)) {
     if (error) throw unavailable(file, error.message());
     return false;
@@ -166,7 +185,7 @@ void DirectoryStore::count_files() {
     if (error) break;
     std::error_code gone;
     const uint64_t bytes = file->is_regular_file(gone) ? file->file_size(gone) : 0;
-    if (gone || file->path().extension() != extension) continue;
+    if (gone || !is_mesh(file->path())) continue;
     ++counted.meshes;
     counted.bytes += bytes;
   }
@@ -175,17 +194,26 @@ void DirectoryStore::count_files() {
   counted_ = std::chrono::steady_clock::now();
 }
 
-void DirectoryStore::make_room(uint64_t bytes) {
-  const auto fits = [&] {
-    const std::lock_guard lock(mutex_);
-    return usage_.bytes + bytes <= budget_ && std::chrono::steady_clock::now() - counted_ < count_interval;
-  };
-  if (fits()) return;
-  count_files();
-  if (!fits())
+bool DirectoryStore::reserve(uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  const bool is_counted = std::chrono::steady_clock::now() - counted_ < count_interval;
+  const bool fits = is_counted && usage_.bytes + being_written_ + bytes <= budget_;
+  if (fits) being_written_ += bytes;
+  return fits;
+}
+
+DirectoryStore::Room::Room(DirectoryStore& store, uint64_t bytes) : store_(store), bytes_(bytes) {
+  if (store_.reserve(bytes)) return;
+  store_.count_files();
+  if (!store_.reserve(bytes))
     throw Problem(Code::store_full,
-                  "The store of " + std::to_string(budget_) +
+                  "The store of " + std::to_string(store_.budget_) +
                       " bytes has no room for this mesh. Delete meshes, or ask the operator for room.");
+}
+
+DirectoryStore::Room::~Room() {
+  const std::lock_guard lock(store_.mutex_);
+  store_.being_written_ -= bytes_;
 }
 
 std::optional<MeshStore::Usage> DirectoryStore::usage() {

@@ -10,7 +10,8 @@ namespace papilio::server {
 
 /// Keeps each mesh in a file of its own, DIRECTORY/ab/abcd....drc. A file is written under a temporary name, synced and
 /// renamed, so that a mesh is there whole or not at all, whatever ends the process. Several servers may share the
-/// directory. A file whose content is not what its name says is taken away and counts as absent.
+/// directory. A file whose content is not what its name says is taken away and counts as absent; files of other names
+/// are left alone. A directory that cannot be read is store_unavailable, not an absence.
 class DirectoryStore final : public MeshStore {
  public:
   /// Makes the directory if need be, and sweeps out what interrupted writes left. Throws std::runtime_error.
@@ -25,8 +26,24 @@ class DirectoryStore final : public MeshStore {
 
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& id) const;
+  void write(const std::filesystem::path& file, std::string_view bytes) const;
   void count_files();
-  void make_room(uint64_t bytes);
+  /// False when there is no room, or the count is too old to know.
+  [[nodiscard]] bool reserve(uint64_t bytes);
+
+  /// Room for a mesh while it is written, so that meshes written at once cannot pass the budget together. Throws
+  /// `Problem` store_full.
+  class Room {
+   public:
+    Room(DirectoryStore& store, uint64_t bytes);
+    ~Room();
+    Room(const Room&) = delete;
+    Room& operator=(const Room&) = delete;
+
+   private:
+    DirectoryStore& store_;
+    const uint64_t bytes_;
+  };
 
   const std::filesystem::path directory_;
   const uint64_t budget_;
@@ -34,6 +51,7 @@ class DirectoryStore final : public MeshStore {
   /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a
   /// refusal.
   Usage usage_;
+  uint64_t being_written_ = 0;  ///< guarded by mutex_
   std::chrono::steady_clock::time_point counted_;
 };
 

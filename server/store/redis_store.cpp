@@ -18,6 +18,7 @@ namespace {
 
 constexpr timeval longest_wait{2, 0};
 constexpr std::chrono::seconds away_interval{1};
+constexpr std::chrono::seconds longest_try{8};  ///< to connect, authenticate, select and ask
 
 Problem no_answer() {
   return {Code::store_unavailable,
@@ -137,6 +138,7 @@ uint64_t RedisStore::used_memory() {
 
 Problem RedisStore::away(std::string_view reason) {
   const std::lock_guard lock(mutex_);
+  is_away_ = true;
   away_until_ = std::chrono::steady_clock::now() + away_interval;
   idle_.clear();  // lost too
   return unavailable(reason);
@@ -150,7 +152,7 @@ RedisStore::Context RedisStore::connect() {
   const auto require = [&](const std::vector<std::string_view>& words) {
     const Reply reply = ask_on(*context, words);
     if (reply == nullptr) throw away(context->errstr);
-    if (reply->type == REDIS_REPLY_ERROR) throw unavailable({reply->str, reply->len});
+    if (reply->type == REDIS_REPLY_ERROR) throw away({reply->str, reply->len});
   };
   if (!address_.user.empty())
     require({"AUTH", address_.user, address_.password});
@@ -171,10 +173,12 @@ RedisStore::Reply RedisStore::ask_on(redisContext& context, const std::vector<st
       static_cast<redisReply*>(redisCommandArgv(&context, static_cast<int>(words.size()), texts.data(), sizes.data())));
 }
 
-/// Null when there is none. Throws while Redis is known to be away.
+/// Null when there is none. Throws while Redis is known to be away, or another is finding out.
 RedisStore::Context RedisStore::take_idle() {
   const std::lock_guard lock(mutex_);
-  if (std::chrono::steady_clock::now() < away_until_) throw no_answer();
+  const auto now = std::chrono::steady_clock::now();
+  if (now < away_until_) throw no_answer();
+  if (is_away_) away_until_ = now + longest_try;
   if (idle_.empty()) return nullptr;
   Context context = std::move(idle_.back());
   idle_.pop_back();
@@ -199,6 +203,8 @@ RedisStore::Reply RedisStore::ask(const std::vector<std::string_view>& words) {
   // While it loads its data from disk Redis answers, but not what was asked.
   if (has_error(*reply, "LOADING") || has_error(*reply, "NOAUTH")) throw away({reply->str, reply->len});
   const std::lock_guard lock(mutex_);
+  is_away_ = false;
+  away_until_ = {};
   idle_.push_back(std::move(context));
   return reply;
 }

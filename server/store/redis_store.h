@@ -26,8 +26,9 @@ struct RedisAddress {
 [[nodiscard]] std::optional<RedisAddress> parse_redis_address(std::string_view text);
 
 /// Keeps meshes in Redis, under "papilio:mesh:ID"; several servers share them. Every question has a bound of two
-/// seconds. A lost connection is made anew. While Redis is away every question is answered with store_unavailable, and
-/// only one a second waits to find out.
+/// seconds, and so has each step of making a connection. A lost connection is made anew. While Redis is away every
+/// question is answered with store_unavailable at once, but for one at a time that waits to find out, a second after
+/// the last.
 class RedisStore final : public MeshStore {
  public:
   /// `budget`: no mesh is added that would bring the memory Redis uses past it. `seconds`: a mesh that is not used for
@@ -68,6 +69,7 @@ class RedisStore final : public MeshStore {
   const int seconds_;
   std::mutex mutex_;
   std::vector<Context> idle_;                         ///< guarded by mutex_
+  bool is_away_ = false;                              ///< guarded by mutex_: it did not answer last time
   std::chrono::steady_clock::time_point away_until_;  ///< guarded by mutex_: not asked before
 };
 

@@ -19,6 +19,10 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
     "$url/v1/refine?levels=4&flatness=1"
   [ "$status" = 200 ]
   grep -aq '"code": "takes_too_long"' "$body"
+  # Its status was sent before: the log and the metrics tell what became of it.
+  grep -q "msg=stream id=$(header X-Request-Id) code=takes_too_long detail=" "$BATS_FILE_TMPDIR/server.log"
+  request "$url/metrics"
+  grep -q '^papilio_problems_total{code="takes_too_long"} 2' "$body"
 }
 
 @test "a refinement that would take more memory than the limit is refused with the number" {
@@ -50,7 +54,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 }
 
 @test "bodies together have a limit: the one too many is refused, the others go on" {
-  start_server --max-held-bytes 3000000
+  start_server --max-body-bytes 3000000 --max-held-bytes 3000000
   head -c 2000000 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
   # One holds two of three megabytes, and waits with the rest.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
@@ -69,6 +73,37 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [[ $answer == *' 422 '* ]]
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
   expect_problem 422 mesh_not_draco
+}
+
+@test "a body as large as all together may be is read" {
+  start_server --max-body-bytes 300001 --max-held-bytes 300001
+  head -c 300001 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
+  expect_problem 422 mesh_not_draco
+}
+
+@test "clients that take their time do not each hold a copy of the stored mesh" {
+  start_server
+  { cat "$coarse" && head -c 20000000 /dev/zero; } >"$BATS_TEST_TMPDIR/fine.drc" # no decoder minds what follows
+  upload "$BATS_TEST_TMPDIR/fine.drc"
+  [ "$status" = 201 ]
+  path=$(header Location)
+  request "$url$path"
+  resident() { awk '/^VmRSS/ { print $2 * 1024 }' "/proc/$server_pid/status"; }
+  before=$(resident)
+  readers=()
+  for _ in {1..60}; do
+    exec {reader}<>"/dev/tcp/127.0.0.1/${url##*:}"
+    printf 'GET %s HTTP/1.1\r\nHost: x\r\n\r\n' "$path" >&"$reader"
+    readers+=("$reader")
+  done
+  for reader in "${readers[@]}"; do
+    IFS= read -r -t 20 -u "$reader" line # the rest is not read, and fits into no socket's buffer
+    [[ $line == *' 200 '* ]]
+  done
+  after=$(resident)
+  for reader in "${readers[@]}"; do exec {reader}>&-; done
+  ((after - before < 30 * $(stat -c %s "$BATS_TEST_TMPDIR/fine.drc")))
 }
 
 @test "a stream's slot is free again before a slow client has read it" {

@@ -116,6 +116,20 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   declared '/v1/meshes/{id}' delete "$status" "$(field code)"
   request -H 'Accept: text/html' "$url/v1/meshes/x/refined"
   declared '/v1/meshes/{id}/refined' get "$status" "$(field code)"
+  # What was stored under wider limits.
+  start_server --store "directory:$BATS_TEST_TMPDIR/meshes"
+  upload
+  stop_server
+  start_server --store "directory:$BATS_TEST_TMPDIR/meshes" --max-output-faces 100
+  request -H 'Accept: application/json' "$url/v1/meshes/$(coarse_id)"
+  declared '/v1/meshes/{id}' get "$status" "$(field code)"
+  upload
+  declared /v1/meshes post "$status" "$(field code)"
+  stop_server
+  start_server --store "directory:$BATS_TEST_TMPDIR/meshes" --max-input-faces 100
+  request -H 'Accept: application/json' "$url/v1/meshes/$(coarse_id)"
+  declared '/v1/meshes/{id}' get "$status" "$(field code)"
+  stop_server
 }
 
 @test "every error code is documented somewhere" {

@@ -64,6 +64,21 @@ teardown() {
   [[ $output == *192.0.2.1* ]]
 }
 
+@test "settings that cannot be right together are refused before anything is promised" {
+  run timeout 20 "$server" --port 0 --max-body-bytes 2000000 --max-held-bytes 1000000
+  [ "$status" = 2 ]
+  [[ $output == *--max-held-bytes*--max-body-bytes* && $output != *listening* ]]
+  run timeout 20 "$server" --port 0 --connections 1000 --max-memory-bytes 1000000000
+  [ "$status" = 2 ]
+  [[ $output == *--max-memory-bytes*--connections* && $output != *listening* ]]
+}
+
+@test "a refusal names what the environment has, but no password" {
+  PAPILIO_PORT=99999 PAPILIO_STORE=redis://user:secret@localhost run "$server"
+  [ "$status" = 2 ]
+  [[ $output == *PAPILIO_PORT=99999* && $output == *PAPILIO_STORE* && $output != *secret* ]]
+}
+
 # long_request ID QUERY: starts one in the background; sets $running, its process, whose status goes to the file "code".
 long_request() {
   curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" -H "X-Request-Id: $1" \
@@ -139,6 +154,19 @@ leave() {
   wait "$running"
   [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
   [ "$(decoded_faces "$BATS_TEST_TMPDIR/fine.drc")" = 2457600 ]
+  wait "$server_pid"
+  server_pid=
+}
+
+@test "SIGHUP while the last requests are answered cuts none of them short" {
+  start_server --slots 1 --queue 0
+  long_request long levels=6
+  until_full
+  kill -TERM "$server_pid"
+  until grep -q msg=draining "$BATS_FILE_TMPDIR/server.log"; do sleep 0.05; done
+  kill -HUP "$server_pid"
+  wait "$running"
+  [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
   wait "$server_pid"
   server_pid=
 }

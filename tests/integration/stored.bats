@@ -68,12 +68,28 @@ teardown_file() { stop_server; }
   [ ! -s "$body" ]
   request -H "If-None-Match: \"other\", W/$tag" "$refined?view.eye=0,0,3"
   [ "$status" = 304 ]
+  request -H 'If-None-Match: "other"' -H "If-None-Match: $tag" "$refined?view.eye=0,0,3" # one list, in two lines
+  [ "$status" = 304 ]
+  request -H 'Accept: text/html' -H 'Accept: application/x-draco' "$refined?view.eye=0,0,3"
+  [ "$status" = 200 ]
   request -H 'If-None-Match: "other"' "$refined?view.eye=0,0,3"
   [ "$status" = 200 ]
   request "$refined?view.eye=0,0,4"
   [ "$(header ETag)" != "$tag" ]
   request -H 'Accept: application/octet-stream' "$refined?view.eye=0,0,3"
   [ "$(header ETag)" != "$tag" ] # another representation
+}
+
+@test "the bytes stay what they are; their description may change with the server" {
+  upload
+  request "$url/v1/meshes/$(coarse_id)"
+  [[ $(header Cache-Control) == *immutable* ]]
+  request -H 'Accept: application/json' "$url/v1/meshes/$(coarse_id)"
+  [[ $(header Cache-Control) == public,\ max-age=86400 ]]
+  tag=$(header ETag)
+  [[ $tag != *"$(coarse_id | cut -c1-32)"* ]]
+  request -H 'Accept: application/json' -H "If-None-Match: $tag" "$url/v1/meshes/$(coarse_id)"
+  [ "$status" = 304 ]
 }
 
 @test "HEAD has the headers of GET and no body" {

@@ -19,6 +19,15 @@ teardown() {
   [ "$(sed -n 's/^papilio_stage_seconds_count{stage="refine"} //p' "$body")" = 1 ]
 }
 
+@test "equal requests share one slot, even where no other may wait" {
+  start_server --slots 2 --queue 0
+  upload
+  requests=()
+  for i in 1 2 3; do requests+=(-o "$BATS_TEST_TMPDIR/$i.drc" "$url/v1/meshes/$(coarse_id)/refined?levels=6"); done
+  codes=$(curl -sS --noproxy '*' --parallel --parallel-immediate --parallel-max 3 -w '%{http_code} ' "${requests[@]}")
+  [ "$codes" = '200 200 200 ' ]
+}
+
 @test "the memory store forgets what was used longest ago" {
   start_server --store-bytes 3000 # two of them, with what an entry takes, and not three
   for faces in 1 2 3; do

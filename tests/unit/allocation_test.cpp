@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <functional>
+#include <memory>
 #include <new>
+#include <string>
 
 #include "core/refine.h"
+#include "server/admission.h"
+#include "server/cache/lru.h"
 #include "tests/support/shapes.h"
 
-// Every allocation of a refinement is made to fail in turn.
+// Every allocation is made to fail in turn: of a refinement, and of what all requests of a server share.
 
 namespace {
 
@@ -75,6 +80,44 @@ TEST(Allocation, MemoryLimitIsHeldBeforeTheWork) {
       EXPECT_NE(std::string(error.what()).find("MiB"), std::string::npos);
     }
   }
+}
+
+/// Calls `work` with ever more allocations until it passes.
+template <class Work>
+void fail_each_allocation_of(const Work& work) {
+  for (int64_t allowed = 0;; ++allowed) {
+    allocations_left = allowed;
+    try {
+      work();
+      allocations_left = -1;
+      EXPECT_GT(allowed, 0);
+      return;
+    } catch (const std::bad_alloc&) {
+      allocations_left = -1;
+    }
+  }
+}
+
+TEST(Allocation, AnLruThatCouldNotTakeAnEntryIsWhole) {
+  using server::Lru;
+  Lru<int> lru(2 * (100 + Lru<int>::entry_bytes));
+  const auto value = std::make_shared<int>(1);
+  for (int i = 0; i < 8; ++i) {
+    const std::string key = "a key too long for the string itself, number " + std::to_string(i);
+    fail_each_allocation_of([&] { lru.put(key, value, 100); });
+    EXPECT_EQ(lru.get(key), value);
+    EXPECT_EQ(lru.bytes(), lru.size() * (100 + Lru<int>::entry_bytes));
+  }
+  EXPECT_EQ(lru.size(), 2U);
+}
+
+TEST(Allocation, ASlotThatCouldNotBeMadeIsFree) {
+  server::Admission admission(1, 0);
+  const std::function<bool()> stays = [] { return false; };
+  fail_each_allocation_of([&] { (void)admission.enter(stays); });
+  EXPECT_EQ(admission.computing(), 0);
+  EXPECT_EQ(admission.waiting(), 0);
+  EXPECT_FALSE(admission.full());
 }
 
 }  // namespace

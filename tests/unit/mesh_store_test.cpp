@@ -1,10 +1,15 @@
 #include "server/store/mesh_store.h"
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -113,6 +118,61 @@ TEST_P(DirectoryStoreTest, WhatWasThereBeforeCounts) {
   EXPECT_THROW(later->put(sha256("other"), std::string(900, 'b')), Problem);
 }
 
+TEST_P(DirectoryStoreTest, FilesOfOthersAreLeftAloneAndDoNotCount) {
+  fs::create_directories(folder_ / "00");
+  const auto hours_ago = fs::file_time_type::clock::now() - std::chrono::hours(3);
+  const auto make = [&](const std::string& name) {
+    std::ofstream(folder_ / name) << "bytes";
+    fs::last_write_time(folder_ / name, hours_ago);
+    return folder_ / name;
+  };
+  const fs::path download = make("film.mp4.part");
+  const fs::path notes = make("00/notes.part");
+  const fs::path model = make("bunny.drc");
+  const fs::path interrupted = make("00/12-34.part");
+  const auto store = open();
+  for (const fs::path& file : {download, notes, model}) EXPECT_TRUE(fs::exists(file)) << file;
+  EXPECT_FALSE(fs::exists(interrupted));
+  EXPECT_EQ(store->usage()->meshes, 0U);
+}
+
+TEST_P(DirectoryStoreTest, WhatCannotBeReadIsNotAbsent) {
+  const auto store = open();
+  const std::string id = sha256("mesh");
+  EXPECT_FALSE(store->contains(id));
+  fs::create_symlink(id.substr(0, 2), folder_ / id.substr(0, 2));  // a link to itself
+  const std::vector<std::function<void()>> questions{[&] { (void)store->contains(id); }, [&] { (void)store->get(id); },
+                                                     [&] { (void)store->remove(id); },
+                                                     [&] { (void)store->put(id, "mesh"); }};
+  for (const auto& ask : questions) {
+    try {
+      ask();
+      ADD_FAILURE() << "was answered";
+    } catch (const Problem& problem) {
+      EXPECT_EQ(problem.code(), Code::store_unavailable);
+    }
+  }
+}
+
+TEST_P(DirectoryStoreTest, MeshesPutAtOnceDoNotPassTheBudgetTogether) {
+  const std::string bytes(900'000, 'x');
+  const auto store = open(1'000'000);
+  std::atomic<int> kept = 0;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 8; ++t)
+    threads.emplace_back([&, t] {
+      const std::string mesh = bytes + std::to_string(t);
+      try {
+        kept += store->put(sha256(mesh), mesh) ? 1 : 0;
+      } catch (const Problem& problem) {
+        EXPECT_EQ(problem.code(), Code::store_full);
+      }
+    });
+  threads.clear();
+  EXPECT_EQ(kept, 1);
+  EXPECT_EQ(store->usage()->meshes, 1U);
+}
+
 TEST(RedisAddress, IsRead) {
   const auto plain = parse_redis_address("redis://cache");
   EXPECT_EQ(plain->host, "cache");
@@ -129,6 +189,50 @@ TEST(RedisAddress, IsRead) {
   for (const char* bad : {"redis://", "redis:", "redis+unix:", "redis://host:port", "redis://host:70000",
                           "redis://host/one", "redis://user@host", "http://host"})
     EXPECT_FALSE(parse_redis_address(bad)) << bad;
+}
+
+/// Something that takes connections and never says a word.
+class SilentServer {
+ public:
+  SilentServer() : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(fd_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::listen(fd_, 64), 0);
+    EXPECT_EQ(::getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    port_ = ntohs(address.sin_port);
+  }
+  ~SilentServer() { ::close(fd_); }
+  SilentServer(const SilentServer&) = delete;
+  SilentServer& operator=(const SilentServer&) = delete;
+
+  [[nodiscard]] int port() const { return port_; }
+  /// How many have connected since the last call.
+  [[nodiscard]] int connections() const {
+    int count = 0;
+    for (int fd = ::accept(fd_, nullptr, nullptr); fd >= 0; fd = ::accept(fd_, nullptr, nullptr), ++count) ::close(fd);
+    return count;
+  }
+
+ private:
+  const int fd_;
+  int port_ = 0;
+};
+
+TEST(RedisStore, WhileRedisKeepsSilentOneAtATimeWaitsForIt) {
+  const SilentServer redis;
+  RedisStore store(*parse_redis_address("redis://127.0.0.1:" + std::to_string(redis.port())), 1 << 20, 0);
+  EXPECT_THROW((void)store.contains("a"), Problem);
+  EXPECT_EQ(redis.connections(), 1);
+  EXPECT_THROW((void)store.contains("a"), Problem);  // known to be away: not asked
+  EXPECT_EQ(redis.connections(), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 8; ++t) threads.emplace_back([&] { EXPECT_THROW((void)store.contains("a"), Problem); });
+  threads.clear();
+  EXPECT_EQ(redis.connections(), 1);
 }
 
 }  // namespace

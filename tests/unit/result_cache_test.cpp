@@ -145,14 +145,33 @@ TEST(ResultCache, OnlySoManyMayWait) {
   std::jthread maker([&] { (void)cache.get_or_make("a", make, stays); });
   begun.wait();
   std::atomic<bool> asked = false;
-  std::jthread waiter([&] {
-    EXPECT_EQ(cache.get_or_make("a", make, [&] { return !(asked = true); }).source, Source::shared);
-  });
+  std::jthread waiter(
+      [&] { EXPECT_EQ(cache.get_or_make("a", make, [&] { return !(asked = true); }).source, Source::shared); });
   while (!asked) std::this_thread::yield();  // its client is asked for while it waits
   EXPECT_THROW((void)cache.get_or_make("a", make, stays), Problem);
   end.count_down();
   waiter.join();
   EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::kept);
+}
+
+TEST(ResultCache, WhatLandsBetweenTwoLooksIsNotMadeAgain) {
+  ResultCache cache(uint64_t{64} << 20, 8);
+  constexpr int results = 20000;
+  std::atomic<int> made = 0;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < results; ++i)
+        (void)cache.get_or_make(
+            std::to_string(i),
+            [&](const ResultCache::Question&) {
+              ++made;
+              return result("bytes");
+            },
+            stays);
+    });
+  threads.clear();
+  EXPECT_EQ(made, results);
 }
 
 TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
