@@ -135,6 +135,7 @@ int run(const std::string& name, const std::string& json_file) {
   if (report != reports().end()) return run_report(*report, json_file);
   add_uniform();
   add_service();
+  add_http();
   return run_pairs(name, json_file);
 }
 

@@ -25,5 +25,6 @@ double seconds(const std::function<void()>& work);
 /// Each file of cases adds its own.
 void add_uniform();
 void add_service();
+void add_http();
 
 }  // namespace papilio::bench
