@@ -14,6 +14,7 @@
 #include "server/config.h"
 #include "server/cors.h"
 #include "server/endpoints.h"
+#include "server/heap.h"
 #include "server/keys.h"
 #include "server/log.h"
 
@@ -21,7 +22,7 @@ using namespace papilio::server;
 
 namespace {
 
-/// Signals that only `sigwait` is to see: blocked in every thread.
+/// Signals that only `sigtimedwait` is to see: blocked in every thread.
 sigset_t block_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -50,10 +51,16 @@ void reload(std::string_view what, const std::function<void()>& read) {
   }
 }
 
-/// Returns the signal that is to end the program.
-int wait_for_end(const sigset_t& signals, const Config& config, HttpServer& server, Keys* keys) {
-  for (int signal = 0;;) {
-    sigwait(&signals, &signal);
+/// Returns the signal that is to end the program. Calls `while_waiting` every second.
+int wait_for_end(const sigset_t& signals, const Config& config, HttpServer& server, Keys* keys,
+                 const std::function<void()>& while_waiting) {
+  for (;;) {
+    constexpr timespec second{1, 0};
+    const int signal = sigtimedwait(&signals, nullptr, &second);
+    if (signal < 0) {
+      while_waiting();
+      continue;
+    }
     if (signal != SIGHUP) return signal;
     if (keys != nullptr) reload("keys", [&] { keys->reload(); });
     if (!config.http.tls_cert.empty()) reload("certificate", [&] { server.reload_certificate(); });
@@ -64,13 +71,16 @@ int serve(const Config& config) {
   const sigset_t signals = block_signals();
   start_log(config.log_level, config.log_format);
   limit_address_space(config);
+  share_arenas(config.engine.slots);
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);
   Engine engine(config.engine);
   HttpOptions http = config.http;
   if (keys) http.authorize = [&](const Request& request, Access access) { return keys->authorize(request, access); };
   http.decorate = [&](const Request& request, Response& response) { cors.decorate(request, response); };
+  FreeMemory free_memory;
   http.on_finished = [&](const Finished& request) {
+    free_memory.count_request();
     engine.metrics().count_request(request);
     log_request(request);
   };
@@ -96,7 +106,16 @@ int serve(const Config& config) {
              {"store", std::string(engine.store().kind())},
              {"keys", keys ? keys->size() : 0}});
 
-  const int signal = wait_for_end(signals, config, server, keys.get());
+  const int held_by_work = 2 * (config.engine.slots + config.engine.queue);
+  if (held_by_work >= http.threads)
+    log_event(
+        "warning", "settings",
+        {{"reason", "as many as --connections may wait for work, and then nothing else is answered; give more than " +
+                        std::to_string(held_by_work)}});
+
+  const int signal = wait_for_end(signals, config, server, keys.get(), [&] {
+    if (engine.admission().computing() == 0) free_memory.give_back();
+  });
   log_event("info", "draining", {{"signal", signal}, {"running", server.running()}});
   unblock_end_signals();
   const bool complete = server.drain(config.drain_seconds);

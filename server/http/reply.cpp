@@ -111,7 +111,10 @@ std::string reply_head(const Response& response, const Delivery& delivery) {
   head += "\r\n";
   add_field(head, "Date", date());
   add_field(head, "X-Request-Id", delivery.request_id);
-  if (!response.content_type.empty()) add_field(head, "Content-Type", response.content_type);
+  if (!response.content_type.empty()) {
+    add_field(head, "Content-Type", response.content_type);
+    add_field(head, "X-Content-Type-Options", "nosniff");
+  }
   bool says_cache = false;
   for (const auto& [name, value] : response.headers) {
     if (is_of_the_connection(name)) continue;

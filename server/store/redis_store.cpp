@@ -8,6 +8,7 @@
 
 #include "proto/problem.h"
 #include "server/log.h"
+#include "server/sha256.h"
 
 namespace papilio::server {
 
@@ -116,7 +117,11 @@ MeshStore::Bytes RedisStore::get(const std::string& id) {
   if (reply->type == REDIS_REPLY_NIL) return nullptr;
   if (reply->type != REDIS_REPLY_STRING)
     throw unavailable(reply->type == REDIS_REPLY_ERROR ? std::string_view(reply->str, reply->len) : "an odd answer");
-  return std::make_shared<const std::string>(reply->str, reply->len);
+  auto bytes = std::make_shared<const std::string>(reply->str, reply->len);
+  if (sha256(*bytes) == id) return bytes;
+  log_event("error", "store", {{"key", key}, {"reason", "the content is not what the key says; it is taken away"}});
+  remove(id);
+  return nullptr;
 }
 
 bool RedisStore::remove(const std::string& id) {

@@ -136,6 +136,7 @@ int run(const std::string& name, const std::string& json_file) {
   add_uniform();
   add_service();
   add_view_change();
+  add_http();
   return run_pairs(name, json_file);
 }
 

@@ -26,5 +26,6 @@ double seconds(const std::function<void()>& work);
 void add_uniform();
 void add_service();
 void add_view_change();
+void add_http();
 
 }  // namespace papilio::bench

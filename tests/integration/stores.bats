@@ -144,6 +144,11 @@ stop_redis() {
   (($(ask_redis ttl "$key") > 990)) # it was used
   upload
   [ "$status" = 200 ]
+  ask_redis set "$key" damaged
+  request "$url/v1/meshes/$(coarse_id)"
+  expect_problem 404 mesh_not_found
+  upload
+  [ "$status" = 201 ]
   request -X DELETE "$url/v1/meshes/$(coarse_id)"
   [ "$status" = 204 ]
   request "$first/v1/meshes/$(coarse_id)"

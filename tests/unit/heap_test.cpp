@@ -1,0 +1,50 @@
+#include "server/heap.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <vector>
+
+namespace papilio::server {
+namespace {
+
+constexpr size_t block_bytes = 64U << 10;
+constexpr size_t blocks = 2048;  // 128 MiB
+
+size_t resident_bytes() {
+  std::ifstream pages("/proc/self/statm");
+  size_t size = 0;
+  size_t resident = 0;
+  pages >> size >> resident;
+  return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Takes and frees memory as a large request does, and keeps a little between that nobody can give back with it.
+std::vector<std::unique_ptr<char>> leave_holes() {
+  std::vector<std::unique_ptr<char>> kept;
+  std::vector<std::vector<char>> freed;
+  for (size_t i = 0; i < blocks; ++i) {
+    freed.emplace_back(block_bytes, 'x');
+    kept.push_back(std::make_unique<char>('x'));
+  }
+  return kept;
+}
+
+TEST(FreeMemory, GoesBackToTheSystemOnceARequestIsDone) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers bring an allocator of their own";
+#endif
+  FreeMemory memory;
+  const auto kept = leave_holes();
+  const size_t before = resident_bytes();
+  memory.give_back();
+  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "nothing was done, so nothing is to be looked for";
+  memory.count_request();
+  memory.give_back();
+  EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
+}
+
+}  // namespace
+}  // namespace papilio::server
