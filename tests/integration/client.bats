@@ -166,14 +166,18 @@ END
   [ "$status" = 2 ]
 }
 
-@test "README's curl line works when it is pasted" {
-  line=$(grep '^curl ' "$BATS_TEST_DIRNAME/../../README.md")
-  [ "$(wc -l <<<"$line")" = 1 ]
-  [[ $line == *http://localhost:8080/* && $line == *build/deps/meshes/bunny600.drc* ]]
-  line=${line//http:\/\/localhost:8080/$url}
-  line=${line//build\/deps\/meshes/$PAPILIO_MESHES}
-  no_proxy='*' eval "$line"
+@test "README's curl lines work when they are pasted" {
+  local line count=0
+  while read -r line; do
+    [[ $line == *http://localhost:8080/* ]]
+    line=${line//http:\/\/localhost:8080/$url}
+    line=${line//build\/deps\/meshes/$PAPILIO_MESHES}
+    no_proxy='*' eval "$line"
+    count=$((count + 1))
+  done < <(grep '^curl ' "$BATS_TEST_DIRNAME/../../README.md")
+  [ "$count" = 3 ]
   [ "$(decoded_faces fine.drc)" -gt 600 ]
+  [ "$(decoded_faces view.drc)" -gt 600 ]
 }
 
 @test "README has the parameter table that the program prints" {
