@@ -44,7 +44,7 @@ void Levels::deepen(const std::vector<uint8_t>& red) {
       ++to_keep_;
       return;
     }
-    if (make_with_known(*known, red)) return;
+    if (make_with_known(*known, with_margin(red)) || make_with_known(*known, red)) return;
     known_.resize(depth);  // this one takes its place
   }
   make(red);
@@ -68,6 +68,19 @@ bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> r
   return true;
 }
 
+std::vector<uint8_t> Levels::with_margin(const std::vector<uint8_t>& red) const {
+  const HierarchyLevel& level = *levels_.back();
+  const Topology& mesh = level.mesh.topology;
+  std::vector<uint8_t> wide = with_neighbours(mesh, red);
+  if (level.parent.empty()) return wide;
+  const EdgeMarks may_split = edges_below_red(level);
+  for (uint32_t f = 0; f < wide.size(); ++f) {
+    const uint32_t* edge = &mesh.edge[size_t{3} * f];
+    if (red[f] == 0 && (may_split[edge[0]] & may_split[edge[1]] & may_split[edge[2]]) == 0) wide[f] = 0;
+  }
+  return wide;
+}
+
 bool Levels::may_keep(const std::vector<uint8_t>& red) const {
   if (prepared_ == nullptr || to_keep_ < levels_.size()) return false;
   const std::vector<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
@@ -77,8 +90,10 @@ bool Levels::may_keep(const std::vector<uint8_t>& red) const {
 }
 
 void Levels::make(const std::vector<uint8_t>& red) {
-  const bool is_kept = may_keep(red);
-  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), red));
+  std::vector<uint8_t> more = prepared_ == nullptr ? red : with_margin(red);
+  if (prepared_ != nullptr && !may_keep(more)) more = red;
+  const bool is_kept = may_keep(more);
+  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(more)));
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;

@@ -34,6 +34,9 @@ class Levels {
   /// is done, where that is more than may be kept.
   bool make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red);
   [[nodiscard]] bool may_keep(const std::vector<uint8_t>& red) const;
+  /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
+  /// next view, from a little further on, finds what it needs.
+  [[nodiscard]] std::vector<uint8_t> with_margin(const std::vector<uint8_t>& red) const;
   void make(const std::vector<uint8_t>& red);
   void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
