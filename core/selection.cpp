@@ -103,11 +103,11 @@ std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const
   std::vector<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
   for (uint32_t e : wanted) {
-    const double most = trial.most_deviation_at(mesh, e);
-    errors[e] = measure_.most_error(most, scale);
-    if (errors[e] >= exact_from && !trial.knows_deviation_at(e))
-      errors[e] = measure_.error(mesh, trial.normals, e, most);
-    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
+    const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
+    errors[e] = measure_.most_error(distance, scale);
+    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, distance);
+    if (errors[e] >= exact_from && !is_exact)
+      errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }
   return errors;
 }

@@ -28,7 +28,15 @@ struct Trial {
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
-  [[nodiscard]] bool knows_deviation_at(uint32_t edge) const { return deviations.get(tried.before[edge]) != unknown; }
+  /// Never less than that, and cheap: the deviation itself where somebody has asked for it.
+  struct KnownDeviation {
+    double distance;
+    bool is_exact;
+  };
+  [[nodiscard]] KnownDeviation known_deviation_at(const Mesh& mesh, uint32_t edge) const {
+    const double known = deviations.get(tried.before[edge]);
+    return known != unknown ? KnownDeviation{known, true} : KnownDeviation{most_deviation_at(mesh, edge), false};
+  }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
 };
@@ -91,7 +99,7 @@ class ErrorLeft {
   /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
   /// `highest_pixels_per_unit`.
   void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
-    const double most = share * trial.most_deviation_at(mesh, edge);
+    const double most = share * trial.known_deviation_at(mesh, edge).distance;
     if (most <= distance_ && most * scale <= pixels_) return;
     const double distance = share * trial.deviation_at(mesh, edge);
     distance_ = std::max(distance_, distance);
