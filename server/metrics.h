@@ -35,10 +35,11 @@ class Metrics {
   void count_lookup(Cache cache, bool hit);
   /// A result that was made once for several requests.
   void count_shared();
-  void observe_wait(double seconds);
+  /// In seconds.
+  void observe_wait(double waited);
 
   /// The exposition format, version 0.0.4.
-  [[nodiscard]] std::string text(const Gauges& gauges);
+  [[nodiscard]] std::string text(const Gauges& now);
 
  private:
   struct Families;

@@ -31,9 +31,9 @@ ordered_json number(double value) {
 ordered_json parameter_schema(const ParameterInfo& info) {
   if (info.type == ParameterType::boolean) return {{"type", "boolean"}};
   if (info.type == ParameterType::choice) return {{"type", "string"}, {"enum", info.choices}};
-  const ordered_json one{{"type", info.type == ParameterType::integer ? "integer" : "number"},
-                         {"minimum", number(info.min)},
-                         {"maximum", number(info.max)}};
+  ordered_json one{{"type", info.type == ParameterType::integer ? "integer" : "number"},
+                   {"minimum", number(info.min)},
+                   {"maximum", number(info.max)}};
   if (info.type != ParameterType::numbers) return one;
   return {{"type", "array"}, {"items", one}, {"minItems", info.least}, {"maxItems", info.most}};
 }

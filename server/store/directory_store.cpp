@@ -126,12 +126,11 @@ void DirectoryStore::write(const fs::path& file, std::string_view bytes) const {
     written = out.is_open() && out.write(bytes) && out.sync();
   }
   if (!written || ::rename(part.c_str(), file.c_str()) != 0) {
-    const bool is_full = errno == ENOSPC || errno == EDQUOT;
-    const Problem problem = unavailable(part);
+    const int reason = errno;
     fs::remove(part, error);
-    if (is_full)
+    if (reason == ENOSPC || reason == EDQUOT)
       throw Problem(Code::store_full, "The store's disk is full. Delete meshes, or ask the operator for room.");
-    throw problem;
+    throw unavailable(part, std::strerror(reason));
   }
   if (!File(file.parent_path(), O_RDONLY | O_DIRECTORY).sync()) throw unavailable(file);
 }
