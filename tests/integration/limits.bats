@@ -54,15 +54,17 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 }
 
 @test "bodies together have a limit: the one too many is refused, the others go on" {
-  start_server --max-body-bytes 3000000 --max-held-bytes 3000000
+  start_server --max-body-bytes 3000000 --max-held-bytes 3000000 --read-seconds 60
   head -c 2000000 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
   # One holds two of three megabytes, and waits with the rest.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   { printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 2000001\r\n\r\n'
     cat "$BATS_TEST_TMPDIR/bytes"; } >&5
-  for _ in {1..50}; do
+  sleep 3 # until it is read: else the one too many may be this one
+  for _ in {1..200}; do
     request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
     [ "$status" != 429 ] || break
+    sleep 0.1
   done
   expect_problem 429 busy
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
