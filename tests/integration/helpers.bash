@@ -64,6 +64,15 @@ decoded_faces() {
   grep -c '^f ' "$BATS_TEST_TMPDIR/decoded.obj"
 }
 
+# eventually COMMAND...: within 20 s it succeeds. (A request is counted and logged once its answer is sent.)
+eventually() {
+  for _ in {1..200}; do
+    if "$@"; then return 0; fi
+    sleep 0.1
+  done
+  return 1
+}
+
 # The server must have outlived the test, and answer.
 server_is_well() {
   [[ $(curl -sS --noproxy '*' --max-time 10 "$url/health" | jq -r .status) == alive ]]

@@ -20,9 +20,9 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [ "$status" = 200 ]
   grep -aq '"code": "takes_too_long"' "$body"
   # Its status was sent before: the log and the metrics tell what became of it.
-  grep -q "msg=stream id=$(header X-Request-Id) code=takes_too_long detail=" "$BATS_FILE_TMPDIR/server.log"
-  request "$url/metrics"
-  grep -q '^papilio_problems_total{code="takes_too_long"} 2' "$body"
+  eventually grep -q "msg=stream id=$(header X-Request-Id) code=takes_too_long detail=" "$BATS_FILE_TMPDIR/server.log"
+  both_counted() { request "$url/metrics" && grep -q '^papilio_problems_total{code="takes_too_long"} 2' "$body"; }
+  eventually both_counted
 }
 
 @test "a refinement that would take more memory than the limit is refused with the number" {

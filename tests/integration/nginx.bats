@@ -58,14 +58,6 @@ teardown() { proxy_is_well; }
 
 proxy_is_well() { [[ $(curl -sS --noproxy '*' --max-time 10 "$proxy/health" | jq -r .status) == alive ]]; }
 
-# eventually COMMAND...: within 20 s it succeeds.
-eventually() {
-  for _ in {1..200}; do
-    if "$@"; then return 0; fi
-    sleep 0.1
-  done
-  return 1
-}
 logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
 
 @test "the same bytes as without it, in both forms" {

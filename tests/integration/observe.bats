@@ -16,7 +16,8 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   request "$url/v1/refine?levels=1" -H "$draco" --data-binary @"$coarse"
   request "$url/nowhere/to/be/found"
   request -X BREW "$url/v1/info"
-  request "$url/metrics"
+  all_counted() { request "$url/metrics" && [ "$(awk '/^papilio_requests_total/ { n += $2 } END { print n }' "$body")" -ge 7 ]; }
+  eventually all_counted
   [ "$status" = 200 ]
   [[ $(header Content-Type) == 'text/plain; version=0.0.4'* ]]
   [ "$(metric 'requests_total{method="POST",route="\/v1\/meshes",status="201"}')" = 1 ]
@@ -47,6 +48,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   request -H 'traceparent: 00-none-of-it' "$url/v1/info"
   [ -z "$(header traceparent)" ]
   request "$url/health"
+  eventually grep -q '"path":"/v1/info"' "$BATS_FILE_TMPDIR/server.log"
   jq -es 'all(.time != null and .level != null and .msg != null)' "$BATS_FILE_TMPDIR/server.log"
   jq -es --arg trace "$trace" 'map(select(.id == "1e5")) == [.[] | select(.trace == $trace)] and
     (map(select(.id == "1e5")) | length == 1 and .[0].status == 400 and .[0].code == "bad_parameter" and
