@@ -200,11 +200,11 @@ class Assembler {
   /// Top down: the points of each shown face's corners.
   void make_points() {
     out_.attributes = levels_[0].level->mesh.attributes;
-    std::vector<uint32_t> result(out_.topology.half_edge_count());
+    Array<uint32_t> result(out_.topology.half_edge_count());
     for (size_t k = 0; k < levels_.size(); ++k) {
       const Fate& fate = fates_[k];
       const std::vector<uint32_t> made = split_points(mesh_of(k), levels_[k].split, fate.shown, out_.attributes);
-      const std::vector<uint32_t> corners = std::move(out_.attributes.point);
+      const Array<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };

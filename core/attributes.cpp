@@ -114,7 +114,7 @@ uint64_t bytes_per_face_of(const PointAttributes& attributes) {
 std::vector<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const std::vector<uint32_t>& faces,
                                    PointAttributes& attributes) {
   std::vector<uint32_t> made(mesh.half_edge_count(), none);
-  const std::vector<uint32_t>& point = attributes.point;
+  const Array<uint32_t>& point = attributes.point;
   const auto split_half_edge = [&](uint32_t h) {
     if (split[mesh.edge[h]] == 0) return;
     const uint32_t p = point[h];

@@ -37,7 +37,7 @@ class Butterfly {
   using Point = Vec3T<Real>;
 
  public:
-  Butterfly(const Topology& topology, const std::vector<Point>& positions, const SplitPlan& plan, Real w,
+  Butterfly(const Topology& topology, const Array<Point>& positions, const SplitPlan& plan, Real w,
             const TensionField* tension)
       : mesh_(topology),
         p_(positions),
@@ -49,7 +49,7 @@ class Butterfly {
     if (tension != nullptr) tensed_.emplace(topology, positions, *tension);
   }
 
-  std::vector<Point> run() {
+  Array<Point> run() {
     split_at_irregular_vertices();
     const CurveNeighbours curves(mesh_);
     for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
@@ -240,11 +240,11 @@ class Butterfly {
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 
   const Topology& mesh_;
-  const std::vector<Point>& p_;
+  const Array<Point>& p_;
   const SplitPlan& plan_;
   Real w_;
   stencil::Regular<Real> regular_;
-  std::vector<Point> out_;
+  Array<Point> out_;
   std::optional<TensedRules<Real>> tensed_;
   std::vector<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
 };
@@ -252,14 +252,14 @@ class Butterfly {
 }  // namespace
 
 template <class Real>
-std::vector<Vec3T<Real>> butterfly(const Topology& topology, const std::vector<Vec3T<Real>>& positions,
+Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
                                    const SplitPlan& plan, Real w, const TensionField* tension) {
   return Butterfly<Real>(topology, positions, plan, w, tension).run();
 }
 
-template std::vector<Vec3f> butterfly(const Topology&, const std::vector<Vec3f>&, const SplitPlan&, float,
+template Array<Vec3f> butterfly(const Topology&, const Array<Vec3f>&, const SplitPlan&, float,
                                       const TensionField*);
-template std::vector<Vec3d> butterfly(const Topology&, const std::vector<Vec3d>&, const SplitPlan&, double,
+template Array<Vec3d> butterfly(const Topology&, const Array<Vec3d>&, const SplitPlan&, double,
                                       const TensionField*);
 
 }  // namespace papilio

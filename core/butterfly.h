@@ -18,7 +18,7 @@ namespace papilio {
 /// also on which half-edge of the ring has the lowest number). O(F + total valence). Instantiated for float
 /// (the product) and double (checking the arithmetic).
 template <class Real>
-[[nodiscard]] std::vector<Vec3T<Real>> butterfly(const Topology& topology, const std::vector<Vec3T<Real>>& positions,
+[[nodiscard]] Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
                                                  const SplitPlan& plan, Real w = 0,
                                                  const TensionField* tension = nullptr);
 

@@ -21,7 +21,7 @@ std::vector<uint32_t> vertices_of_points(const Mesh& mesh) {
 }
 
 /// Numbers what is used anew, without gaps, in the same order. Returns the old numbers.
-std::vector<uint32_t> renumber(std::vector<uint32_t>& numbers, size_t count) {
+std::vector<uint32_t> renumber(Array<uint32_t>& numbers, size_t count) {
   std::vector<uint32_t> next(count, none);
   for (uint32_t n : numbers) next[n] = 0;
   std::vector<uint32_t> kept;
@@ -45,7 +45,7 @@ Attribute select(const Attribute& from, const std::vector<uint32_t>& points) {
 
 }  // namespace
 
-const std::vector<uint32_t>& corner_points(const Mesh& mesh) {
+const Array<uint32_t>& corner_points(const Mesh& mesh) {
   return mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point;
 }
 
@@ -58,8 +58,8 @@ Collapser::Collapser(const Mesh& mesh, const std::vector<bool>& chosen)
 }
 
 Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
-  const std::vector<Vec3f> positions = place(locked);
-  std::vector<uint32_t> corners = fixed_;
+  const Array<Vec3f> positions = place(locked);
+  Array<uint32_t> corners(fixed_.begin(), fixed_.end());
   corners.resize(fixed_.size() + chosen_.size());
   const auto target_error = static_cast<float>(error * box_.diagonal() * scale_);
   const size_t left =
@@ -76,9 +76,9 @@ Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
 /// seams; with three points at each none is one to it.) It scales by the longest side of the box: squares of what a
 /// mesh may have need not be numbers, so that is done here, by a power of two, and a last point makes that side
 /// exactly 1. So nothing is rounded, and what lies in a line stays there, which lets it avoid faces without area.
-std::vector<Vec3f> Collapser::place(const std::vector<bool>& locked) const {
+Array<Vec3f> Collapser::place(const std::vector<bool>& locked) const {
   const Vec3d origin = to_double(box_.min);
-  std::vector<Vec3f> positions;
+  Array<Vec3f> positions;
   positions.reserve(vertex_of_point_.size() + 1);
   const auto add = [&](uint32_t v) {
     positions.push_back(to_float(scale_ * (to_double(mesh_.positions[v]) - origin)));
@@ -91,9 +91,9 @@ std::vector<Vec3f> Collapser::place(const std::vector<bool>& locked) const {
 }
 
 /// The mesh of these corners, given as points. Vertices and points that none uses are left out.
-Collapsed Collapser::assemble(std::vector<uint32_t> points) const {
+Collapsed Collapser::assemble(Array<uint32_t> points) const {
   Collapsed out;
-  std::vector<uint32_t> origin(points.size());
+  Array<uint32_t> origin(points.size());
   std::ranges::transform(points, origin.begin(), [&](uint32_t p) { return vertex_of_point_[p]; });
   out.vertex = renumber(origin, mesh_.topology.vertex_count);
   for (uint32_t v : out.vertex) out.mesh.positions.push_back(mesh_.positions[v]);

@@ -14,7 +14,7 @@ struct Collapsed {
 };
 
 /// The points [H] at the corners, or the vertices when there are no attributes: what meshoptimizer calls vertices.
-[[nodiscard]] const std::vector<uint32_t>& corner_points(const Mesh& mesh);
+[[nodiscard]] const Array<uint32_t>& corner_points(const Mesh& mesh);
 
 /// Collapses edges by meshoptimizer, which does not look after topology: the result is to be checked. (Nor does 0.18
 /// avoid faces without area: they are mended where that can be done.) May be asked again and again; refers to the mesh.
@@ -28,8 +28,8 @@ class Collapser {
   [[nodiscard]] Collapsed run(const std::vector<bool>& locked, double error) const;
 
  private:
-  [[nodiscard]] std::vector<Vec3f> place(const std::vector<bool>& locked) const;
-  [[nodiscard]] Collapsed assemble(std::vector<uint32_t> points) const;
+  [[nodiscard]] Array<Vec3f> place(const std::vector<bool>& locked) const;
+  [[nodiscard]] Collapsed assemble(Array<uint32_t> points) const;
 
   const Mesh& mesh_;
   std::vector<uint32_t> vertex_of_point_;

@@ -48,7 +48,7 @@ float ErrorMeasure::most_error(double distance, double scale) const {
   return to_finite(tolerated_ == 0 ? seen : std::min(distance / tolerated_, seen / tolerated_pixels_));
 }
 
-float ErrorMeasure::error(const Mesh& mesh, const std::vector<Vec3f>& normals, uint32_t edge, double distance) const {
+float ErrorMeasure::error(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
   double seen = pixels(mesh, edge, distance);

@@ -27,7 +27,7 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, const Region& region,
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, const Region& region,
                       EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
@@ -46,7 +46,7 @@ void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, doubl
   }
 }
 
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks) {
   mark_by_flatness(mesh, normals, threshold, whole_region(mesh.topology), marks);
 }
 

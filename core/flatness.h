@@ -13,9 +13,9 @@ namespace papilio {
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is marked when the curve turns by more than
 /// acos(threshold) at one of its ends. A cut edge is never marked; an edge at a face without area is not marked on that
 /// face's account. Of a mesh only the region is looked at. Shapes: normals [F], marks [E], only ever set.
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, const Region& region,
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, const Region& region,
                       EdgeMarks& marks);
-void mark_by_flatness(const Mesh& mesh, const std::vector<Vec3f>& normals, double threshold, EdgeMarks& marks);
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks);
 
 /// How far marks spread, the paper's section 3.1.2.
 enum class Growth {

@@ -5,9 +5,9 @@
 namespace papilio {
 namespace {
 
-std::vector<Vec3f> grown_normals(const Mesh& mesh, const std::vector<Vec3f>& known,
+Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known,
                                  const std::vector<uint32_t>& moved) {
-  std::vector<Vec3f> normals(mesh.topology.face_count());
+  Array<Vec3f> normals(mesh.topology.face_count());
   std::vector<uint8_t> is_known(normals.size(), 0);
   for (uint32_t f = 0; f < moved.size(); ++f) {
     normals[moved[f]] = known[f];
@@ -40,7 +40,7 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
   for (uint32_t e = 0; e < marks.size(); ++e)
     if (rank[e] != none) marks[e] = 0;
   const SplitPlan rest(marks);
-  const std::vector<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
+  const Array<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
 
   trial.made.resize(trial.tried.count());
   trial.forget();

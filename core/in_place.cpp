@@ -84,7 +84,7 @@ class InPlace {
     const uint64_t faces = count_children(mesh_.topology, plan);
     progress_.require_room(faces, level);
     progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh_.attributes), level);
-    std::vector<Vec3f> made;
+    Array<Vec3f> made;
     made.reserve(plan.count());
     for (uint32_t e = 0; e < targets_.size(); ++e)
       if (targets_[e] != 0) made.push_back(trial_->at(e));
@@ -107,7 +107,7 @@ class InPlace {
 
 }  // namespace
 
-Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const std::vector<Vec3f>& made) {
+Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Array<Vec3f>& made) {
   mesh.positions.insert(mesh.positions.end(), made.begin(), made.end());
   mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
   return mesh;

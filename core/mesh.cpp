@@ -150,7 +150,7 @@ void connect(Topology& mesh, const EdgeRuns& runs, BuildReport& report) {
 
 TriangleMesh Mesh::triangles() const {
   TriangleMesh out;
-  const std::vector<uint32_t>& corners = attributes.empty() ? topology.origin : attributes.point;
+  const Array<uint32_t>& corners = attributes.empty() ? topology.origin : attributes.point;
   out.triangles.resize(topology.face_count());
   for (uint32_t f = 0; f < topology.face_count(); ++f)
     std::copy_n(corners.begin() + size_t{3} * f, 3, out.triangles[f].begin());
@@ -221,7 +221,7 @@ std::vector<uint32_t> find_pinched(const Topology& mesh) {
   return pinched;
 }
 
-Topology connect_faces(std::vector<uint32_t> origin, uint32_t vertex_count) {
+Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count) {
   Topology mesh;
   mesh.origin = std::move(origin);
   mesh.vertex_count = vertex_count;
@@ -231,7 +231,7 @@ Topology connect_faces(std::vector<uint32_t> origin, uint32_t vertex_count) {
   return mesh;
 }
 
-Box bounding_box(const std::vector<Vec3f>& positions) {
+Box bounding_box(std::span<const Vec3f> positions) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const Vec3f& p : positions) {

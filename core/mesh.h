@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "array.h"
 #include "triangle_mesh.h"
 
 // The half-edge mesh that every step of the core works on: flat arrays, no pointers, no hash once it is
@@ -31,11 +33,11 @@ enum class EdgeKind : uint8_t {
 /// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices.
 struct Topology {
   uint32_t vertex_count = 0;
-  std::vector<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
-  std::vector<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
-  std::vector<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
-  std::vector<uint32_t> half_edge;  ///< [E] one half-edge of each edge
-  std::vector<EdgeKind> kind;       ///< [E]
+  Array<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
+  Array<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
+  Array<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
+  Array<uint32_t> half_edge;  ///< [E] one half-edge of each edge
+  Array<EdgeKind> kind;       ///< [E]
   /// Vertices of the coarse mesh with more than one fan, in ascending order. (Vertices that arise on shared edges have
   /// several too; rules find those by their curves.)
   std::vector<uint32_t> pinched;
@@ -63,7 +65,7 @@ struct Topology {
 /// Attributes of a mesh. A point is a vertex together with its values; where charts meet, one vertex is several points,
 /// and positions do not open.
 struct PointAttributes {
-  std::vector<uint32_t> point;        ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
+  Array<uint32_t> point;        ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
   uint32_t point_count = 0;           ///< P
   std::vector<Attribute> attributes;  ///< values [P * components] each
 
@@ -73,7 +75,7 @@ struct PointAttributes {
 /// A mesh: connectivity and one position a vertex, and attributes if it has any.
 struct Mesh {
   Topology topology;
-  std::vector<Vec3f> positions;  ///< [V]
+  Array<Vec3f> positions;  ///< [V]
   PointAttributes attributes{};
 
   /// Copies the faces and positions out; with attributes, points in place of vertices.
@@ -106,7 +108,7 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 
 /// Connects faces [3F corners] that already are as `build_mesh` leaves them: no repeats, no equal corners, every vertex
 /// used. Makes no creases and no darts. O(n log n) at worst.
-[[nodiscard]] Topology connect_faces(std::vector<uint32_t> origin, uint32_t vertex_count);
+[[nodiscard]] Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count);
 
 /// Vertices with more than one fan of faces, in ascending order. Fans end at curves: no edge may be a crease.
 [[nodiscard]] std::vector<uint32_t> find_pinched(const Topology& mesh);
@@ -116,6 +118,6 @@ struct Box {
   Vec3f min, max;
   [[nodiscard]] double diagonal() const;
 };
-[[nodiscard]] Box bounding_box(const std::vector<Vec3f>& positions);
+[[nodiscard]] Box bounding_box(std::span<const Vec3f> positions);
 
 }  // namespace papilio

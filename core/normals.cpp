@@ -18,19 +18,19 @@ Vec3f face_normal(const Mesh& mesh, uint32_t face) {
   return size > 0 ? to_float((1 / size) * n) : Vec3f{};
 }
 
-std::vector<Vec3f> face_normals(const Mesh& mesh) {
-  std::vector<Vec3f> normals(mesh.topology.face_count());
+Array<Vec3f> face_normals(const Mesh& mesh) {
+  Array<Vec3f> normals(mesh.topology.face_count());
   for (uint32_t f = 0; f < normals.size(); ++f) normals[f] = face_normal(mesh, f);
   return normals;
 }
 
-std::vector<Vec3f> vertex_normals(const Mesh& mesh) {
-  std::vector<Vec3d> sums(mesh.topology.vertex_count);
+Array<Vec3f> vertex_normals(const Mesh& mesh) {
+  Array<Vec3d> sums(mesh.topology.vertex_count, Vec3d{});
   for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d n = area_normal(mesh, f);
     for (uint32_t i = 0; i < 3; ++i) sums[mesh.topology.origin[3 * f + i]] += n;
   }
-  std::vector<Vec3f> normals(sums.size());
+  Array<Vec3f> normals(sums.size());
   for (size_t v = 0; v < sums.size(); ++v) {
     const double size = length(sums[v]);
     normals[v] = size > 0 ? to_float((1 / size) * sums[v]) : Vec3f{0, 0, 1};

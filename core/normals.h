@@ -8,14 +8,14 @@ namespace papilio {
 
 /// Unit normal of each face [F]; zero for a face without area, which has none. Computed in double, so that
 /// neither tiny nor large meshes lose theirs.
-[[nodiscard]] std::vector<Vec3f> face_normals(const Mesh& mesh);
+[[nodiscard]] Array<Vec3f> face_normals(const Mesh& mesh);
 
 /// That of one face.
 [[nodiscard]] Vec3f face_normal(const Mesh& mesh, uint32_t face);
 
 /// Unit normal of each vertex [V]: its faces' normals weighted by area; (0, 0, 1) where they cancel out or
 /// there are none.
-[[nodiscard]] std::vector<Vec3f> vertex_normals(const Mesh& mesh);
+[[nodiscard]] Array<Vec3f> vertex_normals(const Mesh& mesh);
 
 /// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
 inline constexpr double product_rounding = 4e-7;

@@ -14,7 +14,7 @@ constexpr float never = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals, const Options& options,
+Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
                                  const SplitPlan& plan) {
   const auto w = static_cast<float>(options.w);
   if (options.tension == Tension::off) return butterfly(mesh.topology, mesh.positions, plan, w);
@@ -74,7 +74,7 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+EdgeMarks Selection::shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
                            const Box& box, const Region& region) const {
   if (camera_) return edges_shown(mesh, normals, longest, box, *camera_, region);
   EdgeMarks all(mesh.topology.edge_count(), 0);
@@ -82,7 +82,7 @@ EdgeMarks Selection::shown(const Mesh& mesh, const std::vector<Vec3f>& normals, 
   return all;
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Array<Vec3f>& normals, int level,
                                         const Region& region, const EdgeMarks& shown) const {
   EdgeMarks curved;
   if (!options_.flatness.empty()) {

@@ -16,9 +16,9 @@ namespace papilio {
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
 /// in `tried` would have.
 struct Trial {
-  std::vector<Vec3f> normals;  ///< [F]
+  Array<Vec3f> normals;  ///< [F]
   SplitPlan tried;             ///< the edges whose new vertices were computed
-  std::vector<Vec3f> made;     ///< [tried.count()]
+  Array<Vec3f> made;     ///< [tried.count()]
   Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
   Memo<float> bounds{};        ///< [tried.count()] no less than these; or unknown
 
@@ -42,7 +42,7 @@ struct Trial {
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
-[[nodiscard]] std::vector<Vec3f> make_vertices(const Mesh& mesh, const std::vector<Vec3f>& normals,
+[[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals,
                                                const Options& options, const SplitPlan& plan);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
@@ -68,11 +68,11 @@ class Selection {
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
   /// edges (view.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
                                 const Box& box, const Region& region) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Array<Vec3f>& normals, int level,
                                              const Region& region, const EdgeMarks& shown) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may

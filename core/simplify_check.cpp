@@ -39,9 +39,9 @@ bool is_folded(const Topology& mesh, uint32_t face) {
 /// Faces, from their lowest vertex on and sorted, that have no normal, are folded, or are flipped: turned against the
 /// surface before at each corner.
 template <class Number>
-std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const std::vector<Vec3f>& vertex_normals) {
+std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Array<Vec3f>& vertex_normals) {
   const Topology& topology = mesh.topology;
-  const std::vector<Vec3f> normals = face_normals(mesh);
+  const Array<Vec3f> normals = face_normals(mesh);
   std::vector<Triangle> bad;
   for (uint32_t f = 0; f < topology.face_count(); ++f) {
     Triangle t{};
@@ -100,7 +100,7 @@ std::vector<uint32_t> find_faults(const Mesh& before, const Collapsed& after) {
   append_difference(open_half_edges(before.topology, same), open_half_edges(after.mesh.topology, old), faults);
   append_difference(pinched_vertices(before.topology, same), pinched_vertices(after.mesh.topology, old), faults);
 
-  const std::vector<Vec3f> normals = vertex_normals(before);
+  const Array<Vec3f> normals = vertex_normals(before);
   const std::vector<Triangle> bad_before = bad_faces(before, same, normals);
   for (const Triangle& face : bad_faces(after.mesh, old, normals))
     if (!std::ranges::binary_search(bad_before, face)) append(faults, face);

@@ -9,7 +9,7 @@ namespace {
 
 class Splitter {
  public:
-  Splitter(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions)
+  Splitter(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions)
       : mesh_(mesh), plan_(plan), positions_(positions) {}
 
   Topology run(PointAttributes& attributes) {
@@ -101,7 +101,7 @@ class Splitter {
     EdgeMarks targets(mesh_.edge_count());
     for (uint32_t e : all.edges) targets[e] = plan_.is_split(e) ? 1 : 0;
     const std::vector<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
-    std::vector<uint32_t> point(child_.half_edge_count());
+    Array<uint32_t> point(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
         const uint8_t corner = pattern_[f]->corner[c / 3][c % 3];
@@ -112,7 +112,7 @@ class Splitter {
 
   const Topology& mesh_;
   const SplitPlan& plan_;
-  const std::vector<Vec3f>& positions_;
+  const Array<Vec3f>& positions_;
   std::vector<const SplitPattern*> pattern_;  ///< [F]
   std::vector<uint32_t> first_child_;         ///< [F + 1]
   Topology child_;
@@ -126,7 +126,7 @@ uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
   return children;
 }
 
-Topology split(const Topology& mesh, const SplitPlan& plan, const std::vector<Vec3f>& positions,
+Topology split(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions,
                PointAttributes& attributes) {
   return Splitter(mesh, plan, positions).run(attributes);
 }

@@ -38,7 +38,7 @@ class TensedRules {
   using Point = Vec3T<Real>;
 
  public:
-  TensedRules(const Topology& mesh, const std::vector<Point>& positions, const TensionField& field)
+  TensedRules(const Topology& mesh, const Array<Point>& positions, const TensionField& field)
       : mesh_(mesh), p_(positions), field_(field) {}
 
   /// Both ends interior and regular: the eight-point rule, each of its four outer hinges by its own factor.
@@ -171,7 +171,7 @@ class TensedRules {
   [[nodiscard]] Point reflected(uint32_t end, uint32_t other) const { return Real(2) * p_[end] - p_[other]; }
 
   const Topology& mesh_;
-  const std::vector<Point>& p_;
+  const Array<Point>& p_;
   const TensionField& field_;
 };
 

@@ -31,7 +31,7 @@ double hinge_factor(double normal_product) {
   return s * s * (3 - 2 * s);
 }
 
-TensionField tension_field(const Topology& mesh, const std::vector<Vec3f>& normals, Tension tension) {
+TensionField tension_field(const Topology& mesh, const Array<Vec3f>& normals, Tension tension) {
   TensionField field{.factor = std::vector<float>(mesh.edge_count(), 1), .follow_features = tension == Tension::sharp};
   for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
     if (mesh.kind[e] != EdgeKind::smooth) continue;

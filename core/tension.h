@@ -37,6 +37,6 @@ struct TensionField {
 };
 
 /// The field of a level; `normals` [F] are its faces'. O(V + E).
-[[nodiscard]] TensionField tension_field(const Topology& mesh, const std::vector<Vec3f>& normals, Tension tension);
+[[nodiscard]] TensionField tension_field(const Topology& mesh, const Array<Vec3f>& normals, Tension tension);
 
 }  // namespace papilio

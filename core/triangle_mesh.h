@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "array.h"
 #include "vec3.h"
 
 namespace papilio {
@@ -24,8 +25,8 @@ struct Attribute {
 /// of it: there may be repeated positions, unused ones, degenerate faces. Points that share a position but not their
 /// attributes are a seam.
 struct TriangleMesh {
-  std::vector<Vec3f> positions;  ///< [points]
-  std::vector<Triangle> triangles;
+  Array<Vec3f> positions;  ///< [points]
+  Array<Triangle> triangles;
   std::vector<Attribute> attributes{};
 
   friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;

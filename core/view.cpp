@@ -44,7 +44,7 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest, const Box& box,
+  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest, const Box& box,
         const Camera& camera)
       : all_inside_(camera.is_inside(box)),
         mesh_(mesh),
@@ -75,7 +75,7 @@ class Sight {
 
   const bool all_inside_;
   const Mesh& mesh_;
-  const std::vector<Vec3f>& normals_;
+  const Array<Vec3f>& normals_;
   const std::vector<double>& longest_;
   const Camera& camera_;
   std::vector<uint8_t> inside_;  ///< [V] or unknown
@@ -174,7 +174,7 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   return std::hypot(bx - ax, by - ay);
 }
 
-std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera) {
+std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera) {
   const std::vector<double> longest = longest_edges(mesh);
   Sight sight(mesh, normals, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
@@ -197,7 +197,7 @@ std::vector<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
-EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
                       const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
   Sight sight(mesh, normals, longest, box, camera);
@@ -218,7 +218,7 @@ bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double ed
                                    to_double(mesh.positions[mesh.topology.tip(h)])) < edge_pixels);
 }
 
-void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
+void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
   const EdgeMarks shown = edges_shown(mesh, normals, longest_edges(mesh), bounding_box(mesh.positions), camera,
                                       whole_region(mesh.topology));

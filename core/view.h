@@ -78,7 +78,7 @@ class Camera {
 
 /// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
-[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera);
+[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera);
 
 /// The length of each vertex's longest edge. [V]
 [[nodiscard]] std::vector<double> longest_edges(const Mesh& mesh);
@@ -87,7 +87,7 @@ class Camera {
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
 /// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
 /// longest [V], marks [E].
-[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals,
+[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals,
                                     const std::vector<double>& longest, const Box& box, const Camera& camera,
                                     const Region& region);
 
@@ -96,7 +96,7 @@ class Camera {
 
 /// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
-void cull_by_view(const Mesh& mesh, const std::vector<Vec3f>& normals, const Camera& camera, double edge_pixels,
+void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks);
 
 }  // namespace papilio

@@ -9,7 +9,7 @@ namespace {
 /// Finds a point of equal position among those already seen: open addressing, at most half full.
 class PositionTable {
  public:
-  explicit PositionTable(const std::vector<Vec3f>& points)
+  explicit PositionTable(const Array<Vec3f>& points)
       : points_(points),
         mask_(std::bit_ceil(2 * points.size() + 2) - 1),
         slots_(mask_ + 1, none),
@@ -37,7 +37,7 @@ class PositionTable {
     return mix(mix(seed_ ^ (bits(p.x) | bits(p.y) << 32)) + bits(p.z) * 0x9e3779b97f4a7c15ULL);
   }
 
-  const std::vector<Vec3f>& points_;
+  const Array<Vec3f>& points_;
   size_t mask_;
   std::vector<uint32_t> slots_;
   uint64_t seed_;
@@ -45,7 +45,7 @@ class PositionTable {
 
 }  // namespace
 
-std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positions, BuildReport& report,
+Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildReport& report,
                            std::vector<uint32_t>& corner_point) {
   const auto point_count = static_cast<uint32_t>(input.positions.size());
   std::vector<uint32_t> first(point_count);
@@ -56,7 +56,7 @@ std::vector<uint32_t> weld(const TriangleMesh& input, std::vector<Vec3f>& positi
   }
 
   std::vector<uint32_t> vertex(point_count, none);
-  std::vector<uint32_t> corners;
+  Array<uint32_t> corners;
   corners.reserve(3 * input.triangles.size());
   positions.clear();
   for (const Triangle& t : input.triangles) {

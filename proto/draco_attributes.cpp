@@ -179,7 +179,7 @@ VertexPoints::VertexPoints(const Mesh& mesh) : vertex_(mesh.attributes.point_cou
     if (has_several[vertex_[p]]) on_seams_.push_back(p);
 }
 
-int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values,
+int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
                          const VertexPoints* points) {
   draco::GeometryAttribute description;
   description.Init(type, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);

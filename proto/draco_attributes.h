@@ -33,7 +33,7 @@ class VertexPoints {
 };
 
 /// Adds an attribute with one value a vertex, which all its points share. Returns its number.
-int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values,
+int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
                          const VertexPoints* points);
 
 /// Adds an attribute of the points. Integers are rounded and held to their range. Points of one vertex share a value

@@ -55,7 +55,7 @@ class Encoding {
   /// With `attributes` points are what the faces name, else vertices.
   Encoding(const Mesh& mesh, bool attributes) : mesh_(mesh), encoder_(out_) {
     if (attributes) points_.emplace(mesh);
-    const std::vector<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
+    const Array<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
     out_.set_num_points(attributes ? mesh.attributes.point_count : mesh.topology.vertex_count);
     out_.SetNumFaces(mesh.topology.face_count());
     for (uint32_t f = 0; f < mesh.topology.face_count(); ++f)
@@ -64,7 +64,7 @@ class Encoding {
     add_vertices(draco::GeometryAttribute::POSITION, mesh.positions);
   }
 
-  int add_vertices(draco::GeometryAttribute::Type type, const std::vector<Vec3f>& values) {
+  int add_vertices(draco::GeometryAttribute::Type type, const Array<Vec3f>& values) {
     return add_vertex_attribute(out_, type, values, points_ ? &*points_ : nullptr);
   }
 
@@ -160,7 +160,7 @@ uint32_t id_for_normals(const MeshFormat& format) {
 
 }  // namespace
 
-QuantizationBox quantization_box(const std::vector<Vec3f>& coarse) {
+QuantizationBox quantization_box(const Array<Vec3f>& coarse) {
   const Box box = bounding_box(coarse);
   const Vec3d low = to_double(box.min);
   const Vec3d size = to_double(box.max) - low;

@@ -16,6 +16,7 @@
 namespace {
 
 thread_local int64_t allocations_left = -1;  // negative: as many as wanted
+thread_local bool blocks_fail = false;       // those of arrays, which try twice: once one has failed, all do
 
 }  // namespace
 
@@ -26,6 +27,16 @@ void* operator new(std::size_t size) {
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (blocks_fail || (allocations_left >= 0 && allocations_left-- == 0)) {
+    blocks_fail = true;
+    throw std::bad_alloc();
+  }
+  const auto unit = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept { std::free(memory); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 
@@ -44,6 +55,7 @@ void fail_each_allocation(const Options& options) {
   const Result expected = refine(coarse, options);
   for (int64_t allowed = 0;; ++allowed) {
     Mesh copy = coarse;
+    release_spare_blocks();
     allocations_left = allowed;
     try {
       const Result result = refine(std::move(copy), options);
@@ -52,9 +64,11 @@ void fail_each_allocation(const Options& options) {
       EXPECT_GT(allowed, 20);
       return;
     } catch (const Error& error) {
+      blocks_fail = false;
       allocations_left = -1;
       ASSERT_EQ(error.fault(), Fault::out_of_memory) << allowed;
     } catch (const std::bad_alloc&) {
+      blocks_fail = false;
       allocations_left = -1;
       ASSERT_LT(allowed, 3) << "only the words of the error themselves may be too much";
     }

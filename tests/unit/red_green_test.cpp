@@ -65,7 +65,7 @@ TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
 /// The positions of the first mesh that the second has too, looked up by bits.
 size_t count_common(const Mesh& a, const Mesh& b) {
   const auto less = [](Vec3f p, Vec3f q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
-  std::vector<Vec3f> sorted = b.positions;
+  Array<Vec3f> sorted = b.positions;
   std::ranges::sort(sorted, less);
   return static_cast<size_t>(
       std::ranges::count_if(a.positions, [&](Vec3f p) { return std::ranges::binary_search(sorted, p, less); }));
