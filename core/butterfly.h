@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "features.h"
 #include "mesh.h"
 #include "split_plan.h"
 #include "tension.h"
@@ -21,5 +22,10 @@ template <class Real>
 [[nodiscard]] Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
                                                  const SplitPlan& plan, Real w = 0,
                                                  const TensionField* tension = nullptr);
+
+/// The same, to the bit, where every edge is split and w is 0: appends the new vertex of each edge to `positions` [V],
+/// which become [V + E]. `features` are those of the level. O(F), and several times as fast.
+void uniform_butterfly(const Topology& topology, const Features& features, Array<Vec3f>& positions,
+                       const TensionField* tension = nullptr);
 
 }  // namespace papilio

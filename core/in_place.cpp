@@ -117,29 +117,4 @@ Result refine_in_place(Mesh coarse, const Options& options, const Selection& sel
   return InPlace(options, selection, progress).run(std::move(coarse));
 }
 
-Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
-  Result result;
-  Mesh& mesh = result.mesh;
-  mesh = std::move(coarse);
-  for (int level = 1; level <= options.levels; ++level) {
-    progress.poll();
-    const uint64_t faces = 4ULL * mesh.topology.face_count();
-    progress.require_room(faces, level);
-    progress.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh.attributes), level);
-    const EdgeMarks all(mesh.topology.edge_count(), 1);
-    const Trial trial = try_split(mesh, options, all);
-    progress.report(level - 1, mesh);
-    progress.poll();
-    if (level == options.levels) {
-      ErrorLeft left(selection);
-      const double scale = selection.highest_pixels_per_unit(bounding_box(mesh.positions));
-      for (uint32_t e = 0; e < all.size(); ++e) left.add(mesh, trial, scale, e, split_leaves);
-      result.error = left.error();
-    }
-    mesh = split_mesh(std::move(mesh), trial.tried, trial.made);
-    result.levels = level;
-  }
-  return result;
-}
-
 }  // namespace papilio

@@ -14,8 +14,4 @@ namespace papilio {
 [[nodiscard]] Result refine_in_place(Mesh coarse, const Options& options, const Selection& selection,
                                      const Progress& progress);
 
-/// Uniform refinement, the same in both schemes.
-[[nodiscard]] Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection,
-                                      const Progress& progress);
-
 }  // namespace papilio

@@ -9,6 +9,7 @@
 #include "red_green.h"
 #include "selection.h"
 #include "simplify.h"
+#include "uniform.h"
 
 namespace papilio {
 namespace {

@@ -105,6 +105,9 @@ class ErrorLeft {
     distance_ = std::max(distance_, distance);
     pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
   }
+  /// A deviation without a view.
+  void add_distance(double distance) { distance_ = std::max(distance_, distance); }
+  [[nodiscard]] double distance() const { return distance_; }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 

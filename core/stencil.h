@@ -25,6 +25,20 @@ struct Regular {
   explicit Regular(Real w = 0) : end(Real(0.5) - w), apex(Real(0.125) + 2 * w), wing(Real(-0.0625) - w), far(w) {}
 };
 
+/// The part of that rule which one of the edge's two faces knows: half of the ends, its apex, the two wings across its
+/// other edges. The two parts add up to the rule, without the points in line.
+template <class Real>
+struct FaceShare {
+  Real end, apex, wing, far;
+  explicit FaceShare(Real w = 0) : FaceShare(Regular<Real>(w)) {}
+  explicit FaceShare(const Regular<Real>& row) : end(row.end / 2), apex(row.apex), wing(row.wing), far(row.far) {}
+
+  template <class Point>
+  [[nodiscard]] Point operator()(Point a, Point b, Point apex_point, Point wing_1, Point wing_2) const {
+    return end * (a + b) + apex * apex_point + wing * (wing_1 + wing_2);
+  }
+};
+
 /// Along a boundary or crease: the four-point rule [SIG00]. Where the curve ends at a, its missing point is
 /// 2a - b.
 template <class Real>

@@ -38,14 +38,22 @@ class TensedRules {
   using Point = Vec3T<Real>;
 
  public:
-  TensedRules(const Topology& mesh, const Array<Point>& positions, const TensionField& field)
+  TensedRules(const Topology& mesh, const Point* positions, const TensionField& field)
       : mesh_(mesh), p_(positions), field_(field) {}
 
   /// Both ends interior and regular: the eight-point rule, each of its four outer hinges by its own factor.
   [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
-    const Point left = over_hinge(Topology::next(h), h) + over_hinge(Topology::previous(h), t);
-    const Point right = over_hinge(Topology::previous(t), h) + over_hinge(Topology::next(t), t);
-    return midpoint(h) - Real(0.0625) * (left + right);
+    return (Point{} + face_share(h, t)) + face_share(t, h);
+  }
+
+  /// The same face by face (butterfly_rules.h): `p` are face f's corners, `wing` the vertices across its edges.
+  void add_face_shares(uint32_t f, const std::array<Point, 3>& p, const std::array<Point, 3>& wing, Point* made) const {
+    const uint32_t* edge = &mesh_.edge[size_t{3} * f];
+    std::array<Point, 3> hinge;
+    for (uint32_t i = 0; i < 3; ++i)
+      hinge[i] = second_difference(field_.factor[edge[i]], p[i], p[(i + 1) % 3], p[(i + 2) % 3], wing[i]);
+    for (uint32_t i = 0; i < 3; ++i)
+      made[edge[i]] += share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]);
   }
 
   /// Spoke i of a closed fan of K faces, K != 2. The ring is split into what the spoke's two faces foresee, marching
@@ -135,12 +143,22 @@ class TensedRules {
     return factor == 1 ? q : m + factor * (q - m);
   }
 
-  /// Second difference over the hinge of half-edge s, a side of the split edge's face; `opposite` is the half-edge that
-  /// leaves the corner of that face which s does not touch.
+  /// What the face of h, whose twin is t, knows of their edge: half the midpoint, and its own two hinges.
+  [[nodiscard]] Point face_share(uint32_t h, uint32_t t) const {
+    return share(p_[mesh_.origin[h]], p_[mesh_.origin[t]], over_hinge(Topology::next(h), mesh_.origin[h]),
+                 over_hinge(Topology::previous(h), mesh_.origin[t]));
+  }
+  [[nodiscard]] static Point share(Point a, Point b, Point hinge_1, Point hinge_2) {
+    return Real(0.25) * (a + b) - Real(0.0625) * (hinge_1 + hinge_2);
+  }
+
+  /// Second difference over the hinge of half-edge s; `opposite` is the corner of its face that it does not touch.
   [[nodiscard]] Point over_hinge(uint32_t s, uint32_t opposite) const {
-    const Point wing = p_[mesh_.apex(mesh_.twin[s])];
-    const Point ends = p_[mesh_.origin[s]] + p_[mesh_.tip(s)];
-    return Real(field_.factor[mesh_.edge[s]]) * (wing + p_[mesh_.origin[opposite]] - ends);
+    return second_difference(field_.factor[mesh_.edge[s]], p_[mesh_.origin[s]], p_[mesh_.tip(s)], p_[opposite],
+                             p_[mesh_.apex(mesh_.twin[s])]);
+  }
+  [[nodiscard]] static Point second_difference(float factor, Point a, Point b, Point opposite, Point wing) {
+    return Real(factor) * ((wing + opposite) - (a + b));
   }
 
   [[nodiscard]] static Real turn_factor(Point before, Point at, Point after) {
@@ -171,7 +189,7 @@ class TensedRules {
   [[nodiscard]] Point reflected(uint32_t end, uint32_t other) const { return Real(2) * p_[end] - p_[other]; }
 
   const Topology& mesh_;
-  const Array<Point>& p_;
+  const Point* p_;
   const TensionField& field_;
 };
 

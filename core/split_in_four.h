@@ -1,0 +1,26 @@
+#pragma once
+
+#include "mesh.h"
+
+// One uniform level, by formula: every edge is split, every face becomes four.
+//
+// The children of face f are faces 4f to 4f + 3: child i < 3 keeps corner i, as its own corner i; child 3 lies in the
+// middle, its corner i on edge i of f. The halves of edge e are edges 2e and 2e + 1, the half at its lower vertex first;
+// its new vertex is V + e. The three edges inside f come after all of those, at 2E + 3f. split() makes the same of a
+// plan that splits everything.
+
+namespace papilio {
+
+/// The child half-edge that leaves the same vertex as half-edge h and runs to the middle of its edge.
+[[nodiscard]] constexpr uint32_t first_half(uint32_t h) { return 4 * h; }
+
+/// The child half-edge from the middle of half-edge h's edge to h's tip.
+[[nodiscard]] constexpr uint32_t second_half(uint32_t h) {
+  // Of child i + 1, in place i: 12 f + 3 (i + 1 mod 3) + i, which is 4 h but for this.
+  return h % 3 == 2 ? 4 * h - 6 : 4 * h + 3;
+}
+
+/// The next level's connectivity. Kinds of edges are inherited; new edges inside a face are smooth. O(F + E).
+[[nodiscard]] Topology split_in_four(const Topology& mesh);
+
+}  // namespace papilio

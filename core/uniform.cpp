@@ -1,0 +1,95 @@
+#include "uniform.h"
+
+#include "attributes.h"
+#include "butterfly.h"
+#include "features.h"
+#include "normals.h"
+#include "split.h"
+#include "split_in_four.h"
+
+namespace papilio {
+namespace {
+
+constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
+
+class Uniform {
+ public:
+  Uniform(const Options& options, const Selection& selection, const Progress& progress)
+      : options_(options), selection_(selection), progress_(progress) {}
+
+  Result run(Mesh coarse) {
+    mesh_ = std::move(coarse);
+    features_ = find_features(mesh_.topology);
+    for (int level = 1; level <= options_.levels; ++level) {
+      progress_.poll();
+      const uint64_t faces = 4ULL * mesh_.topology.face_count();
+      progress_.require_room(faces, level);
+      progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh_.attributes), level);
+      progress_.report(level - 1, mesh_);
+      make_vertices();
+      progress_.poll();
+      if (level == options_.levels) result_.error = error_left();
+      split();
+      result_.levels = level;
+    }
+    result_.mesh = std::move(mesh_);
+    return std::move(result_);
+  }
+
+ private:
+  /// Appends the new vertices to the positions.
+  void make_vertices() {
+    const Topology& topology = mesh_.topology;
+    if (options_.w == 0 && options_.tension == Tension::off) {
+      uniform_butterfly(topology, features_, mesh_.positions);
+      return;
+    }
+    const Array<Vec3f> normals = options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_);
+    if (options_.w == 0) {
+      const TensionField field = tension_field(topology, normals, options_.tension);
+      uniform_butterfly(topology, features_, mesh_.positions, &field);
+    } else {
+      const Array<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
+      mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
+    }
+  }
+
+  /// That of the edges of the last level, which are not tried: a share of what their parents had.
+  [[nodiscard]] double error_left() const {
+    ErrorLeft left(selection_);
+    for (uint32_t e = 0; e < mesh_.topology.edge_count(); ++e) {
+      const Vec3f made = mesh_.positions[mesh_.topology.vertex_count + e];
+      const Vec3d moved = to_double(made) - midpoint(mesh_, e);  // the surface is no farther than the midpoint
+      const double most = rounding * split_leaves * split_leaves * dot(moved, moved);
+      if (most > left.distance() * left.distance()) left.add_distance(split_leaves * deviation(mesh_, e, made));
+    }
+    return left.error();
+  }
+
+  void split() {
+    if (mesh_.attributes.empty())
+      mesh_.topology = split_in_four(mesh_.topology);
+    else
+      mesh_.topology = papilio::split(mesh_.topology, everything(), mesh_.positions, mesh_.attributes);
+    descend(features_);
+  }
+
+  [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
+
+  static constexpr double rounding = 1 + 1e-12;
+
+  const Options& options_;
+  const Selection& selection_;
+  const Progress& progress_;
+  Mesh mesh_;
+  Features features_;
+  Result result_;
+};
+
+}  // namespace
+
+Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
+  return Uniform(options, selection, progress).run(std::move(coarse));
+}
+
+}  // namespace papilio
