@@ -26,16 +26,18 @@ void release_spare_blocks() noexcept;
 template <class T>
 struct ArrayAllocator {
   using value_type = T;
+  /// Bytes that may be read behind the last element: lanes.h.
+  static constexpr size_t behind_end = 16;
 
   ArrayAllocator() = default;
   template <class Other>
   ArrayAllocator(const ArrayAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor): as allocators are
 
   [[nodiscard]] T* allocate(size_t count) {
-    if (count > SIZE_MAX / sizeof(T)) throw std::bad_array_new_length();
-    return static_cast<T*>(take_block(count * sizeof(T)));
+    if (count > (SIZE_MAX - behind_end) / sizeof(T)) throw std::bad_array_new_length();
+    return static_cast<T*>(take_block(count * sizeof(T) + behind_end));
   }
-  void deallocate(T* block, size_t count) noexcept { give_block(block, count * sizeof(T)); }
+  void deallocate(T* block, size_t count) noexcept { give_block(block, count * sizeof(T) + behind_end); }
 
   template <class Element>
   void construct(Element* /*at*/) noexcept {}

@@ -7,6 +7,7 @@
 
 #include "curve.h"
 #include "fan.h"
+#include "lanes.h"
 #include "stencil.h"
 #include "tensed_rules.h"
 
@@ -88,15 +89,16 @@ class ButterflyRules {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
-    const std::array<Point, 3> p{p_[corner[0]], p_[corner[1]], p_[corner[2]]};
-    const std::array<Point, 3> wing{p_[mesh_.apex(twin[0])], p_[mesh_.apex(twin[1])], p_[mesh_.apex(twin[2])]};
+    const std::array<Wide<Real>, 3> p{wide(corner[0]), wide(corner[1]), wide(corner[2])};
+    const std::array<Wide<Real>, 3> wing{wide(mesh_.apex(twin[0])), wide(mesh_.apex(twin[1])),
+                                         wide(mesh_.apex(twin[2]))};
     if (tensed_) {
       tensed_->add_face_shares(f, p, wing, made);
       return;
     }
-    made[edge[0]] += shares_(p[0], p[1], p[2], wing[1], wing[2]);
-    made[edge[1]] += shares_(p[1], p[2], p[0], wing[2], wing[0]);
-    made[edge[2]] += shares_(p[2], p[0], p[1], wing[0], wing[1]);
+    add_to(made[edge[0]], shares_(p[0], p[1], p[2], wing[1], wing[2]));
+    add_to(made[edge[1]], shares_(p[1], p[2], p[0], wing[2], wing[0]));
+    add_to(made[edge[2]], shares_(p[2], p[0], p[1], wing[0], wing[1]));
   }
 
  private:
@@ -105,17 +107,19 @@ class ButterflyRules {
     static const InteriorWeights<Real> weights;
     const uint32_t k = fan.valence();
     const Real* s = weights.ring(k);
-    std::array<Point, size_t{2} * stencil::harmonic_valence> ring;  // twice round
-    for (uint32_t j = 0; j < k; ++j) ring[j] = ring[k + j] = p_[fan.ring[j]];
-    const Point centre = weights.centre(k) * p_[fan.centre];
+    std::array<Wide<Real>, size_t{2} * stencil::harmonic_valence> ring;  // twice round
+    for (uint32_t j = 0; j < k; ++j) ring[j] = ring[k + j] = wide(fan.ring[j]);
+    const Wide<Real> centre = weights.centre(k) * wide(fan.centre);
     for (uint32_t i = 0; i < k; ++i) {
       if (!wants(fan.spokes[i])) continue;
       if (tensed_ && k > 2) {
         add(fan.spokes[i], tensed_->interior_spoke(fan, s, i));
         continue;
       }
-      Point q = centre;
-      for (uint32_t j = 0; j < k; ++j) q += s[j] * ring[i + j];
+      Wide<Real> sum = centre;
+      for (uint32_t j = 0; j < k; ++j) sum += s[j] * ring[i + j];
+      Point q;
+      store(sum, q);
       add(fan.spokes[i], q);
     }
   }
@@ -230,6 +234,7 @@ class ButterflyRules {
            Row::wing * (wing(Topology::next(t)) + wing(Topology::previous(t)));
   }
 
+  [[nodiscard]] Wide<Real> wide(uint32_t vertex) const { return papilio::widen(p_[vertex]); }
   /// As two additions to zero, in either order.
   static Point sum(Point one, Point other) { return (Point{} + one) + other; }
   static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }

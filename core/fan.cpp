@@ -55,25 +55,24 @@ std::vector<bool> find_plainly_regular(const Topology& mesh) {
 
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
   const Steps steps(mesh, mesh.origin[h]);
-  uint32_t first = h;
-  fan.closed = false;
-  for (uint32_t s = steps.clockwise(h); s != none; s = steps.clockwise(s)) {
-    first = s;
-    if (s == h) {
-      fan.closed = true;
-      break;
-    }
-  }
   fan.centre = mesh.origin[h];
-  fan.spokes.clear();
-  fan.ring.clear();
-  uint32_t s = first;
-  do {
-    fan.spokes.push_back(s);
-    fan.ring.push_back(mesh.tip(s));
-    s = steps.counter_clockwise(s);
-  } while (s != none && s != first);
-  if (!fan.closed) fan.ring.push_back(mesh.apex(fan.spokes.back()));
+  const auto walk_from = [&](uint32_t first) {
+    fan.spokes.clear();
+    fan.ring.clear();
+    uint32_t s = first;
+    do {
+      fan.spokes.push_back(s);
+      fan.ring.push_back(mesh.tip(s));
+      s = steps.counter_clockwise(s);
+    } while (s != none && s != first);
+    fan.closed = s == first;
+  };
+  walk_from(h);
+  if (fan.closed) return;
+  uint32_t first = h;
+  for (uint32_t s = steps.clockwise(h); s != none; s = steps.clockwise(s)) first = s;
+  if (first != h) walk_from(first);
+  fan.ring.push_back(mesh.apex(fan.spokes.back()));
 }
 
 void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit) {

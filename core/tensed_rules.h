@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fan.h"
+#include "lanes.h"
 #include "stencil.h"
 #include "tension.h"
 
@@ -47,13 +48,14 @@ class TensedRules {
   }
 
   /// The same face by face (butterfly_rules.h): `p` are face f's corners, `wing` the vertices across its edges.
-  void add_face_shares(uint32_t f, const std::array<Point, 3>& p, const std::array<Point, 3>& wing, Point* made) const {
+  void add_face_shares(uint32_t f, const std::array<Wide<Real>, 3>& p, const std::array<Wide<Real>, 3>& wing,
+                       Point* made) const {
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
-    std::array<Point, 3> hinge;
+    std::array<Wide<Real>, 3> hinge;
     for (uint32_t i = 0; i < 3; ++i)
       hinge[i] = second_difference(field_.factor[edge[i]], p[i], p[(i + 1) % 3], p[(i + 2) % 3], wing[i]);
     for (uint32_t i = 0; i < 3; ++i)
-      made[edge[i]] += share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]);
+      add_to(made[edge[i]], share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]));
   }
 
   /// Spoke i of a closed fan of K faces, K != 2. The ring is split into what the spoke's two faces foresee, marching
@@ -148,7 +150,8 @@ class TensedRules {
     return share(p_[mesh_.origin[h]], p_[mesh_.origin[t]], over_hinge(Topology::next(h), mesh_.origin[h]),
                  over_hinge(Topology::previous(h), mesh_.origin[t]));
   }
-  [[nodiscard]] static Point share(Point a, Point b, Point hinge_1, Point hinge_2) {
+  template <class Any>
+  [[nodiscard]] static Any share(Any a, Any b, Any hinge_1, Any hinge_2) {
     return Real(0.25) * (a + b) - Real(0.0625) * (hinge_1 + hinge_2);
   }
 
@@ -157,7 +160,8 @@ class TensedRules {
     return second_difference(field_.factor[mesh_.edge[s]], p_[mesh_.origin[s]], p_[mesh_.tip(s)], p_[opposite],
                              p_[mesh_.apex(mesh_.twin[s])]);
   }
-  [[nodiscard]] static Point second_difference(float factor, Point a, Point b, Point opposite, Point wing) {
+  template <class Any>
+  [[nodiscard]] static Any second_difference(float factor, Any a, Any b, Any opposite, Any wing) {
     return Real(factor) * ((wing + opposite) - (a + b));
   }
 

@@ -1,5 +1,7 @@
 #include "uniform.h"
 
+#include <cmath>
+
 #include "attributes.h"
 #include "butterfly.h"
 #include "features.h"
@@ -57,11 +59,17 @@ class Uniform {
   /// That of the edges of the last level, which are not tried: a share of what their parents had.
   [[nodiscard]] double error_left() const {
     ErrorLeft left(selection_);
-    for (uint32_t e = 0; e < mesh_.topology.edge_count(); ++e) {
-      const Vec3f made = mesh_.positions[mesh_.topology.vertex_count + e];
-      const Vec3d moved = to_double(made) - midpoint(mesh_, e);  // the surface is no farther than the midpoint
-      const double most = rounding * split_leaves * split_leaves * dot(moved, moved);
-      if (most > left.distance() * left.distance()) left.add_distance(split_leaves * deviation(mesh_, e, made));
+    const Topology& topology = mesh_.topology;
+    double least = 0;  // squared distances from which an edge counts
+    for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {  // in this order, what is near lies near in memory
+      if (topology.twin[h] < h) continue;
+      const uint32_t e = topology.edge[h];
+      const Vec3f made = mesh_.positions[topology.vertex_count + e];
+      const Vec3d ends = to_double(mesh_.positions[topology.origin[h]]) + to_double(mesh_.positions[topology.tip(h)]);
+      const Vec3d moved = to_double(made) - 0.5 * ends;  // the surface is no farther than the midpoint
+      if (dot(moved, moved) < least) continue;
+      left.add_distance(split_leaves * deviation(mesh_, e, made));
+      least = (1 - rounding) * std::pow(left.distance() / split_leaves, 2);
     }
     return left.error();
   }
@@ -76,7 +84,7 @@ class Uniform {
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
 
-  static constexpr double rounding = 1 + 1e-12;
+  static constexpr double rounding = 1e-12;
 
   const Options& options_;
   const Selection& selection_;
