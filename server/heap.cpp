@@ -11,6 +11,7 @@ namespace {
 
 constexpr int largest_block = 32 << 20;    ///< what is larger comes from the system each time; glibc's most
 constexpr int kept_at_end = 64 << 20;      ///< of each arena; as much as glibc itself would come to keep
+constexpr int most_calls = 5;              ///< that give nothing back while requests are done
 constexpr size_t block_bytes = 128 << 10;  ///< large enough for glibc to look at the arena's end when it is freed
 
 }  // namespace
@@ -43,9 +44,9 @@ void FreeMemory::give_back() {
   std::vector<std::vector<char>> blocks;
   {
     const std::lock_guard lock(mutex_);
-    const bool quiet = done_ == seen_;
-    seen_ = done_;
-    if (!quiet || done_ == given_back_at_) return;
+    const bool quiet = done_ == std::exchange(seen_, done_);
+    if (done_ == given_back_at_ || (++calls_ < most_calls && !quiet)) return;
+    calls_ = 0;
     given_back_at_ = done_;
     ++round_;
     blocks.swap(blocks_);

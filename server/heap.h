@@ -15,18 +15,20 @@ namespace papilio::server {
 /// before there are threads.
 void set_up_heap(int slots);
 
-/// Gives what requests have freed back to the system, once there are no more of them for a while.
+/// Gives what requests have freed back to the system: once there are no more of them, and now and then while they come,
+/// as those to come may be smaller.
 class FreeMemory {
  public:
   /// A request is done. To be called by the thread that has worked on it.
   void count_request();
   /// To be called every second while nothing computes: returns free memory if requests were done, but none since the
-  /// call before. Takes milliseconds.
+  /// call before, or else at every fifth call. Takes milliseconds.
   void give_back();
 
  private:
   std::mutex mutex_;
   uint64_t done_ = 0, seen_ = 0, given_back_at_ = 0;
+  int calls_ = 0;                          ///< since it was given back
   uint64_t round_ = 1;                     ///< of giving back
   std::vector<std::vector<char>> blocks_;  ///< one of each thread that has worked in this round
 };

@@ -9,7 +9,7 @@
 namespace papilio::soak {
 namespace {
 
-constexpr auto settling = std::chrono::milliseconds(2500);  // the server gives memory back within a second or two
+constexpr auto settling = std::chrono::milliseconds(6500);  // the server gives memory back within five or six seconds
 constexpr int samples = 5;
 constexpr ptrdiff_t looks = 3;
 

@@ -53,6 +53,19 @@ TEST(FreeMemory, GoesBackToTheSystemOnceRequestsAreDone) {
   EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
 }
 
+TEST(FreeMemory, GoesBackNowAndThenThoughRequestsKeepComing) {
+  SKIP_WITHOUT_GLIBC();
+  FreeMemory memory;
+  const auto kept = leave_holes();
+  const size_t before = resident_bytes();
+  for (int second = 0; second < 5; ++second) {
+    EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << second;
+    memory.count_request();
+    memory.give_back();
+  }
+  EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
+}
+
 TEST(FreeMemory, IsKeptForTheNextRequestUntilItGoesBackFromTheEndsOfArenasToo) {
   SKIP_WITHOUT_GLIBC();
   set_up_heap(2);
