@@ -74,8 +74,8 @@ class Turns {
   }
 
   [[nodiscard]] double turn(const std::function<void()>& work) const {
-    std::vector<double> taken;
-    for (int i = 0; i < times_; ++i) taken.push_back(seconds(work));
+    std::vector<double> taken(static_cast<size_t>(times_));
+    for (double& time : taken) time = seconds(work);
     return median(std::move(taken));
   }
 

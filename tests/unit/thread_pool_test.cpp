@@ -40,7 +40,6 @@ TEST(ThreadPool, DoesAllWorkOnAsManyThreadsAsMayBe) {
 }
 
 TEST(ThreadPool, SaysWhenWorkWaits) {
-  ThreadPool pool(2, milliseconds(1000));
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
   std::atomic<int> begun = 0;
@@ -48,6 +47,7 @@ TEST(ThreadPool, SaysWhenWorkWaits) {
     ++begun;
     ended.wait();
   };
+  ThreadPool pool(2, milliseconds(1000));
   EXPECT_FALSE(pool.has_waiting());
   pool.enqueue(wait);
   pool.enqueue(wait);
@@ -68,7 +68,6 @@ TEST(ThreadPool, ThreadsEndWhenThereIsNoWorkAndBeginAgain) {
       if (count != nullptr) ++*count;
     }
   };
-  ThreadPool pool(3, milliseconds(20));
   std::atomic<int> begun = 0;
   const auto work = [&] {
     thread_local Last last;
@@ -76,6 +75,7 @@ TEST(ThreadPool, ThreadsEndWhenThereIsNoWorkAndBeginAgain) {
     ++begun;
     while (begun % 3 != 0) std::this_thread::yield();
   };
+  ThreadPool pool(3, milliseconds(20));
   for (int round = 1; round <= 2; ++round) {
     for (int i = 0; i < 3; ++i) {
       pool.enqueue(work);
