@@ -5,9 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "proto/findings.h"
 #include "proto/problem.h"
@@ -32,10 +30,9 @@ class Stopwatch {
 };
 
 std::string milliseconds_text(double milliseconds) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::fixed << std::setprecision(3) << milliseconds;
-  return text.str();
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), milliseconds, std::chars_format::fixed, 3).ptr;
+  return {text.data(), end};
 }
 
 /// Four digits: more would be noise.

@@ -3,16 +3,58 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <new>
+#include <utility>
 
 namespace papilio::server {
+namespace {
 
-void share_arenas(int slots) { mallopt(M_ARENA_MAX, std::max(2, slots)); }
+constexpr int largest_block = 32 << 20;    ///< what is larger comes from the system each time; glibc's most
+constexpr int kept_at_end = 64 << 20;      ///< of each arena; as much as glibc itself would come to keep
+constexpr int most_calls = 5;              ///< that give nothing back while requests are done
+constexpr size_t block_bytes = 128 << 10;  ///< large enough for glibc to look at the arena's end when it is freed
+
+}  // namespace
+
+void set_up_heap(int slots) {
+  mallopt(M_ARENA_MAX, std::max(2, slots));
+  mallopt(M_MMAP_THRESHOLD, largest_block);
+  mallopt(M_TRIM_THRESHOLD, kept_at_end);
+}
+
+// malloc_trim gives back what is free within arenas, but the free end of the main one only. That of another goes when
+// something of that arena is freed, by whomever; so each thread leaves a block.
+
+void FreeMemory::count_request() {
+  thread_local uint64_t left_in = 0;  // the round; a thread works for one server
+  const std::lock_guard lock(mutex_);
+  ++done_;
+  if (left_in == round_) return;
+  left_in = round_;
+  try {
+    std::vector<char> block;
+    block.reserve(block_bytes);  // not written to: it takes no memory but its first page
+    blocks_.push_back(std::move(block));
+  } catch (const std::bad_alloc&) {
+    // The end of this arena is then given back in another round.
+  }
+}
 
 void FreeMemory::give_back() {
-  const uint64_t done = done_;
-  if (done == given_back_at_) return;
-  given_back_at_ = done;
+  std::vector<std::vector<char>> blocks;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool quiet = done_ == std::exchange(seen_, done_);
+    if (done_ == given_back_at_ || (++calls_ < most_calls && !quiet)) return;
+    calls_ = 0;
+    given_back_at_ = done_;
+    ++round_;
+    blocks.swap(blocks_);
+  }
+  mallopt(M_TRIM_THRESHOLD, 0);
+  blocks.clear();
   malloc_trim(0);
+  mallopt(M_TRIM_THRESHOLD, kept_at_end);
 }
 
 }  // namespace papilio::server

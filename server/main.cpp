@@ -71,7 +71,7 @@ int serve(const Config& config) {
   const sigset_t signals = block_signals();
   start_log(config.log_level, config.log_format);
   limit_address_space(config);
-  share_arenas(config.engine.slots);
+  set_up_heap(config.engine.slots);
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);
   Engine engine(config.engine);

@@ -62,13 +62,12 @@ bool Connection::wait(short events, Clock::time_point deadline) const {
 }
 
 Connection::Received Connection::receive(Clock::time_point deadline) {
-  buffer_.erase(0, begin_);
-  begin_ = 0;
-  const size_t held = buffer_.size();
+  if (begin_ > 0) std::ranges::copy(buffered(), buffer_.begin());
+  end_ -= std::exchange(begin_, 0);
+  if (buffer_.size() < end_ + receive_bytes) buffer_.resize(end_ + receive_bytes);
   for (;;) {
-    buffer_.resize(held + receive_bytes);
-    const Transport::Step step = transport_->read(buffer_.data() + held, receive_bytes);
-    buffer_.resize(held + step.bytes);
+    const Transport::Step step = transport_->read(buffer_.data() + end_, receive_bytes);
+    end_ += step.bytes;
     if (step.bytes > 0) return Received::bytes;
     if (step.wait_for == 0) return Received::closed;
     if (!wait(step.wait_for, deadline)) return Received::timeout;
@@ -88,10 +87,10 @@ bool Connection::wait_for_request(std::chrono::seconds idle, const std::function
 std::string Connection::read_head(size_t limit) {
   const auto deadline = Clock::now() + read_wait_;
   // An empty line before the request is a client's slip after the last body; RFC 9112 asks to pass over it.
-  if (buffer_.compare(begin_, 2, "\r\n") == 0) begin_ += 2;
+  if (buffered().starts_with("\r\n")) begin_ += 2;
   size_t length = 0;
   for (;;) {
-    const std::string_view held = std::string_view(buffer_).substr(begin_);
+    const std::string_view held = buffered();
     for (; length < std::min(held.size(), limit); ++length) {
       if (held[length] != '\n') continue;
       if (length == 0 || held[length - 1] != '\r')
@@ -125,10 +124,10 @@ std::string_view Connection::peek() {
     if (received == Received::timeout)
       throw Problem(Code::request_timeout, "The body stalled: it must bring at least " +
                                                std::to_string(least_bytes_a_second) + " bytes a second.");
-    body_stretch_ += buffer_.size() - begin_;
+    body_stretch_ += end_ - begin_;
     if (body_stretch_ >= least_bytes_a_second * static_cast<uint64_t>(read_wait_.count())) begin_body();
   }
-  return std::string_view(buffer_).substr(begin_);
+  return buffered();
 }
 
 void Connection::consume(size_t count) {
@@ -156,8 +155,7 @@ void Connection::linger() {
     if (!wait(wait_for, write_deadline)) return;
   const auto deadline = Clock::now() + std::min(read_wait_, longest_linger);
   do {
-    buffer_.clear();
-    begin_ = 0;
+    begin_ = end_;
   } while (Clock::now() < deadline && receive(deadline) == Received::bytes);
 }
 

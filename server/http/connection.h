@@ -41,7 +41,7 @@ class Connection {
   /// (closed early).
   std::string_view peek();
   void consume(size_t count);
-  [[nodiscard]] bool has_buffered() const { return begin_ < buffer_.size(); }
+  [[nodiscard]] bool has_buffered() const { return begin_ < end_; }
 
   /// False once the client is gone or has taken nothing for the whole of `write_wait`. `more`: what follows
   /// comes at once, and may share a packet with this.
@@ -59,6 +59,7 @@ class Connection {
   [[nodiscard]] uint64_t bytes_out() const { return bytes_out_; }
 
  private:
+  [[nodiscard]] std::string_view buffered() const { return std::string_view(buffer_).substr(begin_, end_ - begin_); }
   enum class Received { bytes, closed, timeout };
   /// False once the deadline has passed, ready or not.
   [[nodiscard]] bool wait(short events, Clock::time_point deadline) const;
@@ -68,8 +69,8 @@ class Connection {
   const std::chrono::seconds read_wait_;
   const std::chrono::seconds write_wait_;
   std::string remote_address_;
-  std::string buffer_;  ///< received, consumed up to begin_
-  size_t begin_ = 0;
+  std::string buffer_;  ///< from begin_ to end_: received, not consumed; it keeps its size, as growing would fill it
+  size_t begin_ = 0, end_ = 0;
   bool broken_ = false;  ///< a write has failed: no further one is tried
   Clock::time_point body_deadline_;
   uint64_t body_stretch_ = 0;  ///< bytes since the deadline was last moved

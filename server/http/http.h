@@ -10,7 +10,7 @@
 
 #include "proto/problem.h"
 
-// The HTTP server behind the project's own types. cpp-httplib listens, accepts and keeps the threads
+// The HTTP server behind the project's own types. cpp-httplib listens and accepts
 // (listener.h is the only place that knows it); the messages themselves are read and written in this folder,
 // because the library's parsers read some requests otherwise than any proxy in front of them does (head.h,
 // body.h and form.h name the cases).

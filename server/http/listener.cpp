@@ -4,8 +4,12 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
+
+#include "server/http/thread_pool.h"
 
 namespace papilio::server {
 namespace {
@@ -13,25 +17,28 @@ namespace {
 /// cpp-httplib's own is 5, compiled into the library: a burst of clients would wait for retransmissions.
 constexpr int backlog = 1024;
 
-/// The library's thread pool, with a count of the connections that no thread has taken yet.
-class CountingPool : public httplib::TaskQueue {
+/// Longer than a client takes between two connections, shorter than the time after which memory is given back.
+constexpr std::chrono::milliseconds idle_thread{1000};
+
+/// Our thread pool, as the library wants it.
+class TaskQueue : public httplib::TaskQueue {
  public:
-  CountingPool(size_t threads, std::atomic<int>& waiting) : pool_(threads), waiting_(waiting) {}
+  TaskQueue(size_t threads, std::atomic<const ThreadPool*>& known) : pool_(threads, idle_thread), known_(known) {
+    known_ = &pool_;
+  }
+  ~TaskQueue() override { known_ = nullptr; }
 
   // Returns void in 0.11 and bool in 0.18.
   using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
   Enqueued enqueue(std::function<void()> serve) override {
-    ++waiting_;
-    return pool_.enqueue([this, serve = std::move(serve)] {
-      --waiting_;
-      serve();
-    });
+    pool_.enqueue(std::move(serve));
+    return Enqueued(true);
   }
   void shutdown() override { pool_.shutdown(); }
 
  private:
-  httplib::ThreadPool pool_;
-  std::atomic<int>& waiting_;
+  ThreadPool pool_;
+  std::atomic<const ThreadPool*>& known_;
 };
 
 /// The library's default sets SO_REUSEPORT, with which two servers share a port without a word.
@@ -45,7 +52,7 @@ void set_listening_options(int fd) {
 class Listener::Server : public httplib::Server {
  public:
   Server(int threads, std::function<void(int)> serve) : serve_(std::move(serve)) {
-    new_task_queue = [this, threads] { return new CountingPool(static_cast<size_t>(threads), waiting_); };
+    new_task_queue = [this, threads] { return new TaskQueue(static_cast<size_t>(threads), pool_); };
     set_socket_options(set_listening_options);
     // Accepted sockets inherit it. Without it a small answer waits 40 ms for the client's delayed
     // acknowledgement.
@@ -82,7 +89,10 @@ class Listener::Server : public httplib::Server {
   }
 
   [[nodiscard]] bool closed() const { return closed_; }
-  [[nodiscard]] bool others_wait() const { return waiting_ > 0; }
+  [[nodiscard]] bool others_wait() const {
+    const ThreadPool* pool = pool_;
+    return pool != nullptr && pool->has_waiting();
+  }
 
  private:
   bool process_and_close_socket(socket_t fd) override {
@@ -92,7 +102,7 @@ class Listener::Server : public httplib::Server {
 
   const std::function<void(int)> serve_;
   std::atomic<socket_t> fd_ = INVALID_SOCKET;
-  std::atomic<int> waiting_ = 0;
+  std::atomic<const ThreadPool*> pool_ = nullptr;  ///< the library makes it and deletes it
   std::atomic<bool> closed_ = false;
 };
 

@@ -6,12 +6,12 @@
 
 namespace papilio::server {
 
-/// Listens, accepts, and hands each connection to one of a fixed number of threads. The only place that knows
-/// cpp-httplib: of it only the listening socket, the accepting loop and the thread pool are used. A request
-/// is never shown to it; see head.h and body.h for why.
+/// Listens, accepts, and hands each connection to one of a bounded number of threads. The only place that knows
+/// cpp-httplib: of it only the listening socket and the accepting loop are used. A request is never shown to it; see
+/// head.h and body.h for why.
 class Listener {
  public:
-  /// `serve` is called with each accepted socket, which it owns, on one of `threads` threads.
+  /// `serve` is called with each accepted socket, which it owns, on one of at most `threads` threads.
   Listener(int threads, std::function<void(int fd)> serve);
   ~Listener();
 

@@ -101,12 +101,17 @@ void add_field(std::string& head, std::string_view name, std::string_view value)
   if (!is_token(name)) return;
   head += name;
   head += ": ";
-  for (const char c : value) head += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  const size_t begin = head.size();
+  head += value;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(head.begin() + static_cast<ptrdiff_t>(begin), head.end(), is_control, ' ');
   head += "\r\n";
 }
 
 std::string reply_head(const Response& response, const Delivery& delivery) {
-  std::string head = "HTTP/1.1 " + std::to_string(response.status) + " ";
+  std::string head;
+  head.reserve(1 << 10);
+  head += "HTTP/1.1 " + std::to_string(response.status) + " ";
   head += reason(response.status);
   head += "\r\n";
   add_field(head, "Date", date());

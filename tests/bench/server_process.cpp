@@ -1,5 +1,6 @@
 #include "tests/bench/server_process.h"
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,9 +21,10 @@ ServerProcess::ServerProcess() {
   pid_ = fork();
   if (pid_ == 0) {
     dup2(ends[1], STDOUT_FILENO);
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
     close(ends[0]);
     close(ends[1]);
-    execl(program.c_str(), program.c_str(), "--port", "0", "--log-level", "off", nullptr);
+    execl(program.c_str(), program.c_str(), "--port", "0", nullptr);
     _exit(127);
   }
   close(ends[1]);

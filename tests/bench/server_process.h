@@ -4,7 +4,8 @@
 
 namespace papilio::bench {
 
-/// The papilio-server that was built beside this program, as a process of its own on a free port of loopback.
+/// The papilio-server that was built beside this program, as a process of its own on a free port of loopback. Its
+/// log goes to /dev/null.
 class ServerProcess {
  public:
   /// Throws std::runtime_error when it does not start.

@@ -9,7 +9,8 @@
 namespace papilio::soak {
 namespace {
 
-constexpr auto settling = std::chrono::milliseconds(2500);  // the server gives memory back within a second or two
+constexpr auto settling = std::chrono::seconds(
+    12);  // idle connections close after 5 s, their threads a second later, memory goes back within 5
 constexpr int samples = 5;
 constexpr ptrdiff_t looks = 3;
 

@@ -10,7 +10,7 @@ class Memory {
  public:
   explicit Memory(int pid) : pid_(pid) {}
 
-  /// Takes the average of a few samples; `warm` when the warm-up is over. Takes three seconds.
+  /// Takes the average of a few samples; `warm` when the warm-up is over. Takes some thirteen seconds.
   void look(bool warm);
   /// MiB: averages of the first and of the last three looks after the warm-up. 0 where there are fewer than six.
   [[nodiscard]] double at_start() const;

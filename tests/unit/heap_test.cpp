@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <memory>
+#include <thread>
 #include <vector>
 
 namespace papilio::server {
@@ -32,10 +33,14 @@ std::vector<std::unique_ptr<char>> leave_holes() {
   return kept;
 }
 
-TEST(FreeMemory, GoesBackToTheSystemOnceARequestIsDone) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers bring an allocator of their own";
+#define SKIP_WITHOUT_GLIBC() GTEST_SKIP() << "the sanitizers bring an allocator of their own"
+#else
+#define SKIP_WITHOUT_GLIBC()
 #endif
+
+TEST(FreeMemory, GoesBackToTheSystemOnceRequestsAreDone) {
+  SKIP_WITHOUT_GLIBC();
   FreeMemory memory;
   const auto kept = leave_holes();
   const size_t before = resident_bytes();
@@ -43,7 +48,41 @@ TEST(FreeMemory, GoesBackToTheSystemOnceARequestIsDone) {
   EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "nothing was done, so nothing is to be looked for";
   memory.count_request();
   memory.give_back();
+  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "more may follow at once";
+  memory.give_back();
   EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
+}
+
+TEST(FreeMemory, GoesBackNowAndThenThoughRequestsKeepComing) {
+  SKIP_WITHOUT_GLIBC();
+  FreeMemory memory;
+  const auto kept = leave_holes();
+  const size_t before = resident_bytes();
+  for (int second = 0; second < 5; ++second) {
+    EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << second;
+    memory.count_request();
+    memory.give_back();
+  }
+  EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
+}
+
+TEST(FreeMemory, IsKeptForTheNextRequestUntilItGoesBackFromTheEndsOfArenasToo) {
+  SKIP_WITHOUT_GLIBC();
+  set_up_heap(2);
+  FreeMemory memory;
+  const size_t before = resident_bytes();
+  const auto work = [&] {
+    std::vector<std::vector<char>> held;
+    for (size_t i = 0; i < blocks / 4; ++i) held.emplace_back(block_bytes, 'x');
+    held.clear();
+    memory.count_request();
+  };
+  std::thread(work).join();
+  std::thread(work).join();
+  EXPECT_GT(resident_bytes(), before + blocks / 8 * block_bytes) << "given back to be taken again";
+  memory.give_back();
+  memory.give_back();
+  EXPECT_LT(resident_bytes(), before + (2U << 20));
 }
 
 }  // namespace
