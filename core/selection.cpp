@@ -10,7 +10,10 @@
 namespace papilio {
 namespace {
 
-constexpr float never = -std::numeric_limits<float>::infinity();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float never = -infinity;
+
+float rounded_up(double number) { return std::nextafter(static_cast<float>(number), infinity); }
 
 }  // namespace
 
@@ -31,23 +34,23 @@ Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_e
 
 void Trial::forget() {
   deviations = Memo<double>(made.size(), unknown);
-  bounds = Memo<float>(made.size(), unknown);
+  bounds = Memo<float>(made.size(), infinity);
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
   const uint32_t rank = tried.before[edge];
   float known = bounds.get(rank);
-  if (known == unknown) {
-    const auto distance = static_cast<float>(length(to_double(made[rank]) - midpoint(mesh, edge)));
-    bounds.put(rank, known = std::nextafter(distance, std::numeric_limits<float>::infinity()));
-  }
+  if (known == infinity) bounds.put(rank, known = rounded_up(length(to_double(made[rank]) - midpoint(mesh, edge))));
   return known;
 }
 
 double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
   const uint32_t rank = tried.before[edge];
   double known = deviations.get(rank);
-  if (known == unknown) deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+  if (known == unknown) {
+    deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+    bounds.put(rank, rounded_up(known));
+  }
   return known;
 }
 

@@ -20,7 +20,7 @@ struct Trial {
   SplitPlan tried;             ///< the edges whose new vertices were computed
   std::vector<Vec3f> made;     ///< [tried.count()]
   Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
-  Memo<float> bounds{};        ///< [tried.count()] no less than these; or unknown
+  Memo<float> bounds{};        ///< [tried.count()] no less than these; infinity where nothing is known
 
   static constexpr int unknown = -1;
   /// Nothing is known yet of what was made.
@@ -39,6 +39,8 @@ struct Trial {
   }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, of what is known already; infinity where nothing is.
+  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
@@ -99,12 +101,14 @@ class ErrorLeft {
   /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
   /// `highest_pixels_per_unit`.
   void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
-    const double most = share * trial.known_deviation_at(mesh, edge).distance;
-    if (most <= distance_ && most * scale <= pixels_) return;
+    if (!may_grow_by(share * trial.most_deviation_at(mesh, edge), scale)) return;
     const double distance = share * trial.deviation_at(mesh, edge);
+    if (!may_grow_by(distance, scale)) return;
     distance_ = std::max(distance_, distance);
     pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
   }
+  /// Whether a deviation of at most that may be the largest.
+  [[nodiscard]] bool may_grow_by(double most, double scale) const { return most > distance_ || most * scale > pixels_; }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 
