@@ -54,9 +54,9 @@ class RedGreen {
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
-    choice.shown = selection_.shown(level.mesh, level.trial.normals, level.longest, level.box, choice.region);
+    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, choice.region);
     const std::vector<uint32_t> wanted = selection_.wanted(
-        level.mesh, level.trial.normals, static_cast<int>(choices_.size()), choice.region, choice.shown);
+        level.mesh, level.trial, static_cast<int>(choices_.size()), choice.region, choice.shown);
     if (selection_.is_by_error()) {
       choice.error =
           selection_.errors(level.mesh, level.trial, wanted, level.box, options_.max_faces > 0 ? 0 : threshold_);

@@ -37,6 +37,11 @@ void Trial::forget() {
   bounds = Memo<float>(made.size(), infinity);
 }
 
+void Trial::keep_more(const Topology& mesh) {
+  planes = FacePlanes(mesh.face_count(), infinity);
+  products = NormalProducts(mesh.edge_count(), infinity);
+}
+
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
   const uint32_t rank = tried.before[edge];
   float known = bounds.get(rank);
@@ -77,20 +82,20 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
-                           const Box& box, const Region& region) const {
-  if (camera_) return edges_shown(mesh, normals, longest, box, *camera_, region);
+EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
+                           const Region& region) const {
+  if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
   EdgeMarks all(mesh.topology.edge_count(), 0);
   for (uint32_t e : region.edges) all[e] = 1;
   return all;
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
-                                        const Region& region, const EdgeMarks& shown) const {
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgeMarks& shown) const {
   EdgeMarks curved;
   if (!options_.flatness.empty()) {
     curved.assign(mesh.topology.edge_count(), 0);
-    mark_by_flatness(mesh, normals, flatness_of(level), region, curved);
+    mark_by_flatness(mesh, trial.normals, trial.products, flatness_of(level), region, curved);
     grow(mesh.topology, options_.growth, region, curved);
   }
   std::vector<uint32_t> wanted;
@@ -106,9 +111,10 @@ std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const
   std::vector<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
   for (uint32_t e : wanted) {
+    errors[e] = measure_.most_error(trial.most_deviation_at(mesh, e), scale);
+    if (errors[e] < exact_from) continue;
     const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
-    errors[e] = measure_.most_error(distance, scale);
-    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, distance);
+    errors[e] = measure_.error(mesh, trial.normals, e, distance);
     if (errors[e] >= exact_from && !is_exact)
       errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }

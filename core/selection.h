@@ -22,9 +22,14 @@ struct Trial {
   Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
   Memo<float> bounds{};        ///< [tried.count()] no less than these; infinity where nothing is known
 
+  FacePlanes planes{};        ///< (view.h)
+  NormalProducts products{};  ///< (flatness.h)
+
   static constexpr int unknown = -1;
   /// Nothing is known yet of what was made.
   void forget();
+  /// Makes room for what only later requests gain by: planes and products.
+  void keep_more(const Topology& mesh);
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
@@ -70,12 +75,12 @@ class Selection {
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
   /// edges (view.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const std::vector<double>& longest,
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
                                 const Box& box, const Region& region) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const std::vector<Vec3f>& normals, int level,
-                                             const Region& region, const EdgeMarks& shown) const;
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                             const EdgeMarks& shown) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
