@@ -12,46 +12,62 @@
 namespace papilio {
 namespace {
 
-/// What becomes of a level's faces.
-struct Fate {
+/// A level, and what becomes of its faces. Levels lie in an array: the one above is before, the one below behind.
+struct AssembledLevel {
   static constexpr uint8_t hidden = 255;   ///< not in the result, nor its children
   static constexpr uint8_t divided = 254;  ///< its children are
-  std::vector<uint8_t> face;               ///< [F] hidden, divided, or the number of its pattern
-  /// [F] the first half-edge of its faces in the result; written where it is there itself only
+
+  const LevelChoice* choice;
+  const HierarchyLevel* level;
+  const Topology* mesh;
+  uint32_t number;
+  bool has_below;
+  const uint32_t *origin, *twin, *edge;  ///< [H] of the mesh
+  std::vector<uint8_t> fate;             ///< [F] hidden, divided, or the number of its pattern
+  /// [F] the first half-edge of its faces in the result; written where these are there
   std::unique_ptr<uint32_t[]> first;
-  std::unique_ptr<uint32_t[]> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split only
+  std::unique_ptr<uint32_t[]> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
   std::vector<uint32_t> split_edges;       ///< in ascending order
   std::vector<uint32_t> shown;             ///< the faces that are not hidden, in ascending order; with attributes only
 
-  [[nodiscard]] bool is_shown(uint32_t f) const { return face[f] != hidden; }
-  [[nodiscard]] bool is_divided(uint32_t f) const { return face[f] == divided; }
+  [[nodiscard]] bool is_shown(uint32_t f) const { return fate[f] != hidden; }
+  [[nodiscard]] bool is_divided(uint32_t f) const { return fate[f] == divided; }
+  /// The first child of a divided face.
+  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].level->child[f]; }
+  /// The number in the result of a vertex of a face that is there.
+  [[nodiscard]] uint32_t vertex_in_result(uint32_t v) const {
+    for (const AssembledLevel* at = this; at->number > 0; --at) {
+      const uint32_t from = at->level->from[v];
+      const uint32_t above = at[-1].mesh->vertex_count;
+      if (from >= above) return at[-1].new_vertex[from - above];
+      v = from;
+    }
+    return v;
+  }
 };
 
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine)
-      : levels_(levels),
-        most_cosine_(most_cosine),
-        has_attributes_(!levels[0].level->mesh.attributes.empty()),
-        vertex_count_(levels[0].level->mesh.topology.vertex_count) {
-    for (size_t k = 0; k < levels.size(); ++k) number_vertices(k);
-    for (uint32_t f : levels[0].region.faces) place(0, f);
+      : most_cosine_(most_cosine), coarse_(levels[0].level->mesh), vertex_count_(coarse_.topology.vertex_count) {
+    levels_.reserve(levels.size());
+    for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
+    for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
   }
 
   Mesh run() {
-    const Topology& coarse = mesh_of(0);
     Topology& topology = out_.topology;
     topology.vertex_count = vertex_count_;
-    topology.pinched = coarse.pinched;
-    topology.darts = coarse.darts;
+    topology.pinched = coarse_.topology.pinched;
+    topology.darts = coarse_.topology.darts;
     topology.origin.resize(half_edge_count_);
     topology.twin.assign(half_edge_count_, none);
     topology.edge.resize(half_edge_count_);
     topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
     topology.kind.reserve(topology.half_edge.capacity());
     make_positions();
-    for (const Place& place : places_) make_faces(place.level, place.face);
-    if (has_attributes_) make_points();
+    for (const Place& place : places_) make_faces(levels_[place.level], place.face);
+    if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
   }
 
@@ -62,155 +78,152 @@ class Assembler {
     uint32_t face;
   };
 
-  [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
-
-  void number_vertices(size_t k) {
-    Fate fate;
-    fate.face.assign(mesh_of(k).face_count(), Fate::hidden);
-    fate.first = std::make_unique_for_overwrite<uint32_t[]>(mesh_of(k).face_count());
-    fate.new_vertex = std::make_unique_for_overwrite<uint32_t[]>(mesh_of(k).edge_count());
-    fate.split_edges = marked(levels_[k].split);
-    for (uint32_t e : fate.split_edges) fate.new_vertex[e] = vertex_count_++;
-    fates_.push_back(std::move(fate));
+  void add_level(const LevelChoice& choice, bool has_below) {
+    const Topology& mesh = choice.level->mesh.topology;
+    AssembledLevel& level = levels_.emplace_back();
+    level.choice = &choice;
+    level.level = choice.level.get();
+    level.mesh = &mesh;
+    level.number = static_cast<uint32_t>(levels_.size() - 1);
+    level.has_below = has_below;
+    level.origin = mesh.origin.data();
+    level.twin = mesh.twin.data();
+    level.edge = mesh.edge.data();
+    level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
+    level.first = std::make_unique_for_overwrite<uint32_t[]>(mesh.face_count());
+    level.new_vertex = std::make_unique_for_overwrite<uint32_t[]>(mesh.edge_count());
+    level.split_edges = choice.split_edges;
+    std::ranges::sort(level.split_edges);
+    for (uint32_t e : level.split_edges) level.new_vertex[e] = vertex_count_++;
   }
 
   /// What becomes of a face and of what lies below it, and where that lies in the result.
-  void place(uint32_t k, uint32_t f) {
-    const LevelChoice& choice = levels_[k];
-    Fate& fate = fates_[k];
-    if (has_attributes_) fate.shown.push_back(f);
-    const unsigned mask = choice.split_mask(f);
+  void place(AssembledLevel& level, uint32_t f) {
+    if (!coarse_.attributes.empty()) level.shown.push_back(f);
+    const unsigned mask = level.choice->split_mask(f);
     // What has children as support only is cut into the same four.
-    if (mask == 7 && k + 1 < levels_.size() && choice.red[f] != 0) {
-      fate.face[f] = Fate::divided;
-      for (uint32_t c = 0; c < 4; ++c) place(k + 1, child(k, f) + c);
+    if (mask == 7 && level.has_below && level.choice->red[f] != 0) {
+      level.fate[f] = AssembledLevel::divided;
+      for (uint32_t c = 0; c < 4; ++c) place((&level)[1], level.child(f) + c);
       return;
     }
-    fate.face[f] = choose_transition(*choice.level, f, mask, most_cosine_);
-    fate.first[f] = half_edge_count_;
-    half_edge_count_ += 3U * transition_pattern(fate.face[f]).children;
-    places_.push_back({k, f});
+    level.fate[f] = choose_transition(*level.level, f, mask, most_cosine_);
+    level.first[f] = half_edge_count_;
+    half_edge_count_ += 3U * transition_pattern(level.fate[f]).children;
+    places_.push_back({level.number, f});
   }
-
-  /// The first child of a divided face.
-  [[nodiscard]] uint32_t child(size_t k, uint32_t f) const { return levels_[k + 1].level->child[f]; }
 
   void make_positions() {
     out_.positions.reserve(vertex_count_);
-    out_.positions = levels_[0].level->mesh.positions;
-    for (size_t k = 0; k < levels_.size(); ++k)
-      for (uint32_t e : fates_[k].split_edges) out_.positions.push_back(levels_[k].level->trial.at(e));
-  }
-
-  /// The number in the result of vertex v of a level.
-  [[nodiscard]] uint32_t vertex_in_result(size_t k, uint32_t v) const {
-    for (; k > 0; --k) {
-      const uint32_t from = levels_[k].level->from[v];
-      const uint32_t above = mesh_of(k - 1).vertex_count;
-      if (from >= above) return fates_[k - 1].new_vertex[from - above];
-      v = from;
-    }
-    return v;
+    out_.positions = coarse_.positions;
+    for (const AssembledLevel& level : levels_)
+      for (uint32_t e : level.split_edges) out_.positions.push_back(level.level->trial.at(e));
   }
 
   /// In the order of the result: a half-edge whose twin was there before has its edge from it.
-  void make_faces(size_t k, uint32_t f) {
-    const Topology& mesh = mesh_of(k);
-    const Fate& fate = fates_[k];
-    const SplitPattern& cut = transition_pattern(fate.face[f]);
-    const uint32_t count = 3U * cut.children;
-    const uint32_t base = fate.first[f];
+  void make_faces(const AssembledLevel& level, uint32_t f) {
+    const SplitPattern& cut = transition_pattern(level.fate[f]);
+    const uint32_t base = level.first[f];
+    const uint32_t h = 3 * f;
     std::array<uint32_t, 6> vertex{};
-    for (uint32_t i = 0; i < 3; ++i) {
-      vertex[i] = vertex_in_result(k, mesh.origin[3 * f + i]);
-      if (levels_[k].split[mesh.edge[3 * f + i]] != 0) vertex[3 + i] = fate.new_vertex[mesh.edge[3 * f + i]];
+    for (uint32_t i = 0; i < 3; ++i) vertex[i] = level.vertex_in_result(level.origin[h + i]);
+    if (cut.children == 1) {
+      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + i] = vertex[i];
+      for (uint32_t i = 0; i < 3; ++i) make_outer(base + i, level, h + i, 0);
+      return;
     }
-    for (uint32_t c = 0; c < count; ++c) out_.topology.origin[base + c] = vertex[cut.corner[c / 3][c % 3]];
-    for (uint32_t c = 0; c < count; ++c) {
-      const uint32_t known = out_.topology.twin[base + c];
-      if (known != none) {
-        out_.topology.edge[base + c] = out_.topology.edge[known];
-      } else if (cut.inner_twin[c] != SplitPattern::outside) {
+    for (uint32_t i = 0; i < 3; ++i)
+      if (level.choice->split[level.edge[h + i]] != 0) vertex[3 + i] = level.new_vertex[level.edge[h + i]];
+    for (uint32_t c = 0; c < cut.children; ++c)
+      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + 3 * c + i] = vertex[cut.corner[c][i]];
+    for (uint32_t c = 0; c < 3U * cut.children; ++c) {
+      if (cut.inner_twin[c] == SplitPattern::outside)
+        make_outer(base + c, level, h + cut.edge[c] / 2, cut.edge[c] % 2);
+      else
         make_edge(base + c, base + cut.inner_twin[c], EdgeKind::smooth);
-      } else {
-        const uint32_t h = 3 * f + cut.edge[c] / 2;
-        make_edge(base + c, twin_in_result(k, h, cut.edge[c] % 2), mesh.kind[mesh.edge[h]]);
-      }
     }
   }
 
-  void make_edge(uint32_t h, uint32_t twin, EdgeKind kind) {
+  /// The edge and twin of a half-edge of the result, which is the first or second half (or the whole) of half-edge h.
+  void make_outer(uint32_t made, const AssembledLevel& level, uint32_t h, uint32_t half) {
+    if (out_.topology.twin[made] == none)
+      make_new_edge(made, twin_in_result(level, h, half), level.mesh->kind[level.edge[h]]);
+    else
+      out_.topology.edge[made] = out_.topology.edge[out_.topology.twin[made]];
+  }
+
+  void make_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
+    if (out_.topology.twin[made] == none)
+      make_new_edge(made, twin, kind);
+    else
+      out_.topology.edge[made] = out_.topology.edge[twin];
+  }
+
+  void make_new_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
     Topology& mesh = out_.topology;
-    mesh.edge[h] = mesh.edge_count();
+    mesh.edge[made] = mesh.edge_count();
     if (twin != none) {
-      mesh.twin[h] = twin;
-      mesh.twin[twin] = h;
+      mesh.twin[made] = twin;
+      mesh.twin[twin] = made;
     } else if (kind == EdgeKind::shared) {
-      const auto [known, is_new] = shared_.try_emplace(std::minmax(mesh.origin[h], mesh.tip(h)), mesh.edge[h]);
-      mesh.edge[h] = known->second;
+      const auto [known, is_new] = shared_.try_emplace(std::minmax(mesh.origin[made], mesh.tip(made)), mesh.edge[made]);
+      mesh.edge[made] = known->second;
       if (!is_new) return;
     }
-    mesh.half_edge.push_back(h);
+    mesh.half_edge.push_back(made);
     mesh.kind.push_back(kind);
   }
 
-  /// Half-edge of the level above whose first or second half h is; h lies on the outside of its parent.
-  [[nodiscard]] std::pair<uint32_t, uint32_t> half_of(size_t k, uint32_t h) const {
-    const uint32_t f = Topology::face(h);
-    const uint8_t half = split_pattern(7, false).edge[3 * (f % 4) + h % 3];
-    return {3 * levels_[k].level->parent[f / 4] + half / 2U, half % 2U};
-  }
-
   /// What runs against the first or second half (or the whole) of half-edge h of an undivided face.
-  [[nodiscard]] uint32_t twin_in_result(size_t k, uint32_t h, uint32_t half) const {
-    const Topology& mesh = mesh_of(k);
-    const uint32_t t = mesh.twin[h];
-    if (t != none && fates_[k].is_shown(Topology::face(t)))
-      return half_edge_in_result(k, t, levels_[k].split[mesh.edge[h]] != 0 ? 1 - half : 0);
-    if (k == 0 || mesh.kind[mesh.edge[h]] == EdgeKind::boundary || mesh.kind[mesh.edge[h]] == EdgeKind::shared)
-      return none;
-    const auto [above, half_above] = half_of(k, h);
-    return half_edge_in_result(k - 1, mesh_of(k - 1).twin[above], 1 - half_above);
+  [[nodiscard]] static uint32_t twin_in_result(const AssembledLevel& level, uint32_t h, uint32_t half) {
+    const uint32_t t = level.twin[h];
+    if (t != none && level.is_shown(Topology::face(t)))
+      return half_edge_in_result(level, t, level.choice->split[level.edge[h]] != 0 ? 1 - half : 0);
+    const EdgeKind kind = level.mesh->kind[level.edge[h]];
+    if (level.number == 0 || kind == EdgeKind::boundary || kind == EdgeKind::shared) return none;
+    // It lies on the outside of its parent, and is a half of one of that one's.
+    const uint32_t f = Topology::face(h);
+    const uint8_t outer = split_pattern(7, false).edge[3 * (f % 4) + h % 3];
+    const AssembledLevel& above = (&level)[-1];
+    return half_edge_in_result(above, above.twin[3 * level.level->parent[f / 4] + outer / 2U], 1 - outer % 2U);
   }
 
   /// The half-edge of the result that is the first or second half (or the whole) of half-edge h of a shown face.
-  [[nodiscard]] uint32_t half_edge_in_result(size_t k, uint32_t h, uint32_t half) const {
-    while (fates_[k].is_divided(Topology::face(h))) {
-      const uint8_t c = split_pattern(7, false).outer[2 * (h % 3) + half];
-      h = 3 * child(k, Topology::face(h)) + c;
+  [[nodiscard]] static uint32_t half_edge_in_result(const AssembledLevel& level, uint32_t h, uint32_t half) {
+    const AssembledLevel* at = &level;
+    while (at->is_divided(Topology::face(h))) {
+      h = 3 * at->child(Topology::face(h)) + split_pattern(7, false).outer[2 * (h % 3) + half];
       half = 0;
-      ++k;
+      ++at;
     }
     const uint32_t f = Topology::face(h);
-    return fates_[k].first[f] + transition_pattern(fates_[k].face[f]).outer[2 * (h % 3) + half];
+    return at->first[f] + transition_pattern(at->fate[f]).outer[2 * (h % 3) + half];
   }
 
   /// Top down: the points of each shown face's corners.
   void make_points() {
-    out_.attributes = levels_[0].level->mesh.attributes;
-    std::vector<uint32_t> result(out_.topology.half_edge_count());
-    for (size_t k = 0; k < levels_.size(); ++k) {
-      const Fate& fate = fates_[k];
-      const std::vector<uint32_t> made = split_points(mesh_of(k), levels_[k].split, fate.shown, out_.attributes);
+    out_.attributes = coarse_.attributes;
+    std::vector<uint32_t> result(half_edge_count_);
+    for (const AssembledLevel& level : levels_) {
+      const std::vector<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
       const std::vector<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };
-      out_.attributes.point.assign(k + 1 < levels_.size() ? mesh_of(k + 1).half_edge_count() : 0, none);
-      for (uint32_t f : fate.shown) {
-        const bool divided = fate.is_divided(f);
-        const SplitPattern& cut = divided ? split_pattern(7, false) : transition_pattern(fate.face[f]);
-        uint32_t* out = divided ? &out_.attributes.point[3 * size_t{child(k, f)}] : &result[fate.first[f]];
+      out_.attributes.point.assign(level.has_below ? (&level)[1].mesh->half_edge_count() : 0, none);
+      for (uint32_t f : level.shown) {
+        const bool divided = level.is_divided(f);
+        const SplitPattern& cut = divided ? split_pattern(7, false) : transition_pattern(level.fate[f]);
+        uint32_t* out = divided ? &out_.attributes.point[3 * size_t{level.child(f)}] : &result[level.first[f]];
         for (uint32_t c = 0; c < 3U * cut.children; ++c) out[c] = point(f, cut.corner[c / 3][c % 3]);
       }
     }
     out_.attributes.point = std::move(result);
   }
 
-  std::span<const LevelChoice> levels_;
   double most_cosine_;
-  bool has_attributes_;
-  std::vector<Fate> fates_;
+  const Mesh& coarse_;
+  std::vector<AssembledLevel> levels_;
   std::vector<Place> places_;  ///< in the order of the result
   uint32_t half_edge_count_ = 0;
   uint32_t vertex_count_;
