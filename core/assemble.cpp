@@ -263,15 +263,19 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
     const Trial& trial = choice.level->trial;
-    const auto is_whole = [&](uint32_t e) { return choice.shown[e] != 0 && choice.split[e] == 0; };
     for (uint32_t e : choice.region.edges) {
-      if (!is_whole(e) || !left_.may_grow_by(trial.no_less_than_deviation_at(e), scales_[k])) continue;
+      if (choice.split[e] != 0 || !left_.may_grow_by(trial.no_less_than_deviation_at(e), scales_[k]) ||
+          !choice.shown[e])
+        continue;
       const uint32_t h = mesh.half_edge[e];
       const uint32_t t = mesh.twin[h];
       if (is_reached(k, Topology::face(h)) || (t != none && is_reached(k, Topology::face(t)))) add(k, e);
     }
-    for (uint32_t h : choice.level->shared)
-      if (is_whole(mesh.edge[h]) && is_reached(k, Topology::face(h))) add(k, mesh.edge[h]);
+    for (uint32_t h : choice.level->shared) {
+      const uint32_t e = mesh.edge[h];
+      if (choice.may_be_split[e] != 0 && choice.split[e] == 0 && choice.shown[e] && is_reached(k, Topology::face(h)))
+        add(k, e);
+    }
   }
 
   void add_split(size_t k) {
@@ -281,7 +285,7 @@ class ErrorFinder {
              !left_.may_grow_by(split_leaves * choice.level->trial.no_less_than_deviation_at(e), scales_[k]);
     };
     choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
-      if (choice.shown[e] == 0 || is_known(e) || !is_reached(k, f)) return;
+      if (is_known(e) || !choice.shown[e] || !is_reached(k, f)) return;
       const bool has_children = choice.has_children(f);
       if (has_children && choice.split_mask(f) == 7) return;
       // Its halves may have been judged, though nothing below was wanted.
@@ -290,7 +294,7 @@ class ErrorFinder {
         const LevelChoice& below = levels_[k + 1];
         if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
           for (uint32_t half : {first, second})
-            if (below.shown[half] != 0) add(k + 1, half);
+            if (below.shown[half]) add(k + 1, half);
           return;
         }
       }

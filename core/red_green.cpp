@@ -54,12 +54,12 @@ class RedGreen {
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
-    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, choice.region);
-    const std::vector<uint32_t> wanted = selection_.wanted(
-        level.mesh, level.trial, static_cast<int>(choices_.size()), choice.region, choice.shown);
+    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
+    const float least = options_.max_faces > 0 ? 0 : threshold_;
+    const std::vector<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()),
+                                                           choice.region, choice.shown, level.box, least);
     if (selection_.is_by_error()) {
-      choice.error =
-          selection_.errors(level.mesh, level.trial, wanted, level.box, options_.max_faces > 0 ? 0 : threshold_);
+      choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least);
     } else {
       choice.error.assign(level.mesh.topology.edge_count(), never);
       for (uint32_t e : wanted) choice.error[e] = threshold_;

@@ -90,8 +90,15 @@ EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const std::vect
   return all;
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                        const EdgeMarks& shown) const {
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
+                            const std::vector<uint32_t>& shared) const {
+  if (!camera_) return {};
+  return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
+}
+
+template <class MayWant, class Shown>
+std::vector<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                           const MayWant& may_want, const Shown& shown) const {
   EdgeMarks curved;
   if (!options_.flatness.empty()) {
     curved.assign(mesh.topology.edge_count(), 0);
@@ -100,10 +107,26 @@ std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, in
   }
   std::vector<uint32_t> wanted;
   for (uint32_t e : region.edges)
-    if (shown[e] != 0 && (curved.empty() || curved[e] != 0) &&
+    if ((curved.empty() || curved[e] != 0) && may_want(e) && shown[e] != 0 &&
         (!camera_ || looks_long(mesh, e, *camera_, options_.view->edge_pixels)))
       wanted.push_back(e);
   return wanted;
+}
+
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgeMarks& shown) const {
+  const auto any = [](uint32_t) { return true; };
+  return wanted_of(mesh, trial, level, region, any, shown);
+}
+
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgesShown& shown, const Box& box, float least) const {
+  const double scale = highest_pixels_per_unit(box);
+  const bool by_error = is_by_error() && least > 0;
+  const auto may_reach = [&](uint32_t e) {
+    return !by_error || measure_.most_error(trial.most_deviation_at(mesh, e), scale) >= least;
+  };
+  return wanted_of(mesh, trial, level, region, may_reach, shown);
 }
 
 std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,

@@ -77,10 +77,17 @@ class Selection {
   /// edges (view.h), `box` of the vertices. [E]
   [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
                                 const Box& box, const Region& region) const;
+  /// The same, edge by edge. `shared`: the half-edges at shared edges.
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
+                                 const Box& box, const std::vector<uint32_t>& shared) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
   [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                              const EdgeMarks& shown) const;
+
+  /// The same, of the edges whose error (below) may be `least` or more.
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                             const EdgesShown& shown, const Box& box, float least) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
@@ -92,6 +99,9 @@ class Selection {
 
  private:
   friend class ErrorLeft;
+  template <class MayWant, class Shown>
+  [[nodiscard]] std::vector<uint32_t> wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                                const MayWant& may_want, const Shown& shown) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;

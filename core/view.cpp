@@ -259,6 +259,48 @@ EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const
   return marks;
 }
 
+/// What was found of faces already.
+class EdgesShown::Memory {
+ public:
+  Memory(const Mesh& mesh, const Sight& sight, const std::vector<uint32_t>& shared)
+      : mesh_(mesh.topology), sight_(sight), of_face_(mesh_.face_count(), unknown) {
+    if (shared.empty()) return;
+    of_shared_.assign(mesh_.edge_count(), 0);
+    for (uint32_t h : shared) of_shared_[mesh_.edge[h]] |= of_face(Topology::face(h));
+  }
+
+  [[nodiscard]] bool is_shown(uint32_t e) {
+    if (!of_shared_.empty() && mesh_.kind[e] == EdgeKind::shared) return of_shared_[e] == seen;
+    const uint32_t h = mesh_.half_edge[e];
+    const uint32_t t = mesh_.twin[h];
+    const uint8_t one = of_face(Topology::face(h));
+    return one == seen || (t != none && (one | of_face(Topology::face(t))) == seen);
+  }
+
+ private:
+  static constexpr uint8_t unknown = 255;
+  [[nodiscard]] uint8_t of_face(uint32_t f) {
+    if (of_face_[f] == unknown) of_face_[f] = sight_.of_face(f);
+    return of_face_[f];
+  }
+
+  const Topology& mesh_;
+  Sight sight_;
+  std::vector<uint8_t> of_face_;    ///< [F] or unknown
+  std::vector<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
+};
+
+EdgesShown::EdgesShown() = default;
+EdgesShown::EdgesShown(const Mesh& mesh, const std::vector<Vec3f>& normals, const FacePlanes& planes,
+                       const std::vector<double>& longest, const Box& box, const Camera& camera,
+                       const std::vector<uint32_t>& shared)
+    : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, planes, longest, box, camera), shared)) {}
+EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
+EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;
+EdgesShown::~EdgesShown() = default;
+
+bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || memory_->is_shown(edge); }
+
 bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
   if (edge_pixels == 0) return true;
   const uint32_t h = mesh.topology.half_edge[edge];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "memo.h"
@@ -119,6 +120,28 @@ using FacePlanes = Memo<float>;
 [[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const FacePlanes& planes,
                                     const std::vector<double>& longest, const Box& box, const Camera& camera,
                                     const Region& region);
+
+/// The same, edge by edge: a face is looked at when one of its edges is asked for. What it is made of must outlive it.
+class EdgesShown {
+ public:
+  /// All edges are.
+  EdgesShown();
+  /// Shapes as above; `shared`: the half-edges at shared edges.
+  EdgesShown(const Mesh& mesh, const std::vector<Vec3f>& normals, const FacePlanes& planes,
+             const std::vector<double>& longest, const Box& box, const Camera& camera,
+             const std::vector<uint32_t>& shared);
+  EdgesShown(EdgesShown&& other) noexcept;
+  EdgesShown& operator=(EdgesShown&& other) noexcept;
+  EdgesShown(const EdgesShown&) = delete;
+  EdgesShown& operator=(const EdgesShown&) = delete;
+  ~EdgesShown();
+
+  [[nodiscard]] bool operator[](uint32_t edge) const;
+
+ private:
+  class Memory;
+  std::unique_ptr<Memory> memory_;  ///< none: all are
+};
 
 /// Whether the edge looks at least so long, in pixels.
 [[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
