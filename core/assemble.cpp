@@ -235,7 +235,8 @@ class Assembler {
 /// level's order; which of them count is asked only of those that may matter.
 class ErrorFinder {
  public:
-  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection) : levels_(levels), left_(selection) {
+  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection)
+      : levels_(levels), errors_are_pixels_(selection.errors_are_pixels()), left_(selection) {
     for (const LevelChoice& choice : levels) scales_.push_back(selection.highest_pixels_per_unit(choice.level->box));
   }
 
@@ -259,14 +260,21 @@ class ErrorFinder {
     return true;
   }
 
+  /// Whether an edge that stays may have the largest deviation. The error of one that is wanted is often known better
+  /// than what follows from the bound.
+  [[nodiscard]] bool may_matter(const LevelChoice& choice, uint32_t e, double scale) const {
+    constexpr double rounding = 1 + 1e-6;
+    const double most = choice.level->trial.no_less_than_deviation_at(e);
+    if (left_.may_grow_by_distance(most)) return true;
+    if (!left_.may_grow_by_pixels(most * scale)) return false;
+    return !errors_are_pixels_ || choice.error[e] < 0 || left_.may_grow_by_pixels(rounding * choice.error[e]);
+  }
+
   void add_whole(size_t k) {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
-    const Trial& trial = choice.level->trial;
     for (uint32_t e : choice.region.edges) {
-      if (choice.split[e] != 0 || !left_.may_grow_by(trial.no_less_than_deviation_at(e), scales_[k]) ||
-          !choice.shown[e])
-        continue;
+      if (choice.split[e] != 0 || !may_matter(choice, e, scales_[k]) || !choice.shown[e]) continue;
       const uint32_t h = mesh.half_edge[e];
       const uint32_t t = mesh.twin[h];
       if (is_reached(k, Topology::face(h)) || (t != none && is_reached(k, Topology::face(t)))) add(k, e);
@@ -319,6 +327,7 @@ class ErrorFinder {
   }
 
   std::span<const LevelChoice> levels_;
+  bool errors_are_pixels_;
   std::vector<double> scales_;  ///< [level] the highest pixels per unit
   ErrorLeft left_;
 };

@@ -121,10 +121,9 @@ std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, in
 
 std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                         const EdgesShown& shown, const Box& box, float least) const {
-  const double scale = highest_pixels_per_unit(box);
-  const bool by_error = is_by_error() && least > 0;
+  const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
   const auto may_reach = [&](uint32_t e) {
-    return !by_error || measure_.most_error(trial.most_deviation_at(mesh, e), scale) >= least;
+    return needed <= 0 || (trial.no_less_than_deviation_at(e) >= needed && trial.most_deviation_at(mesh, e) >= needed);
   };
   return wanted_of(mesh, trial, level, region, may_reach, shown);
 }

@@ -67,6 +67,8 @@ class Selection {
   [[nodiscard]] bool is_by_error() const;
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
+  /// Whether errors are deviations in pixels, and nothing else.
+  [[nodiscard]] bool errors_are_pixels() const { return is_by_error() && measure_.is_in_pixels(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
   /// No less than the view has anywhere in the box; 0 without one.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
@@ -123,7 +125,11 @@ class ErrorLeft {
     pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
   }
   /// Whether a deviation of at most that may be the largest.
-  [[nodiscard]] bool may_grow_by(double most, double scale) const { return most > distance_ || most * scale > pixels_; }
+  [[nodiscard]] bool may_grow_by(double most, double scale) const {
+    return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
+  }
+  [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
+  [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 
