@@ -92,8 +92,7 @@ class Assembler {
     level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
     level.first = std::make_unique_for_overwrite<uint32_t[]>(mesh.face_count());
     level.new_vertex = std::make_unique_for_overwrite<uint32_t[]>(mesh.edge_count());
-    level.split_edges = choice.split_edges;
-    std::ranges::sort(level.split_edges);
+    level.split_edges = marked(choice.split);
     for (uint32_t e : level.split_edges) level.new_vertex[e] = vertex_count_++;
   }
 

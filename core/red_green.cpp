@@ -214,9 +214,12 @@ class RedGreen {
       result.stop_reason = StopReason::budget;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (!progress_.wants_levels())
-      latest = result.levels == 0 ? choices_[0].level->mesh : assemble(choices_, most_cosine_);
-    result.mesh = std::move(latest);
+    if (progress_.wants_levels())
+      result.mesh = std::move(latest);
+    else if (result.levels == 0)
+      result.mesh = choices_[0].level->mesh;
+    else
+      result.mesh = assemble(choices_, most_cosine_);
   }
 
   const Options& options_;

@@ -13,7 +13,8 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float never = -infinity;
 
-float rounded_up(double number) { return std::nextafter(static_cast<float>(number), infinity); }
+/// No less than the number, which is not negative.
+float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
 }  // namespace
 
