@@ -124,7 +124,10 @@ std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, in
                                         const EdgesShown& shown, const Box& box, float least) const {
   const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
   const auto may_reach = [&](uint32_t e) {
-    return needed <= 0 || (trial.no_less_than_deviation_at(e) >= needed && trial.most_deviation_at(mesh, e) >= needed);
+    if (needed <= 0) return true;
+    if (trial.no_less_than_deviation_at(e) < needed || trial.most_deviation_at(mesh, e) < needed) return false;
+    // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
+    return trial.planes.empty() || trial.deviation_at(mesh, e) >= needed;
   };
   return wanted_of(mesh, trial, level, region, may_reach, shown);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "error.h"
 #include "normals.h"
@@ -262,8 +263,8 @@ EdgeMarks edges_shown(const Mesh& mesh, const std::vector<Vec3f>& normals, const
 /// What was found of faces already.
 class EdgesShown::Memory {
  public:
-  Memory(const Mesh& mesh, const Sight& sight, const std::vector<uint32_t>& shared)
-      : mesh_(mesh.topology), sight_(sight), of_face_(mesh_.face_count(), unknown) {
+  Memory(const Mesh& mesh, Sight sight, const std::vector<uint32_t>& shared)
+      : mesh_(mesh.topology), sight_(std::move(sight)), of_face_(mesh_.face_count(), unknown) {
     if (shared.empty()) return;
     of_shared_.assign(mesh_.edge_count(), 0);
     for (uint32_t h : shared) of_shared_[mesh_.edge[h]] |= of_face(Topology::face(h));
