@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "attributes.h"
@@ -11,243 +12,324 @@
 namespace papilio {
 namespace {
 
-/// What becomes of a level's faces.
-struct Fate {
+/// A level, and what becomes of its faces. Levels lie in an array: the one above is before, the one below behind.
+struct AssembledLevel {
   static constexpr uint8_t hidden = 255;   ///< not in the result, nor its children
   static constexpr uint8_t divided = 254;  ///< its children are
-  std::vector<uint32_t> shown;             ///< the faces that are not hidden, in ascending order
-  std::vector<uint8_t> face;               ///< [F] hidden, divided, or the number of its pattern
-  std::vector<uint32_t> first;             ///< [F] where its faces begin in the result; meaningless where hidden
-  std::vector<uint32_t> new_vertex;        ///< [E] number in the result of the edge's vertex; meaningless where whole
 
-  [[nodiscard]] bool is_shown(uint32_t f) const { return face[f] != hidden; }
-  [[nodiscard]] bool is_divided(uint32_t f) const { return face[f] == divided; }
+  const LevelChoice* choice;
+  const HierarchyLevel* level;
+  const Topology* mesh;
+  uint32_t number;
+  bool has_below;
+  const uint32_t *origin, *twin, *edge;  ///< [H] of the mesh
+  std::vector<uint8_t> fate;             ///< [F] hidden, divided, or the number of its pattern
+  /// [F] the first half-edge of its faces in the result; written where these are there
+  std::unique_ptr<uint32_t[]> first;
+  std::unique_ptr<uint32_t[]> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
+  std::vector<uint32_t> split_edges;       ///< in ascending order
+  std::vector<uint32_t> shown;             ///< the faces that are not hidden, in ascending order; with attributes only
+
+  [[nodiscard]] bool is_shown(uint32_t f) const { return fate[f] != hidden; }
+  [[nodiscard]] bool is_divided(uint32_t f) const { return fate[f] == divided; }
+  /// The first child of a divided face.
+  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].level->child[f]; }
+  /// The number in the result of a vertex of a face that is there.
+  [[nodiscard]] uint32_t vertex_in_result(uint32_t v) const {
+    for (const AssembledLevel* at = this; at->number > 0; --at) {
+      const uint32_t from = at->level->from[v];
+      const uint32_t above = at[-1].mesh->vertex_count;
+      if (from >= above) return at[-1].new_vertex[from - above];
+      v = from;
+    }
+    return v;
+  }
 };
 
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine)
-      : levels_(levels), most_cosine_(most_cosine), vertex_count_(levels[0].level->mesh.topology.vertex_count) {
-    for (size_t k = 0; k < levels.size(); ++k) decide(k);
-    place();
+      : most_cosine_(most_cosine), coarse_(levels[0].level->mesh), vertex_count_(coarse_.topology.vertex_count) {
+    levels_.reserve(levels.size());
+    for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
+    for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
   }
 
   Mesh run() {
-    const Topology& coarse = mesh_of(0);
     Topology& topology = out_.topology;
     topology.vertex_count = vertex_count_;
-    topology.pinched = coarse.pinched;
-    topology.darts = coarse.darts;
-    topology.origin.resize(size_t{3} * face_count_);
-    topology.twin.resize(topology.origin.size());
-    kind_.resize(topology.origin.size());
+    topology.pinched = coarse_.topology.pinched;
+    topology.darts = coarse_.topology.darts;
+    topology.origin.resize(half_edge_count_);
+    topology.twin.assign(half_edge_count_, none);
+    topology.edge.resize(half_edge_count_);
+    topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
+    topology.kind.reserve(topology.half_edge.capacity());
     make_positions();
-    for (size_t k = 0; k < levels_.size(); ++k)
-      for (uint32_t f : fates_[k].shown)
-        if (!fates_[k].is_divided(f)) make_faces(k, f);
-    number_edges();
-    if (!levels_[0].level->mesh.attributes.empty()) make_points();
+    for (const Place& place : places_) make_faces(levels_[place.level], place.face);
+    if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
   }
 
  private:
-  [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
+  /// A face of a level that is in the result, whole or cut.
+  struct Place {
+    uint32_t level;
+    uint32_t face;
+  };
 
-  /// Top down: what becomes of each face, and the numbers of the vertices on split edges.
-  void decide(size_t k) {
-    const LevelChoice& choice = levels_[k];
-    Fate fate;
-    fate.face.assign(mesh_of(k).face_count(), Fate::hidden);
-    fate.first.resize(mesh_of(k).face_count());
-    fate.new_vertex.resize(mesh_of(k).edge_count());
-    for (uint32_t e : choice.region.edges)
-      if (choice.split[e] != 0) fate.new_vertex[e] = vertex_count_++;
-    for (uint32_t f : choice.region.faces) {
-      if (k > 0 && !fates_[k - 1].is_divided(choice.level->parent[f / 4])) continue;
-      const unsigned mask = choice.split_mask(f);
-      // What has children as support only is cut into the same four.
-      const bool divided = mask == 7 && k + 1 < levels_.size() && choice.red[f] != 0;
-      fate.face[f] = divided ? Fate::divided : choose_transition(*choice.level, f, mask, most_cosine_);
-      fate.shown.push_back(f);
-    }
-    fates_.push_back(std::move(fate));
+  void add_level(const LevelChoice& choice, bool has_below) {
+    const Topology& mesh = choice.level->mesh.topology;
+    AssembledLevel& level = levels_.emplace_back();
+    level.choice = &choice;
+    level.level = choice.level.get();
+    level.mesh = &mesh;
+    level.number = static_cast<uint32_t>(levels_.size() - 1);
+    level.has_below = has_below;
+    level.origin = mesh.origin.data();
+    level.twin = mesh.twin.data();
+    level.edge = mesh.edge.data();
+    level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
+    level.first = std::make_unique_for_overwrite<uint32_t[]>(mesh.face_count());
+    level.new_vertex = std::make_unique_for_overwrite<uint32_t[]>(mesh.edge_count());
+    level.split_edges = marked(choice.split);
+    for (uint32_t e : level.split_edges) level.new_vertex[e] = vertex_count_++;
   }
 
-  /// Bottom up how many faces each gives, then top down where they lie.
-  void place() {
-    for (size_t k = levels_.size(); k-- > 0;) {
-      Fate& fate = fates_[k];
-      for (uint32_t f : fate.shown) {
-        fate.first[f] = 0;
-        if (!fate.is_divided(f))
-          fate.first[f] = transition_pattern(fate.face[f]).children;
-        else
-          for (uint32_t c = 0; c < 4; ++c) fate.first[f] += fates_[k + 1].first[child(k, f) + c];
-      }
+  /// What becomes of a face and of what lies below it, and where that lies in the result.
+  void place(AssembledLevel& level, uint32_t f) {
+    if (!coarse_.attributes.empty()) level.shown.push_back(f);
+    const unsigned mask = level.choice->split_mask(f);
+    // What has children as support only is cut into the same four.
+    if (mask == 7 && level.has_below && level.choice->red[f] != 0) {
+      level.fate[f] = AssembledLevel::divided;
+      for (uint32_t c = 0; c < 4; ++c) place((&level)[1], level.child(f) + c);
+      return;
     }
-    for (uint32_t& first : fates_[0].first) face_count_ += std::exchange(first, face_count_);
-    for (size_t k = 0; k + 1 < levels_.size(); ++k)
-      for (uint32_t f : fates_[k].shown) {
-        if (!fates_[k].is_divided(f)) continue;
-        uint32_t at = fates_[k].first[f];
-        for (uint32_t c = 0; c < 4; ++c) {
-          uint32_t& first = fates_[k + 1].first[child(k, f) + c];
-          at += std::exchange(first, at);
-        }
-      }
+    level.fate[f] = choose_transition(*level.level, f, mask, most_cosine_);
+    level.first[f] = half_edge_count_;
+    half_edge_count_ += 3U * transition_pattern(level.fate[f]).children;
+    places_.push_back({level.number, f});
   }
-
-  /// The first child of a divided face.
-  [[nodiscard]] uint32_t child(size_t k, uint32_t f) const { return levels_[k + 1].level->child[f]; }
 
   void make_positions() {
     out_.positions.reserve(vertex_count_);
-    out_.positions = levels_[0].level->mesh.positions;
-    for (const LevelChoice& choice : levels_)
-      for (uint32_t e : choice.region.edges)
-        if (choice.split[e] != 0) out_.positions.push_back(choice.level->trial.at(e));
+    out_.positions = coarse_.positions;
+    for (const AssembledLevel& level : levels_)
+      for (uint32_t e : level.split_edges) out_.positions.push_back(level.level->trial.at(e));
   }
 
-  /// The number in the result of vertex v of a level.
-  [[nodiscard]] uint32_t vertex_in_result(size_t k, uint32_t v) const {
-    for (; k > 0; --k) {
-      const uint32_t from = levels_[k].level->from[v];
-      const uint32_t above = mesh_of(k - 1).vertex_count;
-      if (from >= above) return fates_[k - 1].new_vertex[from - above];
-      v = from;
-    }
-    return v;
-  }
-
-  void make_faces(size_t k, uint32_t f) {
-    const Topology& mesh = mesh_of(k);
-    const Fate& fate = fates_[k];
-    const SplitPattern& cut = transition_pattern(fate.face[f]);
-    const uint32_t base = 3 * fate.first[f];
+  /// In the order of the result: a half-edge whose twin was there before has its edge from it.
+  void make_faces(const AssembledLevel& level, uint32_t f) {
+    const SplitPattern& cut = transition_pattern(level.fate[f]);
+    const uint32_t base = level.first[f];
+    const uint32_t h = 3 * f;
     std::array<uint32_t, 6> vertex{};
-    for (uint32_t i = 0; i < 3; ++i) {
-      vertex[i] = vertex_in_result(k, mesh.origin[3 * f + i]);
-      vertex[3 + i] = fate.new_vertex[mesh.edge[3 * f + i]];
+    for (uint32_t i = 0; i < 3; ++i) vertex[i] = level.vertex_in_result(level.origin[h + i]);
+    if (cut.children == 1) {
+      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + i] = vertex[i];
+      for (uint32_t i = 0; i < 3; ++i) make_outer(base + i, level, h + i, 0);
+      return;
     }
+    for (uint32_t i = 0; i < 3; ++i)
+      if (level.choice->split[level.edge[h + i]] != 0) vertex[3 + i] = level.new_vertex[level.edge[h + i]];
+    for (uint32_t c = 0; c < cut.children; ++c)
+      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + 3 * c + i] = vertex[cut.corner[c][i]];
     for (uint32_t c = 0; c < 3U * cut.children; ++c) {
-      out_.topology.origin[base + c] = vertex[cut.corner[c / 3][c % 3]];
-      if (cut.inner_twin[c] != SplitPattern::outside) {
-        out_.topology.twin[base + c] = base + cut.inner_twin[c];
-        kind_[base + c] = EdgeKind::smooth;
-      } else {
-        const uint32_t h = 3 * f + cut.edge[c] / 2;
-        out_.topology.twin[base + c] = twin_in_result(k, h, cut.edge[c] % 2);
-        kind_[base + c] = mesh.kind[mesh.edge[h]];
-      }
+      if (cut.inner_twin[c] == SplitPattern::outside)
+        make_outer(base + c, level, h + cut.edge[c] / 2, cut.edge[c] % 2);
+      else
+        make_edge(base + c, base + cut.inner_twin[c], EdgeKind::smooth);
     }
   }
 
-  /// Half-edge of the level above whose first or second half h is; h lies on the outside of its parent.
-  [[nodiscard]] std::pair<uint32_t, uint32_t> half_of(size_t k, uint32_t h) const {
-    const uint32_t f = Topology::face(h);
-    const uint8_t half = split_pattern(7, false).edge[3 * (f % 4) + h % 3];
-    return {3 * levels_[k].level->parent[f / 4] + half / 2U, half % 2U};
+  /// The edge and twin of a half-edge of the result, which is the first or second half (or the whole) of half-edge h.
+  void make_outer(uint32_t made, const AssembledLevel& level, uint32_t h, uint32_t half) {
+    if (out_.topology.twin[made] == none)
+      make_new_edge(made, twin_in_result(level, h, half), level.mesh->kind[level.edge[h]]);
+    else
+      out_.topology.edge[made] = out_.topology.edge[out_.topology.twin[made]];
+  }
+
+  void make_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
+    if (out_.topology.twin[made] == none)
+      make_new_edge(made, twin, kind);
+    else
+      out_.topology.edge[made] = out_.topology.edge[twin];
+  }
+
+  void make_new_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
+    Topology& mesh = out_.topology;
+    mesh.edge[made] = mesh.edge_count();
+    if (twin != none) {
+      mesh.twin[made] = twin;
+      mesh.twin[twin] = made;
+    } else if (kind == EdgeKind::shared) {
+      const auto [known, is_new] = shared_.try_emplace(std::minmax(mesh.origin[made], mesh.tip(made)), mesh.edge[made]);
+      mesh.edge[made] = known->second;
+      if (!is_new) return;
+    }
+    mesh.half_edge.push_back(made);
+    mesh.kind.push_back(kind);
   }
 
   /// What runs against the first or second half (or the whole) of half-edge h of an undivided face.
-  [[nodiscard]] uint32_t twin_in_result(size_t k, uint32_t h, uint32_t half) const {
-    const Topology& mesh = mesh_of(k);
-    const uint32_t t = mesh.twin[h];
-    if (t != none && fates_[k].is_shown(Topology::face(t)))
-      return half_edge_in_result(k, t, levels_[k].split[mesh.edge[h]] != 0 ? 1 - half : 0);
-    if (k == 0 || mesh.kind[mesh.edge[h]] == EdgeKind::boundary || mesh.kind[mesh.edge[h]] == EdgeKind::shared)
-      return none;
-    const auto [above, half_above] = half_of(k, h);
-    return half_edge_in_result(k - 1, mesh_of(k - 1).twin[above], 1 - half_above);
+  [[nodiscard]] static uint32_t twin_in_result(const AssembledLevel& level, uint32_t h, uint32_t half) {
+    const uint32_t t = level.twin[h];
+    if (t != none && level.is_shown(Topology::face(t)))
+      return half_edge_in_result(level, t, level.choice->split[level.edge[h]] != 0 ? 1 - half : 0);
+    const EdgeKind kind = level.mesh->kind[level.edge[h]];
+    if (level.number == 0 || kind == EdgeKind::boundary || kind == EdgeKind::shared) return none;
+    // It lies on the outside of its parent, and is a half of one of that one's.
+    const uint32_t f = Topology::face(h);
+    const uint8_t outer = split_pattern(7, false).edge[3 * (f % 4) + h % 3];
+    const AssembledLevel& above = (&level)[-1];
+    return half_edge_in_result(above, above.twin[3 * level.level->parent[f / 4] + outer / 2U], 1 - outer % 2U);
   }
 
   /// The half-edge of the result that is the first or second half (or the whole) of half-edge h of a shown face.
-  [[nodiscard]] uint32_t half_edge_in_result(size_t k, uint32_t h, uint32_t half) const {
-    while (fates_[k].is_divided(Topology::face(h))) {
-      const uint8_t c = split_pattern(7, false).outer[2 * (h % 3) + half];
-      h = 3 * child(k, Topology::face(h)) + c;
+  [[nodiscard]] static uint32_t half_edge_in_result(const AssembledLevel& level, uint32_t h, uint32_t half) {
+    const AssembledLevel* at = &level;
+    while (at->is_divided(Topology::face(h))) {
+      h = 3 * at->child(Topology::face(h)) + split_pattern(7, false).outer[2 * (h % 3) + half];
       half = 0;
-      ++k;
+      ++at;
     }
     const uint32_t f = Topology::face(h);
-    return 3 * fates_[k].first[f] + transition_pattern(fates_[k].face[f]).outer[2 * (h % 3) + half];
-  }
-
-  void number_edges() {
-    Topology& mesh = out_.topology;
-    mesh.edge.resize(mesh.origin.size());
-    mesh.half_edge.reserve(mesh.origin.size() / 2 + vertex_count_ / 2);
-    mesh.kind.reserve(mesh.half_edge.capacity());
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared;
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-      const uint32_t t = mesh.twin[h];
-      if (t != none && t < h) {
-        mesh.edge[h] = mesh.edge[t];
-        continue;
-      }
-      if (kind_[h] == EdgeKind::shared) {
-        const auto [known, is_new] =
-            shared.try_emplace(std::minmax(mesh.origin[h], mesh.tip(h)), static_cast<uint32_t>(mesh.half_edge.size()));
-        mesh.edge[h] = known->second;
-        if (!is_new) continue;
-      }
-      mesh.edge[h] = mesh.edge_count();
-      mesh.half_edge.push_back(h);
-      mesh.kind.push_back(kind_[h]);
-    }
+    return at->first[f] + transition_pattern(at->fate[f]).outer[2 * (h % 3) + half];
   }
 
   /// Top down: the points of each shown face's corners.
   void make_points() {
-    out_.attributes = levels_[0].level->mesh.attributes;
-    Array<uint32_t> result(out_.topology.half_edge_count());
-    for (size_t k = 0; k < levels_.size(); ++k) {
-      const Fate& fate = fates_[k];
-      const std::vector<uint32_t> made = split_points(mesh_of(k), levels_[k].split, fate.shown, out_.attributes);
+    out_.attributes = coarse_.attributes;
+    Array<uint32_t> result(half_edge_count_);
+    for (const AssembledLevel& level : levels_) {
+      const std::vector<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
       const Array<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };
-      out_.attributes.point.assign(k + 1 < levels_.size() ? mesh_of(k + 1).half_edge_count() : 0, none);
-      for (uint32_t f : fate.shown) {
-        const bool divided = fate.is_divided(f);
-        const SplitPattern& cut = divided ? split_pattern(7, false) : transition_pattern(fate.face[f]);
-        uint32_t* out = divided ? &out_.attributes.point[3 * size_t{child(k, f)}] : &result[3 * size_t{fate.first[f]}];
+      out_.attributes.point.assign(level.has_below ? (&level)[1].mesh->half_edge_count() : 0, none);
+      for (uint32_t f : level.shown) {
+        const bool divided = level.is_divided(f);
+        const SplitPattern& cut = divided ? split_pattern(7, false) : transition_pattern(level.fate[f]);
+        uint32_t* out = divided ? &out_.attributes.point[3 * size_t{level.child(f)}] : &result[level.first[f]];
         for (uint32_t c = 0; c < 3U * cut.children; ++c) out[c] = point(f, cut.corner[c / 3][c % 3]);
       }
     }
     out_.attributes.point = std::move(result);
   }
 
-  std::span<const LevelChoice> levels_;
   double most_cosine_;
-  std::vector<Fate> fates_;
-  uint32_t face_count_ = 0;
+  const Mesh& coarse_;
+  std::vector<AssembledLevel> levels_;
+  std::vector<Place> places_;  ///< in the order of the result
+  uint32_t half_edge_count_ = 0;
   uint32_t vertex_count_;
   Mesh out_;
-  std::vector<EdgeKind> kind_;  ///< [H] of the result
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;  ///< edge of the result between two vertices
 };
 
-/// [F] Which faces of the region give way to their children in the result; `above` is the same of the level above.
-std::vector<uint8_t> find_divided(const LevelChoice& choice, const std::vector<uint8_t>& above) {
-  std::vector<uint8_t> divided(choice.level->mesh.topology.face_count(), 0);
-  for (uint32_t f : choice.region.faces)
-    if ((above.empty() || above[choice.level->parent[f / 4]] != 0) && choice.split_mask(f) == 7 &&
-        choice.has_children(f))
-      divided[f] = 1;
-  return divided;
-}
+/// Finds the largest deviation left at the edges of the faces that are not divided. Edges are looked at in their
+/// level's order; which of them count is asked only of those that may matter.
+class ErrorFinder {
+ public:
+  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection)
+      : levels_(levels), errors_are_pixels_(selection.errors_are_pixels()), left_(selection) {
+    for (const LevelChoice& choice : levels) scales_.push_back(selection.highest_pixels_per_unit(choice.level->box));
+  }
 
-/// The two edges of the level below that half-edge h is split into; `none` where this request has none there.
-std::pair<uint32_t, uint32_t> halves(std::span<const LevelChoice> levels, size_t k, uint32_t h) {
-  const uint32_t f = Topology::face(h);
-  if (k + 1 == levels.size() || !levels[k].has_children(f)) return {none, none};
-  const HierarchyLevel& below = *levels[k + 1].level;
-  const auto half = [&](uint32_t i) {
-    return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * (h % 3) + i]];
-  };
-  return {half(0), half(1)};
-}
+  ErrorLeft run() {
+    for (size_t k = 0; k < levels_.size(); ++k) {
+      add_whole(k);
+      add_split(k);
+    }
+    return left_;
+  }
+
+ private:
+  [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
+
+  /// Whether all faces above one of the region are divided.
+  [[nodiscard]] bool is_reached(size_t k, uint32_t f) const {
+    for (; k > 0; --k) {
+      f = levels_[k].level->parent[f / 4];
+      if (levels_[k - 1].split_mask(f) != 7) return false;
+    }
+    return true;
+  }
+
+  /// Whether an edge that stays may have the largest deviation. The error of one that is wanted is often known better
+  /// than what follows from the bound.
+  [[nodiscard]] bool may_matter(const LevelChoice& choice, uint32_t e, double scale) const {
+    constexpr double rounding = 1 + 1e-6;
+    const double most = choice.level->trial.no_less_than_deviation_at(e);
+    if (left_.may_grow_by_distance(most)) return true;
+    if (!left_.may_grow_by_pixels(most * scale)) return false;
+    return !errors_are_pixels_ || choice.error[e] < 0 || left_.may_grow_by_pixels(rounding * choice.error[e]);
+  }
+
+  void add_whole(size_t k) {
+    const LevelChoice& choice = levels_[k];
+    const Topology& mesh = mesh_of(k);
+    for (uint32_t e : choice.region.edges) {
+      if (choice.split[e] != 0 || !may_matter(choice, e, scales_[k]) || !choice.shown[e]) continue;
+      const uint32_t h = mesh.half_edge[e];
+      const uint32_t t = mesh.twin[h];
+      if (is_reached(k, Topology::face(h)) || (t != none && is_reached(k, Topology::face(t)))) add(k, e);
+    }
+    for (uint32_t h : choice.level->shared) {
+      const uint32_t e = mesh.edge[h];
+      if (choice.may_be_split[e] != 0 && choice.split[e] == 0 && choice.shown[e] && is_reached(k, Topology::face(h)))
+        add(k, e);
+    }
+  }
+
+  void add_split(size_t k) {
+    const LevelChoice& choice = levels_[k];
+    const auto is_known = [&](uint32_t e) {
+      return k + 1 == levels_.size() &&
+             !left_.may_grow_by(split_leaves * choice.level->trial.no_less_than_deviation_at(e), scales_[k]);
+    };
+    choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
+      if (is_known(e) || !choice.shown[e] || !is_reached(k, f)) return;
+      const bool has_children = choice.has_children(f);
+      if (has_children && choice.split_mask(f) == 7) return;
+      // Its halves may have been judged, though nothing below was wanted.
+      if (has_children && k + 1 < levels_.size()) {
+        const auto [first, second] = halves(k, f, e);
+        const LevelChoice& below = levels_[k + 1];
+        if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
+          for (uint32_t half : {first, second})
+            if (below.shown[half]) add(k + 1, half);
+          return;
+        }
+      }
+      add(k, e, split_leaves);
+    });
+  }
+
+  /// The two edges of the level below that a face's edge is split into.
+  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t e) const {
+    const uint32_t* edge = &mesh_of(k).edge[size_t{3} * f];
+    const uint32_t i = edge[0] == e ? 0 : edge[1] == e ? 1 : 2;
+    const HierarchyLevel& below = *levels_[k + 1].level;
+    const auto half = [&](uint32_t which) {
+      return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * i + which]];
+    };
+    return {half(0), half(1)};
+  }
+
+  void add(size_t k, uint32_t e, double share = 1) {
+    const HierarchyLevel& level = *levels_[k].level;
+    left_.add(level.mesh, level.trial, scales_[k], e, share);
+  }
+
+  std::span<const LevelChoice> levels_;
+  bool errors_are_pixels_;
+  std::vector<double> scales_;  ///< [level] the highest pixels per unit
+  ErrorLeft left_;
+};
 
 }  // namespace
 
@@ -261,39 +343,7 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
 Mesh assemble(std::span<const LevelChoice> levels, double most_cosine) { return Assembler(levels, most_cosine).run(); }
 
 ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection) {
-  ErrorLeft left(selection);
-  std::vector<double> scales;
-  for (const LevelChoice& choice : levels) scales.push_back(selection.highest_pixels_per_unit(choice.level->box));
-  std::vector<uint8_t> above;
-  for (size_t k = 0; k < levels.size(); ++k) {
-    const LevelChoice& choice = levels[k];
-    const HierarchyLevel& level = *choice.level;
-    const std::vector<uint8_t> divided = find_divided(choice, above);
-    std::vector<uint8_t> was_added(level.mesh.topology.edge_count(), 0);
-    const auto add = [&](uint32_t h) {
-      const uint32_t e = level.mesh.topology.edge[h];
-      if (choice.shown[e] == 0) return;
-      if (choice.split[e] == 0) {
-        if (std::exchange(was_added[e], 1) != 0) return;
-        left.add(level.mesh, level.trial, scales[k], e);
-        return;
-      }
-      // Its halves may have been judged, though nothing below was wanted.
-      const auto [first, second] = halves(levels, k, h);
-      if (first == none || levels[k + 1].may_be_split[first] == 0 || levels[k + 1].may_be_split[second] == 0) {
-        left.add(level.mesh, level.trial, scales[k], e, split_leaves);
-        return;
-      }
-      const HierarchyLevel& below = *levels[k + 1].level;
-      for (uint32_t half : {first, second})
-        if (levels[k + 1].shown[half] != 0) left.add(below.mesh, below.trial, scales[k + 1], half);
-    };
-    for (uint32_t f : choice.region.faces)
-      if (divided[f] == 0 && (k == 0 || above[level.parent[f / 4]] != 0))
-        for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) add(h);
-    above = divided;
-  }
-  return left;
+  return ErrorFinder(levels, selection).run();
 }
 
 }  // namespace papilio

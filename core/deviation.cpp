@@ -48,6 +48,14 @@ float ErrorMeasure::most_error(double distance, double scale) const {
   return to_finite(tolerated_ == 0 ? seen : std::min(distance / tolerated_, seen / tolerated_pixels_));
 }
 
+double ErrorMeasure::least_deviation(float error, double scale) const {
+  constexpr double rounding = 1 - 1e-6;
+  if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0)) return rounding * error * diagonal_;
+  if (!view_->lights.empty()) return 0;
+  if (tolerated_ == 0) return rounding * error / scale;
+  return rounding * error * std::max(tolerated_, tolerated_pixels_ / scale);
+}
+
 float ErrorMeasure::error(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);

@@ -35,6 +35,10 @@ class ErrorMeasure {
   /// No less than the error of an edge with no more than this deviation, where nothing is seen larger than at `scale`
   /// pixels a unit. What lights make of it is not bounded: infinite with them.
   [[nodiscard]] float most_error(double distance, double scale) const;
+  /// A deviation below this has an error below `error`, on the same condition.
+  [[nodiscard]] double least_deviation(float error, double scale) const;
+  /// Whether errors are deviations in pixels, and nothing else.
+  [[nodiscard]] bool is_in_pixels() const { return camera_ != nullptr && tolerated_ == 0 && view_->lights.empty(); }
   /// The deviation in pixels of the view; 0 without one.
   [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const {
     return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));

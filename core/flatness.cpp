@@ -1,5 +1,6 @@
 #include "flatness.h"
 
+#include <limits>
 #include <optional>
 
 #include "curve.h"
@@ -7,6 +8,9 @@
 
 namespace papilio {
 namespace {
+
+constexpr float unknown = std::numeric_limits<float>::infinity();
+constexpr float flat = 2;
 
 /// Cosine of the turn from a to b to c; 1 where a piece has no length.
 double cosine_of_turn(Vec3f a, Vec3f b, Vec3f c) {
@@ -27,11 +31,17 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, const Region& region,
-                      EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
+                      double threshold, const Region& region, EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
+  const double least = threshold - product_rounding;
   for (uint32_t e : region.edges) {
+    const float known = products.empty() ? unknown : products.get(e);
+    if (known != unknown) {
+      if (known < least) marks[e] = 1;
+      continue;
+    }
     const uint32_t h = topology.half_edge[e];
     const uint32_t t = topology.twin[h];
     if (topology.kind[e] == EdgeKind::cut) continue;  // no curve: what lies beyond its ends is not known
@@ -42,12 +52,14 @@ void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double thre
     }
     const Vec3f n1 = normals[Topology::face(h)];
     const Vec3f n2 = normals[Topology::face(t)];
-    if (has_normal(n1) && has_normal(n2) && dot(n1, n2) < threshold - product_rounding) marks[e] = 1;
+    const float product = has_normal(n1) && has_normal(n2) ? dot(n1, n2) : flat;
+    if (!products.empty()) products.put(e, product);
+    if (product < least) marks[e] = 1;
   }
 }
 
 void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks) {
-  mark_by_flatness(mesh, normals, threshold, whole_region(mesh.topology), marks);
+  mark_by_flatness(mesh, normals, {}, threshold, whole_region(mesh.topology), marks);
 }
 
 void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {

@@ -2,19 +2,24 @@
 
 #include <vector>
 
+#include "memo.h"
 #include "mesh.h"
 #include "region.h"
 #include "split_plan.h"
 
 namespace papilio {
 
+/// Of each smooth edge [E] the product of its faces' unit normals, or, where one has none, more than any threshold;
+/// infinity where it was not asked for yet. May be empty: then nothing is kept.
+using NormalProducts = Memo<float>;
+
 /// Marks the edges that are not flat, the paper's section 3.1.1: those of two faces whose unit normals have n1.n2 <
 /// `threshold` (less 4e-7, the rounding of float normals, so that what is flat stays whole at 1 too). An edge
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is marked when the curve turns by more than
 /// acos(threshold) at one of its ends. A cut edge is never marked; an edge at a face without area is not marked on that
 /// face's account. Of a mesh only the region is looked at. Shapes: normals [F], marks [E], only ever set.
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, const Region& region,
-                      EdgeMarks& marks);
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
+                      double threshold, const Region& region, EdgeMarks& marks);
 void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks);
 
 /// How far marks spread, the paper's section 3.1.2.

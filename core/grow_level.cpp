@@ -18,6 +18,17 @@ Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known,
   return normals;
 }
 
+/// The same for what is known of planes and products.
+void keep_known(const Topology& mesh, const HierarchyLevel& known, const std::vector<uint32_t>& moved,
+                const Trial& trial) {
+  const Topology& before = known.mesh.topology;
+  for (uint32_t f = 0; f < moved.size(); ++f) {
+    trial.planes.put(moved[f], known.trial.planes.get(f));
+    for (uint32_t i = 0; i < 3; ++i)
+      trial.products.put(mesh.edge[3 * moved[f] + i], known.trial.products.get(before.edge[3 * f + i]));
+  }
+}
+
 /// For each edge of the level the number of its vertex among those that the known level has made; `none`. [E]
 std::vector<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known,
                                           const std::vector<uint32_t>& moved) {
@@ -44,6 +55,8 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
 
   trial.made.resize(trial.tried.count());
   trial.forget();
+  trial.keep_more(level.mesh.topology);
+  keep_known(level.mesh.topology, known, moved, trial);
   for (uint32_t e = 0; e < marks.size(); ++e) {
     if (!trial.tried.is_split(e)) continue;
     const uint32_t at = trial.tried.before[e];

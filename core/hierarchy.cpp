@@ -186,7 +186,8 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, from, parent, child, red, shared, longest) +
                    size(trial.normals, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
-  bytes += trial.deviations.bytes() + trial.bounds.bytes() + transitions.bytes();
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + transitions.bytes() + trial.planes.bytes() +
+           trial.products.bytes();
   return bytes;
 }
 

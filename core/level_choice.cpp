@@ -3,19 +3,19 @@
 namespace papilio {
 namespace {
 
-/// The edges all of whose faces are in the region. [E]
+/// The edges all of whose faces are in the region, which lies below level 0. [E]
 EdgeMarks edges_of(const HierarchyLevel& level, const std::vector<uint32_t>& faces) {
   const Topology& mesh = level.mesh.topology;
-  std::vector<uint8_t> is_in(mesh.face_count(), 0);
-  for (uint32_t f : faces) is_in[f] = 1;
+  std::vector<uint8_t> is_in(mesh.face_count() / 4, 0);  // children come by four
+  for (uint32_t f : faces) is_in[f / 4] = 1;
   EdgeMarks marks(mesh.edge_count(), 0);
   for (uint32_t f : faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
       const uint32_t t = mesh.twin[h];
-      if (t == none || is_in[Topology::face(t)] != 0) marks[mesh.edge[h]] = 1;
+      if (t == none || is_in[t / 12] != 0) marks[mesh.edge[h]] = 1;
     }
   for (uint32_t h : level.shared)
-    if (is_in[Topology::face(h)] == 0) marks[mesh.edge[h]] = 0;
+    if (is_in[h / 12] == 0) marks[mesh.edge[h]] = 0;
   return marks;
 }
 

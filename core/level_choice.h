@@ -15,7 +15,7 @@ struct LevelChoice {
   std::shared_ptr<const HierarchyLevel> level;
   Region region;           ///< `edges`: the only ones that may be split
   EdgeMarks may_be_split;  ///< [E] the region's edges
-  EdgeMarks shown;         ///< [E] those of them that the view shows
+  EdgesShown shown;        ///< those of them that the view shows
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
   /// infinity where nothing wants it.
   std::vector<float> error;

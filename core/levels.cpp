@@ -9,7 +9,7 @@ namespace papilio {
 namespace {
 
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
-constexpr uint64_t bytes_per_kept_face = 112;
+constexpr uint64_t bytes_per_kept_face = 122;
 
 bool covers(const std::vector<uint8_t>& known, const std::vector<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
@@ -99,6 +99,7 @@ void Levels::make(const std::vector<uint8_t>& red) {
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
   level->trial =
       try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level));
+  if (is_kept) level->trial.keep_more(level->mesh.topology);
   if (is_kept)
     add_kept(level);
   else

@@ -21,6 +21,7 @@ class Memo {
   void put(size_t i, Number number) const {
     std::atomic_ref<Number>(numbers_[i]).store(number, std::memory_order_relaxed);
   }
+  [[nodiscard]] bool empty() const { return numbers_.empty(); }
   [[nodiscard]] size_t bytes() const { return numbers_.capacity() * sizeof(Number); }
 
  private:

@@ -54,12 +54,12 @@ class RedGreen {
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
-    choice.shown = selection_.shown(level.mesh, level.trial.normals, level.longest, level.box, choice.region);
-    const std::vector<uint32_t> wanted = selection_.wanted(
-        level.mesh, level.trial.normals, static_cast<int>(choices_.size()), choice.region, choice.shown);
+    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
+    const float least = options_.max_faces > 0 ? 0 : threshold_;
+    const std::vector<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()),
+                                                           choice.region, choice.shown, level.box, least);
     if (selection_.is_by_error()) {
-      choice.error =
-          selection_.errors(level.mesh, level.trial, wanted, level.box, options_.max_faces > 0 ? 0 : threshold_);
+      choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least);
     } else {
       choice.error.assign(level.mesh.topology.edge_count(), never);
       for (uint32_t e : wanted) choice.error[e] = threshold_;
@@ -214,9 +214,12 @@ class RedGreen {
       result.stop_reason = StopReason::budget;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (!progress_.wants_levels())
-      latest = result.levels == 0 ? choices_[0].level->mesh : assemble(choices_, most_cosine_);
-    result.mesh = std::move(latest);
+    if (progress_.wants_levels())
+      result.mesh = std::move(latest);
+    else if (result.levels == 0)
+      result.mesh = choices_[0].level->mesh;
+    else
+      result.mesh = assemble(choices_, most_cosine_);
   }
 
   const Options& options_;

@@ -1,5 +1,6 @@
 #include "region.h"
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 
@@ -13,7 +14,9 @@ Region whole_region(const Topology& mesh) {
 }
 
 std::vector<uint32_t> marked(const std::vector<uint8_t>& marks) {
-  std::vector<uint32_t> numbers;
+  const auto count = marks.size() - static_cast<size_t>(std::ranges::count(marks, 0));
+  std::vector<uint32_t> numbers(count + 1);  // one more than needed: what is not marked is written, and then replaced
+  size_t known = 0;
   for (size_t i = 0; i < marks.size();) {
     uint64_t eight = 1;
     if (i % 8 == 0 && i + 8 <= marks.size()) std::memcpy(&eight, &marks[i], 8);
@@ -21,9 +24,11 @@ std::vector<uint32_t> marked(const std::vector<uint8_t>& marks) {
       i += 8;
       continue;
     }
-    if (marks[i] != 0) numbers.push_back(static_cast<uint32_t>(i));
+    numbers[known] = static_cast<uint32_t>(i);
+    known += marks[i] != 0 ? 1 : 0;
     ++i;
   }
+  numbers.pop_back();
   return numbers;
 }
 

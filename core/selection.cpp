@@ -10,7 +10,11 @@
 namespace papilio {
 namespace {
 
-constexpr float never = -std::numeric_limits<float>::infinity();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float never = -infinity;
+
+/// No less than the number, which is not negative.
+float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
 }  // namespace
 
@@ -31,23 +35,28 @@ Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_e
 
 void Trial::forget() {
   deviations = Memo<double>(made.size(), unknown);
-  bounds = Memo<float>(made.size(), unknown);
+  bounds = Memo<float>(made.size(), infinity);
+}
+
+void Trial::keep_more(const Topology& mesh) {
+  planes = FacePlanes(mesh.face_count(), infinity);
+  products = NormalProducts(mesh.edge_count(), infinity);
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
   const uint32_t rank = tried.before[edge];
   float known = bounds.get(rank);
-  if (known == unknown) {
-    const auto distance = static_cast<float>(length(to_double(made[rank]) - midpoint(mesh, edge)));
-    bounds.put(rank, known = std::nextafter(distance, std::numeric_limits<float>::infinity()));
-  }
+  if (known == infinity) bounds.put(rank, known = rounded_up(length(to_double(made[rank]) - midpoint(mesh, edge))));
   return known;
 }
 
 double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
   const uint32_t rank = tried.before[edge];
   double known = deviations.get(rank);
-  if (known == unknown) deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+  if (known == unknown) {
+    deviations.put(rank, known = deviation(mesh, edge, made[rank]));
+    bounds.put(rank, rounded_up(known));
+  }
   return known;
 }
 
@@ -74,28 +83,53 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
-                           const Box& box, const Region& region) const {
-  if (camera_) return edges_shown(mesh, normals, longest, box, *camera_, region);
+EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
+                           const Region& region) const {
+  if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
   EdgeMarks all(mesh.topology.edge_count(), 0);
   for (uint32_t e : region.edges) all[e] = 1;
   return all;
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Array<Vec3f>& normals, int level,
-                                        const Region& region, const EdgeMarks& shown) const {
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
+                            const std::vector<uint32_t>& shared) const {
+  if (!camera_) return {};
+  return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
+}
+
+template <class MayWant, class Shown>
+std::vector<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                           const MayWant& may_want, const Shown& shown) const {
   EdgeMarks curved;
   if (!options_.flatness.empty()) {
     curved.assign(mesh.topology.edge_count(), 0);
-    mark_by_flatness(mesh, normals, flatness_of(level), region, curved);
+    mark_by_flatness(mesh, trial.normals, trial.products, flatness_of(level), region, curved);
     grow(mesh.topology, options_.growth, region, curved);
   }
   std::vector<uint32_t> wanted;
   for (uint32_t e : region.edges)
-    if (shown[e] != 0 && (curved.empty() || curved[e] != 0) &&
+    if ((curved.empty() || curved[e] != 0) && may_want(e) && shown[e] != 0 &&
         (!camera_ || looks_long(mesh, e, *camera_, options_.view->edge_pixels)))
       wanted.push_back(e);
   return wanted;
+}
+
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgeMarks& shown) const {
+  const auto any = [](uint32_t) { return true; };
+  return wanted_of(mesh, trial, level, region, any, shown);
+}
+
+std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgesShown& shown, const Box& box, float least) const {
+  const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
+  const auto may_reach = [&](uint32_t e) {
+    if (needed <= 0) return true;
+    if (trial.no_less_than_deviation_at(e) < needed || trial.most_deviation_at(mesh, e) < needed) return false;
+    // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
+    return trial.planes.empty() || trial.deviation_at(mesh, e) >= needed;
+  };
+  return wanted_of(mesh, trial, level, region, may_reach, shown);
 }
 
 std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
@@ -103,9 +137,10 @@ std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const
   std::vector<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
   for (uint32_t e : wanted) {
+    errors[e] = measure_.most_error(trial.most_deviation_at(mesh, e), scale);
+    if (errors[e] < exact_from) continue;
     const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
-    errors[e] = measure_.most_error(distance, scale);
-    if (errors[e] >= exact_from) errors[e] = measure_.error(mesh, trial.normals, e, distance);
+    errors[e] = measure_.error(mesh, trial.normals, e, distance);
     if (errors[e] >= exact_from && !is_exact)
       errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
   }

@@ -20,11 +20,16 @@ struct Trial {
   SplitPlan tried;             ///< the edges whose new vertices were computed
   Array<Vec3f> made;     ///< [tried.count()]
   Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
-  Memo<float> bounds{};        ///< [tried.count()] no less than these; or unknown
+  Memo<float> bounds{};        ///< [tried.count()] no less than these; infinity where nothing is known
+
+  FacePlanes planes{};        ///< (view.h)
+  NormalProducts products{};  ///< (flatness.h)
 
   static constexpr int unknown = -1;
   /// Nothing is known yet of what was made.
   void forget();
+  /// Makes room for what only later requests gain by: planes and products.
+  void keep_more(const Topology& mesh);
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
@@ -39,6 +44,8 @@ struct Trial {
   }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, of what is known already; infinity where nothing is.
+  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
@@ -60,6 +67,8 @@ class Selection {
   [[nodiscard]] bool is_by_error() const;
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
+  /// Whether errors are deviations in pixels, and nothing else.
+  [[nodiscard]] bool errors_are_pixels() const { return is_by_error() && measure_.is_in_pixels(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
   /// No less than the view has anywhere in the box; 0 without one.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
@@ -68,12 +77,19 @@ class Selection {
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
   /// edges (view.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
                                 const Box& box, const Region& region) const;
+  /// The same, edge by edge. `shared`: the half-edges at shared edges.
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
+                                 const Box& box, const std::vector<uint32_t>& shared) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Array<Vec3f>& normals, int level,
-                                             const Region& region, const EdgeMarks& shown) const;
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                             const EdgeMarks& shown) const;
+
+  /// The same, of the edges whose error (below) may be `least` or more.
+  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                             const EdgesShown& shown, const Box& box, float least) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
@@ -85,6 +101,9 @@ class Selection {
 
  private:
   friend class ErrorLeft;
+  template <class MayWant, class Shown>
+  [[nodiscard]] std::vector<uint32_t> wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                                const MayWant& may_want, const Shown& shown) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;
@@ -99,15 +118,21 @@ class ErrorLeft {
   /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
   /// `highest_pixels_per_unit`.
   void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
-    const double most = share * trial.known_deviation_at(mesh, edge).distance;
-    if (most <= distance_ && most * scale <= pixels_) return;
+    if (!may_grow_by(share * trial.most_deviation_at(mesh, edge), scale)) return;
     const double distance = share * trial.deviation_at(mesh, edge);
+    if (!may_grow_by(distance, scale)) return;
     distance_ = std::max(distance_, distance);
     pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
   }
   /// A deviation without a view.
   void add_distance(double distance) { distance_ = std::max(distance_, distance); }
   [[nodiscard]] double distance() const { return distance_; }
+  /// Whether a deviation of at most that may be the largest.
+  [[nodiscard]] bool may_grow_by(double most, double scale) const {
+    return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
+  }
+  [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
+  [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
   [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 

@@ -86,12 +86,8 @@ constexpr std::array<SplitPattern, 16> make_all() {
   return all;
 }
 
-constexpr std::array<SplitPattern, 16> patterns = make_all();
-
 }  // namespace
 
-const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
-  return patterns[2 * mask + (second_diagonal ? 1 : 0)];
-}
+constinit const std::array<SplitPattern, 16> split_patterns = make_all();
 
 }  // namespace papilio

@@ -27,7 +27,14 @@ struct SplitPattern {
 /// the quadrangle that two target edges leave. There edges i and j = (i + 1) % 3 are targets, and the first
 /// diagonal runs from corner i to the vertex of edge j, the second from the vertex of edge i to corner (j +
 /// 1) % 3.
-[[nodiscard]] const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
+[[nodiscard]] inline const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
+
+/// All of them: [2 * mask + (second diagonal ? 1 : 0)].
+extern const std::array<SplitPattern, 16> split_patterns;
+
+const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
+  return split_patterns[2 * mask + (second_diagonal ? 1 : 0)];
+}
 
 /// For a mask with two targets: edge i as above.
 [[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) { return mask == 3 ? 0 : mask == 6 ? 1 : 2; }

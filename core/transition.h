@@ -15,9 +15,7 @@ namespace papilio {
 /// one whose smallest angle is larger; where they are equal, the diagonal from the lower corner. Returned as a pattern
 /// number = 2 * mask + (second diagonal ? 1 : 0).
 [[nodiscard]] uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine);
-[[nodiscard]] inline const SplitPattern& transition_pattern(uint8_t number) {
-  return split_pattern(number / 2U, number % 2 != 0);
-}
+[[nodiscard]] inline const SplitPattern& transition_pattern(uint8_t number) { return split_patterns[number]; }
 
 /// The smallest angle of the mesh's faces, in radians; 0 for one without area.
 [[nodiscard]] double smallest_angle(const Mesh& mesh);

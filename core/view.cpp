@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "error.h"
 #include "normals.h"
@@ -44,23 +46,23 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest, const Box& box,
-        const Camera& camera)
-      : all_inside_(camera.is_inside(box)),
-        mesh_(mesh),
+  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
+        const std::vector<double>& longest, const Box& box, const Camera& camera)
+      : mesh_(mesh),
         normals_(normals),
+        planes_(planes),
         longest_(longest),
         camera_(camera),
-        inside_(mesh.topology.vertex_count, unknown) {}
+        quick_(camera, box),
+        through_(camera.planes_through(box)),
+        inside_(through_ == 0 ? 0 : mesh.topology.vertex_count, unknown) {}
 
   /// What of the above holds for a face.
   [[nodiscard]] uint8_t of_face(uint32_t f) {
+    uint8_t sight = is_face_away(f) ? 0 : is_towards;
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
-    uint8_t sight = 0;
-    if (all_inside_ || is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2]))
+    if (through_ == 0 || is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2]))
       sight |= is_inside;
-    const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
-    if (!has_normal(normals_[f]) || !camera_.is_away(centroid, to_double(normals_[f]))) sight |= is_towards;
     return sight;
   }
 
@@ -69,15 +71,30 @@ class Sight {
 
   [[nodiscard]] Vec3d position(uint32_t v) const { return to_double(mesh_.positions[v]); }
   [[nodiscard]] bool is_vertex_inside(uint32_t v) {
-    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v]) ? 0 : 1;
+    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v], through_) ? 0 : 1;
     return inside_[v] != 0;
   }
+  [[nodiscard]] bool is_face_away(uint32_t f) const {
+    constexpr float not_known = std::numeric_limits<float>::infinity();
+    const float plane = planes_.empty() ? not_known : planes_.get(f);
+    if (plane != not_known) {
+      const Camera::QuickAway::Answer answer = quick_(normals_[f], plane);
+      if (answer != Camera::QuickAway::unsure) return answer == Camera::QuickAway::away;
+    }
+    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
+    const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
+    const Vec3d normal = to_double(normals_[f]);
+    if (!planes_.empty()) planes_.put(f, static_cast<float>(dot(normal, centroid)));
+    return has_normal(normals_[f]) && camera_.is_away(centroid, normal);
+  }
 
-  const bool all_inside_;
   const Mesh& mesh_;
   const Array<Vec3f>& normals_;
+  const FacePlanes& planes_;
   const std::vector<double>& longest_;
   const Camera& camera_;
+  const Camera::QuickAway quick_;
+  const unsigned through_;       ///< the planes that some of the mesh may be outside of
   std::vector<uint8_t> inside_;  ///< [V] or unknown
 };
 
@@ -111,11 +128,13 @@ Camera::Camera(const View& view) : perspective_(view.projection == Projection::p
              Plane{forward_, dot(forward_, eye_) + near_}};
 }
 
-bool Camera::is_outside(Vec3d centre, double radius) const {
-  return std::ranges::any_of(planes_, [&](const Plane& p) { return dot(p.normal, centre) - p.offset < -radius; });
+bool Camera::is_outside(Vec3d centre, double radius, unsigned planes) const {
+  for (unsigned i = 0; i < planes_.size(); ++i)
+    if ((planes >> i & 1U) != 0 && dot(planes_[i].normal, centre) - planes_[i].offset < -radius) return true;
+  return false;
 }
 
-bool Camera::is_inside(const Box& box) const {
+unsigned Camera::planes_through(const Box& box) const {
   constexpr double margin = 1e-9;
   const auto least = [&](const Plane& p) {
     double sum = -p.offset;
@@ -129,7 +148,9 @@ bool Camera::is_inside(const Box& box) const {
     add(p.normal.z, box.min.z, box.max.z);
     return sum - margin * size;
   };
-  return std::ranges::all_of(planes_, [&](const Plane& p) { return least(p) > 0; });
+  unsigned through = 0;
+  for (unsigned i = 0; i < planes_.size(); ++i) through |= least(planes_[i]) > 0 ? 0U : 1U << i;
+  return through;
 }
 
 double Camera::highest_pixels_per_unit(const Box& box) const {
@@ -149,6 +170,17 @@ bool Camera::is_away(Vec3d point, Vec3d normal) const {
   return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
 }
 
+Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1 : 0) {
+  const Vec3d high{std::max(std::abs(box.min.x), std::abs(box.max.x)),
+                   std::max(std::abs(box.min.y), std::abs(box.max.y)),
+                   std::max(std::abs(box.min.z), std::abs(box.max.z))};
+  from_ = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
+  // No less than the distance of anything in the box, and than the products above.
+  const double size = length(high) + length(from_);
+  rounding_ = 1e-6 * size;
+  surely_away_ = rounding_ + 1.001 * away_epsilon * size;
+}
+
 double Camera::facing(Vec3d point, Vec3d normal) const {
   if (!perspective_) return -dot(forward_, normal);
   const Vec3d sight = point - eye_;
@@ -162,21 +194,38 @@ std::array<double, 2> Camera::project(Vec3d relative) const {
 }
 
 double Camera::projected_length(Vec3d a, Vec3d b) const {
+  const auto [x, y] = projected_difference(a, b);
+  return std::hypot(x, y);
+}
+
+/// What is not near the border is decided by squares, without a root.
+bool Camera::looks_shorter(Vec3d a, Vec3d b, double pixels) const {
+  constexpr double rounding = 1e-9;
+  const auto [x, y] = projected_difference(a, b);
+  const double squared = x * x + y * y;
+  const double border = pixels * pixels;
+  if (squared > (1 + rounding) * border) return false;
+  if (squared < (1 - rounding) * border) return true;
+  return std::hypot(x, y) < pixels;
+}
+
+std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {
   a -= eye_;
   b -= eye_;
   const double depth_a = dot(forward_, a);
   const double depth_b = dot(forward_, b);
-  if (depth_a < near_ && depth_b < near_) return 0;
+  if (depth_a < near_ && depth_b < near_) return {0, 0};
   if (depth_a < near_) a += ((near_ - depth_a) / (depth_b - depth_a)) * (b - a);
   if (depth_b < near_) b += ((near_ - depth_b) / (depth_a - depth_b)) * (a - b);
   const auto [ax, ay] = project(a);
   const auto [bx, by] = project(b);
-  return std::hypot(bx - ax, by - ay);
+  return {bx - ax, by - ay};
 }
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera) {
   const std::vector<double> longest = longest_edges(mesh);
-  Sight sight(mesh, normals, longest, bounding_box(mesh.positions), camera);
+  const FacePlanes none_kept;
+  Sight sight(mesh, normals, none_kept, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
   for (uint32_t f = 0; f < hidden.size(); ++f) hidden[f] = sight.of_face(f) != seen;
   return hidden;
@@ -197,10 +246,10 @@ std::vector<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
-EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::vector<double>& longest,
-                      const Box& box, const Camera& camera, const Region& region) {
+EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
+                      const std::vector<double>& longest, const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
-  Sight sight(mesh, normals, longest, box, camera);
+  Sight sight(mesh, normals, planes, longest, box, camera);
   std::vector<uint8_t> seen_by(topology.edge_count(), 0);
   for (uint32_t f : region.faces) {
     const uint8_t of_face = sight.of_face(f);
@@ -211,16 +260,58 @@ EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const std::
   return marks;
 }
 
+/// What was found of faces already.
+class EdgesShown::Memory {
+ public:
+  Memory(const Mesh& mesh, Sight sight, const std::vector<uint32_t>& shared)
+      : mesh_(mesh.topology), sight_(std::move(sight)), of_face_(mesh_.face_count(), unknown) {
+    if (shared.empty()) return;
+    of_shared_.assign(mesh_.edge_count(), 0);
+    for (uint32_t h : shared) of_shared_[mesh_.edge[h]] |= of_face(Topology::face(h));
+  }
+
+  [[nodiscard]] bool is_shown(uint32_t e) {
+    if (!of_shared_.empty() && mesh_.kind[e] == EdgeKind::shared) return of_shared_[e] == seen;
+    const uint32_t h = mesh_.half_edge[e];
+    const uint32_t t = mesh_.twin[h];
+    const uint8_t one = of_face(Topology::face(h));
+    return one == seen || (t != none && (one | of_face(Topology::face(t))) == seen);
+  }
+
+ private:
+  static constexpr uint8_t unknown = 255;
+  [[nodiscard]] uint8_t of_face(uint32_t f) {
+    if (of_face_[f] == unknown) of_face_[f] = sight_.of_face(f);
+    return of_face_[f];
+  }
+
+  const Topology& mesh_;
+  Sight sight_;
+  std::vector<uint8_t> of_face_;    ///< [F] or unknown
+  std::vector<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
+};
+
+EdgesShown::EdgesShown() = default;
+EdgesShown::EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
+                       const std::vector<double>& longest, const Box& box, const Camera& camera,
+                       const std::vector<uint32_t>& shared)
+    : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, planes, longest, box, camera), shared)) {}
+EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
+EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;
+EdgesShown::~EdgesShown() = default;
+
+bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || memory_->is_shown(edge); }
+
 bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
   if (edge_pixels == 0) return true;
   const uint32_t h = mesh.topology.half_edge[edge];
-  return !(camera.projected_length(to_double(mesh.positions[mesh.topology.origin[h]]),
-                                   to_double(mesh.positions[mesh.topology.tip(h)])) < edge_pixels);
+  return !camera.looks_shorter(to_double(mesh.positions[mesh.topology.origin[h]]),
+                               to_double(mesh.positions[mesh.topology.tip(h)]), edge_pixels);
 }
 
 void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
-  const EdgeMarks shown = edges_shown(mesh, normals, longest_edges(mesh), bounding_box(mesh.positions), camera,
+  const EdgeMarks shown = edges_shown(mesh, normals, {}, longest_edges(mesh), bounding_box(mesh.positions), camera,
                                       whole_region(mesh.topology));
   for (uint32_t e = 0; e < marks.size(); ++e)
     if (marks[e] != 0 && (shown[e] == 0 || !looks_long(mesh, e, camera, edge_pixels))) marks[e] = 0;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "memo.h"
 #include "mesh.h"
 #include "region.h"
 #include "split_plan.h"
@@ -39,7 +41,9 @@ class Camera {
 
   /// True when the sphere round `centre` lies outside of one of the five planes (four sides, near):
   /// section 3.2.1.
-  [[nodiscard]] bool is_outside(Vec3d centre, double radius) const;
+  [[nodiscard]] bool is_outside(Vec3d centre, double radius) const { return is_outside(centre, radius, all_planes); }
+  /// The same, of the planes in a set.
+  [[nodiscard]] bool is_outside(Vec3d centre, double radius, unsigned planes) const;
   /// True when a face with unit normal `normal`, `point` being on it, is turned away from the viewer:
   /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
   /// perspective.
@@ -48,13 +52,17 @@ class Camera {
   [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
+  /// Whether that is less than `pixels`.
+  [[nodiscard]] bool looks_shorter(Vec3d a, Vec3d b, double pixels) const;
   /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
   /// on it.
   [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
   /// No less than that of any point in the box.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const;
-  /// True when all of the box is certain to be inside of the five planes.
-  [[nodiscard]] bool is_inside(const Box& box) const;
+  /// The set (bits) of those of the five planes inside of which not all of the box is certain to be.
+  [[nodiscard]] unsigned planes_through(const Box& box) const;
+  /// Decides most of `is_away`, from less, for faces in the box.
+  class QuickAway;
 
  private:
   struct Plane {
@@ -62,12 +70,14 @@ class Camera {
     double offset;  ///< a point p is inside when normal.p >= offset
   };
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
+  [[nodiscard]] std::array<double, 2> projected_difference(Vec3d a, Vec3d b) const;
   [[nodiscard]] double pixels_per_unit_at(double depth) const {
     return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
   }
 
   /// However near the near plane is: what it is multiplied by stays a number.
   static constexpr double most_pixels_per_unit = 1e200;
+  static constexpr unsigned all_planes = 31;
 
   bool perspective_;
   Vec3d eye_, right_, up_, forward_;
@@ -75,6 +85,26 @@ class Camera {
   double pixels_per_unit_;  ///< at distance 1 (perspective) or at any (orthographic)
   std::array<Plane, 5> planes_;
 };
+
+class Camera::QuickAway {
+ public:
+  enum Answer : uint8_t { towards, away, unsure };
+  QuickAway(const Camera& camera, const Box& box);
+  /// `plane`: the product of the unit normal with a point of the face, rounded to float.
+  [[nodiscard]] Answer operator()(Vec3f normal, float plane) const {
+    const double along = perspective_ * plane - dot(to_double(normal), from_);
+    return along < -rounding_ ? towards : along > surely_away_ ? away : unsure;
+  }
+
+ private:
+  double perspective_;  ///< 1 or 0
+  Vec3d from_;
+  double rounding_, surely_away_;
+};
+
+/// Of each face [F] the product of its unit normal with its centroid, infinity where it was not asked for yet. May be
+/// empty: then nothing is kept.
+using FacePlanes = Memo<float>;
 
 /// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
@@ -87,9 +117,31 @@ class Camera {
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
 /// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
 /// longest [V], marks [E].
-[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals,
+[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
                                     const std::vector<double>& longest, const Box& box, const Camera& camera,
                                     const Region& region);
+
+/// The same, edge by edge: a face is looked at when one of its edges is asked for. What it is made of must outlive it.
+class EdgesShown {
+ public:
+  /// All edges are.
+  EdgesShown();
+  /// Shapes as above; `shared`: the half-edges at shared edges.
+  EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
+             const std::vector<double>& longest, const Box& box, const Camera& camera,
+             const std::vector<uint32_t>& shared);
+  EdgesShown(EdgesShown&& other) noexcept;
+  EdgesShown& operator=(EdgesShown&& other) noexcept;
+  EdgesShown(const EdgesShown&) = delete;
+  EdgesShown& operator=(const EdgesShown&) = delete;
+  ~EdgesShown();
+
+  [[nodiscard]] bool operator[](uint32_t edge) const;
+
+ private:
+  class Memory;
+  std::unique_ptr<Memory> memory_;  ///< none: all are
+};
 
 /// Whether the edge looks at least so long, in pixels.
 [[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);

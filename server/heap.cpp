@@ -6,6 +6,8 @@
 #include <new>
 #include <utility>
 
+#include "core/array.h"
+
 namespace papilio::server {
 namespace {
 
@@ -51,6 +53,7 @@ void FreeMemory::give_back() {
     ++round_;
     blocks.swap(blocks_);
   }
+  release_spare_blocks();
   mallopt(M_TRIM_THRESHOLD, 0);
   blocks.clear();
   malloc_trim(0);
