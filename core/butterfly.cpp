@@ -96,6 +96,7 @@ class UniformButterfly {
     std::vector<uint8_t> has_opinion(features_.level == 0 ? mesh_.edge_count() : 0, 0);
     const auto add = [&](uint32_t spoke, Vec3f q) {
       const uint32_t e = mesh_.edge[spoke];
+      if (mesh_.kind[e] != EdgeKind::smooth) return;  // the crease that ends at a dart
       if (has_opinion.empty() || has_opinion[e] == 0)
         made_[e] = q;
       else

@@ -16,6 +16,7 @@
 namespace {
 
 thread_local int64_t allocations_left = -1;  // negative: as many as wanted
+thread_local int64_t blocks_made = 0;        // for arrays
 thread_local bool blocks_fail = false;       // those of arrays, which try twice: once one has failed, all do
 
 }  // namespace
@@ -32,6 +33,7 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
     blocks_fail = true;
     throw std::bad_alloc();
   }
+  ++blocks_made;
   const auto unit = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
   throw std::bad_alloc();
@@ -80,6 +82,22 @@ TEST(Allocation, FailureIsAnErrorWhereverItHappens) {
   fail_each_allocation({.levels = 2, .scheme = Scheme::in_place, .flatness = {0.9}, .tension = Tension::sharp});
   fail_each_allocation({.levels = 3, .crease_angle = 60, .tolerance = 1e-3});
   fail_each_allocation({.levels = 3, .view = View{.error_pixels = 0.1}, .max_faces = 200});
+}
+
+TEST(Allocation, TheSecondRunMakesNoArrayAnew) {
+  const Mesh coarse = build_mesh(torus(40, 30));
+  for (const Tension tension : {Tension::off, Tension::soft}) {
+    const auto run = [&] {
+      blocks_made = 0;
+      (void)refine(Mesh(coarse), {.levels = 3, .tension = tension});
+      return blocks_made;
+    };
+    release_spare_blocks();
+    EXPECT_GT(run(), 10);
+    if (spare_bytes() == 0) GTEST_SKIP() << "nothing is kept under this sanitizer";
+    EXPECT_EQ(run(), 0);
+  }
+  release_spare_blocks();
 }
 
 TEST(Allocation, MemoryLimitIsHeldBeforeTheWork) {

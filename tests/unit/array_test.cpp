@@ -17,14 +17,16 @@ bool keeps_blocks() {
 }
 
 TEST(ArrayBlocks, AreAlignedAndTheirOwn) {
-  for (size_t bytes : {size_t{0}, size_t{1}, size_t{255}, size_t{256}, size_t{257}, size_t{1} << 21, (size_t{5} << 20) + 3}) {
+  for (size_t bytes :
+       {size_t{0}, size_t{1}, size_t{255}, size_t{256}, size_t{257}, size_t{1} << 21, (size_t{5} << 20) + 3}) {
     void* one = take_block(bytes);
     void* other = take_block(bytes);
     EXPECT_NE(one, other);
     EXPECT_EQ(reinterpret_cast<uintptr_t>(one) % 64, 0U) << bytes;
     std::fill_n(static_cast<uint8_t*>(one), bytes, 1);
     std::fill_n(static_cast<uint8_t*>(other), bytes, 2);
-    EXPECT_TRUE(std::all_of(static_cast<uint8_t*>(one), static_cast<uint8_t*>(one) + bytes, [](uint8_t b) { return b == 1; }));
+    EXPECT_TRUE(
+        std::all_of(static_cast<uint8_t*>(one), static_cast<uint8_t*>(one) + bytes, [](uint8_t b) { return b == 1; }));
     give_block(one, bytes);
     give_block(other, bytes);
   }
