@@ -1,6 +1,8 @@
 #include "array.h"
 
+#if defined(__linux__)
 #include <sys/mman.h>
+#endif
 
 #include <array>
 #include <bit>
@@ -47,7 +49,9 @@ SizeClass class_of(size_t bytes) {
 void* new_block(size_t bytes) {
   const size_t aligned = bytes >= huge_page ? huge_page : alignment;
   void* block = ::operator new(bytes, std::align_val_t(aligned));
+#if defined(__linux__)
   if (bytes >= huge_page) (void)madvise(block, bytes, MADV_HUGEPAGE);  // where there are none, small pages will do
+#endif
   return block;
 }
 

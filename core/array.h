@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-// Memory for what a mesh is made of: arrays that are long, written once from end to end, and made again at every level of
-// every request. The system gives fresh pages slowly, so what is given back is kept for the next to ask.
+// Memory for what a mesh is made of: arrays that are long, written once from end to end, and made again at every level
+// of every request. The system gives fresh pages slowly, so what is given back is kept for the next to ask.
 
 namespace papilio {
 

@@ -20,8 +20,7 @@ namespace papilio {
 /// (the product) and double (checking the arithmetic).
 template <class Real>
 [[nodiscard]] Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
-                                                 const SplitPlan& plan, Real w = 0,
-                                                 const TensionField* tension = nullptr);
+                                           const SplitPlan& plan, Real w = 0, const TensionField* tension = nullptr);
 
 /// The same, to the bit, where every edge is split and w is 0: appends the new vertex of each edge to `positions` [V],
 /// which become [V + E]. `features` are those of the level. O(F), and several times as fast.

@@ -33,8 +33,8 @@ class InteriorWeights {
 };
 
 /// The rules of one level: the new vertex of an edge from the positions round it. Which rule holds where is told in
-/// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both half-edges
-/// of an edge give the same.
+/// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both
+/// half-edges of an edge give the same.
 template <class Real>
 class ButterflyRules {
   using Point = Vec3T<Real>;

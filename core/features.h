@@ -17,7 +17,7 @@ struct Features {
   std::vector<uint32_t> first_spoke{0};  ///< [fans + 1]
   std::vector<uint8_t> is_closed;        ///< [fans]
 
-  int level = 0;                         ///< below the mesh on which they were found
+  int level = 0;  ///< below the mesh on which they were found
 
   [[nodiscard]] size_t fan_count() const { return is_closed.size(); }
   /// Fills `fan` with the i-th; the mesh is that of the level.

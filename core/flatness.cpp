@@ -31,8 +31,8 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
-                      double threshold, const Region& region, EdgeMarks& marks) {
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
+                      const Region& region, EdgeMarks& marks) {
   const Topology& topology = mesh.topology;
   std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
   const double least = threshold - product_rounding;

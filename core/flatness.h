@@ -18,8 +18,8 @@ using NormalProducts = Memo<float>;
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is marked when the curve turns by more than
 /// acos(threshold) at one of its ends. A cut edge is never marked; an edge at a face without area is not marked on that
 /// face's account. Of a mesh only the region is looked at. Shapes: normals [F], marks [E], only ever set.
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
-                      double threshold, const Region& region, EdgeMarks& marks);
+void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
+                      const Region& region, EdgeMarks& marks);
 void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks);
 
 /// How far marks spread, the paper's section 3.1.2.

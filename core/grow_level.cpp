@@ -5,8 +5,7 @@
 namespace papilio {
 namespace {
 
-Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known,
-                                 const std::vector<uint32_t>& moved) {
+Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const std::vector<uint32_t>& moved) {
   Array<Vec3f> normals(mesh.topology.face_count());
   std::vector<uint8_t> is_known(normals.size(), 0);
   for (uint32_t f = 0; f < moved.size(); ++f) {

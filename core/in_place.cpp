@@ -37,8 +37,7 @@ class InPlace {
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);
     const bool has_view = selection_.camera() != nullptr;
-    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : std::vector<double>{}, box_,
-                              region_);
+    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : std::vector<double>{}, box_, region_);
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
       const std::vector<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
       targets_.assign(mesh_.topology.edge_count(), 0);

@@ -6,8 +6,8 @@
 
 namespace papilio {
 
-/// Three floats in a register of four, for the loops that cost most. Each lane is rounded as a float is, so that results
-/// are those of Vec3f to the bit; the fourth is never looked at. Compilers have such types for every machine.
+/// Three floats in a register of four, for the loops that cost most. Each lane is rounded as a float is, so that
+/// results are those of Vec3f to the bit; the fourth is never looked at. Compilers have such types for every machine.
 struct Lanes {
   using Register = float __attribute__((vector_size(16)));
   Register v;

@@ -46,8 +46,8 @@ Sides sides(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge) {
 
 }  // namespace
 
-double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance,
-                    const View& view, const Camera& camera) {
+double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance, const View& view,
+                    const Camera& camera) {
   const uint32_t h = mesh.topology.half_edge[edge];
   const Vec3d a = to_double(mesh.positions[mesh.topology.origin[h]]);
   const Vec3d b = to_double(mesh.positions[mesh.topology.tip(h)]);

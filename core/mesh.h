@@ -65,7 +65,7 @@ struct Topology {
 /// Attributes of a mesh. A point is a vertex together with its values; where charts meet, one vertex is several points,
 /// and positions do not open.
 struct PointAttributes {
-  Array<uint32_t> point;        ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
+  Array<uint32_t> point;              ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
   uint32_t point_count = 0;           ///< P
   std::vector<Attribute> attributes;  ///< values [P * components] each
 

@@ -19,7 +19,7 @@ float rounded_up(double number) { return static_cast<float>(1.000001 * number + 
 }  // namespace
 
 Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                                 const SplitPlan& plan) {
+                           const SplitPlan& plan) {
   const auto w = static_cast<float>(options.w);
   if (options.tension == Tension::off) return butterfly(mesh.topology, mesh.positions, plan, w);
   const TensionField field = tension_field(mesh.topology, normals, options.tension);

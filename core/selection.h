@@ -16,11 +16,11 @@ namespace papilio {
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
 /// in `tried` would have.
 struct Trial {
-  Array<Vec3f> normals;  ///< [F]
-  SplitPlan tried;             ///< the edges whose new vertices were computed
-  Array<Vec3f> made;     ///< [tried.count()]
-  Memo<double> deviations{};   ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
-  Memo<float> bounds{};        ///< [tried.count()] no less than these; infinity where nothing is known
+  Array<Vec3f> normals;       ///< [F]
+  SplitPlan tried;            ///< the edges whose new vertices were computed
+  Array<Vec3f> made;          ///< [tried.count()]
+  Memo<double> deviations{};  ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
+  Memo<float> bounds{};       ///< [tried.count()] no less than these; infinity where nothing is known
 
   FacePlanes planes{};        ///< (view.h)
   NormalProducts products{};  ///< (flatness.h)
@@ -49,8 +49,8 @@ struct Trial {
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
-[[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals,
-                                               const Options& options, const SplitPlan& plan);
+[[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
+                                         const SplitPlan& plan);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
 

@@ -40,13 +40,13 @@ class FourSplitter {
     const uint32_t base = 12 * f;
 
     const uint32_t middle[3] = {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]};
-    put(&child_.origin[base], {corner[0], middle[0], middle[2],    //
-                               middle[0], corner[1], middle[1],    //
-                               middle[2], middle[1], corner[2],    //
+    put(&child_.origin[base], {corner[0], middle[0], middle[2],  //
+                               middle[0], corner[1], middle[1],  //
+                               middle[2], middle[1], corner[2],  //
                                middle[0], middle[1], middle[2]});
-    put(&child_.twin[base], {against_first(twin[0]), base + 11, against_second(twin[2]),    //
-                             against_second(twin[0]), against_first(twin[1]), base + 9,     //
-                             base + 10, against_second(twin[1]), against_first(twin[2]),    //
+    put(&child_.twin[base], {against_first(twin[0]), base + 11, against_second(twin[2]),  //
+                             against_second(twin[0]), against_first(twin[1]), base + 9,   //
+                             base + 10, against_second(twin[1]), against_first(twin[2]),  //
                              base + 5, base + 6, base + 1});
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
@@ -54,9 +54,9 @@ class FourSplitter {
     const uint32_t first[3] = {2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
     const uint32_t second[3] = {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1};
     const uint32_t inner = inner_edges_ + h;
-    put(&child_.edge[base], {first[0], inner, second[2],        //
-                             second[0], first[1], inner + 1,    //
-                             inner + 2, second[1], first[2],    //
+    put(&child_.edge[base], {first[0], inner, second[2],      //
+                             second[0], first[1], inner + 1,  //
+                             inner + 2, second[1], first[2],  //
                              inner + 1, inner + 2, inner});
     uint32_t* out = child_.half_edge.data();
     for (uint32_t i = 0; i < 3; ++i) {

@@ -5,9 +5,9 @@
 // One uniform level, by formula: every edge is split, every face becomes four.
 //
 // The children of face f are faces 4f to 4f + 3: child i < 3 keeps corner i, as its own corner i; child 3 lies in the
-// middle, its corner i on edge i of f. The halves of edge e are edges 2e and 2e + 1, the half at its lower vertex first;
-// its new vertex is V + e. The three edges inside f come after all of those, at 2E + 3f. split() makes the same of a
-// plan that splits everything.
+// middle, its corner i on edge i of f. The halves of edge e are edges 2e and 2e + 1, the half at its lower vertex
+// first; its new vertex is V + e. The three edges inside f come after all of those, at 2E + 3f. split() makes the same
+// of a plan that splits everything.
 
 namespace papilio {
 

@@ -1,5 +1,6 @@
 #include "uniform.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "attributes.h"
@@ -56,22 +57,32 @@ class Uniform {
     }
   }
 
-  /// That of the edges of the last level, which are not tried: a share of what their parents had.
+  /// That of the edges of the last level, which are not tried: a share of what their parents had. Most edges are seen
+  /// to matter less than another by how far their vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double error_left() const {
     ErrorLeft left(selection_);
     const Topology& topology = mesh_.topology;
-    double least = 0;  // squared distances from which an edge counts
-    for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {  // in this order, what is near lies near in memory
-      if (topology.twin[h] < h) continue;
-      const uint32_t e = topology.edge[h];
+    const double off = 1e-6 * largest_coordinate();  // more than floats make of that distance
+    float most_skipped = -1;                         // its square
+    for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+      const uint32_t h = topology.half_edge[e];
       const Vec3f made = mesh_.positions[topology.vertex_count + e];
-      const Vec3d ends = to_double(mesh_.positions[topology.origin[h]]) + to_double(mesh_.positions[topology.tip(h)]);
-      const Vec3d moved = to_double(made) - 0.5 * ends;  // the surface is no farther than the midpoint
-      if (dot(moved, moved) < least) continue;
+      const Vec3f ends = mesh_.positions[topology.origin[h]] + mesh_.positions[topology.tip(h)];
+      const Vec3f moved = made - 0.5F * ends;
+      if (dot(moved, moved) <= most_skipped) continue;
       left.add_distance(split_leaves * deviation(mesh_, e, made));
-      least = (1 - rounding) * std::pow(left.distance() / split_leaves, 2);
+      const double sure = left.distance() / split_leaves - off;
+      if (sure > least_squared) most_skipped = static_cast<float>(sure * sure);
     }
     return left.error();
+  }
+
+  [[nodiscard]] double largest_coordinate() const {
+    const Box box = bounding_box(mesh_.positions);
+    double largest = 0;
+    for (const Vec3f corner : {box.min, box.max})
+      for (const float c : {corner.x, corner.y, corner.z}) largest = std::max(largest, std::abs(double{c}));
+    return largest;
   }
 
   void split() {
@@ -84,7 +95,7 @@ class Uniform {
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
 
-  static constexpr double rounding = 1e-12;
+  static constexpr double least_squared = 1e-15;  ///< squares of smaller floats lose digits
 
   const Options& options_;
   const Selection& selection_;

@@ -46,8 +46,8 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-        const std::vector<double>& longest, const Box& box, const Camera& camera)
+  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const std::vector<double>& longest,
+        const Box& box, const Camera& camera)
       : mesh_(mesh),
         normals_(normals),
         planes_(planes),

@@ -50,7 +50,7 @@ class PositionTable {
 }  // namespace
 
 Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildReport& report,
-                           std::vector<uint32_t>& corner_point) {
+                     std::vector<uint32_t>& corner_point) {
   const auto point_count = static_cast<uint32_t>(input.positions.size());
   std::vector<uint32_t> first(point_count);
   PositionTable table(input.positions);

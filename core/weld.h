@@ -10,6 +10,6 @@ namespace papilio {
 /// expected whatever the input: the hash has a seed of the process (the result does not depend on the seed).
 /// `corner_point` [3F] is filled with the input's point at each corner if the input has attributes.
 [[nodiscard]] Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildReport& report,
-                                         std::vector<uint32_t>& corner_point);
+                                   std::vector<uint32_t>& corner_point);
 
 }  // namespace papilio

@@ -100,8 +100,7 @@ Lists parse_lists(std::string_view bytes) {
 }
 
 /// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
-bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Array<Vec3f>& listed,
-              const char* what) {
+bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Array<Vec3f>& listed, const char* what) {
   bool used = false;
   for (Corner& corner : corners) {
     if (listed.empty()) corner.*member = none;

@@ -16,7 +16,7 @@ using proto::AttributeKind;
 
 /// The numbers of the first attribute of this kind, three a point, a missing third one zero; empty if there is none.
 Array<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& format, AttributeKind kind,
-                                  uint32_t& components) {
+                            uint32_t& components) {
   for (size_t a = 0; a < format.attributes.size(); ++a) {
     const Attribute& attribute = mesh.attributes[a];
     components = attribute.components;
