@@ -16,9 +16,16 @@ constexpr int kept_at_end = 64 << 20;      ///< of each arena; as much as glibc 
 constexpr int most_calls = 5;              ///< that give nothing back while requests are done
 constexpr size_t block_bytes = 128 << 10;  ///< large enough for glibc to look at the arena's end when it is freed
 
+/// Where memory is short: gives back what is kept for later, and lets `new` try again.
+void give_up_spares() {
+  if (spare_bytes() == 0) throw std::bad_alloc();
+  release_spare_blocks();
+}
+
 }  // namespace
 
 void set_up_heap(int slots) {
+  std::set_new_handler(give_up_spares);
   mallopt(M_ARENA_MAX, std::max(2, slots));
   mallopt(M_MMAP_THRESHOLD, largest_block);
   mallopt(M_TRIM_THRESHOLD, kept_at_end);

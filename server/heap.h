@@ -11,8 +11,9 @@
 
 namespace papilio::server {
 
-/// Makes threads share as many arenas as requests compute at once, and keep what is freed for the next request. Call
-/// before there are threads.
+/// Makes threads share as many arenas as requests compute at once, and keep what is freed for the next request; where
+/// `new` finds no memory, the core's spare blocks (array.h) are given back before it fails. Call before there are
+/// threads.
 void set_up_heap(int slots);
 
 /// Gives what requests have freed back to the system: once there are no more of them, and now and then while they come,

@@ -5,8 +5,11 @@
 
 #include <fstream>
 #include <memory>
+#include <new>
 #include <thread>
 #include <vector>
+
+#include "core/array.h"
 
 namespace papilio::server {
 namespace {
@@ -83,6 +86,17 @@ TEST(FreeMemory, IsKeptForTheNextRequestUntilItGoesBackFromTheEndsOfArenasToo) {
   memory.give_back();
   memory.give_back();
   EXPECT_LT(resident_bytes(), before + (2U << 20));
+}
+
+TEST(Heap, SpareBlocksAreGivenBackBeforeNewFails) {
+  set_up_heap(2);
+  const std::new_handler handler = std::get_new_handler();
+  ASSERT_NE(handler, nullptr);
+  give_block(take_block(1 << 20), 1 << 20);
+  if (spare_bytes() > 0) handler();  // under the address sanitizer there are none
+  EXPECT_EQ(spare_bytes(), 0U);
+  EXPECT_THROW(handler(), std::bad_alloc);
+  std::set_new_handler(nullptr);
 }
 
 }  // namespace
