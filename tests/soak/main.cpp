@@ -51,7 +51,7 @@ std::vector<Kind> all_kinds() {
 void watch_memory(const Settings& settings, Pace& pace, Memory& memory) {
   const auto began = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  const double warm_up = std::max(20.0, 0.3 * settings.seconds);  // what is kept is full after three minutes
+  const double warm_up = std::max(20.0, 0.3 * settings.seconds);  // what is kept fills slowly
   const double between = std::max(8.0, settings.seconds / 30);
   while (elapsed() < settings.seconds) {
     std::this_thread::sleep_for(std::chrono::duration<double>(between));
