@@ -46,17 +46,39 @@ SizeClass class_of(size_t bytes) {
   return {(doubling - first) * steps + static_cast<unsigned>(count), (size_t{1} << doubling) + count * step};
 }
 
-void* new_block(size_t bytes) {
-  const size_t aligned = bytes >= huge_page ? huge_page : alignment;
-  void* block = ::operator new(bytes, std::align_val_t(aligned));
 #if defined(__linux__)
-  if (bytes >= huge_page) (void)madvise(block, bytes, MADV_HUGEPAGE);  // where there are none, small pages will do
+// Huge pages are asked for a range of addresses, which stays so after the heap has taken it back: what small things
+// then lie in it would come to fill pages of 2 MiB. So large blocks do not lie in the heap.
+constexpr bool maps_large_blocks = keeps;
+
+void* map_block(size_t bytes) {
+  void* mapped = mmap(nullptr, bytes + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  auto* const all = static_cast<std::byte*>(mapped);
+  const size_t before = (huge_page - std::bit_cast<uintptr_t>(all) % huge_page) % huge_page;
+  if (before > 0) (void)munmap(all, before);
+  (void)munmap(all + before + bytes, huge_page - before);
+  (void)madvise(all + before, bytes, MADV_HUGEPAGE);  // where there are none, small pages will do
+  return all + before;
+}
+
+void unmap_block(void* block, size_t bytes) noexcept { (void)munmap(block, bytes); }
+#else
+constexpr bool maps_large_blocks = false;
+void* map_block(size_t) { throw std::bad_alloc(); }
+void unmap_block(void*, size_t) noexcept {}
 #endif
-  return block;
+
+void* new_block(size_t bytes) {
+  if (maps_large_blocks && bytes >= huge_page) return map_block(bytes);
+  return ::operator new(bytes, std::align_val_t(alignment));
 }
 
 void delete_block(void* block, size_t bytes) noexcept {
-  ::operator delete(block, std::align_val_t(bytes >= huge_page ? huge_page : alignment));
+  if (maps_large_blocks && bytes >= huge_page)
+    unmap_block(block, bytes);
+  else
+    ::operator delete(block, std::align_val_t(alignment));
 }
 
 /// The blocks kept, each a link to the next of its class.

@@ -48,8 +48,8 @@ struct AssembledLevel {
 
 class Assembler {
  public:
-  Assembler(std::span<const LevelChoice> levels, double most_cosine)
-      : most_cosine_(most_cosine), coarse_(levels[0].level->mesh), vertex_count_(coarse_.topology.vertex_count) {
+  Assembler(std::span<const LevelChoice> levels, double most_cosine, bool with_edges)
+      : most_cosine_(most_cosine), with_edges_(with_edges), coarse_(levels[0].level->mesh), vertex_count_(coarse_.topology.vertex_count) {
     levels_.reserve(levels.size());
     for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
     for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
@@ -62,9 +62,11 @@ class Assembler {
     topology.darts = coarse_.topology.darts;
     topology.origin.resize(half_edge_count_);
     topology.twin.assign(half_edge_count_, none);
-    topology.edge.resize(half_edge_count_);
-    topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
-    topology.kind.reserve(topology.half_edge.capacity());
+    if (with_edges_) {
+      topology.edge.resize(half_edge_count_);
+      topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
+      topology.kind.reserve(topology.half_edge.capacity());
+    }
     make_positions();
     for (const Place& place : places_) make_faces(levels_[place.level], place.face);
     if (!coarse_.attributes.empty()) make_points();
@@ -147,24 +149,26 @@ class Assembler {
   void make_outer(uint32_t made, const AssembledLevel& level, uint32_t h, uint32_t half) {
     if (out_.topology.twin[made] == none)
       make_new_edge(made, twin_in_result(level, h, half), level.mesh->kind[level.edge[h]]);
-    else
+    else if (with_edges_)
       out_.topology.edge[made] = out_.topology.edge[out_.topology.twin[made]];
   }
 
   void make_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
     if (out_.topology.twin[made] == none)
       make_new_edge(made, twin, kind);
-    else
+    else if (with_edges_)
       out_.topology.edge[made] = out_.topology.edge[twin];
   }
 
   void make_new_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
     Topology& mesh = out_.topology;
-    mesh.edge[made] = mesh.edge_count();
     if (twin != none) {
       mesh.twin[made] = twin;
       mesh.twin[twin] = made;
-    } else if (kind == EdgeKind::shared) {
+    }
+    if (!with_edges_) return;
+    mesh.edge[made] = mesh.edge_count();
+    if (twin == none && kind == EdgeKind::shared) {
       const auto [known, is_new] = shared_.try_emplace(std::minmax(mesh.origin[made], mesh.tip(made)), mesh.edge[made]);
       mesh.edge[made] = known->second;
       if (!is_new) return;
@@ -221,6 +225,7 @@ class Assembler {
   }
 
   double most_cosine_;
+  bool with_edges_;
   const Mesh& coarse_;
   std::vector<AssembledLevel> levels_;
   std::vector<Place> places_;  ///< in the order of the result
@@ -340,7 +345,9 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
   return faces;
 }
 
-Mesh assemble(std::span<const LevelChoice> levels, double most_cosine) { return Assembler(levels, most_cosine).run(); }
+Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges) {
+  return Assembler(levels, most_cosine, with_edges).run();
+}
 
 ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection) {
   return ErrorFinder(levels, selection).run();

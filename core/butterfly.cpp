@@ -46,7 +46,11 @@ class Butterfly {
       const uint32_t rank = plan_.before[mesh_.edge[spoke]];
       out_[rank] = irregular_ends_[rank]++ == 0 ? q : out_[rank] + q;
     };
-    for_each_irregular_fan(mesh_, fan, [&] { rules_.split_spokes(fan, wants, add); });
+    const Features features = find_features(mesh_);
+    for (size_t i = 0; i < features.fan_count(); ++i) {
+      features.fan(mesh_, i, fan);
+      rules_.split_spokes(fan, wants, add);
+    }
   }
 
   const Topology& mesh_;
@@ -68,7 +72,6 @@ class UniformButterfly {
         is_tensed_(tension != nullptr) {}
 
   void run() {
-    std::fill_n(made_, mesh_.edge_count(), Vec3f{});
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       if (has_all_neighbours(f)) rules_.add_face_shares(f, made_);
     if (!features_.curve_half_edges.empty()) split_near_curves();
@@ -93,22 +96,33 @@ class UniformButterfly {
   }
 
   void split_at_irregular_vertices() {
-    std::vector<uint8_t> has_opinion(features_.level == 0 ? mesh_.edge_count() : 0, 0);
-    const auto add = [&](uint32_t spoke, Vec3f q) {
-      const uint32_t e = mesh_.edge[spoke];
-      if (mesh_.kind[e] != EdgeKind::smooth) return;  // the crease that ends at a dart
-      if (has_opinion.empty() || has_opinion[e] == 0)
-        made_[e] = q;
-      else
-        made_[e] = 0.5F * (made_[e] + q);  // below the coarse mesh one end of every edge is new, and regular
-      if (!has_opinion.empty()) has_opinion[e] = 1;
-    };
+    if (features_.level == 0) has_opinion_.assign(mesh_.edge_count(), 0);
     Fan fan;
     for (size_t i = 0; i < features_.fan_count(); ++i) {
+      const uint32_t first = features_.first_spoke[i];
+      const uint32_t valence = features_.first_spoke[i + 1] - first;
+      if (!is_tensed_ && features_.is_closed[i] != 0 && valence < stencil::harmonic_valence && mesh_.darts.empty()) {
+        rules_.split_ring(features_.centre[i], valence, &features_.tips[first],
+                          [&](uint32_t spoke, Vec3f q) { add_opinion(features_.edges[first + spoke], q); });
+        continue;
+      }
       features_.fan(mesh_, i, fan);
       rules_.split_spokes(
-          fan, [](uint32_t) { return true; }, add);
+          fan, [](uint32_t) { return true; },
+          [&](uint32_t spoke, Vec3f q) {
+            const uint32_t e = mesh_.edge[spoke];
+            if (mesh_.kind[e] == EdgeKind::smooth) add_opinion(e, q);  // not the crease that ends at a dart
+          });
     }
+  }
+
+  void add_opinion(uint32_t e, Vec3f q) {
+    if (features_.level > 0) {
+      made_[e] = q;  // below the coarse mesh one end of every edge is new, and regular
+      return;
+    }
+    made_[e] = has_opinion_[e] != 0 ? 0.5F * (made_[e] + q) : q;
+    has_opinion_[e] = 1;
   }
 
   const Topology& mesh_;
@@ -116,6 +130,7 @@ class UniformButterfly {
   ButterflyRules<float> rules_;
   Vec3f* made_;  ///< [E]
   bool is_tensed_;
+  std::vector<uint8_t> has_opinion_;  ///< [E] of an irregular end; on the coarse mesh only
 };
 
 }  // namespace

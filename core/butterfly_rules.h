@@ -32,6 +32,9 @@ class InteriorWeights {
   std::array<std::array<Real, stencil::harmonic_valence>, stencil::harmonic_valence> ring_{};
 };
 
+template <class Real>
+inline const InteriorWeights<Real> interior_weights;
+
 /// The rules of one level: the new vertex of an edge from the positions round it. Which rule holds where is told in
 /// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both
 /// half-edges of an edge give the same.
@@ -83,8 +86,9 @@ class ButterflyRules {
   /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge.
   [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
 
-  /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges to
-  /// `made` [E], zero before. The face must have a twin at each edge. Two faces make the bits of `regular`.
+  /// Where every edge is split, the eight-point rule goes face by face, in ascending order: writes what face f knows of
+  /// its three edges to `made` [E], or adds it where the other face has come before. The face must have a twin at each
+  /// edge. Two faces make the bits of `regular`.
   void add_face_shares(uint32_t f, Point* made) const {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
@@ -96,32 +100,53 @@ class ButterflyRules {
       tensed_->add_face_shares(f, p, wing, made);
       return;
     }
-    add_to(made[edge[0]], shares_(p[0], p[1], p[2], wing[1], wing[2]));
-    add_to(made[edge[1]], shares_(p[1], p[2], p[0], wing[2], wing[0]));
-    add_to(made[edge[2]], shares_(p[2], p[0], p[1], wing[0], wing[1]));
+    const uint32_t h = 3 * f;
+    add_share(twin[0] < h, shares_(p[0], p[1], p[2], wing[1], wing[2]), made[edge[0]]);
+    add_share(twin[1] < h, shares_(p[1], p[2], p[0], wing[2], wing[0]), made[edge[1]]);
+    add_share(twin[2] < h, shares_(p[2], p[0], p[1], wing[0], wing[1]), made[edge[2]]);
+  }
+
+  /// A closed fan's opinion on all its spokes, without tension: calls add(i, position) for the i-th. `ring` [valence]
+  /// are the vertices at their other ends; the valence is below `stencil::harmonic_valence`.
+  template <class Add>
+  void split_ring(uint32_t centre, uint32_t valence, const uint32_t* ring, const Add& add) const {
+    const InteriorRing points(*this, centre, valence, ring);
+    for (uint32_t i = 0; i < valence; ++i) add(i, points.split(i));
   }
 
  private:
-  template <class Wants, class Add>
-  void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
-    static const InteriorWeights<Real> weights;
-    const uint32_t k = fan.valence();
-    const Real* s = weights.ring(k);
-    std::array<Wide<Real>, size_t{2} * stencil::harmonic_valence> ring;  // twice round
-    for (uint32_t j = 0; j < k; ++j) ring[j] = ring[k + j] = wide(fan.ring[j]);
-    const Wide<Real> centre = weights.centre(k) * wide(fan.centre);
-    for (uint32_t i = 0; i < k; ++i) {
-      if (!wants(fan.spokes[i])) continue;
-      if (tensed_ && k > 2) {
-        add(fan.spokes[i], tensed_->interior_spoke(fan, s, i));
-        continue;
-      }
-      Wide<Real> sum = centre;
-      for (uint32_t j = 0; j < k; ++j) sum += s[j] * ring[i + j];
+  /// The points of the rule for a closed fan that is not regular.
+  class InteriorRing {
+   public:
+    InteriorRing(const ButterflyRules& rules, uint32_t centre, uint32_t valence, const uint32_t* ring)
+        : valence_(valence),
+          weights_(interior_weights<Real>.ring(valence)),
+          centre_(interior_weights<Real>.centre(valence) * rules.wide(centre)) {
+      for (uint32_t j = 0; j < valence; ++j) points_[j] = points_[valence + j] = rules.wide(ring[j]);
+    }
+    [[nodiscard]] Point split(uint32_t spoke) const {
+      Wide<Real> sum = centre_;
+      for (uint32_t j = 0; j < valence_; ++j) sum += weights_[j] * points_[spoke + j];
       Point q;
       store(sum, q);
-      add(fan.spokes[i], q);
+      return q;
     }
+
+   private:
+    uint32_t valence_;
+    const Real* weights_;
+    Wide<Real> centre_;
+    std::array<Wide<Real>, size_t{2} * stencil::harmonic_valence> points_;  // twice round
+  };
+
+  template <class Wants, class Add>
+  void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
+    const uint32_t k = fan.valence();
+    const InteriorRing points(*this, fan.centre, k, fan.ring.data());
+    const Real* s = interior_weights<Real>.ring(k);
+    for (uint32_t i = 0; i < k; ++i)
+      if (wants(fan.spokes[i]))
+        add(fan.spokes[i], tensed_ && k > 2 ? tensed_->interior_spoke(fan, s, i) : points.split(i));
   }
 
   template <class Add>
@@ -235,8 +260,7 @@ class ButterflyRules {
   }
 
   [[nodiscard]] Wide<Real> wide(uint32_t vertex) const { return papilio::widen(p_[vertex]); }
-  /// As two additions to zero, in either order.
-  static Point sum(Point one, Point other) { return (Point{} + one) + other; }
+  static Point sum(Point one, Point other) { return one + other; }
   static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 

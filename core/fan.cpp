@@ -28,29 +28,6 @@ class Steps {
   const bool is_dart_;
 };
 
-/// A dart never counts as regular: the regular rules look for curves edge by edge.
-bool is_regular(const Topology& mesh, const Fan& fan) {
-  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles) &&
-         !is_dart(mesh, fan.centre);
-}
-
-/// Marks the vertices whose one fan is closed with six faces: no curve, not pinched, six corners.
-std::vector<bool> find_plainly_regular(const Topology& mesh) {
-  std::vector<uint8_t> corners(mesh.vertex_count, 0);
-  constexpr uint8_t irregular = stencil::regular_valence + 1;
-  for (uint32_t v : mesh.origin)
-    if (corners[v] < irregular) ++corners[v];
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-    if (mesh.kind[e] == EdgeKind::smooth) continue;
-    corners[mesh.origin[mesh.half_edge[e]]] = irregular;
-    corners[mesh.tip(mesh.half_edge[e])] = irregular;
-  }
-  for (uint32_t v : mesh.pinched) corners[v] = irregular;
-  std::vector<bool> regular(mesh.vertex_count);
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) regular[v] = corners[v] == stencil::regular_valence;
-  return regular;
-}
-
 }  // namespace
 
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
@@ -75,15 +52,9 @@ void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
   fan.ring.push_back(mesh.apex(fan.spokes.back()));
 }
 
-void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit) {
-  const std::vector<bool> regular = find_plainly_regular(mesh);
-  std::vector<bool> visited(mesh.half_edge_count());
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-    if (regular[mesh.origin[h]] || visited[h]) continue;
-    collect_fan(mesh, h, fan);
-    for (uint32_t s : fan.spokes) visited[s] = true;
-    if (!is_regular(mesh, fan)) visit();
-  }
+bool is_regular(const Topology& mesh, const Fan& fan) {
+  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles) &&
+         !is_dart(mesh, fan.centre);
 }
 
 }  // namespace papilio

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "mesh.h"
@@ -23,8 +22,8 @@ struct Fan {
 /// clockwise end, a closed one at h. Round a dart it is closed.
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan);
 
-/// Collects each fan with interior spokes to which no regular rule applies (closed and not six faces, open
-/// and not three; round a dart always) into `fan` and calls `visit`.
-void for_each_irregular_fan(const Topology& mesh, Fan& fan, const std::function<void()>& visit);
+/// Whether the regular rules apply to its spokes: closed with six faces, or open with three. To a dart they never do:
+/// they look for curves edge by edge.
+[[nodiscard]] bool is_regular(const Topology& mesh, const Fan& fan);
 
 }  // namespace papilio

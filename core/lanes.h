@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 #include "vec3.h"
@@ -17,6 +19,11 @@ struct Lanes {
   friend Lanes operator*(float s, Lanes a) { return {s * a.v}; }
   Lanes& operator+=(Lanes b) { return *this = *this + b; }
 };
+
+/// Lane by lane.
+inline Lanes larger(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
+/// Of the first three lanes.
+inline float squared_length(Lanes a) { return a.v[0] * a.v[0] + a.v[1] * a.v[1] + a.v[2] * a.v[2]; }
 
 /// What rules compute with: `Lanes` in the product, plain vectors where a test checks the arithmetic in double.
 template <class Real>
@@ -41,9 +48,13 @@ inline Vec3d widen(const Vec3d& p) { return p; }
 inline void store(Lanes lanes, Vec3f& p) { p = {lanes.v[0], lanes.v[1], lanes.v[2]}; }
 inline void store(const Vec3d& q, Vec3d& p) { p = q; }
 
-template <class Real>
-void add_to(Vec3T<Real>& p, const Wide<Real>& q) {
-  store(widen(p) + q, p);
+/// Stores q, or the sum of p and q: without a branch, for who comes first to an edge is not foreseen.
+inline void add_share(bool to_what_is_there, Lanes q, Vec3f& p) {
+  using Bits = int32_t __attribute__((vector_size(16)));
+  const int32_t mask = to_what_is_there ? -1 : 0;
+  const Bits there = std::bit_cast<Bits>(widen(p).v) & Bits{mask, mask, mask, mask};
+  store(Lanes{std::bit_cast<Lanes::Register>(there)} + q, p);
 }
+inline void add_share(bool to_what_is_there, const Vec3d& q, Vec3d& p) { p = to_what_is_there ? p + q : q; }
 
 }  // namespace papilio

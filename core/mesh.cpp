@@ -1,13 +1,14 @@
 #include "mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <new>
 #include <stdexcept>
 
 #include "attributes.h"
 #include "error.h"
-#include "fan.h"
 #include "weld.h"
 
 namespace papilio {
@@ -35,35 +36,68 @@ void check(const TriangleMesh& input) {
 
 /// Half-edges sorted into edges: a run of half-edges between the same two vertices each.
 struct EdgeRuns {
-  std::vector<uint32_t> half_edges;  ///< [H] ordered by lower vertex, then higher vertex, then half-edge
-  std::vector<uint32_t> starts;      ///< where each run starts; one more at the end
+  Array<uint32_t> half_edges;  ///< [H] ordered by lower vertex, then higher vertex, then half-edge
+  Array<uint32_t> starts;      ///< where each run starts; one more at the end
 };
+
+/// A half-edge and the higher of its vertices, to be sorted by both.
+struct EdgeEnd {
+  uint32_t higher, half_edge;
+  friend auto operator<=>(const EdgeEnd&, const EdgeEnd&) = default;
+};
+
+/// Few as a rule, and nearly in order.
+void sort_ends(EdgeEnd* first, EdgeEnd* last) {
+  constexpr ptrdiff_t few = 24;
+  if (last - first > few) {
+    std::sort(first, last);
+    return;
+  }
+  for (EdgeEnd* at = first; at != last; ++at) {
+    const EdgeEnd end = *at;
+    EdgeEnd* to = at;
+    for (; to != first && end < to[-1]; --to) *to = to[-1];
+    *to = end;
+  }
+}
 
 EdgeRuns sort_into_edges(const Topology& mesh) {
   const uint32_t count = mesh.half_edge_count();
-  const auto lower = [&](uint32_t h) { return std::min(mesh.origin[h], mesh.tip(h)); };
-  const auto higher = [&](uint32_t h) { return std::max(mesh.origin[h], mesh.tip(h)); };
-
-  std::vector<uint32_t> bucket(mesh.vertex_count + 1, 0);
-  for (uint32_t h = 0; h < count; ++h) ++bucket[lower(h) + 1];
+  Array<uint32_t> bucket(size_t{mesh.vertex_count} + 1, 0);  // of each lower vertex: where it ends, once it is filled
+  const auto for_each_half_edge = [&](const auto& visit) {
+    for (uint32_t first = 0; first < count; first += 3) {
+      const uint32_t* v = &mesh.origin[first];
+      visit(first, v[0], v[1]);
+      visit(first + 1, v[1], v[2]);
+      visit(first + 2, v[2], v[0]);
+    }
+  };
+  for_each_half_edge([&](uint32_t, uint32_t a, uint32_t b) { ++bucket[std::min(a, b) + 1]; });
   for (uint32_t v = 0; v < mesh.vertex_count; ++v) bucket[v + 1] += bucket[v];
+  Array<EdgeEnd> ends(count);
+  for_each_half_edge([&](uint32_t h, uint32_t a, uint32_t b) {
+    ends[bucket[std::min(a, b)]++] = {std::max(a, b), h};
+  });
 
   EdgeRuns runs;
   runs.half_edges.resize(count);
-  std::vector<uint32_t> fill(bucket.begin(), bucket.end() - 1);
-  for (uint32_t h = 0; h < count; ++h) runs.half_edges[fill[lower(h)]++] = h;
-
-  runs.starts.reserve(count / 2 + 1);
+  runs.starts.resize(size_t{count} + 1);
+  uint32_t* start = runs.starts.data();
+  uint32_t begin = 0;
   for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    const auto begin = runs.half_edges.begin() + bucket[v];
-    const auto end = runs.half_edges.begin() + bucket[v + 1];
-    std::sort(begin, end,
-              [&](uint32_t a, uint32_t b) { return higher(a) != higher(b) ? higher(a) < higher(b) : a < b; });
-    for (auto h = begin; h != end; ++h)
-      if (h == begin || higher(*h) != higher(*(h - 1)))
-        runs.starts.push_back(static_cast<uint32_t>(h - runs.half_edges.begin()));
+    const uint32_t end = bucket[v];
+    sort_ends(&ends[begin], ends.data() + end);
+    uint32_t higher = none;
+    for (uint32_t k = begin; k < end; ++k) {
+      runs.half_edges[k] = ends[k].half_edge;
+      *start = k;
+      start += ends[k].higher != higher ? 1 : 0;
+      higher = ends[k].higher;
+    }
+    begin = end;
   }
-  runs.starts.push_back(count);
+  *start++ = count;
+  runs.starts.resize(static_cast<size_t>(start - runs.starts.data()));
   return runs;
 }
 
@@ -112,39 +146,70 @@ uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs, std::vector<u
   return dropped;
 }
 
-void connect(Topology& mesh, const EdgeRuns& runs, BuildReport& report) {
-  const uint32_t count = mesh.half_edge_count();
-  // Edges are numbered in the order of their first half-edge, so that they lie in memory as the faces do.
-  std::vector<uint32_t> run_of(count, none);
-  for (uint32_t r = 0; r + 1 < runs.starts.size(); ++r) run_of[runs.half_edges[runs.starts[r]]] = r;
+/// Finds twins; numbers edges in the order of their first half-edge, so that they lie in memory as the faces do.
+class Connector {
+ public:
+  Connector(Topology& mesh, const EdgeRuns& runs, BuildReport& report) : mesh_(mesh), runs_(runs), report_(report) {}
 
-  mesh.twin.assign(count, none);
-  mesh.edge.resize(count);
-  mesh.half_edge.reserve(runs.starts.size() - 1);
-  mesh.kind.reserve(runs.starts.size() - 1);
-  for (uint32_t first = 0; first < count; ++first) {
-    if (run_of[first] == none) continue;
-    const uint32_t begin = runs.starts[run_of[first]];
-    const uint32_t size = runs.starts[run_of[first] + 1] - begin;
-    const uint32_t second = size == 2 ? runs.half_edges[begin + 1] : none;
-    EdgeKind kind = EdgeKind::shared;
-    if (size == 1) {
-      kind = EdgeKind::boundary;
-      ++report.boundary_edges;
-    } else if (size > 2) {
-      ++report.non_manifold_edges;
-    } else if (mesh.origin[first] == mesh.origin[second]) {
-      ++report.misoriented_edges;
-    } else {
-      kind = EdgeKind::smooth;
-      mesh.twin[first] = second;
-      mesh.twin[second] = first;
+  void run() {
+    const uint32_t count = mesh_.half_edge_count();
+    mesh_.twin.assign(count, none);
+    find_twins();
+    mesh_.edge.resize(count);
+    mesh_.half_edge.resize(runs_.starts.size() - 1);
+    mesh_.kind.assign(mesh_.half_edge.size(), EdgeKind::smooth);
+    uint32_t edges = 0;
+    for (uint32_t h = 0; h < count; ++h) {
+      const uint32_t t = mesh_.twin[h];
+      if (t == none ? !is_first_on_curve(h) : t < h) continue;
+      mesh_.half_edge[edges] = h;
+      mesh_.edge[h] = edges;
+      if (t == none)
+        number_curve(h, edges);
+      else
+        mesh_.edge[t] = edges;
+      ++edges;
     }
-    for (uint32_t k = 0; k < size; ++k) mesh.edge[runs.half_edges[begin + k]] = mesh.edge_count();
-    mesh.half_edge.push_back(first);
-    mesh.kind.push_back(kind);
   }
-}
+
+ private:
+  void find_twins() {
+    for (uint32_t r = 0; r + 1 < runs_.starts.size(); ++r) {
+      const uint32_t first = runs_.half_edges[runs_.starts[r]];
+      if (runs_.starts[r + 1] - runs_.starts[r] == 2) {
+        const uint32_t second = runs_.half_edges[runs_.starts[r] + 1];
+        if (mesh_.origin[first] != mesh_.origin[second]) {
+          mesh_.twin[first] = second;
+          mesh_.twin[second] = first;
+          continue;
+        }
+      }
+      if (curve_.empty()) curve_.assign(mesh_.half_edge_count(), none);
+      curve_[first] = r;
+    }
+  }
+
+  [[nodiscard]] bool is_first_on_curve(uint32_t h) const { return curve_[h] != none; }
+
+  /// The edge of half-edge `first` and of those that have no twin because of what lies there.
+  void number_curve(uint32_t first, uint32_t edge) {
+    const uint32_t begin = runs_.starts[curve_[first]];
+    const uint32_t end = runs_.starts[curve_[first] + 1];
+    for (uint32_t k = begin; k < end; ++k) mesh_.edge[runs_.half_edges[k]] = edge;
+    mesh_.kind[edge] = end - begin == 1 ? EdgeKind::boundary : EdgeKind::shared;
+    uint32_t& found = end - begin == 1   ? report_.boundary_edges
+                      : end - begin == 2 ? report_.misoriented_edges
+                                         : report_.non_manifold_edges;
+    ++found;
+  }
+
+  Topology& mesh_;
+  const EdgeRuns& runs_;
+  BuildReport& report_;
+  Array<uint32_t> curve_;  ///< [H] of an edge without twins, at its first half-edge: its run; empty if there is none
+};
+
+void connect(Topology& mesh, const EdgeRuns& runs, BuildReport& report) { Connector(mesh, runs, report).run(); }
 
 }  // namespace
 
@@ -152,8 +217,8 @@ TriangleMesh Mesh::triangles() const {
   TriangleMesh out;
   const Array<uint32_t>& corners = attributes.empty() ? topology.origin : attributes.point;
   out.triangles.resize(topology.face_count());
-  for (uint32_t f = 0; f < topology.face_count(); ++f)
-    std::copy_n(corners.begin() + size_t{3} * f, 3, out.triangles[f].begin());
+  static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
+  if (!corners.empty()) std::memcpy(out.triangles.data(), corners.data(), corners.size() * sizeof(uint32_t));
   if (attributes.empty()) {
     out.positions = positions;
     return out;
@@ -205,20 +270,66 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   }
 }
 
+namespace {
+
+/// How many faces the fan of half-edge h has. Fans end where there is no twin.
+uint32_t fan_size(const Topology& mesh, uint32_t h) {
+  uint32_t size = 0;
+  uint32_t s = h;
+  do {
+    ++size;
+    s = mesh.twin[Topology::previous(s)];
+  } while (s != none && s != h);
+  if (s == none)
+    for (s = mesh.twin[h]; s != none; s = mesh.twin[Topology::next(s)]) ++size;
+  return size;
+}
+
+}  // namespace
+
 std::vector<uint32_t> find_pinched(const Topology& mesh) {
-  std::vector<uint32_t> corners(mesh.vertex_count, 0);
-  std::vector<uint32_t> first(mesh.vertex_count, none);
-  for (uint32_t h = mesh.half_edge_count(); h-- > 0;) {
+  Array<uint32_t> corners(mesh.vertex_count, 0);
+  Array<uint32_t> last(mesh.vertex_count);
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
     ++corners[mesh.origin[h]];
-    first[mesh.origin[h]] = h;
+    last[mesh.origin[h]] = h;
   }
   std::vector<uint32_t> pinched;  // the fan of one corner leaves out another
-  Fan fan;
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    collect_fan(mesh, first[v], fan);
-    if (fan.valence() != corners[v]) pinched.push_back(v);
-  }
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v)
+    if (fan_size(mesh, last[v]) != corners[v]) pinched.push_back(v);
   return pinched;
+}
+
+void number_edges(Topology& mesh) {
+  if (mesh.has_edges()) return;
+  using OpenEnd = std::array<uint32_t, 3>;  // lower vertex, higher vertex, half-edge
+  std::vector<OpenEnd> open;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+    if (mesh.twin[h] == none)
+      open.push_back({std::min(mesh.origin[h], mesh.tip(h)), std::max(mesh.origin[h], mesh.tip(h)), h});
+  std::sort(open.begin(), open.end());
+  const auto meet = [](const OpenEnd& one, const OpenEnd& other) { return one[0] == other[0] && one[1] == other[1]; };
+
+  mesh.edge.assign(mesh.half_edge_count(), none);
+  for (size_t i = 0; i < open.size(); ++i) mesh.edge[open[i][2]] = i > 0 && meet(open[i - 1], open[i]) ? 0 : none;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    if (mesh.edge[h] != none) continue;
+    mesh.edge[h] = mesh.edge_count();
+    if (mesh.twin[h] != none) mesh.edge[mesh.twin[h]] = mesh.edge[h];
+    mesh.half_edge.push_back(h);
+    mesh.kind.push_back(mesh.twin[h] == none ? EdgeKind::boundary : EdgeKind::smooth);
+  }
+  for (size_t i = 1; i < open.size(); ++i) {
+    if (!meet(open[i - 1], open[i])) continue;
+    mesh.edge[open[i][2]] = mesh.edge[open[i - 1][2]];
+    mesh.kind[mesh.edge[open[i][2]]] = EdgeKind::shared;
+  }
+}
+
+void forget_edges(Topology& mesh) {
+  mesh.edge = {};
+  mesh.half_edge = {};
+  mesh.kind = {};
 }
 
 Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count) {

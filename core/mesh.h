@@ -30,7 +30,8 @@ enum class EdgeKind : uint8_t {
   cut,       ///< faces of the uniform mesh are missing here: the border of what a red-green level holds (hierarchy.h)
 };
 
-/// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices.
+/// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices. Edges may be left out: then `edge`,
+/// `half_edge` and `kind` are empty.
 struct Topology {
   uint32_t vertex_count = 0;
   Array<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
@@ -45,6 +46,7 @@ struct Topology {
   /// without a crease.
   std::vector<uint32_t> darts;
 
+  [[nodiscard]] bool has_edges() const { return edge.size() == origin.size(); }
   [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }
   [[nodiscard]] uint32_t edge_count() const { return static_cast<uint32_t>(half_edge.size()); }
   [[nodiscard]] uint32_t half_edge_count() const { return static_cast<uint32_t>(origin.size()); }
@@ -110,7 +112,13 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// used. Makes no creases and no darts. O(n log n) at worst.
 [[nodiscard]] Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count);
 
-/// Vertices with more than one fan of faces, in ascending order. Fans end at curves: no edge may be a crease.
+/// Numbers the edges where they were left out. Makes no creases. O(n log n) at worst.
+void number_edges(Topology& mesh);
+/// Leaves them out.
+void forget_edges(Topology& mesh);
+
+/// Vertices with more than one fan of faces, in ascending order. Fans end where there is no twin: no edge may be a
+/// crease.
 [[nodiscard]] std::vector<uint32_t> find_pinched(const Topology& mesh);
 
 /// An axis-parallel box. Of no points: `min` above `max`.

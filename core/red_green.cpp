@@ -40,7 +40,7 @@ class RedGreen {
         progress_.require_room(count_assembled(choices_), level);
         result.levels = level;
         keep();
-        if (progress_.wants_levels()) latest = assemble(choices_, most_cosine_);
+        if (progress_.wants_levels()) latest = assembled();
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
@@ -205,6 +205,10 @@ class RedGreen {
     return faces;
   }
 
+  [[nodiscard]] Mesh assembled() const {
+    return assemble(choices_, most_cosine_, options_.edges || options_.simplify_hidden);
+  }
+
   void finish(Result& result, Mesh latest) {
     bring_back_what_was_kept();
     const ErrorLeft left = error_left(choices_, selection_);
@@ -219,7 +223,7 @@ class RedGreen {
     else if (result.levels == 0)
       result.mesh = choices_[0].level->mesh;
     else
-      result.mesh = assemble(choices_, most_cosine_);
+      result.mesh = assembled();
   }
 
   const Options& options_;

@@ -43,6 +43,7 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
     result.mesh =
         simplify_hidden(std::move(result.mesh), *selection.camera(), default_hidden_error, [&] { progress.poll(); });
   }
+  if (!options.edges) forget_edges(result.mesh.topology);
   progress.report_last(result.levels, result.mesh);
   return result;
 }
@@ -69,6 +70,7 @@ Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
   check_room(coarse.topology.face_count(), options);
   return guard_memory([&] {
     const double diagonal = bounding_box(coarse.positions).diagonal();
+    number_edges(coarse.topology);
     mark_creases(coarse, options.crease_angle);
     return run(std::move(coarse), diagonal, options, hooks);
   });

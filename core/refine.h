@@ -15,15 +15,16 @@ namespace papilio {
 
 /// One level as it is made; valid during the callback only.
 struct Level {
-  int level;  ///< 0 is the coarse mesh; levels that change nothing, before one that does, are left out
-  const Mesh& mesh;
-  bool last;  ///< no further level will come
+  int level;         ///< 0 is the coarse mesh; levels that change nothing, before one that does, are left out
+  const Mesh& mesh;  ///< with or without edges, where `Options::edges` is off
+  bool last;         ///< no further level will come
 };
 
-/// How the caller takes part. Both may be empty; both are called on the calling thread.
+/// How the caller takes part. Both functions may be empty; both are called on the calling thread.
 struct Hooks {
   std::function<void(const Level&)> on_level{};  ///< after each level, the coarse one first; may throw to stop
   std::function<bool()> cancelled{};             ///< asked between steps; true stops with `Fault::cancelled`
+  int threads = 1;                               ///< how many may work on it at once; the result is the same to the bit
 };
 
 enum class StopReason {
@@ -33,7 +34,7 @@ enum class StopReason {
 };
 
 struct Result {
-  Mesh mesh;
+  Mesh mesh;       ///< with edges if `Options::edges`
   int levels = 0;  ///< the last level that changed the mesh
   StopReason stop_reason = StopReason::levels;
   /// The largest deviation left: the distance by which the surface would still move at an edge that was not split, as a

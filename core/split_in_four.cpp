@@ -5,6 +5,7 @@
 namespace papilio {
 namespace {
 
+template <bool numbers_edges>
 class FourSplitter {
  public:
   explicit FourSplitter(const Topology& mesh)
@@ -17,9 +18,11 @@ class FourSplitter {
     const size_t half_edges = size_t{4} * mesh_.half_edge_count();
     child_.origin.resize(half_edges);
     child_.twin.resize(half_edges);
-    child_.edge.resize(half_edges);
-    child_.half_edge.resize(inner_edges_ + mesh_.half_edge_count());
-    make_kinds();
+    if (numbers_edges) {
+      child_.edge.resize(half_edges);
+      child_.half_edge.resize(inner_edges_ + mesh_.half_edge_count());
+      make_kinds();
+    }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
     return std::move(child_);
   }
@@ -48,6 +51,14 @@ class FourSplitter {
                              against_second(twin[0]), against_first(twin[1]), base + 9,   //
                              base + 10, against_second(twin[1]), against_first(twin[2]),  //
                              base + 5, base + 6, base + 1});
+    if (numbers_edges) number_edges(f);
+  }
+
+  void number_edges(uint32_t f) {
+    const uint32_t h = 3 * f;
+    const uint32_t* corner = &mesh_.origin[h];
+    const uint32_t* edge = &mesh_.edge[h];
+    const uint32_t base = 12 * f;
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
                               corner[2] > corner[0] ? 1U : 0U};
@@ -82,6 +93,8 @@ class FourSplitter {
 
 }  // namespace
 
-Topology split_in_four(const Topology& mesh) { return FourSplitter(mesh).run(); }
+Topology split_in_four(const Topology& mesh) { return FourSplitter<true>(mesh).run(); }
+
+Topology split_last_in_four(const Topology& mesh) { return FourSplitter<false>(mesh).run(); }
 
 }  // namespace papilio

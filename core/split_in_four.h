@@ -22,5 +22,7 @@ namespace papilio {
 
 /// The next level's connectivity. Kinds of edges are inherited; new edges inside a face are smooth. O(F + E).
 [[nodiscard]] Topology split_in_four(const Topology& mesh);
+/// The same without its edges (mesh.h): for a level that is not split again.
+[[nodiscard]] Topology split_last_in_four(const Topology& mesh);
 
 }  // namespace papilio

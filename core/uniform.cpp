@@ -1,11 +1,11 @@
 #include "uniform.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "attributes.h"
 #include "butterfly.h"
 #include "features.h"
+#include "lanes.h"
 #include "normals.h"
 #include "split.h"
 #include "split_in_four.h"
@@ -32,7 +32,7 @@ class Uniform {
       make_vertices();
       progress_.poll();
       if (level == options_.levels) result_.error = error_left();
-      split();
+      split(level == options_.levels && !options_.edges);
       result_.levels = level;
     }
     result_.mesh = std::move(mesh_);
@@ -66,10 +66,9 @@ class Uniform {
     float most_skipped = -1;                         // its square
     for (uint32_t e = 0; e < topology.edge_count(); ++e) {
       const uint32_t h = topology.half_edge[e];
-      const Vec3f made = mesh_.positions[topology.vertex_count + e];
-      const Vec3f ends = mesh_.positions[topology.origin[h]] + mesh_.positions[topology.tip(h)];
-      const Vec3f moved = made - 0.5F * ends;
-      if (dot(moved, moved) <= most_skipped) continue;
+      const Vec3f& made = mesh_.positions[topology.vertex_count + e];
+      const Lanes ends = widen(mesh_.positions[topology.origin[h]]) + widen(mesh_.positions[topology.tip(h)]);
+      if (squared_length(widen(made) - 0.5F * ends) <= most_skipped) continue;
       left.add_distance(split_leaves * deviation(mesh_, e, made));
       const double sure = left.distance() / split_leaves - off;
       if (sure > least_squared) most_skipped = static_cast<float>(sure * sure);
@@ -77,20 +76,18 @@ class Uniform {
     return left.error();
   }
 
-  [[nodiscard]] double largest_coordinate() const {
-    const Box box = bounding_box(mesh_.positions);
-    double largest = 0;
-    for (const Vec3f corner : {box.min, box.max})
-      for (const float c : {corner.x, corner.y, corner.z}) largest = std::max(largest, std::abs(double{c}));
-    return largest;
+  [[nodiscard]] float largest_coordinate() const {
+    Lanes largest{};
+    for (const Vec3f& p : mesh_.positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
+    return std::max({largest.v[0], largest.v[1], largest.v[2]});
   }
 
-  void split() {
-    if (mesh_.attributes.empty())
-      mesh_.topology = split_in_four(mesh_.topology);
-    else
+  void split(bool without_edges) {
+    descend(features_, mesh_.topology);
+    if (!mesh_.attributes.empty())
       mesh_.topology = papilio::split(mesh_.topology, everything(), mesh_.positions, mesh_.attributes);
-    descend(features_);
+    else
+      mesh_.topology = without_edges ? split_last_in_four(mesh_.topology) : split_in_four(mesh_.topology);
   }
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }

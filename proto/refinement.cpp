@@ -48,6 +48,7 @@ Refinement::Refinement(const Parameters& parameters, const Limits& limits)
     : options_(parameters.options), output_(parameters.output), most_seconds_(limits.max_compute_seconds) {
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
+  options_.edges = false;
 }
 
 Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)

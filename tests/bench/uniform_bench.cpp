@@ -53,6 +53,7 @@ Options uniform_options(int levels) {
   Options options;
   options.levels = levels;
   options.tension = Tension::off;
+  options.edges = false;
   return options;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -58,6 +60,17 @@ TEST(ArrayBlocks, AreSharedByThreads) {
       }
     });
   for (std::thread& thread : threads) thread.join();
+}
+
+// Small things that come to lie there would fill pages of 2 MiB, long after.
+TEST(ArrayBlocks, LeaveNoAddressesBehindForHugePages) {
+  give_block(take_block(size_t{9} << 20), size_t{9} << 20);
+  release_spare_blocks();
+  std::ifstream maps("/proc/self/smaps");
+  for (std::string line; std::getline(maps, line);)
+    if (line.starts_with("VmFlags:")) {
+      EXPECT_EQ(line.find(" hg"), std::string::npos);
+    }
 }
 
 TEST(ArrayBlocks, TooManyElementsAreRefused) {

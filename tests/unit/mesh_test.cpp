@@ -142,5 +142,31 @@ TEST(Mesh, BoundingBox) {
   EXPECT_EQ(bounding_box({}).diagonal(), 0);
 }
 
+/// Twelve faces between eight points: edges of three faces, pinched vertices, faces wound against each other.
+TriangleMesh random_soup(std::mt19937& random) {
+  TriangleMesh mesh;
+  for (uint32_t p = 0; p < 8; ++p) mesh.positions.push_back({float(p & 1U), float(p >> 1U & 1U), float(p >> 2U)});
+  for (int f = 0; f < 12; ++f) {
+    const auto corner = [&] { return static_cast<uint32_t>(random() % 8); };
+    mesh.triangles.push_back({corner(), corner(), corner()});
+  }
+  return mesh;
+}
+
+TEST(NumberEdges, MakesWhatBuildingMakes) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 300; ++i) {
+    const Topology built = build_mesh(i % 2 == 0 ? random_soup(random) : random_manifold(random)).topology;
+    Topology mesh = built;
+    forget_edges(mesh);
+    EXPECT_FALSE(mesh.has_edges());
+    number_edges(mesh);
+    ASSERT_TRUE(mesh.has_edges());
+    ASSERT_EQ(mesh.edge, built.edge);
+    ASSERT_EQ(mesh.half_edge, built.half_edge);
+    ASSERT_EQ(mesh.kind, built.kind);
+  }
+}
+
 }  // namespace
 }  // namespace papilio

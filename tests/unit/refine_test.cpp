@@ -74,6 +74,28 @@ TEST(Refine, EqualsOpenMeshOnShapes) {
   expect_equal_to_openmesh(bipyramid(12), 3);
 }
 
+TEST(Refine, EdgesMayBeLeftOut) {
+  const View view{.eye = {0, 0, 30}, .edge_pixels = 0, .error_pixels = 0.01};
+  for (const Options& way :
+       {Options{.levels = 2}, Options{.levels = 2, .w = 0.05}, Options{.levels = 0}, Options{.levels = 2, .tolerance = 1e-3},
+        Options{.levels = 2, .scheme = Scheme::in_place, .flatness = {0.95}},
+        Options{.levels = 2, .view = view, .simplify_hidden = true}}) {
+    for (const TriangleMesh& mesh : {join(icosahedron(), cube(), 5), grid(4, 3)}) {
+      Options options = way;
+      const Result whole = refine(build_mesh(mesh), options);
+      options.edges = false;
+      Result bare = refine(build_mesh(mesh), options);
+      EXPECT_TRUE(whole.mesh.topology.has_edges());
+      EXPECT_FALSE(bare.mesh.topology.has_edges());
+      EXPECT_EQ(bare.mesh.triangles(), whole.mesh.triangles());
+      EXPECT_EQ(bare.mesh.topology.twin, whole.mesh.topology.twin);
+      EXPECT_EQ(bare.error, whole.error);
+      const uint32_t faces = bare.mesh.topology.face_count();
+      EXPECT_EQ(refine(std::move(bare.mesh), {.levels = 1}).mesh.topology.face_count(), 4 * faces);
+    }
+  }
+}
+
 TEST(Refine, UniformLevelHasFourToTheLevelTimesTheFaces) {
   const TriangleMesh bunny = real_mesh("bunny600.obj");
   for (int level = 0; level <= 4; ++level) {

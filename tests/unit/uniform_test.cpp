@@ -80,6 +80,10 @@ TEST(SplitInFour, IsTheSplitOfEverything) {
       const Topology expected = split(mesh.topology, plan, positions, mesh.attributes);
       const Topology made = split_in_four(mesh.topology);
       expect_same(made, expected);
+      const Topology last = split_last_in_four(mesh.topology);
+      EXPECT_FALSE(last.has_edges());
+      EXPECT_EQ(last.origin, expected.origin);
+      EXPECT_EQ(last.twin, expected.twin);
       mesh.topology = made;
       mesh.positions = positions;
     }
@@ -101,13 +105,16 @@ TEST(Features, DescendAsTheyWouldBeFound) {
   for (Mesh& mesh : shaken_meshes()) {
     Features features = find_features(mesh.topology);
     for (int level = 1; level <= 3; ++level) {
+      descend(features, mesh.topology);
       mesh.topology = split_in_four(mesh.topology);
-      descend(features);
       Features found = find_features(mesh.topology);
       EXPECT_EQ(features.level, level);
       EXPECT_EQ(features.spokes, found.spokes);
       EXPECT_EQ(features.first_spoke, found.first_spoke);
       EXPECT_EQ(features.is_closed, found.is_closed);
+      EXPECT_EQ(features.centre, found.centre);
+      EXPECT_EQ(features.tips, found.tips);
+      EXPECT_EQ(features.edges, found.edges);
       std::ranges::sort(features.curve_half_edges);
       EXPECT_EQ(features.curve_half_edges, found.curve_half_edges);
     }
@@ -129,8 +136,8 @@ TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
         ASSERT_EQ(level.positions.size(), vertices + expected.size());
         for (size_t e = 0; e < expected.size(); ++e)
           ASSERT_EQ(level.positions[vertices + e], expected[e]) << "level " << k << ", edge " << e;
+        descend(features, level.topology);
         level.topology = split_in_four(level.topology);
-        descend(features);
       }
     }
 }
