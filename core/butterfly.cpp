@@ -57,7 +57,7 @@ class Butterfly {
   const SplitPlan& plan_;
   ButterflyRules<Real> rules_;
   Array<Point> out_;
-  std::vector<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
+  Array<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
 };
 
 /// Where every edge is split: regular ones first, face by face, then what is otherwise near curves and irregular
@@ -99,11 +99,12 @@ class UniformButterfly {
     if (features_.level == 0) has_opinion_.assign(mesh_.edge_count(), 0);
     Fan fan;
     for (size_t i = 0; i < features_.fan_count(); ++i) {
-      const uint32_t first = features_.first_spoke[i];
-      const uint32_t valence = features_.first_spoke[i + 1] - first;
-      if (!is_tensed_ && features_.is_closed[i] != 0 && valence < stencil::harmonic_valence && mesh_.darts.empty()) {
-        rules_.split_ring(features_.centre[i], valence, &features_.tips[first],
-                          [&](uint32_t spoke, Vec3f q) { add_opinion(features_.edges[first + spoke], q); });
+      const std::span<const Features::Spoke> spokes = features_.spokes_of(i);
+      if (!is_tensed_ && features_.is_closed[i] != 0 && spokes.size() < stencil::harmonic_valence &&
+          mesh_.darts.empty()) {
+        rules_.split_ring(
+            features_.centre[i], static_cast<uint32_t>(spokes.size()), [&](uint32_t j) { return spokes[j].tip; },
+            [&](uint32_t j, Vec3f q) { add_opinion(spokes[j].edge, q); });
         continue;
       }
       features_.fan(mesh_, i, fan);
@@ -130,7 +131,7 @@ class UniformButterfly {
   ButterflyRules<float> rules_;
   Vec3f* made_;  ///< [E]
   bool is_tensed_;
-  std::vector<uint8_t> has_opinion_;  ///< [E] of an irregular end; on the coarse mesh only
+  Array<uint8_t> has_opinion_;  ///< [E] of an irregular end; on the coarse mesh only
 };
 
 }  // namespace

@@ -100,16 +100,18 @@ class ButterflyRules {
       tensed_->add_face_shares(f, p, wing, made);
       return;
     }
-    const uint32_t h = 3 * f;
-    add_share(twin[0] < h, shares_(p[0], p[1], p[2], wing[1], wing[2]), made[edge[0]]);
-    add_share(twin[1] < h, shares_(p[1], p[2], p[0], wing[2], wing[0]), made[edge[1]]);
-    add_share(twin[2] < h, shares_(p[2], p[0], p[1], wing[0], wing[1]), made[edge[2]]);
+    const auto add = [&](uint32_t i, uint32_t j, uint32_t k) {
+      add_share(twin[i] < 3 * f, shares_(p[i], p[j], p[k], wing[j], wing[k]), made[edge[i]]);
+    };
+    add(0, 1, 2);
+    add(1, 2, 0);
+    add(2, 0, 1);
   }
 
-  /// A closed fan's opinion on all its spokes, without tension: calls add(i, position) for the i-th. `ring` [valence]
-  /// are the vertices at their other ends; the valence is below `stencil::harmonic_valence`.
-  template <class Add>
-  void split_ring(uint32_t centre, uint32_t valence, const uint32_t* ring, const Add& add) const {
+  /// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th, whose other end is
+  /// the vertex ring(j). The valence is below `stencil::harmonic_valence`.
+  template <class Ring, class Add>
+  void split_ring(uint32_t centre, uint32_t valence, const Ring& ring, const Add& add) const {
     const InteriorRing points(*this, centre, valence, ring);
     for (uint32_t i = 0; i < valence; ++i) add(i, points.split(i));
   }
@@ -118,11 +120,12 @@ class ButterflyRules {
   /// The points of the rule for a closed fan that is not regular.
   class InteriorRing {
    public:
-    InteriorRing(const ButterflyRules& rules, uint32_t centre, uint32_t valence, const uint32_t* ring)
+    template <class Ring>
+    InteriorRing(const ButterflyRules& rules, uint32_t centre, uint32_t valence, const Ring& ring)
         : valence_(valence),
           weights_(interior_weights<Real>.ring(valence)),
           centre_(interior_weights<Real>.centre(valence) * rules.wide(centre)) {
-      for (uint32_t j = 0; j < valence; ++j) points_[j] = points_[valence + j] = rules.wide(ring[j]);
+      for (uint32_t j = 0; j < valence; ++j) points_[j] = points_[valence + j] = rules.wide(ring(j));
     }
     [[nodiscard]] Point split(uint32_t spoke) const {
       Wide<Real> sum = centre_;
@@ -142,7 +145,7 @@ class ButterflyRules {
   template <class Wants, class Add>
   void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
     const uint32_t k = fan.valence();
-    const InteriorRing points(*this, fan.centre, k, fan.ring.data());
+    const InteriorRing points(*this, fan.centre, k, [&](uint32_t j) { return fan.ring[j]; });
     const Real* s = interior_weights<Real>.ring(k);
     for (uint32_t i = 0; i < k; ++i)
       if (wants(fan.spokes[i]))

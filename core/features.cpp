@@ -8,13 +8,14 @@
 namespace papilio {
 
 void Features::fan(const Topology& mesh, size_t i, Fan& fan) const {
-  const auto of_fan = [&](const std::vector<uint32_t>& all, std::vector<uint32_t>& its) {
-    its.assign(all.begin() + first_spoke[i], all.begin() + first_spoke[i + 1]);
-  };
   fan.closed = is_closed[i] != 0;
   fan.centre = centre[i];
-  of_fan(spokes, fan.spokes);
-  of_fan(tips, fan.ring);
+  fan.spokes.clear();
+  fan.ring.clear();
+  for (const Spoke& spoke : spokes_of(i)) {
+    fan.spokes.push_back(spoke.half_edge);
+    fan.ring.push_back(spoke.tip);
+  }
   if (!fan.closed) fan.ring.push_back(mesh.apex(fan.spokes.back()));
 }
 
@@ -27,10 +28,6 @@ class FeatureFinder {
   Features run() {
     find_curves();
     find_fans();
-    for (const uint32_t s : found_.spokes) {
-      found_.edges.push_back(mesh_.edge[s]);
-      found_.tips.push_back(mesh_.tip(s));
-    }
     return std::move(found_);
   }
 
@@ -47,7 +44,7 @@ class FeatureFinder {
       if (corners_[v] < many) ++corners_[v];
     for (uint32_t h : found_.curve_half_edges) corners_[mesh_.origin[h]] = corners_[mesh_.tip(h)] = at_curve;
     for (uint32_t v : mesh_.pinched) corners_[v] = at_curve;
-    std::vector<uint8_t> visited;  // [H], of fans at curves
+    Array<uint8_t> visited;  // [H], of fans at curves
     for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
       uint8_t& corners = corners_[mesh_.origin[h]];
       if (corners == stencil::regular_valence) continue;
@@ -60,32 +57,36 @@ class FeatureFinder {
       if (visited[h] != 0) continue;
       collect_fan(mesh_, h, fan_);
       for (uint32_t s : fan_.spokes) visited[s] = 1;
-      if (!is_regular(mesh_, fan_)) add(fan_.spokes, fan_.closed);
+      if (!is_regular(mesh_, fan_)) add_collected_fan();
     }
   }
 
   /// Of a vertex all of whose faces go round it.
   void add_closed_fan(uint32_t h) {
-    fan_.spokes.clear();
     uint32_t s = h;
     do {
-      fan_.spokes.push_back(s);
-      s = mesh_.twin[Topology::previous(s)];
+      const uint32_t incoming = Topology::previous(s);
+      found_.spokes.push_back({s, mesh_.edge[s], mesh_.tip(s)});
+      s = mesh_.twin[incoming];
     } while (s != h);
-    add(fan_.spokes, true);
+    end_fan(mesh_.origin[h], true);
   }
 
-  void add(const std::vector<uint32_t>& spokes, bool is_closed) {
-    found_.spokes.insert(found_.spokes.end(), spokes.begin(), spokes.end());
+  void add_collected_fan() {
+    for (uint32_t s : fan_.spokes) found_.spokes.push_back({s, mesh_.edge[s], mesh_.tip(s)});
+    end_fan(fan_.centre, fan_.closed);
+  }
+
+  void end_fan(uint32_t centre, bool is_closed) {
     found_.first_spoke.push_back(static_cast<uint32_t>(found_.spokes.size()));
-    found_.centre.push_back(mesh_.origin[spokes[0]]);
+    found_.centre.push_back(centre);
     found_.is_closed.push_back(is_closed ? 1 : 0);
   }
 
   static constexpr uint8_t many = 254, at_curve = 255;
 
   const Topology& mesh_;
-  std::vector<uint8_t> corners_;  ///< [V] of faces at the vertex, `many` standing for more; or `at_curve`
+  Array<uint8_t> corners_;  ///< [V] of faces at the vertex, `many` standing for more; or `at_curve`
   Fan fan_;
   Features found_;
 };
@@ -96,15 +97,13 @@ Features find_features(const Topology& mesh) { return FeatureFinder(mesh).run();
 
 void descend(Features& features, const Topology& mesh) {
   ++features.level;
-  for (uint32_t& spoke : features.spokes) spoke = first_half(spoke);
   for (size_t i = 0; i < features.fan_count(); ++i)
     for (uint32_t k = features.first_spoke[i]; k < features.first_spoke[i + 1]; ++k) {
-      uint32_t& edge = features.edges[k];
-      const uint32_t middle = mesh.vertex_count + edge;
-      edge = 2 * edge + (features.centre[i] > features.tips[k] ? 1 : 0);
-      features.tips[k] = middle;
+      Features::Spoke& spoke = features.spokes[k];
+      const uint32_t at_higher_end = features.centre[i] > spoke.tip ? 1 : 0;
+      spoke = {first_half(spoke.half_edge), 2 * spoke.edge + at_higher_end, mesh.vertex_count + spoke.edge};
     }
-  std::vector<uint32_t> halves;
+  Array<uint32_t> halves;
   halves.reserve(2 * features.curve_half_edges.size());
   for (uint32_t h : features.curve_half_edges)
     for (uint32_t half : {first_half(h), second_half(h)}) halves.push_back(half);

@@ -1,6 +1,7 @@
 #include "uniform.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "attributes.h"
 #include "butterfly.h"
@@ -15,6 +16,12 @@ namespace {
 
 constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
 
+float largest_coordinate(const Array<Vec3f>& positions) {
+  Lanes largest{};
+  for (const Vec3f& p : positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
+  return std::max({largest.v[0], largest.v[1], largest.v[2]});
+}
+
 class Uniform {
  public:
   Uniform(const Options& options, const Selection& selection, const Progress& progress)
@@ -23,6 +30,7 @@ class Uniform {
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
     features_ = find_features(mesh_.topology);
+    rounding_ = 2e-6 * largest_coordinate(mesh_.positions);
     for (int level = 1; level <= options_.levels; ++level) {
       progress_.poll();
       const uint64_t faces = 4ULL * mesh_.topology.face_count();
@@ -31,8 +39,9 @@ class Uniform {
       progress_.report(level - 1, mesh_);
       make_vertices();
       progress_.poll();
-      if (level == options_.levels) result_.error = error_left();
-      split(level == options_.levels && !options_.edges);
+      const bool is_last = level == options_.levels;
+      if (is_last) result_.error = error_left();
+      split(is_last);
       result_.levels = level;
     }
     result_.mesh = std::move(mesh_);
@@ -62,32 +71,27 @@ class Uniform {
   [[nodiscard]] double error_left() const {
     ErrorLeft left(selection_);
     const Topology& topology = mesh_.topology;
-    const double off = 1e-6 * largest_coordinate();  // more than floats make of that distance
-    float most_skipped = -1;                         // its square
+    float most_skipped = -1;  // its square
     for (uint32_t e = 0; e < topology.edge_count(); ++e) {
       const uint32_t h = topology.half_edge[e];
       const Vec3f& made = mesh_.positions[topology.vertex_count + e];
       const Lanes ends = widen(mesh_.positions[topology.origin[h]]) + widen(mesh_.positions[topology.tip(h)]);
       if (squared_length(widen(made) - 0.5F * ends) <= most_skipped) continue;
       left.add_distance(split_leaves * deviation(mesh_, e, made));
-      const double sure = left.distance() / split_leaves - off;
+      const double sure = left.distance() / split_leaves - rounding_;
       if (sure > least_squared) most_skipped = static_cast<float>(sure * sure);
     }
     return left.error();
   }
 
-  [[nodiscard]] float largest_coordinate() const {
-    Lanes largest{};
-    for (const Vec3f& p : mesh_.positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
-    return std::max({largest.v[0], largest.v[1], largest.v[2]});
-  }
-
-  void split(bool without_edges) {
-    descend(features_, mesh_.topology);
+  void split(bool is_last) {
+    if (!is_last) descend(features_, mesh_.topology);
     if (!mesh_.attributes.empty())
       mesh_.topology = papilio::split(mesh_.topology, everything(), mesh_.positions, mesh_.attributes);
+    else if (is_last && !options_.edges)
+      mesh_.topology = split_last_in_four(mesh_.topology);
     else
-      mesh_.topology = without_edges ? split_last_in_four(mesh_.topology) : split_in_four(mesh_.topology);
+      mesh_.topology = split_in_four(mesh_.topology);
   }
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
@@ -99,6 +103,7 @@ class Uniform {
   const Progress& progress_;
   Mesh mesh_;
   Features features_;
+  double rounding_ = 0;  ///< more than floats make of the distance between two points of the mesh
   Result result_;
 };
 

@@ -43,7 +43,7 @@ class PositionTable {
 
   const Array<Vec3f>& points_;
   size_t mask_;
-  std::vector<uint32_t> slots_;
+  Array<uint32_t> slots_;
   uint64_t seed_;
 };
 
@@ -52,17 +52,18 @@ class PositionTable {
 Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildReport& report,
                      std::vector<uint32_t>& corner_point) {
   const auto point_count = static_cast<uint32_t>(input.positions.size());
-  std::vector<uint32_t> first(point_count);
+  Array<uint32_t> first(point_count);
   PositionTable table(input.positions);
   for (uint32_t p = 0; p < point_count; ++p) {
     first[p] = table.first_at(p);
     report.welded_points += first[p] == p ? 0 : 1;
   }
 
-  std::vector<uint32_t> vertex(point_count, none);
-  Array<uint32_t> corners;
-  corners.reserve(3 * input.triangles.size());
-  positions.clear();
+  Array<uint32_t> vertex(point_count, none);
+  Array<uint32_t> corners(3 * input.triangles.size());
+  positions.resize(point_count);
+  uint32_t* corner = corners.data();
+  uint32_t vertices = 0;
   for (const Triangle& t : input.triangles) {
     const Triangle p{first[t[0]], first[t[1]], first[t[2]]};
     if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
@@ -72,13 +73,15 @@ Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildRe
     if (!input.attributes.empty()) corner_point.insert(corner_point.end(), t.begin(), t.end());
     for (uint32_t point : p) {
       if (vertex[point] == none) {
-        vertex[point] = static_cast<uint32_t>(positions.size());
-        positions.push_back(input.positions[point]);
+        positions[vertices] = input.positions[point];
+        vertex[point] = vertices++;
       }
-      corners.push_back(vertex[point]);
+      *corner++ = vertex[point];
     }
   }
-  report.isolated_points = point_count - report.welded_points - static_cast<uint32_t>(positions.size());
+  corners.resize(static_cast<size_t>(corner - corners.data()));
+  positions.resize(vertices);
+  report.isolated_points = point_count - report.welded_points - vertices;
   return corners;
 }
 
