@@ -211,6 +211,81 @@ class Connector {
 
 void connect(Topology& mesh, const EdgeRuns& runs, BuildReport& report) { Connector(mesh, runs, report).run(); }
 
+/// The same in one pass, where every edge has one face, or two that are wound alike, as most meshes have it: edges that
+/// are known are looked up in a list at their lower vertex. False, and to be done again by the other, where one has
+/// more, or such a list is too long to be gone through for every edge.
+class ManifoldConnector {
+ public:
+  explicit ManifoldConnector(Topology& mesh) : mesh_(mesh), first_at_(mesh.vertex_count, none) {}
+
+  bool run(BuildReport& report) {
+    const uint32_t count = mesh_.half_edge_count();
+    mesh_.twin.resize(count);
+    mesh_.edge.resize(count);
+    mesh_.half_edge.resize(count);
+    known_.resize(count);
+    for (uint32_t first = 0; first < count; first += 3)
+      for (uint32_t h = first; h < first + 3; ++h)
+        if (!add(h, mesh_.origin[h], mesh_.origin[h == first + 2 ? first : h + 1])) return false;
+    mesh_.half_edge.resize(edges_);
+    mesh_.kind.assign(edges_, EdgeKind::smooth);
+    if (2 * size_t{edges_} == count) return true;
+    for (uint32_t e = 0; e < edges_; ++e) {
+      if (mesh_.twin[mesh_.half_edge[e]] != none) continue;
+      mesh_.kind[e] = EdgeKind::boundary;
+      ++report.boundary_edges;
+    }
+    return true;
+  }
+
+ private:
+  struct Known {
+    uint32_t higher;  ///< vertex
+    uint32_t next;    ///< edge with the same lower vertex; `none`
+  };
+  static constexpr int most_steps = 32;
+
+  bool add(uint32_t h, uint32_t from, uint32_t to) {
+    uint32_t& first = first_at_[std::min(from, to)];
+    const uint32_t higher = std::max(from, to);
+    int steps = 0;
+    for (uint32_t e = first; e != none; e = known_[e].next) {
+      if (known_[e].higher == higher) return join(h, from, e);
+      if (++steps > most_steps) return false;
+    }
+    known_[edges_] = {higher, first};
+    first = edges_;
+    mesh_.twin[h] = none;
+    mesh_.edge[h] = edges_;
+    mesh_.half_edge[edges_++] = h;
+    return true;
+  }
+
+  bool join(uint32_t h, uint32_t from, uint32_t e) {
+    const uint32_t t = mesh_.half_edge[e];
+    if (mesh_.twin[t] != none || mesh_.origin[t] == from) return false;
+    mesh_.twin[h] = t;
+    mesh_.twin[t] = h;
+    mesh_.edge[h] = e;
+    return true;
+  }
+
+  Topology& mesh_;
+  Array<uint32_t> first_at_;  ///< [V] an edge of which this is the lower vertex; `none`
+  Array<Known> known_;        ///< [E]
+  uint32_t edges_ = 0;
+};
+
+/// Drops repeated faces and connects the others.
+void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& report) {
+  if (ManifoldConnector(mesh).run(report)) return;
+  for (Array<uint32_t>* of_edges : {&mesh.twin, &mesh.edge, &mesh.half_edge}) of_edges->clear();
+  EdgeRuns runs = sort_into_edges(mesh);
+  report.repeated_faces = drop_repeated_faces(mesh, runs, corner_point);
+  if (report.repeated_faces > 0) runs = sort_into_edges(mesh);
+  connect(mesh, runs, report);
+}
+
 }  // namespace
 
 TriangleMesh Mesh::triangles() const {
@@ -241,16 +316,13 @@ Mesh build(const TriangleMesh& input, BuildReport* report) {
   topology.origin = weld(input, mesh.positions, found, corner_point);
   topology.vertex_count = static_cast<uint32_t>(mesh.positions.size());
 
-  EdgeRuns runs = sort_into_edges(topology);
-  found.repeated_faces = drop_repeated_faces(topology, runs, corner_point);
-  if (found.repeated_faces > 0) runs = sort_into_edges(topology);
   if (topology.origin.empty()) {
     throw Error(Fault::no_faces, input.triangles.empty()
                                      ? "The mesh has no faces. Send a triangle mesh."
                                      : "Every face of the mesh has two corners in one place, so there is no surface "
                                        "to refine. Check the mesh's scale and precision.");
   }
-  connect(topology, runs, found);
+  connect(topology, corner_point, found);
   topology.pinched = find_pinched(topology);
   mesh.attributes = gather_attributes(input, topology, corner_point);
   found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
@@ -337,7 +409,8 @@ Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count) {
   mesh.origin = std::move(origin);
   mesh.vertex_count = vertex_count;
   BuildReport report;
-  connect(mesh, sort_into_edges(mesh), report);
+  std::vector<uint32_t> no_points;
+  connect(mesh, no_points, report);
   mesh.pinched = find_pinched(mesh);
   return mesh;
 }

@@ -168,5 +168,20 @@ TEST(NumberEdges, MakesWhatBuildingMakes) {
   }
 }
 
+// From a certain valence on edges are found in another way.
+TEST(Mesh, HubsOfAnyValenceAreConnectedLikeOtherVertices) {
+  for (uint32_t valence : {5U, 30U, 31U, 32U, 33U, 34U, 35U, 3000U})
+    for (bool closed : {false, true}) {
+      BuildReport report;
+      const Mesh mesh = build_mesh(fan(valence, closed), &report);
+      EXPECT_TRUE(is_consistent(mesh));
+      EXPECT_EQ(report.boundary_edges, closed ? valence : valence + 2);
+      EXPECT_EQ(mesh.topology.edge_count(), closed ? 2 * valence : 2 * valence + 1);
+      EXPECT_EQ(mesh.topology.euler_characteristic(), 1);
+      for (uint32_t e = 1; e < mesh.topology.edge_count(); ++e)
+        ASSERT_LT(mesh.topology.half_edge[e - 1], mesh.topology.half_edge[e]);
+    }
+}
+
 }  // namespace
 }  // namespace papilio
