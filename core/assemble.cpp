@@ -297,9 +297,10 @@ class ErrorFinder {
              !left_.may_grow_by(split_leaves * choice.level->trial.no_less_than_deviation_at(e), scales_[k]);
     };
     choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
-      if (is_known(e) || !choice.shown[e] || !is_reached(k, f)) return;
+      if (is_known(e)) return;
       const bool has_children = choice.has_children(f);
       if (has_children && choice.split_mask(f) == 7) return;
+      if (!choice.shown[e] || !is_reached(k, f)) return;
       // Its halves may have been judged, though nothing below was wanted.
       if (has_children && k + 1 < levels_.size()) {
         const auto [first, second] = halves(k, f, e);

@@ -1,6 +1,7 @@
 #include "butterfly.h"
 
 #include "butterfly_rules.h"
+#include "parallel.h"
 
 namespace papilio {
 namespace {
@@ -64,23 +65,38 @@ class Butterfly {
 /// vertices.
 class UniformButterfly {
  public:
-  UniformButterfly(const Topology& topology, const Features& features, Vec3f* positions, const TensionField* tension)
+  UniformButterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
+                   const TensionField* tension)
       : mesh_(topology),
         features_(features),
         rules_(topology, positions, 0, tension),
-        made_(positions + topology.vertex_count),
+        made_(made),
         is_tensed_(tension != nullptr) {}
 
-  void run() {
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f)
-      if (has_all_neighbours(f)) rules_.add_face_shares(f, made_);
+  void run(int threads) {
+    split_faces(parts_of(mesh_.face_count(), threads));
     if (!features_.curve_half_edges.empty()) split_near_curves();
     split_at_irregular_vertices();
     if (is_tensed_)
-      for (uint32_t e = 0; e < mesh_.edge_count(); ++e) made_[e] = rules_.finish(mesh_.half_edge[e], made_[e]);
+      for_each_part(parts_of(mesh_.edge_count(), threads), mesh_.edge_count(),
+                    [this](uint32_t, uint32_t first, uint32_t last) {
+                      for (uint32_t e = first; e < last; ++e)
+                        made_[e] = rules_.finish(mesh_.half_edge[e], made_[e]);
+                    });
   }
 
  private:
+  void split_faces(uint32_t parts) {
+    std::vector<FaceShares<float>> shares(parts, {made_, 0});
+    for_each_part(parts, mesh_.face_count(), [&](uint32_t part, uint32_t first, uint32_t last) {
+      FaceShares<float> own(made_, first);
+      for (uint32_t f = first; f < last; ++f)
+        if (has_all_neighbours(f)) rules_.add_face_shares(f, own);
+      shares[part] = std::move(own);
+    });
+    for (const FaceShares<float>& of_part : shares) of_part.end();
+  }
+
   [[nodiscard]] bool has_all_neighbours(uint32_t f) const {
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     return twin[0] != none && twin[1] != none && twin[2] != none;
@@ -145,10 +161,9 @@ Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>&
 template Array<Vec3f> butterfly(const Topology&, const Array<Vec3f>&, const SplitPlan&, float, const TensionField*);
 template Array<Vec3d> butterfly(const Topology&, const Array<Vec3d>&, const SplitPlan&, double, const TensionField*);
 
-void uniform_butterfly(const Topology& topology, const Features& features, Array<Vec3f>& positions,
-                       const TensionField* tension) {
-  positions.resize(size_t{topology.vertex_count} + topology.edge_count());
-  UniformButterfly(topology, features, positions.data(), tension).run();
+void uniform_butterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
+                       const TensionField* tension, int threads) {
+  UniformButterfly(topology, features, positions, made, tension).run(threads);
 }
 
 }  // namespace papilio

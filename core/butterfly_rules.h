@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "curve.h"
+#include "face_shares.h"
 #include "fan.h"
 #include "lanes.h"
 #include "stencil.h"
@@ -45,7 +46,7 @@ class ButterflyRules {
  public:
   /// `positions` [V] and the others must outlive this; `tension` may be null.
   ButterflyRules(const Topology& topology, const Point* positions, Real w, const TensionField* tension)
-      : mesh_(topology), p_(positions), w_(w), shares_(w) {
+      : mesh_(topology), p_(positions), w_(w), share_(w) {
     if (tension != nullptr) tensed_.emplace(topology, positions, *tension);
   }
 
@@ -86,10 +87,9 @@ class ButterflyRules {
   /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge.
   [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
 
-  /// Where every edge is split, the eight-point rule goes face by face, in ascending order: writes what face f knows of
-  /// its three edges to `made` [E], or adds it where the other face has come before. The face must have a twin at each
-  /// edge. Two faces make the bits of `regular`.
-  void add_face_shares(uint32_t f, Point* made) const {
+  /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
+  /// face must have a twin at each. Two faces make the bits of `regular`.
+  void add_face_shares(uint32_t f, FaceShares<Real>& shares) const {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
@@ -97,15 +97,12 @@ class ButterflyRules {
     const std::array<Wide<Real>, 3> wing{wide(mesh_.apex(twin[0])), wide(mesh_.apex(twin[1])),
                                          wide(mesh_.apex(twin[2]))};
     if (tensed_) {
-      tensed_->add_face_shares(f, p, wing, made);
+      tensed_->add_face_shares(f, p, wing, shares);
       return;
     }
-    const auto add = [&](uint32_t i, uint32_t j, uint32_t k) {
-      add_share(twin[i] < 3 * f, shares_(p[i], p[j], p[k], wing[j], wing[k]), made[edge[i]]);
-    };
-    add(0, 1, 2);
-    add(1, 2, 0);
-    add(2, 0, 1);
+    shares.add(f, twin[0], edge[0], share_(p[0], p[1], p[2], wing[1], wing[2]));
+    shares.add(f, twin[1], edge[1], share_(p[1], p[2], p[0], wing[2], wing[0]));
+    shares.add(f, twin[2], edge[2], share_(p[2], p[0], p[1], wing[0], wing[1]));
   }
 
   /// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th, whose other end is
@@ -220,8 +217,8 @@ class ButterflyRules {
   [[nodiscard]] Point at(uint32_t vertex) const { return p_[vertex]; }
 
   [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
-    const Point q = eight_points(h, t, shares_);
-    return w_ == 0 ? q : q + shares_.far * (far_point(h) + far_point(t));
+    const Point q = eight_points(h, t, share_);
+    return w_ == 0 ? q : q + share_.far * (far_point(h) + far_point(t));
   }
   [[nodiscard]] Point eight_points(uint32_t h, uint32_t t,
                                    const stencil::FaceShare<Real>& share = stencil::FaceShare<Real>()) const {
@@ -270,7 +267,7 @@ class ButterflyRules {
   const Topology& mesh_;
   const Point* p_;
   Real w_;
-  stencil::FaceShare<Real> shares_;
+  stencil::FaceShare<Real> share_;
   std::optional<TensedRules<Real>> tensed_;
 };
 

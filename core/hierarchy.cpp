@@ -1,7 +1,9 @@
 #include "hierarchy.h"
 
 #include <algorithm>
+#include <numeric>
 
+#include "split_in_four.h"
 #include "split_pattern.h"
 
 namespace papilio {
@@ -188,16 +190,19 @@ uint64_t HierarchyLevel::bytes() const {
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
   bytes += trial.deviations.bytes() + trial.bounds.bytes() + transitions.bytes() + trial.planes.bytes() +
            trial.products.bytes();
+  bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
 }
 
 HierarchyLevel coarsest_level(Mesh mesh) {
   HierarchyLevel level;
+  level.is_whole = true;
   level.complete.assign(mesh.topology.vertex_count, 1);
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
     if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
   level.transitions = Memo<uint32_t>(mesh.topology.face_count(), 0);
   level.box = bounding_box(mesh.positions);
+  level.features = find_features(mesh.topology);
   level.mesh = std::move(mesh);
   return level;
 }
@@ -226,8 +231,41 @@ std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uin
   return marks;
 }
 
+namespace {
+
+std::vector<uint32_t> numbers(size_t count) {
+  std::vector<uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
+/// What LevelMaker makes where everything is held, by formula.
+HierarchyLevel refine_whole_level(const HierarchyLevel& level) {
+  const Topology& mesh = level.mesh.topology;
+  HierarchyLevel below;
+  below.is_whole = true;
+  below.features = level.features;
+  descend(below.features, mesh);
+  below.mesh.topology = split_in_four(mesh);
+  below.mesh.positions.reserve(below.mesh.topology.vertex_count);
+  below.mesh.positions = level.mesh.positions;
+  below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
+  below.complete.assign(below.mesh.topology.vertex_count, 1);
+  below.from = numbers(below.mesh.topology.vertex_count);
+  below.parent = numbers(mesh.face_count());
+  below.child.resize(mesh.face_count());
+  for (uint32_t f = 0; f < mesh.face_count(); ++f) below.child[f] = 4 * f;
+  for (uint32_t parent : level.shared)
+    for (uint32_t half : {first_half(parent), second_half(parent)}) below.shared.push_back(half);
+  return below;
+}
+
+}  // namespace
+
 HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red) {
-  HierarchyLevel below = LevelMaker(level, red).run();
+  const bool all = level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
+                   std::ranges::find(red, 0) == red.end();
+  HierarchyLevel below = all ? refine_whole_level(level) : LevelMaker(level, red).run();
   below.red = std::move(red);
   below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
   below.box = bounding_box(below.mesh.positions);

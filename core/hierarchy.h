@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "features.h"
 #include "memo.h"
 #include "mesh.h"
 #include "selection.h"
@@ -22,6 +23,8 @@ namespace papilio {
 
 struct HierarchyLevel {
   Mesh mesh;                           ///< faces held; where others of the level are missing, edges are EdgeKind::cut
+  bool is_whole = false;               ///< all the level's faces are held, with the numbers of the uniform mesh
+  Features features;                   ///< of a whole level
   std::vector<uint8_t> complete;       ///< [V] whether all the level's faces at the vertex are held
   std::vector<uint32_t> from;          ///< [V] a vertex of the level above, or its vertex count plus the edge split
   std::vector<uint32_t> parent;        ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0

@@ -10,6 +10,9 @@ namespace {
 
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
 constexpr uint64_t bytes_per_kept_face = 122;
+constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and of what is computed on it
+/// All of a level is made by formula, for about as much as a part of one in so many faces takes.
+constexpr size_t part_as_dear_as_all = 3;
 
 bool covers(const std::vector<uint8_t>& known, const std::vector<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
@@ -22,7 +25,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
-  level->trial = try_split(level->mesh, options, complete_edges(*level));
+  level->trial = try_split(level->mesh, options, complete_edges(*level), &level->features);
   levels_.push_back(std::move(level));
 }
 
@@ -89,16 +92,28 @@ bool Levels::may_keep(const std::vector<uint8_t>& red) const {
   return bytes <= prepared_->budget_;
 }
 
+std::vector<uint8_t> Levels::or_everything(std::vector<uint8_t> red) const {
+  const HierarchyLevel& level = *levels_.back();
+  if (!level.is_whole || level.trial.made.size() != level.mesh.topology.edge_count() ||
+      !progress_.has_plenty(4 * red.size(), bytes_per_face))
+    return red;
+  const std::vector<uint8_t> support = with_neighbours(level.mesh.topology, red);
+  const auto held = static_cast<size_t>(std::ranges::count(support, 1));
+  if (held * part_as_dear_as_all >= red.size()) red.assign(red.size(), 1);
+  return red;
+}
+
 void Levels::make(const std::vector<uint8_t>& red) {
-  std::vector<uint8_t> more = prepared_ == nullptr ? red : with_margin(red);
-  if (prepared_ != nullptr && !may_keep(more)) more = red;
+  std::vector<uint8_t> more = or_everything(prepared_ == nullptr ? red : with_margin(red));
+  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red);
   const bool is_kept = may_keep(more);
   const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(more)));
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
   level->trial =
-      try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level));
+      try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level),
+                level->is_whole ? &level->features : nullptr);
   if (is_kept) level->trial.keep_more(level->mesh.topology);
   if (is_kept)
     add_kept(level);

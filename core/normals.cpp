@@ -1,5 +1,7 @@
 #include "normals.h"
 
+#include "parallel.h"
+
 namespace papilio {
 namespace {
 
@@ -18,9 +20,12 @@ Vec3f face_normal(const Mesh& mesh, uint32_t face) {
   return size > 0 ? to_float((1 / size) * n) : Vec3f{};
 }
 
-Array<Vec3f> face_normals(const Mesh& mesh) {
-  Array<Vec3f> normals(mesh.topology.face_count());
-  for (uint32_t f = 0; f < normals.size(); ++f) normals[f] = face_normal(mesh, f);
+Array<Vec3f> face_normals(const Mesh& mesh, int threads) {
+  const uint32_t count = mesh.topology.face_count();
+  Array<Vec3f> normals(count);
+  for_each_part(parts_of(count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
+    for (uint32_t f = first; f < last; ++f) normals[f] = face_normal(mesh, f);
+  });
   return normals;
 }
 

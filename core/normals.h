@@ -7,8 +7,8 @@
 namespace papilio {
 
 /// Unit normal of each face [F]; zero for a face without area, which has none. Computed in double, so that
-/// neither tiny nor large meshes lose theirs.
-[[nodiscard]] Array<Vec3f> face_normals(const Mesh& mesh);
+/// neither tiny nor large meshes lose theirs. Up to so many threads work on it.
+[[nodiscard]] Array<Vec3f> face_normals(const Mesh& mesh, int threads = 1);
 
 /// That of one face.
 [[nodiscard]] Vec3f face_normal(const Mesh& mesh, uint32_t face);

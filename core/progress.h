@@ -12,6 +12,8 @@ class Progress {
  public:
   Progress(const Options& options, const Hooks& hooks) : options_(options), hooks_(hooks) {}
 
+  /// How many may work at once.
+  [[nodiscard]] int threads() const { return hooks_.threads; }
   [[nodiscard]] bool wants_levels() const { return static_cast<bool>(hooks_.on_level); }
   /// A level that is not the last.
   void report(int level, const Mesh& mesh) const {

@@ -19,16 +19,27 @@ float rounded_up(double number) { return static_cast<float>(1.000001 * number + 
 }  // namespace
 
 Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                           const SplitPlan& plan) {
-  const auto w = static_cast<float>(options.w);
-  if (options.tension == Tension::off) return butterfly(mesh.topology, mesh.positions, plan, w);
-  const TensionField field = tension_field(mesh.topology, normals, options.tension);
-  return butterfly(mesh.topology, mesh.positions, plan, w, &field);
+                           const SplitPlan& plan, const Features* features) {
+  std::optional<TensionField> field;
+  if (options.tension != Tension::off) field = tension_field(mesh.topology, normals, options.tension);
+  const TensionField* tension = field ? &*field : nullptr;
+  const bool is_everything = plan.count() == mesh.topology.edge_count();
+  if (options.w != 0 || !is_everything)
+    return butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(options.w), tension);
+  Array<Vec3f> made(plan.count());
+  const auto split_with = [&](const Features& f) {
+    uniform_butterfly(mesh.topology, f, mesh.positions.data(), made.data(), tension);
+  };
+  if (features != nullptr)
+    split_with(*features);
+  else
+    split_with(find_features(mesh.topology));
+  return made;
 }
 
-Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges) {
+Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const Features* features) {
   Trial trial{.normals = face_normals(mesh), .tried = SplitPlan(try_edges), .made = {}};
-  trial.made = make_vertices(mesh, trial.normals, options, trial.tried);
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, features);
   trial.forget();
   return trial;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deviation.h"
+#include "features.h"
 #include "memo.h"
 #include "options.h"
 #include "region.h"
@@ -48,11 +49,13 @@ struct Trial {
   [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
 };
 
-/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w. `features` of
+/// the mesh, where they are known.
 [[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                                         const SplitPlan& plan);
+                                         const SplitPlan& plan, const Features* features = nullptr);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
-[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges);
+[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
+                              const Features* features = nullptr);
 
 class Selection {
  public:
@@ -114,7 +117,7 @@ class Selection {
 /// Collects the largest deviation left, for the result.
 class ErrorLeft {
  public:
-  explicit ErrorLeft(const Selection& selection) : measure_(selection.measure_) {}
+  explicit ErrorLeft(const Selection& selection) : measure_(&selection.measure_) {}
   /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
   /// `highest_pixels_per_unit`.
   void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
@@ -122,7 +125,7 @@ class ErrorLeft {
     const double distance = share * trial.deviation_at(mesh, edge);
     if (!may_grow_by(distance, scale)) return;
     distance_ = std::max(distance_, distance);
-    pixels_ = std::max(pixels_, measure_.pixels(mesh, edge, distance));
+    pixels_ = std::max(pixels_, measure_->pixels(mesh, edge, distance));
   }
   /// A deviation without a view.
   void add_distance(double distance) { distance_ = std::max(distance_, distance); }
@@ -133,11 +136,11 @@ class ErrorLeft {
   }
   [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
   [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
-  [[nodiscard]] double error() const { return measure_.diagonal() > 0 ? distance_ / measure_.diagonal() : 0; }
+  [[nodiscard]] double error() const { return measure_->diagonal() > 0 ? distance_ / measure_->diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 
  private:
-  const ErrorMeasure& measure_;
+  const ErrorMeasure* measure_;
   double distance_ = 0;
   double pixels_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "parallel.h"
+
 namespace papilio {
 namespace {
 
@@ -11,7 +13,7 @@ class FourSplitter {
   explicit FourSplitter(const Topology& mesh)
       : mesh_(mesh), vertices_(mesh.vertex_count), inner_edges_(2 * mesh.edge_count()) {}
 
-  Topology run() {
+  Topology run(int threads) {
     child_.vertex_count = vertices_ + mesh_.edge_count();
     child_.pinched = mesh_.pinched;
     child_.darts = mesh_.darts;
@@ -21,18 +23,26 @@ class FourSplitter {
     if (numbers_edges) {
       child_.edge.resize(half_edges);
       child_.half_edge.resize(inner_edges_ + mesh_.half_edge_count());
-      make_kinds();
+      child_.kind.resize(child_.half_edge.size());
     }
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
+    const uint32_t parts = parts_of(mesh_.face_count(), threads);
+    for_each_part(parts, mesh_.face_count(), [this](uint32_t, uint32_t first, uint32_t last) {
+      for (uint32_t f = first; f < last; ++f) split_face(f);
+    });
+    if (numbers_edges)
+      for_each_part(parts, mesh_.edge_count(), [this](uint32_t, uint32_t first, uint32_t last) {
+        for (uint32_t e = first; e < last; ++e) split_edge(e);
+      });
     return std::move(child_);
   }
 
  private:
-  void make_kinds() {
-    child_.kind.resize(child_.half_edge.size());
-    EdgeKind* out = child_.kind.data();
-    for (uint32_t e = 0; e < mesh_.edge_count(); ++e) out[2 * e] = out[2 * e + 1] = mesh_.kind[e];
-    std::fill(out + inner_edges_, out + child_.kind.size(), EdgeKind::smooth);
+  void split_edge(uint32_t e) {
+    const uint32_t h = mesh_.half_edge[e];
+    const uint32_t down = mesh_.origin[h] > mesh_.tip(h) ? 1 : 0;
+    child_.half_edge[2 * e + down] = first_half(h);
+    child_.half_edge[2 * e + 1 - down] = second_half(h);
+    child_.kind[2 * e] = child_.kind[2 * e + 1] = mesh_.kind[e];
   }
 
   void split_face(uint32_t f) {
@@ -69,14 +79,9 @@ class FourSplitter {
                              second[0], first[1], inner + 1,  //
                              inner + 2, second[1], first[2],  //
                              inner + 1, inner + 2, inner});
-    uint32_t* out = child_.half_edge.data();
-    for (uint32_t i = 0; i < 3; ++i) {
-      out[first[i]] = first_half(h + i);
-      out[second[i]] = second_half(h + i);
-    }
-    out[inner] = base + 11;
-    out[inner + 1] = base + 9;
-    out[inner + 2] = base + 10;
+    const uint32_t at[3] = {base + 11, base + 9, base + 10};
+    std::copy_n(at, 3, &child_.half_edge[inner]);
+    std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
   }
 
   static void put(uint32_t* at, const uint32_t (&values)[12]) { std::copy_n(values, 12, at); }
@@ -93,8 +98,8 @@ class FourSplitter {
 
 }  // namespace
 
-Topology split_in_four(const Topology& mesh) { return FourSplitter<true>(mesh).run(); }
+Topology split_in_four(const Topology& mesh, int threads) { return FourSplitter<true>(mesh).run(threads); }
 
-Topology split_last_in_four(const Topology& mesh) { return FourSplitter<false>(mesh).run(); }
+Topology split_last_in_four(const Topology& mesh, int threads) { return FourSplitter<false>(mesh).run(threads); }
 
 }  // namespace papilio

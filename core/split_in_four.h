@@ -20,9 +20,10 @@ namespace papilio {
   return h % 3 == 2 ? 4 * h - 6 : 4 * h + 3;
 }
 
-/// The next level's connectivity. Kinds of edges are inherited; new edges inside a face are smooth. O(F + E).
-[[nodiscard]] Topology split_in_four(const Topology& mesh);
+/// The next level's connectivity, made by up to so many threads. Kinds of edges are inherited; new edges inside a face
+/// are smooth. O(F + E).
+[[nodiscard]] Topology split_in_four(const Topology& mesh, int threads = 1);
 /// The same without its edges (mesh.h): for a level that is not split again.
-[[nodiscard]] Topology split_last_in_four(const Topology& mesh);
+[[nodiscard]] Topology split_last_in_four(const Topology& mesh, int threads = 1);
 
 }  // namespace papilio

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "face_shares.h"
 #include "fan.h"
 #include "lanes.h"
 #include "stencil.h"
@@ -43,20 +44,18 @@ class TensedRules {
       : mesh_(mesh), p_(positions), field_(field) {}
 
   /// Both ends interior and regular: the eight-point rule, each of its four outer hinges by its own factor.
-  [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
-    return face_share(h, t) + face_share(t, h);
-  }
+  [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const { return face_share(h, t) + face_share(t, h); }
 
   /// The same face by face (butterfly_rules.h): `p` are face f's corners, `wing` the vertices across its edges.
   void add_face_shares(uint32_t f, const std::array<Wide<Real>, 3>& p, const std::array<Wide<Real>, 3>& wing,
-                       Point* made) const {
+                       FaceShares<Real>& shares) const {
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     std::array<Wide<Real>, 3> hinge;
     for (uint32_t i = 0; i < 3; ++i)
       hinge[i] = second_difference(field_.factor[edge[i]], p[i], p[(i + 1) % 3], p[(i + 2) % 3], wing[i]);
     for (uint32_t i = 0; i < 3; ++i)
-      add_share(twin[i] < 3 * f, share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]), made[edge[i]]);
+      shares.add(f, twin[i], edge[i], share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]));
   }
 
   /// Spoke i of a closed fan of K faces, K != 2. The ring is split into what the spoke's two faces foresee, marching

@@ -1,6 +1,7 @@
 #include "triangle_distance.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace papilio {
 namespace {
@@ -18,17 +19,25 @@ double squared_distance_to_segment(Vec3d point, Vec3d a, Vec3d b) {
 
 double squared_distance(Vec3d point, const TriangleCorners& triangle) {
   const auto& [a, b, c] = triangle;
-  const Vec3d normal = cross(b - a, c - a);
-  double least = std::min({squared_distance_to_segment(point, a, b), squared_distance_to_segment(point, b, c),
-                           squared_distance_to_segment(point, c, a)});
-  // Where the point lies above the inside, its foot on the plane. The foot is made of the corners, so that it
-  // lies on the triangle even if this is a sliver whose normal is nothing but rounding errors.
+  const Vec3d ab = b - a;
+  const Vec3d ac = c - a;
+  const Vec3d normal = cross(ab, ac);
   const double u = dot(cross(c - b, point - b), normal);
   const double v = dot(cross(a - c, point - c), normal);
-  const double w = dot(cross(b - a, point - a), normal);
+  const double w = dot(cross(ab, point - a), normal);
   const double sum = u + v + w;
-  if (u >= 0 && v >= 0 && w >= 0 && sum > 0)
-    least = std::min(least, squared(point - (u / sum) * a - (v / sum) * b - (w / sum) * c));
+  // Where the normal is more than rounding errors they tell whether the point lies above the inside, or else beyond
+  // which sides: to one of these it is nearest.
+  constexpr double least_sine_squared = 1e-8;
+  const bool are_sure = sum > least_sine_squared * squared(ab) * squared(ac);
+  const bool is_inside = u >= 0 && v >= 0 && w >= 0 && sum > 0;
+  double least = std::numeric_limits<double>::infinity();
+  // The foot on the plane is made of the corners, so that it lies on the triangle even if this is a sliver.
+  if (is_inside) least = squared(point - (u / sum) * a - (v / sum) * b - (w / sum) * c);
+  if (is_inside && are_sure) return least;
+  if (!are_sure || u < 0) least = std::min(least, squared_distance_to_segment(point, b, c));
+  if (!are_sure || v < 0) least = std::min(least, squared_distance_to_segment(point, c, a));
+  if (!are_sure || w < 0) least = std::min(least, squared_distance_to_segment(point, a, b));
   return least;
 }
 

@@ -8,6 +8,7 @@
 #include "features.h"
 #include "lanes.h"
 #include "normals.h"
+#include "parallel.h"
 #include "split.h"
 #include "split_in_four.h"
 
@@ -53,26 +54,44 @@ class Uniform {
   void make_vertices() {
     const Topology& topology = mesh_.topology;
     if (options_.w == 0 && options_.tension == Tension::off) {
-      uniform_butterfly(topology, features_, mesh_.positions);
+      append_vertices(nullptr);
       return;
     }
-    const Array<Vec3f> normals = options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_);
+    const Array<Vec3f> normals = options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_, progress_.threads());
     if (options_.w == 0) {
       const TensionField field = tension_field(topology, normals, options_.tension);
-      uniform_butterfly(topology, features_, mesh_.positions, &field);
+      append_vertices(&field);
     } else {
       const Array<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
       mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
     }
   }
 
+  void append_vertices(const TensionField* tension) {
+    const Topology& topology = mesh_.topology;
+    mesh_.positions.resize(size_t{topology.vertex_count} + topology.edge_count());
+    Vec3f* positions = mesh_.positions.data();
+    uniform_butterfly(topology, features_, positions, positions + topology.vertex_count, tension, progress_.threads());
+  }
+
   /// That of the edges of the last level, which are not tried: a share of what their parents had. Most edges are seen
   /// to matter less than another by how far their vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double error_left() const {
-    ErrorLeft left(selection_);
+    const uint32_t edges = mesh_.topology.edge_count();
+    const uint32_t parts = parts_of(edges, progress_.threads());
+    std::vector<ErrorLeft> left(parts, ErrorLeft(selection_));
+    for_each_part(parts, edges, [&](uint32_t part, uint32_t first, uint32_t last) {
+      ErrorLeft own(selection_);
+      add_error_left(first, last, own);
+      left[part] = own;
+    });
+    return std::ranges::max_element(left, {}, &ErrorLeft::distance)->error();
+  }
+
+  void add_error_left(uint32_t first, uint32_t last, ErrorLeft& left) const {
     const Topology& topology = mesh_.topology;
     float most_skipped = -1;  // its square
-    for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+    for (uint32_t e = first; e < last; ++e) {
       const uint32_t h = topology.half_edge[e];
       const Vec3f& made = mesh_.positions[topology.vertex_count + e];
       const Lanes ends = widen(mesh_.positions[topology.origin[h]]) + widen(mesh_.positions[topology.tip(h)]);
@@ -81,7 +100,6 @@ class Uniform {
       const double sure = left.distance() / split_leaves - rounding_;
       if (sure > least_squared) most_skipped = static_cast<float>(sure * sure);
     }
-    return left.error();
   }
 
   void split(bool is_last) {
@@ -89,9 +107,9 @@ class Uniform {
     if (!mesh_.attributes.empty())
       mesh_.topology = papilio::split(mesh_.topology, everything(), mesh_.positions, mesh_.attributes);
     else if (is_last && !options_.edges)
-      mesh_.topology = split_last_in_four(mesh_.topology);
+      mesh_.topology = split_last_in_four(mesh_.topology, progress_.threads());
     else
-      mesh_.topology = split_in_four(mesh_.topology);
+      mesh_.topology = split_in_four(mesh_.topology, progress_.threads());
   }
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
