@@ -16,6 +16,7 @@ namespace {
 struct AssembledLevel {
   static constexpr uint8_t hidden = 255;   ///< not in the result, nor its children
   static constexpr uint8_t divided = 254;  ///< its children are
+  static constexpr uint8_t uncut = 0;      ///< the number of the pattern of no split edge
 
   const LevelChoice* choice;
   const HierarchyLevel* level;
@@ -49,7 +50,10 @@ struct AssembledLevel {
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine, bool with_edges)
-      : most_cosine_(most_cosine), with_edges_(with_edges), coarse_(levels[0].level->mesh), vertex_count_(coarse_.topology.vertex_count) {
+      : most_cosine_(most_cosine),
+        with_edges_(with_edges),
+        coarse_(levels[0].level->mesh),
+        vertex_count_(coarse_.topology.vertex_count) {
     levels_.reserve(levels.size());
     for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
     for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
@@ -130,7 +134,13 @@ class Assembler {
     for (uint32_t i = 0; i < 3; ++i) vertex[i] = level.vertex_in_result(level.origin[h + i]);
     if (cut.children == 1) {
       for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + i] = vertex[i];
-      for (uint32_t i = 0; i < 3; ++i) make_outer(base + i, level, h + i, 0);
+      for (uint32_t i = 0; i < 3; ++i) {
+        const uint32_t t = level.twin[h + i];
+        if (!with_edges_ && t != none && level.fate[Topology::face(t)] == AssembledLevel::uncut)
+          out_.topology.twin[base + i] = level.first[Topology::face(t)] + t % 3;
+        else
+          make_outer(base + i, level, h + i, 0);
+      }
       return;
     }
     for (uint32_t i = 0; i < 3; ++i)

@@ -1,5 +1,7 @@
 #include "butterfly.h"
 
+#include <algorithm>
+
 #include "butterfly_rules.h"
 #include "parallel.h"
 
@@ -80,26 +82,28 @@ class UniformButterfly {
     if (is_tensed_)
       for_each_part(parts_of(mesh_.edge_count(), threads), mesh_.edge_count(),
                     [this](uint32_t, uint32_t first, uint32_t last) {
-                      for (uint32_t e = first; e < last; ++e)
-                        made_[e] = rules_.finish(mesh_.half_edge[e], made_[e]);
+                      for (uint32_t e = first; e < last; ++e) made_[e] = rules_.finish(mesh_.half_edge[e], made_[e]);
                     });
   }
 
  private:
   void split_faces(uint32_t parts) {
-    std::vector<FaceShares<float>> shares(parts, {made_, 0});
+    const FaceShares<float> shares{made_};
+    std::vector<LateFaceShares<float>> late_of(parts, {shares, 0});
     for_each_part(parts, mesh_.face_count(), [&](uint32_t part, uint32_t first, uint32_t last) {
-      FaceShares<float> own(made_, first);
-      for (uint32_t f = first; f < last; ++f)
-        if (has_all_neighbours(f)) rules_.add_face_shares(f, own);
-      shares[part] = std::move(own);
+      LateFaceShares<float> late(shares, first);
+      const ButterflyRules<float> rules = rules_;
+      for (uint32_t f = first; f < last; ++f) {
+        const uint32_t* twin = &mesh_.twin[size_t{3} * f];
+        if (twin[0] == none || twin[1] == none || twin[2] == none) continue;
+        if (late.is_early(std::min({twin[0], twin[1], twin[2]}))) [[unlikely]]
+          rules.add_face_shares(f, late);
+        else
+          rules.add_face_shares(f, shares);
+      }
+      late_of[part] = std::move(late);
     });
-    for (const FaceShares<float>& of_part : shares) of_part.end();
-  }
-
-  [[nodiscard]] bool has_all_neighbours(uint32_t f) const {
-    const uint32_t* twin = &mesh_.twin[size_t{3} * f];
-    return twin[0] != none && twin[1] != none && twin[2] != none;
+    for (const LateFaceShares<float>& late : late_of) late.end();
   }
 
   void split_near_curves() {

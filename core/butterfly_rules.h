@@ -88,8 +88,9 @@ class ButterflyRules {
   [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
 
   /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
-  /// face must have a twin at each. Two faces make the bits of `regular`.
-  void add_face_shares(uint32_t f, FaceShares<Real>& shares) const {
+  /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in face_shares.h.
+  template <class Shares>
+  void add_face_shares(uint32_t f, Shares& shares) const {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];

@@ -7,26 +7,37 @@
 
 namespace papilio {
 
-/// Sums of what the two faces of each edge know of its new vertex. Faces come in ascending order, in ranges that may be
-/// looked at in any order or at once: the lower face of an edge writes, the upper one adds, after `end` where the lower
-/// one is of an earlier range. So a sum is the same to the bit however the faces are cut into ranges.
+/// Sums of what the two faces of each edge know of its new vertex. The lower face writes, the upper one adds: so faces
+/// must come in ascending order.
 template <class Real>
-class FaceShares {
- public:
-  /// `sums` [E]. The range starts at `first_face`.
-  FaceShares(Vec3T<Real>* sums, uint32_t first_face) : sums_(sums), first_half_edge_(3 * first_face) {}
+struct FaceShares {
+  Vec3T<Real>* sums;  ///< [E]
 
   /// Of a half-edge of the face, and its edge.
+  void add(uint32_t face, uint32_t twin, uint32_t edge, const Wide<Real>& share) const {
+    add_share(twin < 3 * face, share, sums[edge]);
+  }
+};
+
+/// The same where faces come in ranges, in any order or at once, for those of a face which has neighbours in an earlier
+/// range: what it adds to theirs waits until all ranges are through. So a sum is the same to the bit however the faces
+/// are cut into ranges.
+template <class Real>
+class LateFaceShares {
+ public:
+  LateFaceShares(FaceShares<Real> shares, uint32_t first_face) : shares_(shares), first_half_edge_(3 * first_face) {}
+
+  [[nodiscard]] bool is_early(uint32_t twin) const { return twin < first_half_edge_; }
   void add(uint32_t face, uint32_t twin, uint32_t edge, const Wide<Real>& share) {
-    if (twin < first_half_edge_)
+    if (is_early(twin))
       late_.push_back({edge, share});
     else
-      add_share(twin < 3 * face, share, sums_[edge]);
+      shares_.add(face, twin, edge, share);
   }
 
   /// Once all ranges are through.
   void end() const {
-    for (const Late& late : late_) add_share(true, late.share, sums_[late.edge]);
+    for (const Late& late : late_) add_share(true, late.share, shares_.sums[late.edge]);
   }
 
  private:
@@ -35,7 +46,7 @@ class FaceShares {
     Wide<Real> share;
   };
 
-  Vec3T<Real>* sums_;
+  FaceShares<Real> shares_;
   uint32_t first_half_edge_;
   Array<Late> late_;
 };

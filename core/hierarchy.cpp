@@ -240,13 +240,13 @@ std::vector<uint32_t> numbers(size_t count) {
 }
 
 /// What LevelMaker makes where everything is held, by formula.
-HierarchyLevel refine_whole_level(const HierarchyLevel& level) {
+HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
   const Topology& mesh = level.mesh.topology;
   HierarchyLevel below;
   below.is_whole = true;
   below.features = level.features;
   descend(below.features, mesh);
-  below.mesh.topology = split_in_four(mesh);
+  below.mesh.topology = split_in_four(mesh, threads);
   below.mesh.positions.reserve(below.mesh.topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
@@ -262,10 +262,10 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level) {
 
 }  // namespace
 
-HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red) {
+HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red, int threads) {
   const bool all = level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
                    std::ranges::find(red, 0) == red.end();
-  HierarchyLevel below = all ? refine_whole_level(level) : LevelMaker(level, red).run();
+  HierarchyLevel below = all ? refine_whole_level(level, threads) : LevelMaker(level, red).run();
   below.red = std::move(red);
   below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
   below.box = bounding_box(below.mesh.positions);

@@ -54,7 +54,7 @@ struct HierarchyLevel {
 [[nodiscard]] std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uint8_t>& faces);
 
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
-/// must have been tried.
-[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red);
+/// must have been tried. Up to so many threads work on it.
+[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red, int threads = 1);
 
 }  // namespace papilio

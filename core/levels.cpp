@@ -25,7 +25,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
-  level->trial = try_split(level->mesh, options, complete_edges(*level), &level->features);
+  level->trial = try_split(level->mesh, options, complete_edges(*level), &level->features, progress.threads());
   levels_.push_back(std::move(level));
 }
 
@@ -57,7 +57,8 @@ bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> r
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
-  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red)));
+  const auto level =
+      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red), progress_.threads()));
   std::vector<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent[f / 4];
@@ -107,13 +108,14 @@ void Levels::make(const std::vector<uint8_t>& red) {
   std::vector<uint8_t> more = or_everything(prepared_ == nullptr ? red : with_margin(red));
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red);
   const bool is_kept = may_keep(more);
-  const auto level = std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(more)));
+  const auto level =
+      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(more), progress_.threads()));
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
   level->trial =
       try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level),
-                level->is_whole ? &level->features : nullptr);
+                level->is_whole ? &level->features : nullptr, progress_.threads());
   if (is_kept) level->trial.keep_more(level->mesh.topology);
   if (is_kept)
     add_kept(level);

@@ -37,7 +37,8 @@ class Levels {
   /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
   /// next view, from a little further on, finds what it needs.
   [[nodiscard]] std::vector<uint8_t> with_margin(const std::vector<uint8_t>& red) const;
-  /// All faces of the deepest level if it is whole and most of them would be held: then all cost less. Else those marked.
+  /// All faces of the deepest level if it is whole and most of them would be held: then all cost less. Else those
+  /// marked.
   [[nodiscard]] std::vector<uint8_t> or_everything(std::vector<uint8_t> red) const;
   void make(const std::vector<uint8_t>& red);
   void add_kept(std::shared_ptr<const HierarchyLevel> level);

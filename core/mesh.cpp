@@ -75,9 +75,7 @@ EdgeRuns sort_into_edges(const Topology& mesh) {
   for_each_half_edge([&](uint32_t, uint32_t a, uint32_t b) { ++bucket[std::min(a, b) + 1]; });
   for (uint32_t v = 0; v < mesh.vertex_count; ++v) bucket[v + 1] += bucket[v];
   Array<EdgeEnd> ends(count);
-  for_each_half_edge([&](uint32_t h, uint32_t a, uint32_t b) {
-    ends[bucket[std::min(a, b)]++] = {std::max(a, b), h};
-  });
+  for_each_half_edge([&](uint32_t h, uint32_t a, uint32_t b) { ends[bucket[std::min(a, b)]++] = {std::max(a, b), h}; });
 
   EdgeRuns runs;
   runs.half_edges.resize(count);

@@ -24,7 +24,7 @@ struct Level {
 struct Hooks {
   std::function<void(const Level&)> on_level{};  ///< after each level, the coarse one first; may throw to stop
   std::function<bool()> cancelled{};             ///< asked between steps; true stops with `Fault::cancelled`
-  int threads = 1;                               ///< at most so many work on it at once; the result is the same to the bit
+  int threads = 1;  ///< at most so many work on it at once; the result is the same to the bit
 };
 
 enum class StopReason {

@@ -18,8 +18,8 @@ float rounded_up(double number) { return static_cast<float>(1.000001 * number + 
 
 }  // namespace
 
-Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                           const SplitPlan& plan, const Features* features) {
+Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
+                           const Features* features, int threads) {
   std::optional<TensionField> field;
   if (options.tension != Tension::off) field = tension_field(mesh.topology, normals, options.tension);
   const TensionField* tension = field ? &*field : nullptr;
@@ -28,7 +28,7 @@ Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const 
     return butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(options.w), tension);
   Array<Vec3f> made(plan.count());
   const auto split_with = [&](const Features& f) {
-    uniform_butterfly(mesh.topology, f, mesh.positions.data(), made.data(), tension);
+    uniform_butterfly(mesh.topology, f, mesh.positions.data(), made.data(), tension, threads);
   };
   if (features != nullptr)
     split_with(*features);
@@ -37,9 +37,10 @@ Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const 
   return made;
 }
 
-Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const Features* features) {
-  Trial trial{.normals = face_normals(mesh), .tried = SplitPlan(try_edges), .made = {}};
-  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, features);
+Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const Features* features,
+                int threads) {
+  Trial trial{.normals = face_normals(mesh, threads), .tried = SplitPlan(try_edges), .made = {}};
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, features, threads);
   trial.forget();
   return trial;
 }

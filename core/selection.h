@@ -49,13 +49,13 @@ struct Trial {
   [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
 };
 
-/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w. `features` of
-/// the mesh, where they are known.
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w. `features`
+/// of the mesh, where they are known. Up to so many threads work on it.
 [[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                                         const SplitPlan& plan, const Features* features = nullptr);
+                                         const SplitPlan& plan, const Features* features = nullptr, int threads = 1);
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
-                              const Features* features = nullptr);
+                              const Features* features = nullptr, int threads = 1);
 
 class Selection {
  public:

@@ -53,14 +53,14 @@ class FourSplitter {
     const uint32_t base = 12 * f;
 
     const uint32_t middle[3] = {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]};
-    put(&child_.origin[base], {corner[0], middle[0], middle[2],  //
-                               middle[0], corner[1], middle[1],  //
-                               middle[2], middle[1], corner[2],  //
-                               middle[0], middle[1], middle[2]});
-    put(&child_.twin[base], {against_first(twin[0]), base + 11, against_second(twin[2]),  //
-                             against_second(twin[0]), against_first(twin[1]), base + 9,   //
-                             base + 10, against_second(twin[1]), against_first(twin[2]),  //
-                             base + 5, base + 6, base + 1});
+    put(&child_.origin[base], corner[0], middle[0], middle[2],  //
+        middle[0], corner[1], middle[1],                        //
+        middle[2], middle[1], corner[2],                        //
+        middle[0], middle[1], middle[2]);
+    put(&child_.twin[base], against_first(twin[0]), base + 11, against_second(twin[2]),  //
+        against_second(twin[0]), against_first(twin[1]), base + 9,                       //
+        base + 10, against_second(twin[1]), against_first(twin[2]),                      //
+        base + 5, base + 6, base + 1);
     if (numbers_edges) number_edges(f);
   }
 
@@ -75,16 +75,21 @@ class FourSplitter {
     const uint32_t first[3] = {2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
     const uint32_t second[3] = {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1};
     const uint32_t inner = inner_edges_ + h;
-    put(&child_.edge[base], {first[0], inner, second[2],      //
-                             second[0], first[1], inner + 1,  //
-                             inner + 2, second[1], first[2],  //
-                             inner + 1, inner + 2, inner});
+    put(&child_.edge[base], first[0], inner, second[2],  //
+        second[0], first[1], inner + 1,                  //
+        inner + 2, second[1], first[2],                  //
+        inner + 1, inner + 2, inner);
     const uint32_t at[3] = {base + 11, base + 9, base + 10};
     std::copy_n(at, 3, &child_.half_edge[inner]);
     std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
   }
 
-  static void put(uint32_t* at, const uint32_t (&values)[12]) { std::copy_n(values, 12, at); }
+  /// One after the other: built in an array first and then copied, they are waited for.
+  template <class... Numbers>
+  static void put(uint32_t* at, Numbers... numbers) {
+    static_assert(sizeof...(numbers) == 12);
+    ((*at++ = numbers), ...);
+  }
 
   /// The child half-edges that run against the halves of a half-edge with this twin.
   static uint32_t against_first(uint32_t twin) { return twin == none ? none : second_half(twin); }

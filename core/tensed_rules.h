@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "face_shares.h"
 #include "fan.h"
 #include "lanes.h"
 #include "stencil.h"
@@ -47,8 +46,9 @@ class TensedRules {
   [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const { return face_share(h, t) + face_share(t, h); }
 
   /// The same face by face (butterfly_rules.h): `p` are face f's corners, `wing` the vertices across its edges.
+  template <class Shares>
   void add_face_shares(uint32_t f, const std::array<Wide<Real>, 3>& p, const std::array<Wide<Real>, 3>& wing,
-                       FaceShares<Real>& shares) const {
+                       Shares& shares) const {
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     std::array<Wide<Real>, 3> hinge;

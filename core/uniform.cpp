@@ -57,7 +57,8 @@ class Uniform {
       append_vertices(nullptr);
       return;
     }
-    const Array<Vec3f> normals = options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_, progress_.threads());
+    const Array<Vec3f> normals =
+        options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_, progress_.threads());
     if (options_.w == 0) {
       const TensionField field = tension_field(topology, normals, options_.tension);
       append_vertices(&field);

@@ -93,7 +93,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     require_time();
     return hooks.cancelled && hooks.cancelled();
   };
-  Hooks core_hooks{.cancelled = stop};
+  Hooks core_hooks{.cancelled = stop, .threads = hooks.threads};
   if (hooks.on_level) {
     core_hooks.on_level = [&](const Level& level) {
       if (level.last) return;  // it is sent with the reason why it is the last

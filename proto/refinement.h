@@ -41,12 +41,13 @@ struct EncodedLevel {
   Statistics statistics;
 };
 
-/// How the caller takes part; both may be empty.
+/// How the caller takes part; both functions may be empty.
 struct RefinementHooks {
   /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
   /// to stop.
   std::function<void(const EncodedLevel&)> on_level{};
   std::function<bool()> cancelled{};  ///< asked between steps
+  int threads = 1;                    ///< at most so many work on it at once
 };
 
 /// One refinement: decoded and checked when it is made, carried out by `run`.

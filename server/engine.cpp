@@ -1,5 +1,6 @@
 #include "server/engine.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "proto/problem.h"
@@ -23,8 +24,9 @@ std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& aban
   return slot;
 }
 
-proto::EncodedLevel Engine::run(proto::Refinement& refinement, const proto::RefinementHooks& hooks) {
+proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks) {
   const uint64_t faces = refinement.coarse_faces();
+  hooks.threads = 1 + std::max(0, options_.slots - admission_.computing());  // its own slot's and those of free ones
   proto::EncodedLevel made = refinement.run(hooks);
   metrics_.count_refinement(faces, made.statistics);
   return made;

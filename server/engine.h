@@ -44,8 +44,8 @@ class Engine {
 
   /// Waits for a slot; throws as `Admission::enter`.
   [[nodiscard]] std::shared_ptr<Admission::Slot> enter(const std::function<bool()>& abandoned);
-  /// Runs a refinement to its end, and counts it. Throws `Problem`.
-  [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, const proto::RefinementHooks& hooks);
+  /// Runs a refinement to its end, on the threads of free slots too, and counts it. Throws `Problem`.
+  [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks);
   /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
                                                                  const proto::Parameters& parameters);

@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
 using proto::EncodedLevel;
 
 /// Here or there: both go the same way from the same stream, so the bytes are the same.
-EncodedLevel refine_stream(const std::string& draco, const RefineFlags& flags) {
+EncodedLevel refine_stream(const std::string& draco, const RefineFlags& flags, unsigned threads) {
   if (!flags.server.empty()) return Remote(flags.server, flags.remote).refine(draco, flags.parameters);
   constexpr proto::Limits own_limits{face_count_limit, face_count_limit, face_count_limit};
-  return proto::Refinement(draco, flags.parameters, own_limits).run();
+  return proto::Refinement(draco, flags.parameters, own_limits).run({.threads = static_cast<int>(threads)});
 }
 
 void report(std::ostream& out, const RefineFlags& flags, const proto::Statistics& statistics, size_t bytes) {
@@ -61,7 +61,7 @@ void check_folders_apart(const fs::path& input, const fs::path& output) {
 void refine_file(const RefineFlags& flags) {
   const bool to_standard_output = flags.output == "-";
   if (!to_standard_output) check_output_name(flags.output);
-  const EncodedLevel made = refine_stream(load_draco(flags.input), flags);
+  const EncodedLevel made = refine_stream(load_draco(flags.input), flags, std::thread::hardware_concurrency());
   if (to_standard_output) {
     std::cout.write(made.draco.data(), static_cast<std::streamsize>(made.draco.size()));
   } else {
@@ -126,7 +126,7 @@ class Progress {
 std::string refine_one_of_many(const fs::path& input, const fs::path& output, const RefineFlags& flags) {
   try {
     fs::create_directories(output.parent_path());
-    save_draco(output, refine_stream(load_draco(input), flags).draco);
+    save_draco(output, refine_stream(load_draco(input), flags, 1).draco);
     return {};
   } catch (const std::exception& error) {
     return error.what();

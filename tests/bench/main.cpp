@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "server/heap.h"
 #include "tests/bench/pairs.h"
 #include "tests/bench/report.h"
 
@@ -131,9 +132,13 @@ int run_pairs(const std::string& filter, const std::string& json_file) {
 int run(const std::string& name, const std::string& json_file) {
   add_table1();
   add_quality();
+  add_memory();
   const auto report = std::ranges::find(reports(), name, &Report::name);
   if (report != reports().end()) return run_report(*report, json_file);
   add_uniform();
+  add_adaptive();
+  add_limits();
+  add_threads();
   add_service();
   add_view_change();
   add_http();
@@ -155,6 +160,7 @@ double seconds(const std::function<void()>& work) {
 }  // namespace papilio::bench
 
 int main(int argc, char** argv) {
+  papilio::server::set_up_heap(1);  // both sides on the heap that the server has
   std::string filter;
   std::string json_file;
   for (int i = 1; i < argc; ++i) {

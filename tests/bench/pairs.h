@@ -24,6 +24,9 @@ double seconds(const std::function<void()>& work);
 
 /// Each file of cases adds its own.
 void add_uniform();
+void add_adaptive();
+void add_limits();
+void add_threads();
 void add_service();
 void add_view_change();
 void add_http();

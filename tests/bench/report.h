@@ -25,5 +25,6 @@ void add(Report report);
 /// Each report adds itself.
 void add_table1();
 void add_quality();
+void add_memory();
 
 }  // namespace papilio::bench

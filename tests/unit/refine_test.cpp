@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/parallel.h"
 #include "tests/support/invariants.h"
 #include "tests/support/openmesh_oracle.h"
 #include "tests/support/real_mesh.h"
@@ -77,8 +78,8 @@ TEST(Refine, EqualsOpenMeshOnShapes) {
 TEST(Refine, EdgesMayBeLeftOut) {
   const View view{.eye = {0, 0, 30}, .edge_pixels = 0, .error_pixels = 0.01};
   for (const Options& way :
-       {Options{.levels = 2}, Options{.levels = 2, .w = 0.05}, Options{.levels = 0}, Options{.levels = 2, .tolerance = 1e-3},
-        Options{.levels = 2, .scheme = Scheme::in_place, .flatness = {0.95}},
+       {Options{.levels = 2}, Options{.levels = 2, .w = 0.05}, Options{.levels = 0},
+        Options{.levels = 2, .tolerance = 1e-3}, Options{.levels = 2, .scheme = Scheme::in_place, .flatness = {0.95}},
         Options{.levels = 2, .view = view, .simplify_hidden = true}}) {
     for (const TriangleMesh& mesh : {join(icosahedron(), cube(), 5), grid(4, 3)}) {
       Options options = way;
@@ -94,6 +95,28 @@ TEST(Refine, EdgesMayBeLeftOut) {
       EXPECT_EQ(refine(std::move(bare.mesh), {.levels = 1}).mesh.topology.face_count(), 4 * faces);
     }
   }
+}
+
+TEST(Refine, ThreadsChangeNoBit) {
+  const View view{.eye = {0, 0, 30}, .edge_pixels = 0, .error_pixels = 1e-4};
+  size_t large = 0;
+  for (const TriangleMesh& mesh : {torus(40, 30), grid(30, 40), join(box({9, 9, 9}, {3, 2, 1}), torus(50, 20), 20)})
+    for (const Options& options :
+         {Options{.levels = 4, .tension = Tension::off}, Options{.levels = 4, .tension = Tension::sharp},
+          Options{.levels = 4, .tension = Tension::off, .edges = false}, Options{.levels = 4, .w = 0.03},
+          Options{.levels = 4, .crease_angle = 40, .tolerance = 1e-7}, Options{.levels = 4, .flatness = {1}},
+          Options{.levels = 4, .view = view}}) {
+      const Result one = refine(build_mesh(mesh), options);
+      if (one.mesh.topology.face_count() > 16 * least_per_thread) ++large;
+      for (int threads : {2, 7}) {
+        const Result many = refine(build_mesh(mesh), options, {.threads = threads});
+        ASSERT_EQ(many.mesh.triangles(), one.mesh.triangles());
+        ASSERT_EQ(many.mesh.topology.half_edge, one.mesh.topology.half_edge);
+        ASSERT_EQ(many.error, one.error);
+        ASSERT_EQ(many.error_pixels, one.error_pixels);
+      }
+    }
+  EXPECT_GT(large, 15U);
 }
 
 TEST(Refine, UniformLevelHasFourToTheLevelTimesTheFaces) {
