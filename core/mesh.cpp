@@ -43,7 +43,9 @@ struct EdgeRuns {
 /// A half-edge and the higher of its vertices, to be sorted by both.
 struct EdgeEnd {
   uint32_t higher, half_edge;
-  friend auto operator<=>(const EdgeEnd&, const EdgeEnd&) = default;
+  friend bool operator<(EdgeEnd a, EdgeEnd b) {
+    return a.higher != b.higher ? a.higher < b.higher : a.half_edge < b.half_edge;
+  }
 };
 
 /// Few as a rule, and nearly in order.
@@ -372,6 +374,7 @@ std::vector<uint32_t> find_pinched(const Topology& mesh) {
 
 void number_edges(Topology& mesh) {
   if (mesh.has_edges()) return;
+  mesh.darts.clear();
   using OpenEnd = std::array<uint32_t, 3>;  // lower vertex, higher vertex, half-edge
   std::vector<OpenEnd> open;
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)

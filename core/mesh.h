@@ -112,7 +112,7 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// used. Makes no creases and no darts. O(n log n) at worst.
 [[nodiscard]] Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count);
 
-/// Numbers the edges where they were left out. Makes no creases. O(n log n) at worst.
+/// Numbers the edges where they were left out. Makes no creases and no darts. O(n log n) at worst.
 void number_edges(Topology& mesh);
 /// Leaves them out.
 void forget_edges(Topology& mesh);
