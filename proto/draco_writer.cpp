@@ -15,6 +15,7 @@
 
 #include "core/normals.h"
 #include "proto/draco_attributes.h"
+#include "proto/edgebreaker/writer.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {
@@ -178,7 +179,16 @@ AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format) {
 }
 
 std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
-                        const AttributeEncoding& attributes) {
+                        const AttributeEncoding& attributes, bool* by_libdraco) {
+  std::optional<std::string> written;
+  if (attributes.format.attributes.empty())
+    written = edgebreaker::write(mesh, box, options, attributes.format.position_id);
+  if (by_libdraco != nullptr) *by_libdraco = !written;
+  return written ? std::move(*written) : write_with_libdraco(mesh, box, options, attributes);
+}
+
+std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
+                                const AttributeEncoding& attributes) {
   const MeshFormat& format = attributes.format;
   const std::vector<size_t> chosen = choose_attributes(format, options.normals);
   Encoding encoding(mesh, !chosen.empty());

@@ -43,9 +43,13 @@ struct OutputOptions {
 /// has one position; attributes that `attributes` describes (all, in order, or none) have their seams. 32-bit floats
 /// are quantised: texture coordinates at 14 bits, unit normals at 10, the rest at 16. All else is kept: integers
 /// (uint32 to 2^31 - 1), float64, normals that are not three floats, floats with a range that is no float's.
-/// Throws std::runtime_error with Draco's words when it refuses.
+/// Throws std::runtime_error with Draco's words when it refuses. Straight from the half-edges where that is possible
+/// (edgebreaker/writer.h), else by libdraco; the bytes are the same. `by_libdraco`, where it is given, tells which.
 [[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
-                                      const AttributeEncoding& attributes = {});
+                                      const AttributeEncoding& attributes = {}, bool* by_libdraco = nullptr);
+/// The same by libdraco alone.
+[[nodiscard]] std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box,
+                                              const OutputOptions& options, const AttributeEncoding& attributes = {});
 
 /// Encodes triangles as they are, positions and the attributes of `format` to the bit: what the client sends of a mesh
 /// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws

@@ -80,7 +80,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   EncodedLevel made;
   const auto encode = [&](const Mesh& mesh, int level) {
     times_.refine += watch.lap();
-    made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes);
+    made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, &made.statistics.by_libdraco);
     times_.encode += watch.lap();
     made.statistics.level = level;
     made.statistics.vertices = mesh.topology.vertex_count;

@@ -33,6 +33,7 @@ struct Statistics {
   std::optional<double> error_pixels{};   ///< the same in pixels, where there is a view
   BuildReport found{};                    ///< in the coarse mesh
   StageTimes times;
+  bool by_libdraco = false;  ///< it was not encoded from the half-edges (draco_writer.h)
 };
 
 /// A mesh and its statistics.

@@ -139,6 +139,7 @@ int run(const std::string& name, const std::string& json_file) {
   add_adaptive();
   add_limits();
   add_threads();
+  add_draco();
   add_service();
   add_view_change();
   add_http();

@@ -27,6 +27,7 @@ void add_uniform();
 void add_adaptive();
 void add_limits();
 void add_threads();
+void add_draco();
 void add_service();
 void add_view_change();
 void add_http();

@@ -3,11 +3,12 @@
 
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
+#include "proto/edgebreaker/writer.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/soup.h"
 
 // What is written can be read: the same faces, positions no further off than half a cell of the grid, and to the bit
-// where they are sent exactly.
+// where they are sent exactly. And libdraco writes the same bytes.
 
 using namespace papilio;
 
@@ -26,6 +27,8 @@ void require_near(const Array<Vec3f>& some, const Array<Vec3f>& others, double d
 void write_and_read(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
   const Mesh mesh = build_mesh(soup);
   const proto::QuantizationBox box = proto::quantization_box(mesh.positions);
+  if (const auto own = proto::edgebreaker::write(mesh, box, output, 0); own && mesh.attributes.empty())
+    fuzz::require(*own == proto::write_with_libdraco(mesh, box, output), "our bytes are libdraco's");
   const proto::FormattedMesh read =
       proto::read_draco(proto::write_draco(mesh, box, output, proto::attribute_encoding(mesh, soup.format)), {});
   fuzz::require(read.triangles.size() == mesh.topology.face_count(), "faces are kept");

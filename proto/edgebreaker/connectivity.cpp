@@ -1,0 +1,371 @@
+#include "proto/edgebreaker/connectivity.h"
+
+#include <draco/compression/bit_coders/rans_bit_encoder.h>
+#include <draco/compression/entropy/symbol_encoding.h>
+#include <draco/compression/mesh/mesh_edgebreaker_shared.h>
+#include <draco/core/varint_encoding.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace papilio::proto::edgebreaker {
+namespace {
+
+/// What is known of a face during the walk.
+enum FaceState : uint8_t { unvisited, visited, visited_split };
+
+/// Collects the symbols, and writes them last to first, as they are decoded.
+class StandardSymbols {
+ public:
+  explicit StandardSymbols(const CornerMesh& mesh) { symbols_.reserve(mesh.face_count()); }
+
+  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t /*corner*/, const Array<uint8_t>& /*faces*/) {
+    symbols_.push_back(static_cast<uint8_t>(symbol));
+  }
+  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(symbols_.size()); }
+
+  void write_before_starts(draco::EncoderBuffer& out) const {
+    std::vector<char> bytes;
+    bytes.reserve(symbols_.size() * 3 / 8 + 8);
+    uint64_t bits = 0;
+    int held = 0;
+    for (size_t i = symbols_.size(); i-- > 0;) {
+      bits |= uint64_t{symbols_[i]} << held;
+      held += draco::edge_breaker_topology_bit_pattern_length[symbols_[i]];
+      for (; held >= 8; held -= 8, bits >>= 8) bytes.push_back(static_cast<char>(bits));
+    }
+    if (held > 0) bytes.push_back(static_cast<char>(bits));
+    draco::EncodeVarint<uint64_t>(bytes.size(), &out);
+    out.Encode(bytes.data(), bytes.size());
+  }
+  void write_after_starts(draco::EncoderBuffer& /*out*/) const {}
+
+ private:
+  Array<uint8_t> symbols_;
+};
+
+/// Codes each symbol in the context of the valence, in the part of the mesh that is not yet written, of the vertex that
+/// the next one turns round.
+class ValenceSymbols {
+ public:
+  explicit ValenceSymbols(const CornerMesh& mesh) : mesh_(mesh), vertex_(mesh.corner_count()) {
+    valence_.assign(mesh.vertex_count(), 0);
+    for (uint32_t c = 0; c < mesh.corner_count(); ++c) {
+      vertex_[c] = mesh.vertex(c);
+      ++valence_[mesh.vertex(c)];
+      // At a boundary there is one more edge than faces.
+      if (mesh.opposite(c) == none) ++valence_[mesh.vertex(CornerMesh::next(c))];
+    }
+  }
+
+  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner, const Array<uint8_t>& faces) {
+    ++count_;
+    const uint32_t next = CornerMesh::next(corner);
+    const uint32_t previous = CornerMesh::previous(corner);
+    const int active = valence_[vertex_[next]];
+    switch (symbol) {
+      case draco::TOPOLOGY_C:
+        take(next, 1);
+        take(previous, 1);
+        break;
+      case draco::TOPOLOGY_S:
+        take(next, 1);
+        take(previous, 1);
+        split(corner, faces);
+        break;
+      case draco::TOPOLOGY_R:
+        take(corner, 1);
+        take(next, 1);
+        take(previous, 2);
+        break;
+      case draco::TOPOLOGY_L:
+        take(corner, 1);
+        take(next, 2);
+        take(previous, 1);
+        break;
+      default:
+        take(corner, 2);
+        take(next, 2);
+        take(previous, 2);
+    }
+    if (last_ >= 0) {
+      const auto context = static_cast<size_t>(std::clamp(active, least_valence, most_valence) - least_valence);
+      contexts_[context].push_back(draco::edge_breaker_topology_to_symbol_id[last_]);
+    }
+    last_ = symbol;
+  }
+  [[nodiscard]] uint32_t count() const { return count_; }
+
+  void write_before_starts(draco::EncoderBuffer& /*out*/) const {}
+  void write_after_starts(draco::EncoderBuffer& out) const {
+    for (const std::vector<uint32_t>& symbols : contexts_) {
+      draco::EncodeVarint<uint32_t>(static_cast<uint32_t>(symbols.size()), &out);
+      if (!symbols.empty() && !draco::EncodeSymbols(symbols.data(), static_cast<int>(symbols.size()), 1, nullptr, &out))
+        throw std::runtime_error("Draco's entropy coder refuses the symbols");
+    }
+  }
+
+ private:
+  static constexpr int least_valence = 2, most_valence = 7;
+
+  void take(uint32_t corner, int edges) { valence_[vertex_[corner]] -= edges; }
+
+  /// The vertex at the corner falls in two: one for the faces on the left, which keeps its number, one for those on the
+  /// right.
+  void split(uint32_t corner, const Array<uint8_t>& faces) {
+    int left = 0;
+    for (uint32_t c = mesh_.left(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
+         c = mesh_.opposite(CornerMesh::next(c)))
+      ++left;
+    valence_[vertex_[corner]] = left + 1;
+    const auto added = static_cast<uint32_t>(valence_.size());
+    int right = 0;
+    for (uint32_t c = mesh_.right(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
+         c = mesh_.opposite(CornerMesh::previous(c))) {
+      ++right;
+      vertex_[CornerMesh::next(c)] = added;
+    }
+    valence_.push_back(right + 1);
+  }
+
+  const CornerMesh& mesh_;
+  Array<uint32_t> vertex_;    ///< [corners]
+  std::vector<int> valence_;  ///< [vertices, and those that came of splits]
+  int last_ = -1;
+  uint32_t count_ = 0;
+  std::array<std::vector<uint32_t>, most_valence - least_valence + 1> contexts_;
+};
+
+/// The boundary loops: which vertices are on each, and which loops the walk has come to.
+class Holes {
+ public:
+  explicit Holes(const CornerMesh& mesh) : mesh_(mesh) {
+    for (uint32_t c = 0; c < mesh.corner_count(); ++c)
+      if (mesh.opposite(c) == none) find(c);
+  }
+
+  [[nodiscard]] bool has(uint32_t vertex) const { return !hole_.empty() && hole_[vertex] != none; }
+  [[nodiscard]] bool is_visited(uint32_t vertex) const { return visited_[hole_[vertex]] != 0; }
+
+  /// Calls visit(vertex) for the others on the loop of the corner's vertex.
+  template <class Visit>
+  void go_round(uint32_t corner, const Visit& visit) {
+    const uint32_t start = mesh_.vertex(corner);
+    visited_[hole_[start]] = 1;
+    uint32_t c = turn(CornerMesh::previous(corner));
+    for (uint32_t v = mesh_.vertex(CornerMesh::previous(c)); v != start; v = mesh_.vertex(CornerMesh::previous(c))) {
+      visit(v);
+      c = turn(CornerMesh::next(c));
+    }
+  }
+
+ private:
+  /// Notes the loop of the corner's opposite edge.
+  void find(uint32_t corner) {
+    if (hole_.empty()) hole_.assign(mesh_.vertex_count(), none);
+    uint32_t v = mesh_.vertex(CornerMesh::next(corner));
+    if (hole_[v] != none) return;
+    for (uint32_t c = corner; hole_[v] == none; v = mesh_.vertex(CornerMesh::next(c))) {
+      hole_[v] = static_cast<uint32_t>(visited_.size());
+      c = turn(CornerMesh::next(c));
+    }
+    visited_.push_back(0);
+  }
+
+  /// Round a vertex to the corner opposite to its boundary edge.
+  [[nodiscard]] uint32_t turn(uint32_t corner) const {
+    while (mesh_.opposite(corner) != none) corner = CornerMesh::next(mesh_.opposite(corner));
+    return corner;
+  }
+
+  const CornerMesh& mesh_;
+  Array<uint32_t> hole_;          ///< [vertices] the loop; `none`. Empty where there is none
+  std::vector<uint8_t> visited_;  ///< [loops]
+};
+
+template <class Symbols>
+class Walk {
+ public:
+  explicit Walk(const CornerMesh& mesh)
+      : mesh_(mesh),
+        symbols_(mesh),
+        holes_(mesh),
+        face_state_(mesh.face_count(), unvisited),
+        vertex_visited_(mesh.vertex_count(), 0) {
+    corners_.reserve(mesh.face_count());
+  }
+
+  Array<uint32_t> run(draco::EncoderBuffer& out) {
+    starts_.StartEncoding();
+    for (uint32_t f = 0; f < mesh_.face_count(); ++f)
+      if (face_state_[f] == unvisited) start(f);
+    std::reverse(corners_.begin(), corners_.end());
+    corners_.insert(corners_.end(), first_corners_.begin(), first_corners_.end());
+    write(out);
+    return std::move(corners_);
+  }
+
+ private:
+  void start(uint32_t face) {
+    uint32_t corner = 0;
+    const bool is_inside = find_start(face, corner);
+    starts_.EncodeBit(is_inside);
+    if (is_inside) {
+      for (uint32_t c = 3 * face; c < 3 * face + 3; ++c) vertex_visited_[mesh_.vertex(c)] = 1;
+      face_state_[face] = visited;
+      first_corners_.push_back(CornerMesh::next(corner));
+      const uint32_t opposite = mesh_.right(corner);
+      if (face_state_[CornerMesh::face(opposite)] == unvisited) walk_from(opposite);
+    } else {
+      const uint32_t on_hole = CornerMesh::next(corner);
+      vertex_visited_[mesh_.vertex(on_hole)] = 1;
+      go_round_hole(on_hole);
+      walk_from(corner);
+    }
+  }
+
+  /// Whether the face has no vertex on a boundary. Then its first corner, else one opposite to a boundary edge.
+  [[nodiscard]] bool find_start(uint32_t face, uint32_t& corner) const {
+    for (uint32_t c = 3 * face; c < 3 * face + 3; ++c) {
+      if (mesh_.opposite(c) == none) {
+        corner = c;
+        return false;
+      }
+      if (!holes_.has(mesh_.vertex(c))) continue;
+      uint32_t at = c;
+      for (uint32_t o = mesh_.opposite(CornerMesh::previous(at)); o != none;
+           o = mesh_.opposite(CornerMesh::previous(at)))
+        at = CornerMesh::previous(o);
+      corner = CornerMesh::previous(at);
+      return false;
+    }
+    corner = 3 * face;
+    return true;
+  }
+
+  void go_round_hole(uint32_t corner) {
+    holes_.go_round(corner, [this](uint32_t vertex) { vertex_visited_[vertex] = 1; });
+  }
+
+  void walk_from(uint32_t corner) {
+    stack_.assign(1, corner);
+    while (!stack_.empty()) {
+      corner = stack_.back();
+      if (is_visited(corner)) {
+        stack_.pop_back();
+        continue;
+      }
+      while (corner != none) corner = visit(corner);
+    }
+  }
+
+  /// The corner to go on with; `none` where the walk ends or falls in two.
+  uint32_t visit(uint32_t corner) {
+    const uint32_t face = CornerMesh::face(corner);
+    const uint32_t vertex = mesh_.vertex(corner);
+    face_state_[face] = visited;
+    corners_.push_back(corner);
+    const bool on_hole = holes_.has(vertex);
+    if (vertex_visited_[vertex] == 0) {
+      vertex_visited_[vertex] = 1;
+      if (!on_hole) {
+        put(draco::TOPOLOGY_C, corner);
+        return mesh_.right(corner);
+      }
+    }
+    const uint32_t right = mesh_.right(corner);
+    const uint32_t left = mesh_.left(corner);
+    const bool right_visited = is_visited(right);
+    const bool left_visited = is_visited(left);
+    if (right_visited) note_split(right, draco::RIGHT_FACE_EDGE);
+    if (left_visited) note_split(left, draco::LEFT_FACE_EDGE);
+    if (right_visited && left_visited) {
+      put(draco::TOPOLOGY_E, corner);
+      stack_.pop_back();
+      return none;
+    }
+    if (right_visited) {
+      put(draco::TOPOLOGY_R, corner);
+      return left;
+    }
+    if (left_visited) {
+      put(draco::TOPOLOGY_L, corner);
+      return right;
+    }
+    put(draco::TOPOLOGY_S, corner);
+    ++splits_;
+    if (on_hole && !holes_.is_visited(vertex)) go_round_hole(corner);
+    face_state_[face] = visited_split;
+    split_symbol_[face] = symbols_.count() - 1;
+    stack_.back() = left;
+    stack_.push_back(right);
+    return none;
+  }
+
+  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner) { symbols_.put(symbol, corner, face_state_); }
+
+  /// Outside counts as visited.
+  [[nodiscard]] bool is_visited(uint32_t corner) const {
+    return corner == none || face_state_[CornerMesh::face(corner)] != unvisited;
+  }
+
+  /// Where the face beside the one at hand is one at which the walk fell in two. The symbol at hand is not yet put.
+  void note_split(uint32_t neighbour, draco::EdgeFaceName edge) {
+    if (neighbour == none || face_state_[CornerMesh::face(neighbour)] != visited_split) return;
+    draco::TopologySplitEventData event{};
+    event.split_symbol_id = split_symbol_.at(CornerMesh::face(neighbour));
+    event.source_symbol_id = symbols_.count();
+    event.source_edge = edge;
+    events_.push_back(event);
+  }
+
+  void write(draco::EncoderBuffer& out) {
+    draco::EncodeVarint<uint32_t>(mesh_.vertex_count(), &out);
+    draco::EncodeVarint<uint32_t>(mesh_.face_count(), &out);
+    out.Encode(uint8_t{0});  // attributes with seams of their own
+    draco::EncodeVarint<uint32_t>(symbols_.count(), &out);
+    draco::EncodeVarint<uint32_t>(splits_, &out);
+    write_events(out);
+    symbols_.write_before_starts(out);
+    starts_.EndEncoding(&out);
+    symbols_.write_after_starts(out);
+  }
+
+  void write_events(draco::EncoderBuffer& out) const {
+    draco::EncodeVarint<uint32_t>(static_cast<uint32_t>(events_.size()), &out);
+    if (events_.empty()) return;
+    uint32_t last = 0;
+    for (const draco::TopologySplitEventData& event : events_) {
+      draco::EncodeVarint<uint32_t>(event.source_symbol_id - last, &out);
+      draco::EncodeVarint<uint32_t>(event.source_symbol_id - event.split_symbol_id, &out);
+      last = event.source_symbol_id;
+    }
+    out.StartBitEncoding(static_cast<int64_t>(events_.size()), false);
+    for (const draco::TopologySplitEventData& event : events_) out.EncodeLeastSignificantBits32(1, event.source_edge);
+    out.EndBitEncoding();
+  }
+
+  const CornerMesh& mesh_;
+  Symbols symbols_;
+  Holes holes_;
+  Array<uint8_t> face_state_;            ///< [faces] FaceState
+  Array<uint8_t> vertex_visited_;        ///< [vertices]
+  Array<uint32_t> corners_;              ///< of the faces visited, in their order
+  std::vector<uint32_t> first_corners_;  ///< of the faces at which a walk started
+  std::vector<uint32_t> stack_;
+  std::unordered_map<uint32_t, uint32_t> split_symbol_;  ///< of a face at which the walk fell in two
+  std::vector<draco::TopologySplitEventData> events_;
+  uint32_t splits_ = 0;
+  draco::RAnsBitEncoder starts_;
+};
+
+}  // namespace
+
+Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal, draco::EncoderBuffer& out) {
+  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh).run(out);
+  return Walk<ValenceSymbols>(mesh).run(out);
+}
+
+}  // namespace papilio::proto::edgebreaker

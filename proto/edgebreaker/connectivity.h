@@ -1,0 +1,23 @@
+#pragma once
+
+#include <draco/core/encoder_buffer.h>
+
+#include <vector>
+
+#include "proto/edgebreaker/corner_mesh.h"
+
+namespace papilio::proto::edgebreaker {
+
+/// How the symbols of the walk are coded.
+enum class Traversal : uint8_t {
+  standard = 0,  ///< bits, by their frequency in any mesh
+  valence = 2,   ///< entropy coding in the context of the valence to come: smaller, and slower
+};
+
+/// Walks over all faces, one that touches those before after another, and writes how they touch: Draco's bitstream
+/// specification, edgebreaker connectivity. Returns the corner at which the walk came to each face, in the order in
+/// which a decoder meets them. [faces]
+[[nodiscard]] Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal,
+                                                 draco::EncoderBuffer& out);
+
+}  // namespace papilio::proto::edgebreaker
