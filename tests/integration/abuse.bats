@@ -57,7 +57,7 @@ stays_within() {
     -H 'Forwarded: for=6.6.6.6' -H 'X-Request-Id: forger' "$url/v1/info"
   [ "$status" = 200 ]
   stop_server
-  grep -q 'id=forger .* remote=127\.0\.0\.1' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'id=forger .* remote=127\.0\.0\.1' "$BATS_FILE_TMPDIR/server.log"
   run ! grep -F 6.6.6.6 "$BATS_FILE_TMPDIR/server.log"
 }
 

@@ -86,7 +86,7 @@ END
 @test "the log names the key's owner" {
   as viewer -H 'X-Request-Id: who' -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   [ "$status" = 200 ]
-  grep -q 'id=who .*client=viewer' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'id=who .*client=viewer' "$BATS_FILE_TMPDIR/server.log"
 }
 
 @test "SIGHUP reads the keys again; a damaged file changes nothing" {
@@ -110,7 +110,7 @@ END
     ! grep -q 'level=error msg=reload' "$BATS_FILE_TMPDIR/server.log" || break
     sleep 0.1
   done
-  grep -q 'level=error msg=reload what=keys .*at least 16' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'level=error msg=reload what=keys .*at least 16' "$BATS_FILE_TMPDIR/server.log"
   as operator "$url/metrics"
   [ "$status" = 200 ]
   cp "$BATS_TEST_TMPDIR/before" "$keys"

@@ -128,7 +128,7 @@ leave() {
   until_full
   leave "$running"
   stop_server
-  grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
 }
 
 @test "a client that goes away while it waits gives up its place" {

@@ -64,7 +64,7 @@ teardown() {
   printf 'x' | dd of="$file" bs=1 seek=700 conv=notrunc status=none
   request "$url/v1/meshes/$(coarse_id)"
   expect_problem 404 mesh_not_found
-  grep -q 'the content is not what the name says' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'the content is not what the name says' "$BATS_FILE_TMPDIR/server.log"
   upload # it can be sent again
   [ "$status" = 201 ]
   request "$url/v1/meshes/$(coarse_id)"

@@ -155,7 +155,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   kill -KILL "$running"
   wait "$running" || true
   stop_server
-  grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
 }
 
 @test "a stream's first level arrives while later ones are still to be made" {
@@ -172,7 +172,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   wait "$running" || true
   exec 5<&-
   stop_server
-  grep -q 'id=leaver .*code=not_sent' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -q 'id=leaver .*code=not_sent' "$BATS_FILE_TMPDIR/server.log"
 }
 
 @test "a stream is the same over HTTPS but for its boundary" {
@@ -192,5 +192,5 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large" "$url/v1/refine"
   expect_problem 422 mesh_unsupported
   stop_server
-  grep -qE ' in=6000[0-9]{4} ' "$BATS_FILE_TMPDIR/server.log"
+  eventually grep -qE ' in=6000[0-9]{4} ' "$BATS_FILE_TMPDIR/server.log"
 }
