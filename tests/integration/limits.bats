@@ -36,8 +36,8 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 
 @test "the address space is bounded: what no limit foresaw fails for itself" {
   ! is_sanitized || skip "sanitizers reserve terabytes"
-  start_server --slots 1 --connections 4 --max-memory-bytes 400000000 --max-compute-bytes 0
-  [ "$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")" = 400000000 ]
+  start_server --slots 1 --connections 4 --max-memory-bytes 300000000 --max-compute-bytes 0
+  [ "$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")" = 300000000 ]
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&output.normals=true"
   [[ $(field code) == result_too_large || $(field code) == out_of_memory ]]
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3"
