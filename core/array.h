@@ -22,16 +22,16 @@ inline constexpr size_t spare_limit = size_t{1} << 30;
 /// Gives back to the system what is kept.
 void release_spare_blocks() noexcept;
 
-/// Takes blocks, and leaves new elements as they are where no value is given for them.
+/// Takes blocks; new elements are filled as the standard library's vectors fill them.
 template <class T>
-struct ArrayAllocator {
+struct ListAllocator {
   using value_type = T;
   /// Bytes that may be read behind the last element: lanes.h.
   static constexpr size_t behind_end = 16;
 
-  ArrayAllocator() = default;
+  ListAllocator() = default;
   template <class Other>
-  ArrayAllocator(const ArrayAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor): as allocators are
+  ListAllocator(const ListAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor): as allocators are
 
   [[nodiscard]] T* allocate(size_t count) {
     if (count > (SIZE_MAX - behind_end) / sizeof(T)) throw std::bad_array_new_length();
@@ -39,18 +39,29 @@ struct ArrayAllocator {
   }
   void deallocate(T* block, size_t count) noexcept { give_block(block, count * sizeof(T) + behind_end); }
 
+  friend bool operator==(const ListAllocator&, const ListAllocator&) { return true; }
+};
+
+/// The same, but leaves new elements as they are where no value is given for them.
+template <class T>
+struct ArrayAllocator : ListAllocator<T> {
+  ArrayAllocator() = default;
+  template <class Other>
+  ArrayAllocator(const ArrayAllocator<Other>& /*other*/) {}  // NOLINT(google-explicit-constructor): as allocators are
+
   template <class Element>
   void construct(Element* /*at*/) noexcept {}
   template <class Element, class... Values>
   void construct(Element* at, Values&&... values) {
     ::new (static_cast<void*>(at)) Element(std::forward<Values>(values)...);
   }
-
-  friend bool operator==(const ArrayAllocator&, const ArrayAllocator&) { return true; }
 };
 
-/// A vector of plain numbers whose `Array(n)` and `resize(n)` do not fill: what they add must be written before it is
-/// read.
+/// A vector of plain numbers.
+template <class T>
+using List = std::vector<T, ListAllocator<T>>;
+
+/// One whose `Array(n)` and `resize(n)` do not fill: what they add must be written before it is read.
 template <class T>
 using Array = std::vector<T, ArrayAllocator<T>>;
 

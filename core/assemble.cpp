@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <memory>
+#include <numeric>
 #include <utility>
 
 #include "attributes.h"
@@ -24,27 +24,17 @@ struct AssembledLevel {
   uint32_t number;
   bool has_below;
   const uint32_t *origin, *twin, *edge;  ///< [H] of the mesh
-  std::vector<uint8_t> fate;             ///< [F] hidden, divided, or the number of its pattern
-  /// [F] the first half-edge of its faces in the result; written where these are there
-  std::unique_ptr<uint32_t[]> first;
-  std::unique_ptr<uint32_t[]> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
-  std::vector<uint32_t> split_edges;       ///< in ascending order
-  std::vector<uint32_t> shown;             ///< the faces that are not hidden, in ascending order; with attributes only
+  const uint8_t* is_split;               ///< [E]
+  List<uint8_t> fate;                    ///< [F] hidden, divided, or the number of its pattern
+  Array<uint32_t> first;                 ///< [F] the first half-edge in the result of a face that is there
+  /// [V + E] numbers in the result: of a vertex of a face that is there, and of the vertex of an edge that is split.
+  Array<uint32_t> vertex;
+  List<uint32_t> shown;  ///< the faces that are not hidden, in ascending order; with attributes only
 
   [[nodiscard]] bool is_shown(uint32_t f) const { return fate[f] != hidden; }
   [[nodiscard]] bool is_divided(uint32_t f) const { return fate[f] == divided; }
   /// The first child of a divided face.
   [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].level->child[f]; }
-  /// The number in the result of a vertex of a face that is there.
-  [[nodiscard]] uint32_t vertex_in_result(uint32_t v) const {
-    for (const AssembledLevel* at = this; at->number > 0; --at) {
-      const uint32_t from = at->level->from[v];
-      const uint32_t above = at[-1].mesh->vertex_count;
-      if (from >= above) return at[-1].new_vertex[from - above];
-      v = from;
-    }
-    return v;
-  }
 };
 
 class Assembler {
@@ -54,6 +44,9 @@ class Assembler {
         with_edges_(with_edges),
         coarse_(levels[0].level->mesh),
         vertex_count_(coarse_.topology.vertex_count) {
+    for (const LevelChoice& choice : levels) vertex_count_ += static_cast<uint32_t>(choice.split_edges.size());
+    out_.positions.resize(vertex_count_);
+    std::ranges::copy(coarse_.positions, out_.positions.begin());
     levels_.reserve(levels.size());
     for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
     for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
@@ -65,13 +58,12 @@ class Assembler {
     topology.pinched = coarse_.topology.pinched;
     topology.darts = coarse_.topology.darts;
     topology.origin.resize(half_edge_count_);
-    topology.twin.assign(half_edge_count_, none);
+    topology.twin.resize(half_edge_count_);
     if (with_edges_) {
       topology.edge.resize(half_edge_count_);
       topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
       topology.kind.reserve(topology.half_edge.capacity());
     }
-    make_positions();
     for (const Place& place : places_) make_faces(levels_[place.level], place.face);
     if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
@@ -95,11 +87,27 @@ class Assembler {
     level.origin = mesh.origin.data();
     level.twin = mesh.twin.data();
     level.edge = mesh.edge.data();
+    level.is_split = choice.split.data();
     level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
-    level.first = std::make_unique_for_overwrite<uint32_t[]>(mesh.face_count());
-    level.new_vertex = std::make_unique_for_overwrite<uint32_t[]>(mesh.edge_count());
-    level.split_edges = marked(choice.split);
-    for (uint32_t e : level.split_edges) level.new_vertex[e] = vertex_count_++;
+    level.first.resize(mesh.face_count());
+    number_vertices(level);
+  }
+
+  /// Numbers a level's vertices in the result, and places those that it adds.
+  void number_vertices(AssembledLevel& level) {
+    const uint32_t count = level.mesh->vertex_count;
+    level.vertex.resize(count + level.mesh->edge_count());
+    if (level.number == 0) {
+      std::iota(level.vertex.begin(), level.vertex.begin() + count, 0U);
+      next_vertex_ = count;
+    } else {
+      const Array<uint32_t>& above = (&level)[-1].vertex;
+      for (uint32_t v = 0; v < count; ++v) level.vertex[v] = above[level.level->from[v]];
+    }
+    for (uint32_t e = 0; e < level.mesh->edge_count(); ++e) {
+      level.vertex[count + e] = next_vertex_;  // where it is not split nobody asks
+      if (level.is_split[e] != 0) out_.positions[next_vertex_++] = level.level->trial.at(e);
+    }
   }
 
   /// What becomes of a face and of what lies below it, and where that lies in the result.
@@ -118,65 +126,56 @@ class Assembler {
     places_.push_back({level.number, f});
   }
 
-  void make_positions() {
-    out_.positions.reserve(vertex_count_);
-    out_.positions = coarse_.positions;
-    for (const AssembledLevel& level : levels_)
-      for (uint32_t e : level.split_edges) out_.positions.push_back(level.level->trial.at(e));
+  void make_faces(const AssembledLevel& level, uint32_t f) {
+    const uint8_t fate = level.fate[f];
+    const SplitPattern& cut = transition_pattern(fate);
+    const uint32_t base = level.first[f];
+    const uint32_t h = 3 * f;
+    const std::array<uint32_t, 6> against = find_twins(level, h, fate / 2U);
+    const uint32_t* corner = &level.origin[h];
+    const uint32_t* edge = &level.edge[h];
+    const uint32_t* middles = &level.vertex[level.mesh->vertex_count];
+    const std::array<uint32_t, 6> vertex = {level.vertex[corner[0]], level.vertex[corner[1]], level.vertex[corner[2]],
+                                            middles[edge[0]],        middles[edge[1]],        middles[edge[2]]};
+    uint32_t* origin = &out_.topology.origin[base];
+    uint32_t* twin = &out_.topology.twin[base];
+    for (uint32_t c = 0; c < 3U * cut.children; ++c) {
+      origin[c] = vertex[cut.corner[c / 3][c % 3]];
+      twin[c] = cut.is_outside(c) ? against[cut.edge[c]] : base + cut.inner_twin[c];
+    }
+    if (!with_edges_) return;
+    for (uint32_t c = 0; c < 3U * cut.children; ++c)
+      number_edge(base + c, cut.is_outside(c) ? level.mesh->kind[edge[cut.edge[c] / 2]] : EdgeKind::smooth);
+  }
+
+  /// What runs in the result against the halves of a face's half-edges h to h + 2 whose edges are in the mask, against
+  /// the whole of the others: [2 * side + half].
+  [[nodiscard]] static std::array<uint32_t, 6> find_twins(const AssembledLevel& level, uint32_t h, unsigned mask) {
+    std::array<uint32_t, 6> twins{};
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t t = level.twin[h + i];
+      const unsigned is_split = mask >> i & 1U;
+      if (t != none && level.fate[Topology::face(t)] < AssembledLevel::divided) {
+        const auto& outer = transition_pattern(level.fate[Topology::face(t)]).outer;
+        const uint32_t base = level.first[Topology::face(t)];
+        twins[2 * i] = base + outer[2 * (t % 3) + is_split];
+        twins[2 * i + 1] = base + outer[2 * (t % 3)];
+      } else {
+        twins[2 * i] = twin_in_result(level, h + i, 0);
+        if (is_split != 0) twins[2 * i + 1] = twin_in_result(level, h + i, 1);
+      }
+    }
+    return twins;
   }
 
   /// In the order of the result: a half-edge whose twin was there before has its edge from it.
-  void make_faces(const AssembledLevel& level, uint32_t f) {
-    const SplitPattern& cut = transition_pattern(level.fate[f]);
-    const uint32_t base = level.first[f];
-    const uint32_t h = 3 * f;
-    std::array<uint32_t, 6> vertex{};
-    for (uint32_t i = 0; i < 3; ++i) vertex[i] = level.vertex_in_result(level.origin[h + i]);
-    if (cut.children == 1) {
-      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + i] = vertex[i];
-      for (uint32_t i = 0; i < 3; ++i) {
-        const uint32_t t = level.twin[h + i];
-        if (!with_edges_ && t != none && level.fate[Topology::face(t)] == AssembledLevel::uncut)
-          out_.topology.twin[base + i] = level.first[Topology::face(t)] + t % 3;
-        else
-          make_outer(base + i, level, h + i, 0);
-      }
+  void number_edge(uint32_t made, EdgeKind kind) {
+    Topology& mesh = out_.topology;
+    const uint32_t twin = mesh.twin[made];
+    if (twin < made) {
+      mesh.edge[made] = mesh.edge[twin];
       return;
     }
-    for (uint32_t i = 0; i < 3; ++i)
-      if (level.choice->split[level.edge[h + i]] != 0) vertex[3 + i] = level.new_vertex[level.edge[h + i]];
-    for (uint32_t c = 0; c < cut.children; ++c)
-      for (uint32_t i = 0; i < 3; ++i) out_.topology.origin[base + 3 * c + i] = vertex[cut.corner[c][i]];
-    for (uint32_t c = 0; c < 3U * cut.children; ++c) {
-      if (cut.inner_twin[c] == SplitPattern::outside)
-        make_outer(base + c, level, h + cut.edge[c] / 2, cut.edge[c] % 2);
-      else
-        make_edge(base + c, base + cut.inner_twin[c], EdgeKind::smooth);
-    }
-  }
-
-  /// The edge and twin of a half-edge of the result, which is the first or second half (or the whole) of half-edge h.
-  void make_outer(uint32_t made, const AssembledLevel& level, uint32_t h, uint32_t half) {
-    if (out_.topology.twin[made] == none)
-      make_new_edge(made, twin_in_result(level, h, half), level.mesh->kind[level.edge[h]]);
-    else if (with_edges_)
-      out_.topology.edge[made] = out_.topology.edge[out_.topology.twin[made]];
-  }
-
-  void make_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
-    if (out_.topology.twin[made] == none)
-      make_new_edge(made, twin, kind);
-    else if (with_edges_)
-      out_.topology.edge[made] = out_.topology.edge[twin];
-  }
-
-  void make_new_edge(uint32_t made, uint32_t twin, EdgeKind kind) {
-    Topology& mesh = out_.topology;
-    if (twin != none) {
-      mesh.twin[made] = twin;
-      mesh.twin[twin] = made;
-    }
-    if (!with_edges_) return;
     mesh.edge[made] = mesh.edge_count();
     if (twin == none && kind == EdgeKind::shared) {
       const auto [known, is_new] = shared_.try_emplace(std::minmax(mesh.origin[made], mesh.tip(made)), mesh.edge[made]);
@@ -191,7 +190,7 @@ class Assembler {
   [[nodiscard]] static uint32_t twin_in_result(const AssembledLevel& level, uint32_t h, uint32_t half) {
     const uint32_t t = level.twin[h];
     if (t != none && level.is_shown(Topology::face(t)))
-      return half_edge_in_result(level, t, level.choice->split[level.edge[h]] != 0 ? 1 - half : 0);
+      return half_edge_in_result(level, t, level.is_split[level.edge[h]] != 0 ? 1 - half : 0);
     const EdgeKind kind = level.mesh->kind[level.edge[h]];
     if (level.number == 0 || kind == EdgeKind::boundary || kind == EdgeKind::shared) return none;
     // It lies on the outside of its parent, and is a half of one of that one's.
@@ -218,7 +217,7 @@ class Assembler {
     out_.attributes = coarse_.attributes;
     Array<uint32_t> result(half_edge_count_);
     for (const AssembledLevel& level : levels_) {
-      const std::vector<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
+      const List<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
       const Array<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
@@ -238,113 +237,12 @@ class Assembler {
   bool with_edges_;
   const Mesh& coarse_;
   std::vector<AssembledLevel> levels_;
-  std::vector<Place> places_;  ///< in the order of the result
+  List<Place> places_;  ///< in the order of the result
   uint32_t half_edge_count_ = 0;
   uint32_t vertex_count_;
+  uint32_t next_vertex_ = 0;
   Mesh out_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;  ///< edge of the result between two vertices
-};
-
-/// Finds the largest deviation left at the edges of the faces that are not divided. Edges are looked at in their
-/// level's order; which of them count is asked only of those that may matter.
-class ErrorFinder {
- public:
-  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection)
-      : levels_(levels), errors_are_pixels_(selection.errors_are_pixels()), left_(selection) {
-    for (const LevelChoice& choice : levels) scales_.push_back(selection.highest_pixels_per_unit(choice.level->box));
-  }
-
-  ErrorLeft run() {
-    for (size_t k = 0; k < levels_.size(); ++k) {
-      add_whole(k);
-      add_split(k);
-    }
-    return left_;
-  }
-
- private:
-  [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
-
-  /// Whether all faces above one of the region are divided.
-  [[nodiscard]] bool is_reached(size_t k, uint32_t f) const {
-    for (; k > 0; --k) {
-      f = levels_[k].level->parent[f / 4];
-      if (levels_[k - 1].split_mask(f) != 7) return false;
-    }
-    return true;
-  }
-
-  /// Whether an edge that stays may have the largest deviation. The error of one that is wanted is often known better
-  /// than what follows from the bound.
-  [[nodiscard]] bool may_matter(const LevelChoice& choice, uint32_t e, double scale) const {
-    constexpr double rounding = 1 + 1e-6;
-    const double most = choice.level->trial.no_less_than_deviation_at(e);
-    if (left_.may_grow_by_distance(most)) return true;
-    if (!left_.may_grow_by_pixels(most * scale)) return false;
-    return !errors_are_pixels_ || choice.error[e] < 0 || left_.may_grow_by_pixels(rounding * choice.error[e]);
-  }
-
-  void add_whole(size_t k) {
-    const LevelChoice& choice = levels_[k];
-    const Topology& mesh = mesh_of(k);
-    for (uint32_t e : choice.region.edges) {
-      if (choice.split[e] != 0 || !may_matter(choice, e, scales_[k]) || !choice.shown[e]) continue;
-      const uint32_t h = mesh.half_edge[e];
-      const uint32_t t = mesh.twin[h];
-      if (is_reached(k, Topology::face(h)) || (t != none && is_reached(k, Topology::face(t)))) add(k, e);
-    }
-    for (uint32_t h : choice.level->shared) {
-      const uint32_t e = mesh.edge[h];
-      if (choice.may_be_split[e] != 0 && choice.split[e] == 0 && choice.shown[e] && is_reached(k, Topology::face(h)))
-        add(k, e);
-    }
-  }
-
-  void add_split(size_t k) {
-    const LevelChoice& choice = levels_[k];
-    const auto is_known = [&](uint32_t e) {
-      return k + 1 == levels_.size() &&
-             !left_.may_grow_by(split_leaves * choice.level->trial.no_less_than_deviation_at(e), scales_[k]);
-    };
-    choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
-      if (is_known(e)) return;
-      const bool has_children = choice.has_children(f);
-      if (has_children && choice.split_mask(f) == 7) return;
-      if (!choice.shown[e] || !is_reached(k, f)) return;
-      // Its halves may have been judged, though nothing below was wanted.
-      if (has_children && k + 1 < levels_.size()) {
-        const auto [first, second] = halves(k, f, e);
-        const LevelChoice& below = levels_[k + 1];
-        if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
-          for (uint32_t half : {first, second})
-            if (below.shown[half]) add(k + 1, half);
-          return;
-        }
-      }
-      add(k, e, split_leaves);
-    });
-  }
-
-  /// The two edges of the level below that a face's edge is split into.
-  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t e) const {
-    const uint32_t* edge = &mesh_of(k).edge[size_t{3} * f];
-    const uint32_t i = edge[0] == e ? 0 : edge[1] == e ? 1 : 2;
-    const HierarchyLevel& below = *levels_[k + 1].level;
-    const auto half = [&](uint32_t which) {
-      return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * i + which]];
-    };
-    return {half(0), half(1)};
-  }
-
-  void add(size_t k, uint32_t e, double share = 1) {
-    const HierarchyLevel& level = *levels_[k].level;
-    left_.add(level.mesh, level.trial, scales_[k], e, share);
-  }
-
-  std::span<const LevelChoice> levels_;
-  bool errors_are_pixels_;
-  std::vector<double> scales_;  ///< [level] the highest pixels per unit
-  ErrorLeft left_;
 };
 
 }  // namespace
@@ -358,10 +256,6 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
 
 Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges) {
   return Assembler(levels, most_cosine, with_edges).run();
-}
-
-ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection) {
-  return ErrorFinder(levels, selection).run();
 }
 
 }  // namespace papilio

@@ -17,7 +17,4 @@ namespace papilio {
 /// may be left out (mesh.h).
 [[nodiscard]] Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges);
 
-/// The largest deviation left in that mesh.
-[[nodiscard]] ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection);
-
 }  // namespace papilio

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "lighting.h"
 #include "triangle_distance.h"
@@ -15,6 +16,50 @@ TriangleCorners corners(const Mesh& mesh, uint32_t h) {
   return {at(mesh.topology.origin[h]), at(mesh.topology.tip(h)), at(mesh.topology.apex(h))};
 }
 
+/// Where a point lies that is a vector `to_point` from the end of a triangle's side: `along` leads to the side's other
+/// end, `to_apex` to the third corner.
+struct Foot {
+  enum : uint8_t {
+    above_face,    ///< above the triangle
+    beyond_side,   ///< across that side, and no other
+    anywhere_else  ///< or not known for sure
+  } where = anywhere_else;
+  double squared_height = 0;  ///< above the plane
+};
+
+Foot find_foot(Vec3d along, Vec3d to_apex, Vec3d to_point) {
+  constexpr double least_sine_squared = 1e-8;
+  const double aa = dot(along, along);
+  const double ac = dot(along, to_apex);
+  const double cc = dot(to_apex, to_apex);
+  const double area_squared = aa * cc - ac * ac;  // of the parallelogram
+  if (area_squared <= least_sine_squared * aa * cc) return {};
+  const double pa = dot(to_point, along);
+  const double pc = dot(to_point, to_apex);
+  // The foot is made of the corners in these shares of the area.
+  const double of_other_end = cc * pa - ac * pc;
+  const double of_apex = aa * pc - ac * pa;
+  const double of_end = area_squared - of_other_end - of_apex;
+  if (of_other_end < 0 || of_end < 0) return {};
+  if (of_apex < 0) return {Foot::beyond_side};
+  const double height = dot(to_point, cross(along, to_apex));
+  return {Foot::above_face, height * height / area_squared};
+}
+
+/// The distance to two triangles at one side where it is found easily: mostly the point is above one of them, or above
+/// the side itself.
+std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, Vec3d apex, Vec3d other_apex) {
+  const Foot one = find_foot(b - a, apex - a, point - a);
+  const Foot other = find_foot(b - a, other_apex - a, point - a);
+  if (one.where == Foot::anywhere_else || other.where == Foot::anywhere_else) return {};
+  if (one.where == Foot::above_face && other.where == Foot::above_face)
+    return std::min(one.squared_height, other.squared_height);
+  // From beyond the side the nearest is on the side, which is the other triangle's, too.
+  if (one.where == Foot::above_face) return one.squared_height;
+  if (other.where == Foot::above_face) return other.squared_height;
+  return squared_distance_to_segment(point, a, b);
+}
+
 /// Infinity is kept for what is not to be reached: a budget's threshold where nothing fits.
 float to_finite(double number) {
   return static_cast<float>(std::min<double>(std::numeric_limits<float>::max(), number));
@@ -23,12 +68,18 @@ float to_finite(double number) {
 }  // namespace
 
 double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
-  const uint32_t h = mesh.topology.half_edge[edge];
+  const Topology& topology = mesh.topology;
+  uint32_t h = topology.half_edge[edge];
+  const Vec3d point = to_double(q);
+  // Which of its half-edges the edge names depends on how the level was made; what is rounded must not.
+  if (topology.origin[h] > topology.tip(h) && topology.twin[h] != none) h = topology.twin[h];
   const TriangleCorners face = corners(mesh, h);
-  if (mesh.topology.kind[edge] != EdgeKind::smooth)
-    return std::sqrt(squared_distance_to_segment(to_double(q), face.a, face.b));
-  const TriangleCorners other = corners(mesh, mesh.topology.twin[h]);
-  return std::sqrt(std::min(squared_distance(to_double(q), face), squared_distance(to_double(q), other)));
+  if (topology.kind[edge] != EdgeKind::smooth)
+    return std::sqrt(squared_distance_to_segment(point, face.a, face.b));
+  const TriangleCorners other = corners(mesh, topology.twin[h]);
+  if (const auto squared = squared_distance_to_either(point, face.a, face.b, face.c, other.c))
+    return std::sqrt(*squared);
+  return std::sqrt(std::min(squared_distance(point, face), squared_distance(point, other)));
 }
 
 ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, const Camera* camera)

@@ -74,7 +74,7 @@ void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& 
       }
     return;
   }
-  std::vector<uint8_t> touched(mesh.vertex_count, 0);
+  List<uint8_t> touched(mesh.vertex_count, 0);
   for (uint32_t e : region.edges) {
     if (seeds[e] == 0) continue;
     touched[mesh.origin[mesh.half_edge[e]]] = 1;

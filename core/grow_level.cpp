@@ -5,9 +5,9 @@
 namespace papilio {
 namespace {
 
-Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const std::vector<uint32_t>& moved) {
+Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const List<uint32_t>& moved) {
   Array<Vec3f> normals(mesh.topology.face_count());
-  std::vector<uint8_t> is_known(normals.size(), 0);
+  List<uint8_t> is_known(normals.size(), 0);
   for (uint32_t f = 0; f < moved.size(); ++f) {
     normals[moved[f]] = known[f];
     is_known[moved[f]] = 1;
@@ -18,8 +18,7 @@ Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const st
 }
 
 /// The same for what is known of planes and products.
-void keep_known(const Topology& mesh, const HierarchyLevel& known, const std::vector<uint32_t>& moved,
-                const Trial& trial) {
+void keep_known(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved, const Trial& trial) {
   const Topology& before = known.mesh.topology;
   for (uint32_t f = 0; f < moved.size(); ++f) {
     trial.planes.put(moved[f], known.trial.planes.get(f));
@@ -29,9 +28,8 @@ void keep_known(const Topology& mesh, const HierarchyLevel& known, const std::ve
 }
 
 /// For each edge of the level the number of its vertex among those that the known level has made; `none`. [E]
-std::vector<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known,
-                                          const std::vector<uint32_t>& moved) {
-  std::vector<uint32_t> rank(mesh.edge_count(), none);
+List<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved) {
+  List<uint32_t> rank(mesh.edge_count(), none);
   for (uint32_t h = 0; h < known.mesh.topology.half_edge_count(); ++h) {
     const uint32_t e = known.mesh.topology.edge[h];
     if (known.trial.tried.is_split(e)) rank[mesh.edge[3 * moved[h / 3] + h % 3]] = known.trial.tried.before[e];
@@ -42,8 +40,8 @@ std::vector<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyL
 }  // namespace
 
 void try_grown_level(HierarchyLevel& level, const Options& options, const HierarchyLevel& known,
-                     const std::vector<uint32_t>& moved) {
-  const std::vector<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
+                     const List<uint32_t>& moved) {
+  const List<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
   EdgeMarks marks = complete_edges(level);
   Trial& trial = level.trial;
   trial = {.normals = grown_normals(level.mesh, known.trial.normals, moved), .tried = SplitPlan(marks), .made = {}};

@@ -12,7 +12,7 @@ namespace {
 /// Numbers the marked things in their order; `none` for the others.
 class Ranks {
  public:
-  explicit Ranks(const std::vector<uint8_t>& marks) : rank_(marks.size(), none) {
+  explicit Ranks(const List<uint8_t>& marks) : rank_(marks.size(), none) {
     for (size_t i = 0; i < marks.size(); ++i)
       if (marks[i] != 0) rank_[i] = count_++;
   }
@@ -21,14 +21,14 @@ class Ranks {
   [[nodiscard]] uint32_t count() const { return count_; }
 
  private:
-  std::vector<uint32_t> rank_;
+  List<uint32_t> rank_;
   uint32_t count_ = 0;
 };
 
 /// Splits faces in four, as split() does where all are split, leaving the other faces out.
 class LevelMaker {
  public:
-  LevelMaker(const HierarchyLevel& above, const std::vector<uint8_t>& red)
+  LevelMaker(const HierarchyLevel& above, const List<uint8_t>& red)
       : above_(above),
         mesh_(above.mesh.topology),
         support_(with_neighbours(mesh_, red)),
@@ -45,14 +45,14 @@ class LevelMaker {
   }
 
  private:
-  [[nodiscard]] std::vector<uint8_t> used_edges() const {
-    std::vector<uint8_t> used(mesh_.edge_count(), 0);
+  [[nodiscard]] List<uint8_t> used_edges() const {
+    List<uint8_t> used(mesh_.edge_count(), 0);
     for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h)
       if (support_[Topology::face(h)] != 0) used[mesh_.edge[h]] = 1;
     return used;
   }
-  [[nodiscard]] std::vector<uint8_t> used_vertices() const {
-    std::vector<uint8_t> used(mesh_.vertex_count, 0);
+  [[nodiscard]] List<uint8_t> used_vertices() const {
+    List<uint8_t> used(mesh_.vertex_count, 0);
     for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h)
       if (support_[Topology::face(h)] != 0) used[mesh_.origin[h]] = 1;
     return used;
@@ -169,7 +169,7 @@ class LevelMaker {
 
   const HierarchyLevel& above_;
   const Topology& mesh_;
-  const std::vector<uint8_t> support_;
+  const List<uint8_t> support_;
   const Ranks faces_, edges_, vertices_;
   HierarchyLevel below_;
 };
@@ -209,6 +209,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
 
 EdgeMarks edges_below_red(const HierarchyLevel& level) {
   EdgeMarks marks = complete_edges(level);
+  if (level.is_whole) return marks;
   const Topology& mesh = level.mesh.topology;
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
     if (level.red[level.parent[h / 12]] == 0) marks[mesh.edge[h]] = 0;
@@ -216,16 +217,17 @@ EdgeMarks edges_below_red(const HierarchyLevel& level) {
 }
 
 EdgeMarks complete_edges(const HierarchyLevel& level) {
-  EdgeMarks marks(level.mesh.topology.edge_count());
+  EdgeMarks marks(level.mesh.topology.edge_count(), 1);
+  if (level.is_whole) return marks;
   for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = level.is_complete(e) ? 1 : 0;
   return marks;
 }
 
-std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uint8_t>& faces) {
-  std::vector<uint8_t> touched(mesh.vertex_count, 0);
+List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
+  List<uint8_t> touched(mesh.vertex_count, 0);
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
     if (faces[Topology::face(h)] != 0) touched[mesh.origin[h]] = 1;
-  std::vector<uint8_t> marks(faces.size(), 0);
+  List<uint8_t> marks(faces.size(), 0);
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
     if (touched[mesh.origin[h]] != 0) marks[Topology::face(h)] = 1;
   return marks;
@@ -233,8 +235,8 @@ std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uin
 
 namespace {
 
-std::vector<uint32_t> numbers(size_t count) {
-  std::vector<uint32_t> all(count);
+List<uint32_t> numbers(size_t count) {
+  List<uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0U);
   return all;
 }
@@ -262,7 +264,7 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
 
 }  // namespace
 
-HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red, int threads) {
+HierarchyLevel refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
   const bool all = level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
                    std::ranges::find(red, 0) == red.end();
   HierarchyLevel below = all ? refine_whole_level(level, threads) : LevelMaker(level, red).run();

@@ -25,14 +25,14 @@ struct HierarchyLevel {
   Mesh mesh;                           ///< faces held; where others of the level are missing, edges are EdgeKind::cut
   bool is_whole = false;               ///< all the level's faces are held, with the numbers of the uniform mesh
   Features features;                   ///< of a whole level
-  std::vector<uint8_t> complete;       ///< [V] whether all the level's faces at the vertex are held
-  std::vector<uint32_t> from;          ///< [V] a vertex of the level above, or its vertex count plus the edge split
-  std::vector<uint32_t> parent;        ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
-  std::vector<uint32_t> child;         ///< [F of the level above] first of the face's four children here; `none`
-  std::vector<uint8_t> red;            ///< [F of the level above] whose children are held with the rings round them
-  std::vector<uint32_t> shared;        ///< the half-edges at shared edges
+  List<uint8_t> complete;              ///< [V] whether all the level's faces at the vertex are held
+  List<uint32_t> from;                 ///< [V] a vertex of the level above, or its vertex count plus the edge split
+  List<uint32_t> parent;               ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
+  List<uint32_t> child;                ///< [F of the level above] first of the face's four children here; `none`
+  List<uint8_t> red;                   ///< [F of the level above] whose children are held with the rings round them
+  List<uint32_t> shared;               ///< the half-edges at shared edges
   Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give, where tried
-  std::vector<double> longest;         ///< [V] edges (view.h); empty where no view asked
+  List<double> longest;                ///< [V] edges (view.h); empty where no view asked
   Box box{};                           ///< of the vertices
   Memo<uint32_t> transitions;          ///< [F] what is known of its transition faces (transition.h)
 
@@ -51,10 +51,10 @@ struct HierarchyLevel {
 [[nodiscard]] EdgeMarks complete_edges(const HierarchyLevel& level);
 
 /// The faces that share a vertex with a marked one, themselves included. Marks [F].
-[[nodiscard]] std::vector<uint8_t> with_neighbours(const Topology& mesh, const std::vector<uint8_t>& faces);
+[[nodiscard]] List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces);
 
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// must have been tried. Up to so many threads work on it.
-[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, std::vector<uint8_t> red, int threads = 1);
+[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
 }  // namespace papilio

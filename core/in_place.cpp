@@ -37,9 +37,9 @@ class InPlace {
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);
     const bool has_view = selection_.camera() != nullptr;
-    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : std::vector<double>{}, box_, region_);
+    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : List<double>{}, box_, region_);
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
-      const std::vector<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
+      const List<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
       targets_.assign(mesh_.topology.edge_count(), 0);
       for (uint32_t e : wanted) targets_[e] = 1;
       if (selection_.is_by_error()) keep_largest_errors(wanted);
@@ -54,11 +54,11 @@ class InPlace {
     return 0;
   }
 
-  void keep_largest_errors(const std::vector<uint32_t>& wanted) {
-    const std::vector<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, selection_.threshold());
+  void keep_largest_errors(const List<uint32_t>& wanted) {
     float threshold = selection_.threshold();
+    const List<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, threshold);
     if (options_.max_faces > 0) {
-      std::vector<WeighedEdge> edges;
+      List<WeighedEdge> edges;
       append_edges(mesh_.topology, region_, errors, edges);
       threshold = threshold_within(std::move(edges), threshold, mesh_.topology.face_count(), options_.max_faces);
       if (threshold > selection_.threshold()) {

@@ -4,9 +4,9 @@ namespace papilio {
 namespace {
 
 /// The edges all of whose faces are in the region, which lies below level 0. [E]
-EdgeMarks edges_of(const HierarchyLevel& level, const std::vector<uint32_t>& faces) {
+EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   const Topology& mesh = level.mesh.topology;
-  std::vector<uint8_t> is_in(mesh.face_count() / 4, 0);  // children come by four
+  List<uint8_t> is_in(mesh.face_count() / 4, 0);  // children come by four
   for (uint32_t f : faces) is_in[f / 4] = 1;
   EdgeMarks marks(mesh.edge_count(), 0);
   for (uint32_t f : faces)
@@ -42,7 +42,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   return choice;
 }
 
-void mark_red(LevelChoice& choice, const std::vector<uint32_t>& faces) {
+void mark_red(LevelChoice& choice, const List<uint32_t>& faces) {
   const Topology& mesh = choice.level->mesh.topology;
   choice.red.assign(mesh.face_count(), 0);
   choice.at_a_red.assign(mesh.vertex_count, 0);

@@ -17,13 +17,13 @@ struct LevelChoice {
   EdgeMarks may_be_split;  ///< [E] the region's edges
   EdgesShown shown;        ///< those of them that the view shows
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
-  /// infinity where nothing wants it.
-  std::vector<float> error;
-  std::vector<uint32_t> candidates;   ///< the edges whose error reaches the least threshold there may be
-  EdgeMarks split;                    ///< [E] what is split for the result
-  std::vector<uint32_t> split_edges;  ///< the same as a list
-  std::vector<uint8_t> red;       ///< [F] whose children are the region of the next choice; empty while there is none
-  std::vector<uint8_t> at_a_red;  ///< [V] whether a red face is there
+  /// infinity where nothing wants it. Empty where errors do not decide.
+  List<float> error;
+  List<uint32_t> candidates;   ///< the edges whose error reaches the least threshold there may be
+  EdgeMarks split;             ///< [E] what is split for the result
+  List<uint32_t> split_edges;  ///< the same as a list
+  List<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
+  List<uint8_t> at_a_red;      ///< [V] whether a red face is there
 
   /// Bit i is set where edge i of the face is split.
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
@@ -39,25 +39,28 @@ struct LevelChoice {
     for (uint32_t e : split_edges) split[e] = 0;
     split_edges.clear();
   }
-  /// Calls `visit(face, edge)` for each face at each edge of a list, which are those that `is_listed`. Edges of the
-  /// region have all their faces there.
-  template <class IsListed, class Visit>
-  void visit_faces(const std::vector<uint32_t>& edges, const IsListed& is_listed, const Visit& visit) const {
+  /// Calls `visit(face, edge)` for each face at each edge that is split. Edges of the region have all their faces
+  /// there.
+  template <class Visit>
+  void visit_faces_of_split(const Visit& visit) const {
     const Topology& mesh = level->mesh.topology;
-    for (uint32_t e : edges) {
+    for (uint32_t e : split_edges) {
       if (mesh.kind[e] == EdgeKind::shared) continue;
       const uint32_t h = mesh.half_edge[e];
       visit(Topology::face(h), e);
       if (mesh.twin[h] != none) visit(Topology::face(mesh.twin[h]), e);
     }
     for (uint32_t h : level->shared)
-      if (is_listed(mesh.edge[h])) visit(Topology::face(h), mesh.edge[h]);
+      if (split[mesh.edge[h]] != 0) visit(Topology::face(h), mesh.edge[h]);
   }
-  /// The same for the edges that are split.
+  /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
+  /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>
-  void visit_faces_of_split(const Visit& visit) const {
-    visit_faces(
-        split_edges, [&](uint32_t e) { return split[e] != 0; }, visit);
+  void visit_parents(const Visit& visit) const {
+    for (size_t i = 0; i < region.faces.size(); i += 4) {
+      const uint32_t f = region.faces[i];
+      visit(level->parent[f / 4], &level->mesh.topology.edge[size_t{3} * f]);
+    }
   }
   /// Whether all the face's edges may be split.
   [[nodiscard]] bool may_divide(uint32_t face) const {
@@ -78,6 +81,6 @@ struct LevelChoice {
 [[nodiscard]] LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const HierarchyLevel> level);
 
 /// Marks faces of the choice's region as those whose children the next choice is made of.
-void mark_red(LevelChoice& choice, const std::vector<uint32_t>& faces);
+void mark_red(LevelChoice& choice, const List<uint32_t>& faces);
 
 }  // namespace papilio

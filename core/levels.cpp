@@ -14,7 +14,7 @@ constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and 
 /// All of a level is made by formula, for about as much as a part of one in so many faces takes.
 constexpr size_t part_as_dear_as_all = 3;
 
-bool covers(const std::vector<uint8_t>& known, const std::vector<uint8_t>& red) {
+bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
 }
 
@@ -38,7 +38,7 @@ Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progr
       to_keep_(1),
       smallest_angle_(prepared.smallest_angle_) {}
 
-void Levels::deepen(const std::vector<uint8_t>& red) {
+void Levels::deepen(const List<uint8_t>& red) {
   const size_t depth = levels_.size();
   if (depth < known_.size()) {
     const std::shared_ptr<const HierarchyLevel> known = known_[depth];
@@ -53,13 +53,13 @@ void Levels::deepen(const std::vector<uint8_t>& red) {
   make(red);
 }
 
-bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red) {
+bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
   const auto level =
       std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red), progress_.threads()));
-  std::vector<uint32_t> moved(known.mesh.topology.face_count());
+  List<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent[f / 4];
     moved[f] = level->child[moved_.empty() ? parent : moved_[parent]] + f % 4;
@@ -72,10 +72,10 @@ bool Levels::make_with_known(const HierarchyLevel& known, std::vector<uint8_t> r
   return true;
 }
 
-std::vector<uint8_t> Levels::with_margin(const std::vector<uint8_t>& red) const {
+List<uint8_t> Levels::with_margin(const List<uint8_t>& red) const {
   const HierarchyLevel& level = *levels_.back();
   const Topology& mesh = level.mesh.topology;
-  std::vector<uint8_t> wide = with_neighbours(mesh, red);
+  List<uint8_t> wide = with_neighbours(mesh, red);
   if (level.parent.empty()) return wide;
   const EdgeMarks may_split = edges_below_red(level);
   for (uint32_t f = 0; f < wide.size(); ++f) {
@@ -85,27 +85,27 @@ std::vector<uint8_t> Levels::with_margin(const std::vector<uint8_t>& red) const 
   return wide;
 }
 
-bool Levels::may_keep(const std::vector<uint8_t>& red) const {
+bool Levels::may_keep(const List<uint8_t>& red) const {
   if (prepared_ == nullptr || to_keep_ < levels_.size()) return false;
-  const std::vector<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
+  const List<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
   uint64_t bytes = 4 * bytes_per_kept_face * static_cast<uint64_t>(std::ranges::count(support, 1));
   for (const auto& level : levels_) bytes += level->bytes();
   return bytes <= prepared_->budget_;
 }
 
-std::vector<uint8_t> Levels::or_everything(std::vector<uint8_t> red) const {
+List<uint8_t> Levels::or_everything(List<uint8_t> red) const {
   const HierarchyLevel& level = *levels_.back();
   if (!level.is_whole || level.trial.made.size() != level.mesh.topology.edge_count() ||
       !progress_.has_plenty(4 * red.size(), bytes_per_face))
     return red;
-  const std::vector<uint8_t> support = with_neighbours(level.mesh.topology, red);
+  const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<size_t>(std::ranges::count(support, 1));
   if (held * part_as_dear_as_all >= red.size()) red.assign(red.size(), 1);
   return red;
 }
 
-void Levels::make(const std::vector<uint8_t>& red) {
-  std::vector<uint8_t> more = or_everything(prepared_ == nullptr ? red : with_margin(red));
+void Levels::make(const List<uint8_t>& red) {
+  List<uint8_t> more = or_everything(prepared_ == nullptr ? red : with_margin(red));
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red);
   const bool is_kept = may_keep(more);
   const auto level =
@@ -132,8 +132,7 @@ void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
 void Levels::hand_back() {
   if (!has_grown_) return;
   while (!moved_.empty() && levels_.size() < known_.size())
-    if (!make_with_known(*known_[levels_.size()], std::vector<uint8_t>(levels_.back()->mesh.topology.face_count(), 0)))
-      break;
+    if (!make_with_known(*known_[levels_.size()], List<uint8_t>(levels_.back()->mesh.topology.face_count(), 0))) break;
   levels_.resize(to_keep_);
   prepared_->keep(std::move(levels_));
 }

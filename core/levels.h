@@ -24,7 +24,7 @@ class Levels {
 
   /// Adds a level that holds the children of the deepest one's faces marked `red` [F], and maybe others; its edges are
   /// tried. Throws `Error` cancelled.
-  void deepen(const std::vector<uint8_t>& red);
+  void deepen(const List<uint8_t>& red);
 
   /// Gives what was made to the prepared mesh, if there is one.
   void hand_back();
@@ -32,15 +32,15 @@ class Levels {
  private:
   /// Adds a level for the children of these faces and of all that the known level of its depth has; false, and nothing
   /// is done, where that is more than may be kept.
-  bool make_with_known(const HierarchyLevel& known, std::vector<uint8_t> red);
-  [[nodiscard]] bool may_keep(const std::vector<uint8_t>& red) const;
+  bool make_with_known(const HierarchyLevel& known, List<uint8_t> red);
+  [[nodiscard]] bool may_keep(const List<uint8_t>& red) const;
   /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
   /// next view, from a little further on, finds what it needs.
-  [[nodiscard]] std::vector<uint8_t> with_margin(const std::vector<uint8_t>& red) const;
+  [[nodiscard]] List<uint8_t> with_margin(const List<uint8_t>& red) const;
   /// All faces of the deepest level if it is whole and most of them would be held: then all cost less. Else those
   /// marked.
-  [[nodiscard]] std::vector<uint8_t> or_everything(std::vector<uint8_t> red) const;
-  void make(const std::vector<uint8_t>& red);
+  [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red) const;
+  void make(const List<uint8_t>& red);
   void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
   const Options& options_;
@@ -51,7 +51,7 @@ class Levels {
   size_t to_keep_ = 0;      ///< how many of these may be kept
   bool has_grown_ = false;  ///< one of those was made
   /// Where the deepest level is made of more than the known one of its depth: [F of the known] the same face in it.
-  std::vector<uint32_t> moved_;
+  List<uint32_t> moved_;
   double smallest_angle_;
 };
 

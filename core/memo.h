@@ -2,7 +2,8 @@
 
 #include <atomic>
 #include <cstddef>
-#include <vector>
+
+#include "array.h"
 
 namespace papilio {
 
@@ -25,7 +26,7 @@ class Memo {
   [[nodiscard]] size_t bytes() const { return numbers_.capacity() * sizeof(Number); }
 
  private:
-  mutable std::vector<Number> numbers_;
+  mutable List<Number> numbers_;
 };
 
 }  // namespace papilio

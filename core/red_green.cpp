@@ -5,6 +5,7 @@
 
 #include "assemble.h"
 #include "attributes.h"
+#include "error_left.h"
 #include "level_choice.h"
 #include "transition.h"
 
@@ -56,14 +57,13 @@ class RedGreen {
     const HierarchyLevel& level = *choice.level;
     choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
     const float least = options_.max_faces > 0 ? 0 : threshold_;
-    const std::vector<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()),
-                                                           choice.region, choice.shown, level.box, least);
-    if (selection_.is_by_error()) {
-      choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least);
-    } else {
-      choice.error.assign(level.mesh.topology.edge_count(), never);
-      for (uint32_t e : wanted) choice.error[e] = threshold_;
+    List<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()), choice.region,
+                                              choice.shown, level.box, least);
+    if (!selection_.is_by_error()) {
+      choice.candidates = std::move(wanted);
+      return;
     }
+    choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least);
     std::ranges::copy_if(wanted, std::back_inserter(choice.candidates),
                          [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
   }
@@ -81,24 +81,25 @@ class RedGreen {
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
   void carry_up(const LevelChoice& below, LevelChoice& above) const {
     const float least = selection_.threshold();
-    const auto carry = [&](uint32_t f, uint32_t edge) {
-      const uint32_t parent = below.level->parent[f / 4];
+    below.visit_parents([&](uint32_t parent, const uint32_t* edges) {
+      float largest = never;
+      for (uint32_t i = 0; i < 12; ++i) largest = std::max(largest, below.error[edges[i]]);
+      if (!(largest >= least)) return;
       for (uint32_t i = 0; i < 3; ++i) {
         const uint32_t e = above.level->mesh.topology.edge[3 * parent + i];
         if (above.error[e] < least) above.candidates.push_back(e);
-        above.error[e] = std::max(above.error[e], below.error[edge]);
+        above.error[e] = std::max(above.error[e], largest);
       }
-    };
-    below.visit_faces(
-        below.candidates, [&](uint32_t e) { return below.error[e] >= least; }, carry);
+    });
   }
 
   /// Marks what has at least this error, and what that needs so that no transition face becomes a sliver.
   void split_from(float threshold) {
     for (LevelChoice& choice : choices_) {
       choice.split_nothing();
+      choice.split_edges.reserve(choice.candidates.size());
       for (uint32_t e : choice.candidates)
-        if (choice.error[e] >= threshold) choice.split_edge(e);
+        if (choice.error.empty() || choice.error[e] >= threshold) choice.split_edge(e);
     }
     for (size_t k = choices_.size(); k-- > 0;) {
       avoid_slivers(choices_[k], most_cosine_);
@@ -107,8 +108,11 @@ class RedGreen {
   }
 
   static void carry_marks_up(const LevelChoice& below, LevelChoice& above) {
-    below.visit_faces_of_split([&](uint32_t f, uint32_t) {
-      const uint32_t parent = below.level->parent[f / 4];
+    if (below.split_edges.empty()) return;
+    below.visit_parents([&](uint32_t parent, const uint32_t* edges) {
+      unsigned any = 0;
+      for (uint32_t i = 0; i < 12; ++i) any |= below.split[edges[i]];
+      if (any == 0) return;
       for (uint32_t i = 0; i < 3; ++i) above.split_edge(above.level->mesh.topology.edge[3 * parent + i]);
     });
   }
@@ -117,7 +121,7 @@ class RedGreen {
   /// afterwards; where it is too much, the errors themselves get that much less.
   void keep_within_budget() {
     const uint64_t coarse = choices_[0].region.faces.size();
-    const std::vector<WeighedEdge> edges = weighed_edges();
+    const List<WeighedEdge> edges = weighed_edges();
     uint64_t room = options_.max_faces;
     for (uint64_t faces = count_assembled(choices_); faces > options_.max_faces; faces = count_assembled(choices_)) {
       float raised = threshold_within(edges, selection_.threshold(), coarse, room);
@@ -131,8 +135,8 @@ class RedGreen {
     out_of_budget_ = threshold_ > selection_.threshold();
   }
 
-  [[nodiscard]] std::vector<WeighedEdge> weighed_edges() const {
-    std::vector<WeighedEdge> edges;
+  [[nodiscard]] List<WeighedEdge> weighed_edges() const {
+    List<WeighedEdge> edges;
     for (const LevelChoice& choice : choices_)
       append_edges(choice.level->mesh.topology, choice.region, choice.error, edges);
     return edges;
@@ -155,7 +159,7 @@ class RedGreen {
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
-    const std::vector<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
+    const List<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
     if (red.empty()) return false;
     mark_red(choices_.back(), red);
     require_room_below(level + 1);
@@ -177,9 +181,9 @@ class RedGreen {
     if (faces > face_count_limit) progress_.require_room(faces, level);
   }
 
-  [[nodiscard]] std::vector<uint32_t> faces_to_divide() const {
+  [[nodiscard]] List<uint32_t> faces_to_divide() const {
     const LevelChoice& choice = choices_.back();
-    std::vector<uint32_t> red;
+    List<uint32_t> red;
     std::ranges::copy_if(choice.region.faces, std::back_inserter(red),
                          [&](uint32_t f) { return choice.split_mask(f) == 7; });
     return red;
@@ -187,16 +191,16 @@ class RedGreen {
 
   /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
   /// error were tried too, and a tenth: results were the same.)
-  [[nodiscard]] std::vector<uint32_t> faces_to_look_into() const {
+  [[nodiscard]] List<uint32_t> faces_to_look_into() const {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
-    std::vector<uint8_t> touched(mesh.vertex_count, 0);
-    const auto is_large = [&](uint32_t e) { return choice.error[e] >= threshold_; };
-    choice.visit_faces(choice.candidates, is_large, [&](uint32_t f, uint32_t e) {
-      if (!is_large(e)) return;
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
-    });
-    std::vector<uint32_t> faces;
+    List<uint8_t> touched(mesh.vertex_count, 0);
+    for (uint32_t f : choice.region.faces) {
+      const uint32_t* edge = &mesh.edge[size_t{3} * f];
+      if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
+        for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+    }
+    List<uint32_t> faces;
     for (uint32_t f : choice.region.faces) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
       if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0 && choice.may_divide(f))
@@ -233,7 +237,7 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  std::vector<std::vector<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
+  std::vector<List<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
   bool out_of_budget_ = false;
 };
 

@@ -7,15 +7,15 @@
 namespace papilio {
 
 Region whole_region(const Topology& mesh) {
-  Region region{std::vector<uint32_t>(mesh.face_count()), std::vector<uint32_t>(mesh.edge_count())};
+  Region region{List<uint32_t>(mesh.face_count()), List<uint32_t>(mesh.edge_count())};
   std::iota(region.faces.begin(), region.faces.end(), 0U);
   std::iota(region.edges.begin(), region.edges.end(), 0U);
   return region;
 }
 
-std::vector<uint32_t> marked(const std::vector<uint8_t>& marks) {
+List<uint32_t> marked(const List<uint8_t>& marks) {
   const auto count = marks.size() - static_cast<size_t>(std::ranges::count(marks, 0));
-  std::vector<uint32_t> numbers(count + 1);  // one more than needed: what is not marked is written, and then replaced
+  List<uint32_t> numbers(count + 1);  // one more than needed: what is not marked is written, and then replaced
   size_t known = 0;
   for (size_t i = 0; i < marks.size();) {
     uint64_t eight = 1;

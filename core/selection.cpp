@@ -95,7 +95,7 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
+EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
                            const Region& region) const {
   if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
   EdgeMarks all(mesh.topology.edge_count(), 0);
@@ -103,22 +103,22 @@ EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const std::vect
   return all;
 }
 
-EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest, const Box& box,
-                            const std::vector<uint32_t>& shared) const {
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                            const List<uint32_t>& shared) const {
   if (!camera_) return {};
   return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
 }
 
 template <class MayWant, class Shown>
-std::vector<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                           const MayWant& may_want, const Shown& shown) const {
+List<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                    const MayWant& may_want, const Shown& shown) const {
   EdgeMarks curved;
   if (!options_.flatness.empty()) {
     curved.assign(mesh.topology.edge_count(), 0);
     mark_by_flatness(mesh, trial.normals, trial.products, flatness_of(level), region, curved);
     grow(mesh.topology, options_.growth, region, curved);
   }
-  std::vector<uint32_t> wanted;
+  List<uint32_t> wanted;
   for (uint32_t e : region.edges)
     if ((curved.empty() || curved[e] != 0) && may_want(e) && shown[e] != 0 &&
         (!camera_ || looks_long(mesh, e, *camera_, options_.view->edge_pixels)))
@@ -126,14 +126,14 @@ std::vector<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial,
   return wanted;
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                        const EdgeMarks& shown) const {
+List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                 const EdgeMarks& shown) const {
   const auto any = [](uint32_t) { return true; };
   return wanted_of(mesh, trial, level, region, any, shown);
 }
 
-std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                        const EdgesShown& shown, const Box& box, float least) const {
+List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                 const EdgesShown& shown, const Box& box, float least) const {
   const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
   const auto may_reach = [&](uint32_t e) {
     if (needed <= 0) return true;
@@ -144,30 +144,29 @@ std::vector<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, in
   return wanted_of(mesh, trial, level, region, may_reach, shown);
 }
 
-std::vector<float> Selection::errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
-                                     const Box& box, float exact_from) const {
-  std::vector<float> errors(mesh.topology.edge_count(), never);
+List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
+                              float exact_from) const {
+  List<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
+  const auto error = [&](uint32_t e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };
   for (uint32_t e : wanted) {
     errors[e] = measure_.most_error(trial.most_deviation_at(mesh, e), scale);
     if (errors[e] < exact_from) continue;
     const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
-    errors[e] = measure_.error(mesh, trial.normals, e, distance);
-    if (errors[e] >= exact_from && !is_exact)
-      errors[e] = measure_.error(mesh, trial.normals, e, trial.deviation_at(mesh, e));
+    errors[e] = error(e, distance);
+    if (errors[e] >= exact_from && !is_exact) errors[e] = error(e, trial.deviation_at(mesh, e));
   }
   return errors;
 }
 
-void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,
-                  std::vector<WeighedEdge>& edges) {
-  std::vector<uint32_t> faces(mesh.edge_count(), 0);
+void append_edges(const Topology& mesh, const Region& region, const List<float>& errors, List<WeighedEdge>& edges) {
+  List<uint32_t> faces(mesh.edge_count(), 0);
   for (uint32_t f : region.faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) ++faces[mesh.edge[h]];
   for (uint32_t e : region.edges) edges.push_back({errors[e], faces[e]});
 }
 
-float threshold_within(std::vector<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {
+float threshold_within(List<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {
   std::erase_if(edges, [&](const WeighedEdge& e) { return !(e.error >= least); });
   for (const WeighedEdge& e : edges) faces += e.faces;
   if (faces <= budget) return least;

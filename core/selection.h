@@ -80,24 +80,24 @@ class Selection {
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
   /// edges (view.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
-                                const Box& box, const Region& region) const;
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                                const Region& region) const;
   /// The same, edge by edge. `shared`: the half-edges at shared edges.
-  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const std::vector<double>& longest,
-                                 const Box& box, const std::vector<uint32_t>& shared) const;
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                                 const List<uint32_t>& shared) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                             const EdgeMarks& shown) const;
+  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                      const EdgeMarks& shown) const;
 
   /// The same, of the edges whose error (below) may be `least` or more.
-  [[nodiscard]] std::vector<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                             const EdgesShown& shown, const Box& box, float least) const;
+  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                      const EdgesShown& shown, const Box& box, float least) const;
 
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
   /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
-  [[nodiscard]] std::vector<float> errors(const Mesh& mesh, const Trial& trial, const std::vector<uint32_t>& wanted,
-                                          const Box& box, float exact_from) const;
+  [[nodiscard]] List<float> errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
+                                   float exact_from) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;
@@ -105,8 +105,8 @@ class Selection {
  private:
   friend class ErrorLeft;
   template <class MayWant, class Shown>
-  [[nodiscard]] std::vector<uint32_t> wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                                const MayWant& may_want, const Shown& shown) const;
+  [[nodiscard]] List<uint32_t> wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                         const MayWant& may_want, const Shown& shown) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;
@@ -134,6 +134,10 @@ class ErrorLeft {
   [[nodiscard]] bool may_grow_by(double most, double scale) const {
     return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
   }
+  /// A smaller deviation is not the largest. `scale` as above.
+  [[nodiscard]] double least_that_matters(double scale) const {
+    return scale > 0 ? std::min(distance_, pixels_ / scale) : distance_;
+  }
   [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
   [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
   [[nodiscard]] double error() const { return measure_->diagonal() > 0 ? distance_ / measure_->diagonal() : 0; }
@@ -153,12 +157,11 @@ struct WeighedEdge {
   uint32_t faces;  ///< how many faces there are at the edge
 };
 /// Appends the region's edges, with their errors [E].
-void append_edges(const Topology& mesh, const Region& region, const std::vector<float>& errors,
-                  std::vector<WeighedEdge>& edges);
+void append_edges(const Topology& mesh, const Region& region, const List<float>& errors, List<WeighedEdge>& edges);
 
 /// The least threshold, not below `least`, at which no more than `budget` faces come of the `faces` that are there
 /// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing
 /// fits. O(E log E).
-[[nodiscard]] float threshold_within(std::vector<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget);
+[[nodiscard]] float threshold_within(List<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget);
 
 }  // namespace papilio

@@ -100,7 +100,7 @@ class Splitter {
     const Region all = whole_region(mesh_);
     EdgeMarks targets(mesh_.edge_count());
     for (uint32_t e : all.edges) targets[e] = plan_.is_split(e) ? 1 : 0;
-    const std::vector<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
+    const List<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
     Array<uint32_t> point(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
@@ -114,7 +114,7 @@ class Splitter {
   const SplitPlan& plan_;
   const Array<Vec3f>& positions_;
   std::vector<const SplitPattern*> pattern_;  ///< [F]
-  std::vector<uint32_t> first_child_;         ///< [F + 1]
+  List<uint32_t> first_child_;                ///< [F + 1]
   Topology child_;
 };
 

@@ -21,6 +21,7 @@ struct SplitPattern {
   std::array<uint8_t, 6> outer{};
 
   static constexpr uint8_t outside = 255;
+  [[nodiscard]] bool is_outside(uint32_t half_edge) const { return inner_twin[half_edge] == outside; }
 };
 
 /// The pattern of a face: `mask` has bit i set where edge i is a target; `second_diagonal` chooses the cut of

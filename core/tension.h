@@ -26,7 +26,7 @@ inline constexpr double tension_bound = 0.2;
 
 /// What tension makes of one level.
 struct TensionField {
-  std::vector<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
+  List<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
   bool follow_features = false;
   /// With `follow_features`, [V]: how many sharp edges (factor under 1/2) meet there, 3 standing for more, and the
   /// exclusive or of their other ends.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace papilio {
 namespace {
@@ -21,20 +23,28 @@ std::array<Vec3d, 6> local_points(const HierarchyLevel& level, uint32_t face, un
   return points;
 }
 
-double cosine(Vec3d u, Vec3d v) {
-  const double size = length(u) * length(v);
-  return size > 0 ? dot(u, v) / size : 1;
+double squared_length(Vec3d a) { return dot(a, a); }
+
+/// The cosine of a triangle's smallest angle, squared. That angle is opposite the shortest side, and not above 60
+/// degrees; 1 for a triangle without area that has a side of no length.
+double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
+  double shortest = squared_length(b - a);
+  double second = squared_length(c - b);
+  double third = squared_length(a - c);
+  if (second < shortest) std::swap(shortest, second);
+  if (third < shortest) std::swap(shortest, third);
+  const double twice_product = second + third - shortest;  // of the other sides, with the cosine
+  return shortest > 0 ? 0.25 * twice_product * twice_product / (second * third) : 1;
 }
 
-/// Cosine of the smallest angle of the pattern's pieces.
-double smallest_angle_cosine(const SplitPattern& pattern, const std::array<Vec3d, 6>& points) {
-  double largest = -1;
-  for (uint32_t c = 0; c < pattern.children; ++c)
-    for (uint32_t i = 0; i < 3; ++i) {
-      const Vec3d at = points[pattern.corner[c][i]];
-      largest = std::max(
-          largest, cosine(points[pattern.corner[c][(i + 1) % 3]] - at, points[pattern.corner[c][(i + 2) % 3]] - at));
-    }
+/// The same for the smallest angle of the pattern's pieces.
+double squared_cosine_of_smallest_angle(const SplitPattern& pattern, const std::array<Vec3d, 6>& points) {
+  double largest = 0;
+  for (uint32_t c = 0; c < pattern.children; ++c) {
+    const auto& corner = pattern.corner[c];
+    largest =
+        std::max(largest, squared_cosine_of_smallest_angle(points[corner[0]], points[corner[1]], points[corner[2]]));
+  }
   return largest;
 }
 
@@ -44,9 +54,9 @@ enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const std::array<Vec3d, 6> points = local_points(level, face, mask);
   uint32_t found = is_known;
-  double cosine = smallest_angle_cosine(split_pattern(mask, false), points);
+  double cosine = squared_cosine_of_smallest_angle(split_pattern(mask, false), points);
   if (mask == 3 || mask == 5 || mask == 6) {
-    const double second = smallest_angle_cosine(split_pattern(mask, true), points);
+    const double second = squared_cosine_of_smallest_angle(split_pattern(mask, true), points);
     const uint32_t i = first_of_two_targets(mask);
     const auto& origin = level.mesh.topology.origin;
     const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
@@ -55,8 +65,8 @@ uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double
       cosine = second;
     }
   }
-  if (cosine > most_cosine && smallest_angle_cosine(split_pattern(0, false), points) <= most_cosine)
-    found |= has_sliver;
+  const double most = most_cosine * most_cosine;
+  if (cosine > most && squared_cosine_of_smallest_angle(points[0], points[1], points[2]) <= most) found |= has_sliver;
   return found;
 }
 
@@ -73,13 +83,12 @@ uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, d
 }  // namespace
 
 double smallest_angle(const Mesh& mesh) {
-  double largest = -1;
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
-    const auto at = [&](uint32_t v) { return to_double(mesh.positions[v]); };
-    const Vec3d corner = at(mesh.topology.origin[h]);
-    largest = std::max(largest, cosine(at(mesh.topology.tip(h)) - corner, at(mesh.topology.apex(h)) - corner));
+  double largest = 0;
+  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+    const auto at = [&](uint32_t corner) { return to_double(mesh.positions[mesh.topology.origin[3 * f + corner]]); };
+    largest = std::max(largest, squared_cosine_of_smallest_angle(at(0), at(1), at(2)));
   }
-  return std::acos(std::min(largest, 1.0));
+  return std::acos(std::sqrt(std::min(largest, 1.0)));
 }
 
 double most_cosine_beside(double smallest_angle) { return std::cos(sliver_share * smallest_angle); }
@@ -90,6 +99,7 @@ uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned m
 }
 
 void avoid_slivers(LevelChoice& choice, double most_cosine) {
+  if (choice.split_edges.empty()) return;
   const HierarchyLevel& level = *choice.level;
   const Topology& mesh = level.mesh.topology;
   const auto must_be_divided = [&](uint32_t f) {
@@ -97,12 +107,8 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && choice.may_divide(f) &&
            (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
-  std::vector<uint32_t> faces;
-  choice.visit_faces_of_split([&](uint32_t f, uint32_t) {
-    if (must_be_divided(f)) faces.push_back(f);
-  });
-  std::ranges::sort(faces);  // the order decides where dividing one makes a sliver of another
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  List<uint32_t> faces;  // the order decides where dividing one makes a sliver of another
+  std::ranges::copy_if(choice.region.faces, std::back_inserter(faces), must_be_divided);
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();

@@ -46,7 +46,7 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const std::vector<double>& longest,
+  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const List<double>& longest,
         const Box& box, const Camera& camera)
       : mesh_(mesh),
         normals_(normals),
@@ -91,11 +91,11 @@ class Sight {
   const Mesh& mesh_;
   const Array<Vec3f>& normals_;
   const FacePlanes& planes_;
-  const std::vector<double>& longest_;
+  const List<double>& longest_;
   const Camera& camera_;
   const Camera::QuickAway quick_;
-  const unsigned through_;       ///< the planes that some of the mesh may be outside of
-  std::vector<uint8_t> inside_;  ///< [V] or unknown
+  const unsigned through_;  ///< the planes that some of the mesh may be outside of
+  List<uint8_t> inside_;    ///< [V] or unknown
 };
 
 }  // namespace
@@ -223,7 +223,7 @@ std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {
 }
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera) {
-  const std::vector<double> longest = longest_edges(mesh);
+  const List<double> longest = longest_edges(mesh);
   const FacePlanes none_kept;
   Sight sight(mesh, normals, none_kept, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
@@ -231,9 +231,9 @@ std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, co
   return hidden;
 }
 
-std::vector<double> longest_edges(const Mesh& mesh) {
+List<double> longest_edges(const Mesh& mesh) {
   const Topology& topology = mesh.topology;
-  std::vector<double> longest(topology.vertex_count, 0);
+  List<double> longest(topology.vertex_count, 0);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t a = topology.origin[topology.half_edge[e]];
     const uint32_t b = topology.tip(topology.half_edge[e]);
@@ -247,10 +247,10 @@ std::vector<double> longest_edges(const Mesh& mesh) {
 }
 
 EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                      const std::vector<double>& longest, const Box& box, const Camera& camera, const Region& region) {
+                      const List<double>& longest, const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
   Sight sight(mesh, normals, planes, longest, box, camera);
-  std::vector<uint8_t> seen_by(topology.edge_count(), 0);
+  List<uint8_t> seen_by(topology.edge_count(), 0);
   for (uint32_t f : region.faces) {
     const uint8_t of_face = sight.of_face(f);
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) seen_by[topology.edge[h]] |= of_face;
@@ -263,7 +263,7 @@ EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FaceP
 /// What was found of faces already.
 class EdgesShown::Memory {
  public:
-  Memory(const Mesh& mesh, Sight sight, const std::vector<uint32_t>& shared)
+  Memory(const Mesh& mesh, Sight sight, const List<uint32_t>& shared)
       : mesh_(mesh.topology), sight_(std::move(sight)), of_face_(mesh_.face_count(), unknown) {
     if (shared.empty()) return;
     of_shared_.assign(mesh_.edge_count(), 0);
@@ -287,14 +287,13 @@ class EdgesShown::Memory {
 
   const Topology& mesh_;
   Sight sight_;
-  std::vector<uint8_t> of_face_;    ///< [F] or unknown
-  std::vector<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
+  List<uint8_t> of_face_;    ///< [F] or unknown
+  List<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
 };
 
 EdgesShown::EdgesShown() = default;
 EdgesShown::EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                       const std::vector<double>& longest, const Box& box, const Camera& camera,
-                       const std::vector<uint32_t>& shared)
+                       const List<double>& longest, const Box& box, const Camera& camera, const List<uint32_t>& shared)
     : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, planes, longest, box, camera), shared)) {}
 EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
 EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;

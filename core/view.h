@@ -111,14 +111,14 @@ using FacePlanes = Memo<float>;
 [[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera);
 
 /// The length of each vertex's longest edge. [V]
-[[nodiscard]] std::vector<double> longest_edges(const Mesh& mesh);
+[[nodiscard]] List<double> longest_edges(const Mesh& mesh);
 
 /// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
 /// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
 /// longest [V], marks [E].
 [[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                                    const std::vector<double>& longest, const Box& box, const Camera& camera,
+                                    const List<double>& longest, const Box& box, const Camera& camera,
                                     const Region& region);
 
 /// The same, edge by edge: a face is looked at when one of its edges is asked for. What it is made of must outlive it.
@@ -127,9 +127,8 @@ class EdgesShown {
   /// All edges are.
   EdgesShown();
   /// Shapes as above; `shared`: the half-edges at shared edges.
-  EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-             const std::vector<double>& longest, const Box& box, const Camera& camera,
-             const std::vector<uint32_t>& shared);
+  EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const List<double>& longest,
+             const Box& box, const Camera& camera, const List<uint32_t>& shared);
   EdgesShown(EdgesShown&& other) noexcept;
   EdgesShown& operator=(EdgesShown&& other) noexcept;
   EdgesShown(const EdgesShown&) = delete;

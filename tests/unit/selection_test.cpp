@@ -22,7 +22,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 uint32_t faces_of(const Result& result) { return result.mesh.topology.face_count(); }
 
 TEST(ThresholdWithin, TakesTheLargestErrorsThatFit) {
-  const std::vector<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
+  const List<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
   EXPECT_EQ(threshold_within(edges, 0, 10, 19), 0);  // all fit: nine more faces
   EXPECT_EQ(threshold_within(edges, 2.5F, 10, 15), 2.5F);
   EXPECT_EQ(threshold_within(edges, 0, 10, 18), 2);

@@ -98,7 +98,7 @@ TEST(Tension, TetrahedronStaysFlat) {
 /// being 1.
 template <class Check>
 void with_all_factors_one(const Mesh& mesh, const Array<Vec3d>& positions, const Check& check) {
-  const TensionField ones{.factor = std::vector<float>(mesh.topology.edge_count(), 1)};
+  const TensionField ones{.factor = List<float>(mesh.topology.edge_count(), 1)};
   const auto plain = butterfly<double>(mesh.topology, positions, everything(mesh));
   const auto tensed = butterfly<double>(mesh.topology, positions, everything(mesh), 0, &ones);
   for (uint32_t e = 0; e < plain.size(); ++e) {
