@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "attributes.h"
@@ -23,13 +22,12 @@ struct AssembledLevel {
   const Topology* mesh;
   uint32_t number;
   bool has_below;
-  const uint32_t *origin, *twin, *edge;  ///< [H] of the mesh
-  const uint8_t* is_split;               ///< [E]
-  List<uint8_t> fate;                    ///< [F] hidden, divided, or the number of its pattern
-  Array<uint32_t> first;                 ///< [F] the first half-edge in the result of a face that is there
-  /// [V + E] numbers in the result: of a vertex of a face that is there, and of the vertex of an edge that is split.
-  Array<uint32_t> vertex;
-  List<uint32_t> shown;  ///< the faces that are not hidden, in ascending order; with attributes only
+  const uint32_t *twin, *edge;  ///< [H] of the mesh
+  const uint8_t* is_split;      ///< [E]
+  List<uint8_t> fate;           ///< [F] hidden, divided, or the number of its pattern
+  Array<uint32_t> first;        ///< [F] the first half-edge of its faces in the result; written where these are there
+  Array<uint32_t> new_vertex;   ///< [E] number in the result of the edge's vertex; written where split
+  List<uint32_t> shown;         ///< the faces that are not hidden, in ascending order; with attributes only
 
   [[nodiscard]] bool is_shown(uint32_t f) const { return fate[f] != hidden; }
   [[nodiscard]] bool is_divided(uint32_t f) const { return fate[f] == divided; }
@@ -40,31 +38,31 @@ struct AssembledLevel {
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine, bool with_edges)
-      : most_cosine_(most_cosine),
-        with_edges_(with_edges),
-        coarse_(levels[0].level->mesh),
-        vertex_count_(coarse_.topology.vertex_count) {
-    for (const LevelChoice& choice : levels) vertex_count_ += static_cast<uint32_t>(choice.split_edges.size());
-    out_.positions.resize(vertex_count_);
-    std::ranges::copy(coarse_.positions, out_.positions.begin());
+      : most_cosine_(most_cosine), with_edges_(with_edges), coarse_(levels[0].level->mesh) {
+    const Topology& coarse = coarse_.topology;
+    uint32_t vertices = coarse.vertex_count;
+    for (const LevelChoice& choice : levels) vertices += static_cast<uint32_t>(choice.split_edges.size());
+    out_.topology.vertex_count = vertices;
+    out_.topology.origin.resize(3 * count_assembled(levels));
+    out_.positions.reserve(vertices);
+    out_.positions = coarse_.positions;
     levels_.reserve(levels.size());
     for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
-    for (uint32_t f : levels[0].region.faces) place(levels_[0], f);
+    for (uint32_t f = 0; f < coarse.face_count(); ++f)
+      place(levels_[0], f, {coarse.origin[3 * f], coarse.origin[3 * f + 1], coarse.origin[3 * f + 2]});
   }
 
   Mesh run() {
     Topology& topology = out_.topology;
-    topology.vertex_count = vertex_count_;
     topology.pinched = coarse_.topology.pinched;
     topology.darts = coarse_.topology.darts;
-    topology.origin.resize(half_edge_count_);
     topology.twin.resize(half_edge_count_);
     if (with_edges_) {
       topology.edge.resize(half_edge_count_);
-      topology.half_edge.reserve(half_edge_count_ / 2 + vertex_count_ / 2);
+      topology.half_edge.reserve(half_edge_count_ / 2 + topology.vertex_count / 2);
       topology.kind.reserve(topology.half_edge.capacity());
     }
-    for (const Place& place : places_) make_faces(levels_[place.level], place.face);
+    for (const Place& place : places_) connect(levels_[place.level], place.face);
     if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
   }
@@ -84,68 +82,54 @@ class Assembler {
     level.mesh = &mesh;
     level.number = static_cast<uint32_t>(levels_.size() - 1);
     level.has_below = has_below;
-    level.origin = mesh.origin.data();
     level.twin = mesh.twin.data();
     level.edge = mesh.edge.data();
     level.is_split = choice.split.data();
     level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
     level.first.resize(mesh.face_count());
-    number_vertices(level);
-  }
-
-  /// Numbers a level's vertices in the result, and places those that it adds.
-  void number_vertices(AssembledLevel& level) {
-    const uint32_t count = level.mesh->vertex_count;
-    level.vertex.resize(count + level.mesh->edge_count());
-    if (level.number == 0) {
-      std::iota(level.vertex.begin(), level.vertex.begin() + count, 0U);
-      next_vertex_ = count;
-    } else {
-      const Array<uint32_t>& above = (&level)[-1].vertex;
-      for (uint32_t v = 0; v < count; ++v) level.vertex[v] = above[level.level->from[v]];
-    }
-    for (uint32_t e = 0; e < level.mesh->edge_count(); ++e) {
-      level.vertex[count + e] = next_vertex_;  // where it is not split nobody asks
-      if (level.is_split[e] != 0) out_.positions[next_vertex_++] = level.level->trial.at(e);
+    level.new_vertex.resize(mesh.edge_count());
+    for (uint32_t e : marked(choice.split)) {
+      level.new_vertex[e] = static_cast<uint32_t>(out_.positions.size());
+      out_.positions.push_back(level.level->trial.at(e));
     }
   }
 
-  /// What becomes of a face and of what lies below it, and where that lies in the result.
-  void place(AssembledLevel& level, uint32_t f) {
+  /// What becomes of a face and of what lies below it, and where that lies in the result. `corner`: its corners there.
+  void place(AssembledLevel& level, uint32_t f, const std::array<uint32_t, 3>& corner) {
     if (!coarse_.attributes.empty()) level.shown.push_back(f);
     const unsigned mask = level.choice->split_mask(f);
+    std::array<uint32_t, 6> vertex = {corner[0], corner[1], corner[2]};
+    if (mask != 0)  // what is read of an edge that is not split is not used
+      for (uint32_t i = 0; i < 3; ++i) vertex[3 + i] = level.new_vertex[level.edge[3 * f + i]];
     // What has children as support only is cut into the same four.
-    if (mask == 7 && level.has_below && level.choice->red[f] != 0) {
-      level.fate[f] = AssembledLevel::divided;
-      for (uint32_t c = 0; c < 4; ++c) place((&level)[1], level.child(f) + c);
+    const bool is_divided = mask == 7 && level.has_below && level.choice->red[f] != 0;
+    level.fate[f] = is_divided ? AssembledLevel::divided : choose_transition(*level.level, f, mask, most_cosine_);
+    const SplitPattern& cut = is_divided ? split_pattern(7, false) : transition_pattern(level.fate[f]);
+    if (is_divided) {
+      for (uint32_t c = 0; c < 4; ++c) {
+        const auto& of_child = cut.corner[c];
+        place((&level)[1], level.child(f) + c, {vertex[of_child[0]], vertex[of_child[1]], vertex[of_child[2]]});
+      }
       return;
     }
-    level.fate[f] = choose_transition(*level.level, f, mask, most_cosine_);
     level.first[f] = half_edge_count_;
-    half_edge_count_ += 3U * transition_pattern(level.fate[f]).children;
     places_.push_back({level.number, f});
+    for (uint32_t c = 0; c < cut.children; ++c)
+      for (uint8_t local : cut.corner[c]) out_.topology.origin[half_edge_count_++] = vertex[local];
   }
 
-  void make_faces(const AssembledLevel& level, uint32_t f) {
-    const uint8_t fate = level.fate[f];
-    const SplitPattern& cut = transition_pattern(fate);
+  /// Finds the twins of the faces in the result that a face is or is cut into, and their edges.
+  void connect(const AssembledLevel& level, uint32_t f) {
+    const SplitPattern& cut = transition_pattern(level.fate[f]);
     const uint32_t base = level.first[f];
-    const uint32_t h = 3 * f;
-    const std::array<uint32_t, 6> against = find_twins(level, h, fate / 2U);
-    const uint32_t* corner = &level.origin[h];
-    const uint32_t* edge = &level.edge[h];
-    const uint32_t* middles = &level.vertex[level.mesh->vertex_count];
-    const std::array<uint32_t, 6> vertex = {level.vertex[corner[0]], level.vertex[corner[1]], level.vertex[corner[2]],
-                                            middles[edge[0]],        middles[edge[1]],        middles[edge[2]]};
-    uint32_t* origin = &out_.topology.origin[base];
+    const std::array<uint32_t, 6> against = find_twins(level, 3 * f, level.fate[f] / 2U);
     uint32_t* twin = &out_.topology.twin[base];
-    for (uint32_t c = 0; c < 3U * cut.children; ++c) {
-      origin[c] = vertex[cut.corner[c / 3][c % 3]];
+    for (uint32_t c = 0; c < 3U * cut.children; ++c)
       twin[c] = cut.is_outside(c) ? against[cut.edge[c]] : base + cut.inner_twin[c];
-    }
     if (!with_edges_) return;
     for (uint32_t c = 0; c < 3U * cut.children; ++c)
-      number_edge(base + c, cut.is_outside(c) ? level.mesh->kind[edge[cut.edge[c] / 2]] : EdgeKind::smooth);
+      number_edge(base + c,
+                  cut.is_outside(c) ? level.mesh->kind[level.edge[3 * f + cut.edge[c] / 2]] : EdgeKind::smooth);
   }
 
   /// What runs in the result against the halves of a face's half-edges h to h + 2 whose edges are in the mask, against
@@ -239,8 +223,6 @@ class Assembler {
   std::vector<AssembledLevel> levels_;
   List<Place> places_;  ///< in the order of the result
   uint32_t half_edge_count_ = 0;
-  uint32_t vertex_count_;
-  uint32_t next_vertex_ = 0;
   Mesh out_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;  ///< edge of the result between two vertices
 };

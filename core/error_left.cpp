@@ -124,6 +124,9 @@ class ErrorFinder {
   /// matter.
   [[nodiscard]] bool is_near(size_t k, uint32_t e, double share) const {
     const HierarchyLevel& level = *levels_[k].level;
+    // Where more views are to come what was found serves them, too.
+    if (!level.trial.planes.empty())
+      return !left_.may_grow_by(share * level.trial.most_deviation_at(level.mesh, e), scales_[k]);
     const Vec3d off = share * (to_double(level.trial.at(e)) - midpoint(level.mesh, e));
     constexpr double rounding = 1 - 1e-6;
     const double least = left_.least_that_matters(scales_[k]);
