@@ -55,9 +55,9 @@ class ValenceSymbols {
     for (uint32_t c = 0; c < mesh.corner_count(); ++c) {
       vertex_[c] = mesh.vertex(c);
       ++valence_[mesh.vertex(c)];
-      // At a boundary there is one more edge than faces.
-      if (mesh.opposite(c) == none) ++valence_[mesh.vertex(CornerMesh::next(c))];
     }
+    // At a boundary there is one more edge than faces.
+    for (uint32_t c : mesh.at_boundary()) ++valence_[mesh.vertex(CornerMesh::next(c))];
   }
 
   void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner, const Array<uint8_t>& faces) {
@@ -131,7 +131,7 @@ class ValenceSymbols {
   }
 
   const CornerMesh& mesh_;
-  Array<uint32_t> vertex_;    ///< [corners]
+  Array<uint32_t> vertex_;    ///< [corner]
   std::vector<int> valence_;  ///< [vertices, and those that came of splits]
   int last_ = -1;
   uint32_t count_ = 0;
@@ -142,8 +142,7 @@ class ValenceSymbols {
 class Holes {
  public:
   explicit Holes(const CornerMesh& mesh) : mesh_(mesh) {
-    for (uint32_t c = 0; c < mesh.corner_count(); ++c)
-      if (mesh.opposite(c) == none) find(c);
+    for (uint32_t c : mesh.at_boundary()) find(c);
   }
 
   [[nodiscard]] bool has(uint32_t vertex) const { return !hole_.empty() && hole_[vertex] != none; }
@@ -213,7 +212,8 @@ class Walk {
     const bool is_inside = find_start(face, corner);
     starts_.EncodeBit(is_inside);
     if (is_inside) {
-      for (uint32_t c = 3 * face; c < 3 * face + 3; ++c) vertex_visited_[mesh_.vertex(c)] = 1;
+      for (uint32_t c : {corner, CornerMesh::next(corner), CornerMesh::previous(corner)})
+        vertex_visited_[mesh_.vertex(c)] = 1;
       face_state_[face] = visited;
       first_corners_.push_back(CornerMesh::next(corner));
       const uint32_t opposite = mesh_.right(corner);
@@ -228,7 +228,8 @@ class Walk {
 
   /// Whether the face has no vertex on a boundary. Then its first corner, else one opposite to a boundary edge.
   [[nodiscard]] bool find_start(uint32_t face, uint32_t& corner) const {
-    for (uint32_t c = 3 * face; c < 3 * face + 3; ++c) {
+    const uint32_t first = CornerMesh::first_corner(face);
+    for (uint32_t c = first; c < first + 3; ++c) {
       if (mesh_.opposite(c) == none) {
         corner = c;
         return false;
@@ -241,7 +242,7 @@ class Walk {
       corner = CornerMesh::previous(at);
       return false;
     }
-    corner = 3 * face;
+    corner = first;
     return true;
   }
 
@@ -264,6 +265,8 @@ class Walk {
   /// The corner to go on with; `none` where the walk ends or falls in two.
   uint32_t visit(uint32_t corner) {
     const uint32_t face = CornerMesh::face(corner);
+    mesh_.prefetch(mesh_.right(corner));
+    mesh_.prefetch(mesh_.left(corner));
     const uint32_t vertex = mesh_.vertex(corner);
     face_state_[face] = visited;
     corners_.push_back(corner);

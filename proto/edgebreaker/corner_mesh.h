@@ -6,35 +6,70 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// A mesh as Draco's bitstream speaks of it. Corner c is where half-edge c leaves; its face's edge that it does not
-/// touch is the one opposite to it, and so is the corner of the other face at that edge. Faces lie counter-clockwise;
-/// left and right are as seen from the corner, facing the opposite edge, from behind: right of corner c is across the
-/// edge before it, left across its own.
+/// A mesh as Draco's bitstream speaks of it. A face's three corners are where its half-edges leave; its edge that a
+/// corner does not touch is the one opposite to it, and so is the corner of the other face at that edge. Faces lie
+/// counter-clockwise; left and right are as seen from the corner, facing the opposite edge, from behind: right of a
+/// corner is across the edge before it, left across its own.
+///
+/// Corner c is where half-edge c leaves. What a walk asks of a face lies together, and takes no more room than it
+/// needs: a walk waits for memory most of the time.
 class CornerMesh {
  public:
-  /// Each vertex must have one fan of faces. The topology must outlive this.
-  explicit CornerMesh(const Topology& mesh) : mesh_(mesh), opposite_(mesh.half_edge_count()) {
-    for (uint32_t c = 0; c < opposite_.size(); ++c) {
-      const uint32_t t = mesh.twin[Topology::next(c)];
-      opposite_[c] = t == none ? none : Topology::previous(t);
-    }
+  explicit CornerMesh(const Topology& mesh)
+      : vertex_count_(mesh.vertex_count), corners_(size_t{3} * mesh.face_count()) {
+    for (uint32_t f = 0; f < mesh.face_count(); ++f)
+      add_face(f, &mesh.origin[size_t{3} * f], &mesh.twin[size_t{3} * f]);
   }
 
-  [[nodiscard]] uint32_t vertex_count() const { return mesh_.vertex_count; }
-  [[nodiscard]] uint32_t face_count() const { return mesh_.face_count(); }
-  [[nodiscard]] uint32_t corner_count() const { return mesh_.half_edge_count(); }
+  [[nodiscard]] uint32_t vertex_count() const { return vertex_count_; }
+  [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(corners_.size() / 3); }
+  [[nodiscard]] uint32_t corner_count() const { return static_cast<uint32_t>(corners_.size()); }
   static uint32_t face(uint32_t corner) { return corner / 3; }
+  static uint32_t first_corner(uint32_t face) { return 3 * face; }
   static uint32_t next(uint32_t corner) { return Topology::next(corner); }
   static uint32_t previous(uint32_t corner) { return Topology::previous(corner); }
-  [[nodiscard]] uint32_t vertex(uint32_t corner) const { return mesh_.origin[corner]; }
+  [[nodiscard]] uint32_t vertex(uint32_t corner) const { return corners_[corner].vertex; }
   /// `none` at a boundary.
-  [[nodiscard]] uint32_t opposite(uint32_t corner) const { return opposite_[corner]; }
-  [[nodiscard]] uint32_t right(uint32_t corner) const { return opposite_[next(corner)]; }
-  [[nodiscard]] uint32_t left(uint32_t corner) const { return opposite_[previous(corner)]; }
+  [[nodiscard]] uint32_t opposite(uint32_t corner) const { return corners_[corner].opposite; }
+  [[nodiscard]] uint32_t right(uint32_t corner) const { return opposite(next(corner)); }
+  [[nodiscard]] uint32_t left(uint32_t corner) const { return opposite(previous(corner)); }
+
+  /// Has what belongs to a corner's face fetched, for a walk that may soon come there; `none` may be given.
+  void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }
+
+  /// The corners opposite to boundary edges, in ascending order.
+  [[nodiscard]] const List<uint32_t>& at_boundary() const { return at_boundary_; }
+  /// Whether there are two faces that share more than one edge.
+  [[nodiscard]] bool has_faces_folded_together() const { return has_faces_folded_together_; }
 
  private:
-  const Topology& mesh_;
-  Array<uint32_t> opposite_;
+  struct Corner {
+    uint32_t vertex, opposite;
+  };
+
+  void add_face(uint32_t f, const uint32_t* origin, const uint32_t* twin) {
+    const uint32_t across[3] = {twin[1], twin[2], twin[0]};  // the edge opposite to each corner
+    uint32_t neighbour[3];
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t t = across[i];
+      neighbour[i] = t / 3;
+      corners_[size_t{3} * f + i] = {origin[i], t == none ? none : t + (t == 3 * neighbour[i] ? 2 : -1)};
+    }
+    if ((across[0] | across[1] | across[2]) == none) {
+      for (uint32_t i = 0; i < 3; ++i) {
+        if (across[i] != none) continue;
+        at_boundary_.push_back(3 * f + i);
+        neighbour[i] = none - i;  // not the same one
+      }
+    }
+    has_faces_folded_together_ |=
+        neighbour[0] == neighbour[1] || neighbour[1] == neighbour[2] || neighbour[2] == neighbour[0];
+  }
+
+  uint32_t vertex_count_;
+  Array<Corner> corners_;
+  List<uint32_t> at_boundary_;
+  bool has_faces_folded_together_ = false;
 };
 
 }  // namespace papilio::proto::edgebreaker

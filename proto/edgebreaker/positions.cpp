@@ -4,18 +4,19 @@
 #include <draco/core/options.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// A point of the grid.
-struct GridPoint {
-  int32_t x, y, z;
-  friend GridPoint operator+(GridPoint a, GridPoint b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend GridPoint operator-(GridPoint a, GridPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-};
+/// A point of the grid, and what is computed with it; the fourth lane is never looked at. Compilers have such types for
+/// every machine.
+using GridPoint = int32_t __attribute__((vector_size(16)));
+
+GridPoint all(int32_t number) { return GridPoint{number, number, number, number}; }
+GridPoint smaller(GridPoint a, GridPoint b) { return a < b ? a : b; }
+GridPoint larger(GridPoint a, GridPoint b) { return a > b ? a : b; }
 
 /// As Draco rounds, to the bit.
 class Grid {
@@ -23,12 +24,15 @@ class Grid {
   Grid(const QuantizationBox& box, int bits)
       : origin_(box.origin), steps_per_unit_(static_cast<float>((1 << bits) - 1) / box.range) {}
   [[nodiscard]] GridPoint at(Vec3f p) const {
-    return {step(p.x - origin_.x), step(p.y - origin_.y), step(p.z - origin_.z)};
+    return GridPoint{step(p.x - origin_.x), step(p.y - origin_.y), step(p.z - origin_.z), 0};
   }
 
  private:
+  /// Rounded down.
   [[nodiscard]] int32_t step(float offset) const {
-    return static_cast<int32_t>(std::floor(offset * steps_per_unit_ + 0.5F));
+    const float steps = offset * steps_per_unit_ + 0.5F;
+    const auto towards_zero = static_cast<int32_t>(steps);
+    return towards_zero - (static_cast<float>(towards_zero) > steps ? 1 : 0);
   }
   Vec3f origin_;
   float steps_per_unit_;
@@ -38,11 +42,14 @@ class Grid {
 class Corrections {
  public:
   explicit Corrections(const Array<GridPoint>& values) {
-    low_ = high_ = values[0].x;
+    GridPoint low = values[0];
+    GridPoint high = values[0];
     for (const GridPoint& p : values) {
-      low_ = std::min({low_, p.x, p.y, p.z});
-      high_ = std::max({high_, p.x, p.y, p.z});
+      low = smaller(low, p);
+      high = larger(high, p);
     }
+    low_ = std::min({low[0], low[1], low[2]});
+    high_ = std::max({high[0], high[1], high[2]});
     range_ = 1 + high_ - low_;
     most_ = range_ / 2;
     least_ = -most_;
@@ -51,52 +58,76 @@ class Corrections {
   [[nodiscard]] int32_t low() const { return low_; }
   [[nodiscard]] int32_t high() const { return high_; }
 
-  /// Symbols for the entropy coder.
+  /// Three symbols for the entropy coder; what is behind them may be written over.
   void put(GridPoint value, GridPoint predicted, uint32_t* symbols) const {
-    symbols[0] = symbol(value.x, predicted.x);
-    symbols[1] = symbol(value.y, predicted.y);
-    symbols[2] = symbol(value.z, predicted.z);
+    GridPoint correction = value - smaller(larger(predicted, all(low_)), all(high_));
+    correction += (correction < all(least_)) & all(range_);
+    correction -= (correction > all(most_)) & all(range_);
+    const GridPoint coded = (correction + correction) ^ (correction >> 31);
+    std::memcpy(symbols, &coded, sizeof(coded));
   }
 
  private:
-  [[nodiscard]] uint32_t symbol(int32_t value, int32_t predicted) const {
-    int32_t correction = value - std::clamp(predicted, low_, high_);
-    if (correction < least_) correction += range_;
-    if (correction > most_) correction -= range_;
-    return static_cast<uint32_t>(correction) << 1U ^ static_cast<uint32_t>(correction >> 31);
-  }
   int32_t low_, high_, range_, most_, least_;
 };
 
-/// What is predicted for the place-th value.
-GridPoint predict(const CornerMesh& mesh, const VertexOrder& order, const Array<GridPoint>& values, uint32_t place) {
-  const uint32_t beyond = mesh.opposite(order.corners[place]);
-  if (beyond != none) {
-    const uint32_t far = order.place[mesh.vertex(beyond)];
-    const uint32_t next = order.place[mesh.vertex(CornerMesh::next(beyond))];
-    const uint32_t previous = order.place[mesh.vertex(CornerMesh::previous(beyond))];
-    if (far < place && next < place && previous < place) return values[next] + values[previous] - values[far];
+/// Puts the corrections of one value after another.
+class Writer {
+ public:
+  Writer(const CornerMesh& mesh, const Array<GridPoint>& values)
+      : mesh_(mesh), values_(values), corrections_(values), symbols_(3 * values.size() + 1) {}
+
+  [[nodiscard]] const Corrections& corrections() const { return corrections_; }
+  /// Of what was put, three a value.
+  [[nodiscard]] const Array<uint32_t>& symbols() const { return symbols_; }
+
+  void put_difference(uint32_t corner) { put(corner, last_); }
+  /// Opposite there must be a face all of whose values were put.
+  void put_parallelogram(uint32_t corner) {
+    put(corner, value(CornerMesh::next(corner)) + value(CornerMesh::previous(corner)) - value(mesh_.opposite(corner)));
   }
-  return values[place - 1];
-}
+
+ private:
+  [[nodiscard]] GridPoint value(uint32_t corner) const { return values_[mesh_.vertex(corner)]; }
+  void put(uint32_t corner, GridPoint predicted) {
+    last_ = value(corner);
+    corrections_.put(last_, predicted, &symbols_[size_t{3} * count_++]);
+  }
+
+  const CornerMesh& mesh_;
+  const Array<GridPoint>& values_;  ///< [vertices]
+  Corrections corrections_;
+  Array<uint32_t> symbols_;
+  uint32_t count_ = 0;
+  GridPoint last_{};
+};
 
 }  // namespace
 
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Array<Vec3f>& positions,
                      const QuantizationBox& box, int bits, Prediction prediction, int compression_level,
                      draco::EncoderBuffer& out) {
-  const auto count = static_cast<uint32_t>(order.corners.size());
   const Grid grid(box, bits);
-  Array<GridPoint> values(count);
-  for (uint32_t i = 0; i < count; ++i) values[i] = grid.at(positions[mesh.vertex(order.corners[i])]);
+  Array<GridPoint> values(positions.size());
+  std::ranges::transform(positions, values.begin(), [&](Vec3f p) { return grid.at(p); });
 
-  const Corrections corrections(values);
-  Array<uint32_t> symbols(size_t{3} * count);
-  corrections.put(values[0], {0, 0, 0}, symbols.data());
-  if (prediction == Prediction::parallelogram)
-    for (uint32_t i = 1; i < count; ++i) corrections.put(values[i], predict(mesh, order, values, i), &symbols[3 * i]);
-  else
-    for (uint32_t i = 1; i < count; ++i) corrections.put(values[i], values[i - 1], &symbols[3 * i]);
+  const auto count = static_cast<uint32_t>(order.corners.size());
+  Writer writer(mesh, values);
+  uint32_t done = 0;
+  const auto put_differences = [&](uint32_t end) {
+    for (; done < end; ++done) writer.put_difference(order.corners[done]);
+  };
+  const auto put_parallelograms = [&](uint32_t end) {
+    for (; done < end; ++done) writer.put_parallelogram(order.corners[done]);
+  };
+  if (prediction == Prediction::parallelogram) {
+    for (uint32_t alone : order.alone) {
+      put_parallelograms(alone);
+      put_differences(alone + 1);
+    }
+    put_parallelograms(count);
+  }
+  put_differences(count);
 
   constexpr int8_t wrapped = 1;
   out.Encode(static_cast<int8_t>(prediction));
@@ -104,10 +135,10 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Arr
   out.Encode(uint8_t{1});  // entropy coded
   draco::Options options;
   draco::SetSymbolEncodingCompressionLevel(&options, compression_level);
-  if (!draco::EncodeSymbols(symbols.data(), static_cast<int>(symbols.size()), 3, &options, &out))
+  if (!draco::EncodeSymbols(writer.symbols().data(), static_cast<int>(3 * count), 3, &options, &out))
     throw std::runtime_error("Draco's entropy coder refuses the positions");
-  out.Encode(corrections.low());
-  out.Encode(corrections.high());
+  out.Encode(writer.corrections().low());
+  out.Encode(writer.corrections().high());
   for (const float c : {box.origin.x, box.origin.y, box.origin.z, box.range}) out.Encode(c);
   out.Encode(static_cast<uint8_t>(bits));
 }

@@ -8,24 +8,29 @@ namespace {
 class DepthFirst {
  public:
   explicit DepthFirst(const CornerMesh& mesh)
-      : mesh_(mesh), visited_(mesh.face_count(), 0), on_boundary_(mesh.vertex_count(), 0) {
+      : mesh_(mesh), visited_(mesh.face_count(), 0), known_(mesh.vertex_count(), is_new) {
     order_.corners.reserve(mesh.vertex_count());
-    order_.place.assign(mesh.vertex_count(), none);
-    for (uint32_t c = 0; c < mesh.corner_count(); ++c)
-      if (mesh.opposite(c) == none)
-        on_boundary_[mesh.vertex(CornerMesh::next(c))] = on_boundary_[mesh.vertex(CornerMesh::previous(c))] = 1;
+    for (uint32_t c : mesh.at_boundary())
+      known_[mesh.vertex(CornerMesh::next(c))] = known_[mesh.vertex(CornerMesh::previous(c))] = is_new_on_boundary;
   }
 
   VertexOrder run(const Array<uint32_t>& starts) {
-    for (uint32_t corner : starts)
+    for (uint32_t corner : starts) {
+      if (order_.corners.size() == mesh_.vertex_count()) break;  // so has every face been visited, or says no more
       if (!is_visited(corner)) walk_from(corner);
+    }
     return std::move(order_);
   }
 
  private:
+  enum Known : uint8_t { is_new, is_new_on_boundary, is_known };
+
   void walk_from(uint32_t corner) {
-    come_to(CornerMesh::next(corner));
-    come_to(CornerMesh::previous(corner));
+    for (uint32_t c : {CornerMesh::next(corner), CornerMesh::previous(corner)}) {
+      note_if_alone(c);
+      (void)come_to(c);
+    }
+    note_if_alone(corner);
     stack_.assign(1, corner);
     while (!stack_.empty()) {
       corner = stack_.back();
@@ -37,20 +42,32 @@ class DepthFirst {
     }
   }
 
-  /// True when the vertex is new.
-  bool come_to(uint32_t corner) {
-    uint32_t& place = order_.place[mesh_.vertex(corner)];
-    if (place != none) return false;
-    place = static_cast<uint32_t>(order_.corners.size());
-    order_.corners.push_back(corner);
-    return true;
+  /// For the vertices that no walk comes to across an edge.
+  void note_if_alone(uint32_t corner) {
+    const auto is_vertex_known = [this](uint32_t c) { return known_[mesh_.vertex(c)] == is_known; };
+    if (is_vertex_known(corner)) return;
+    const uint32_t beyond = mesh_.opposite(corner);
+    if (beyond == none || !is_vertex_known(beyond) || !is_vertex_known(CornerMesh::next(beyond)) ||
+        !is_vertex_known(CornerMesh::previous(beyond)))
+      order_.alone.push_back(static_cast<uint32_t>(order_.corners.size()));
+  }
+
+  /// What was known of the vertex before.
+  Known come_to(uint32_t corner) {
+    uint8_t& known = known_[mesh_.vertex(corner)];
+    const auto before = static_cast<Known>(known);
+    if (before != is_known) order_.corners.push_back(corner);
+    known = is_known;
+    return before;
   }
 
   /// The corner to go on with; `none` where the walk ends or falls in two.
   uint32_t visit(uint32_t corner) {
     visited_[CornerMesh::face(corner)] = 1;
     const uint32_t right = mesh_.right(corner);
-    if (come_to(corner) && on_boundary_[mesh_.vertex(corner)] == 0) return right;
+    mesh_.prefetch(right);
+    mesh_.prefetch(mesh_.left(corner));
+    if (come_to(corner) == is_new) return right;
     const uint32_t left = mesh_.left(corner);
     const bool right_visited = is_visited(right);
     const bool left_visited = is_visited(left);
@@ -70,8 +87,8 @@ class DepthFirst {
   }
 
   const CornerMesh& mesh_;
-  Array<uint8_t> visited_;      ///< [faces]
-  Array<uint8_t> on_boundary_;  ///< [vertices]
+  Array<uint8_t> visited_;  ///< [faces]
+  Array<uint8_t> known_;    ///< [vertices] Known
   std::vector<uint32_t> stack_;
   VertexOrder order_;
 };

@@ -4,10 +4,12 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// The order in which values at vertices are written: that in which a walk, depth first, comes to them.
+/// The order in which values at vertices are written: that in which walks, depth first, come to them. Mostly it is
+/// across an edge from a face that they have been to.
 struct VertexOrder {
-  Array<uint32_t> corners;  ///< [vertices] the corner at which the walk came to each
-  Array<uint32_t> place;    ///< [vertices] of each vertex in that order
+  Array<uint32_t> corners;  ///< [vertices] the corner at which a walk came to each
+  /// The places, ascending, of the vertices opposite to which there is no face, or one with vertices that come later.
+  List<uint32_t> alone;
 };
 
 /// `starts`: a corner of each face, in the order of `write_connectivity`.

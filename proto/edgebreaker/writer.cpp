@@ -3,7 +3,7 @@
 #include <draco/core/varint_encoding.h>
 
 #include <algorithm>
-#include <array>
+#include <utility>
 #include <vector>
 
 #include "proto/edgebreaker/connectivity.h"
@@ -18,33 +18,23 @@ constexpr int standard_speed = 5;    ///< from here on, or for few faces, symbol
 constexpr int difference_speed = 8;  ///< from here on, no parallelograms
 constexpr uint32_t few_faces = 1000;
 
-/// Whether some pair of vertices has more than one edge, or more than two faces at one.
-bool has_double_edges(const Topology& mesh) {
-  std::vector<std::array<uint32_t, 2>> open;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); h += 3) {
-    const uint32_t* twin = &mesh.twin[h];
-    for (uint32_t i = 0; i < 3; ++i) {
-      if (twin[i] == none) {
-        open.push_back({std::min(mesh.origin[h + i], mesh.tip(h + i)), std::max(mesh.origin[h + i], mesh.tip(h + i))});
-      } else if (twin[(i + 1) % 3] != none && twin[i] / 3 == twin[(i + 1) % 3] / 3) {
-        return true;
-      }
-    }
+/// Whether some pair of vertices has more than one edge, or more than two faces at one; or boundaries touch at a
+/// vertex.
+bool is_seen_otherwise(const CornerMesh& mesh) {
+  if (mesh.has_faces_folded_together()) return true;
+  std::vector<std::pair<uint32_t, uint32_t>> open;
+  std::vector<uint32_t> starts;
+  for (uint32_t c : mesh.at_boundary()) {
+    const uint32_t from = mesh.vertex(CornerMesh::next(c));
+    const uint32_t to = mesh.vertex(CornerMesh::previous(c));
+    open.emplace_back(std::minmax(from, to));
+    starts.push_back(from);
   }
-  std::sort(open.begin(), open.end());
-  return std::adjacent_find(open.begin(), open.end()) != open.end();
-}
-
-/// Whether boundaries touch at a vertex.
-bool has_several_fans(const Topology& mesh) {
-  if (!mesh.pinched.empty()) return true;
-  Array<uint8_t> starts;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
-    if (mesh.twin[h] != none) continue;
-    if (starts.empty()) starts.assign(mesh.vertex_count, 0);
-    if (starts[mesh.origin[h]]++ != 0) return true;
-  }
-  return false;
+  const auto has_twice = [](auto& list) {
+    std::ranges::sort(list);
+    return std::ranges::adjacent_find(list) != list.end();
+  };
+  return has_twice(open) || has_twice(starts);
 }
 
 void write_header(Traversal traversal, draco::EncoderBuffer& out) {
@@ -69,16 +59,16 @@ void write_attribute_header(uint32_t position_id, draco::EncoderBuffer& out) {
 
 std::optional<std::string> write(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                                  uint32_t position_id) {
-  if (options.normals || options.speed < slowest || !mesh.attributes.empty() || has_double_edges(mesh.topology) ||
-      has_several_fans(mesh.topology))
+  if (options.normals || options.speed < slowest || !mesh.attributes.empty() || !mesh.topology.pinched.empty())
     return std::nullopt;
+  const CornerMesh corners(mesh.topology);
+  if (is_seen_otherwise(corners)) return std::nullopt;
   const bool is_standard = options.speed >= standard_speed || mesh.topology.face_count() < few_faces;
   const Traversal traversal = is_standard ? Traversal::standard : Traversal::valence;
   const Prediction prediction = options.speed >= difference_speed ? Prediction::difference : Prediction::parallelogram;
 
   draco::EncoderBuffer out;
   write_header(traversal, out);
-  const CornerMesh corners(mesh.topology);
   const VertexOrder order = order_vertices(corners, write_connectivity(corners, traversal, out));
   write_attribute_header(position_id, out);
   write_positions(corners, order, mesh.positions, box, options.position_bits, prediction, 10 - options.speed, out);
