@@ -2,7 +2,9 @@
 # coarse_meshes.sh PRESET: makes, in build/deps/meshes and unless they are there, with the programs of build/PRESET:
 #   bunny600.obj, bunny600.drc   the bunny in 600 faces
 #   elephant2000.obj             the elephant in 2000
-#   elephant2k.drc, elephant20k.drc, elephant89k.drc   a finer, closed elephant in 2000, 20000 and all its 88,928 faces
+#   elephant2k.drc, elephant10k.drc, elephant20k.drc, elephant89k.drc
+#                                a finer, closed elephant in 2000, 10000, 20000 and
+#                                all its 88,928 faces
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 programs=$root/build/$1
@@ -15,7 +17,7 @@ in_draco_order() {
   mv unfinished.drc "$2"
 }
 [[ -f bunny600.drc ]] || in_draco_order bunny600.obj bunny600.drc
-for thousands in 2 20; do
+for thousands in 2 10 20; do
   [[ ! -f elephant${thousands}k.drc ]] || continue
   "$programs/simplify_mesh" cgal/refined_elephant.off unfinished.obj "${thousands}000"
   in_draco_order unfinished.obj "elephant${thousands}k.drc"
