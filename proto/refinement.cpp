@@ -5,7 +5,9 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "proto/findings.h"
 #include "proto/problem.h"
@@ -27,6 +29,27 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// One piece of work at a time, done on a thread beside this one; or here, where the system has no more threads.
+class Aside {
+ public:
+  /// After `wait`.
+  void start(std::function<void()> work) {
+    const auto kept = std::make_shared<const std::function<void()>>(std::move(work));
+    try {
+      running_ = std::async(std::launch::async, [kept] { (*kept)(); });
+    } catch (const std::system_error&) {
+      (*kept)();
+    }
+  }
+  /// For the end of what was started, if anything was. Throws what that has thrown.
+  void wait() {
+    if (running_.valid()) running_.get();
+  }
+
+ private:
+  std::future<void> running_;  // waits at its end
 };
 
 std::string milliseconds_text(double milliseconds) {
@@ -75,41 +98,58 @@ Result Refinement::refine_coarse(const Hooks& hooks) {
   return refine(*prepared_->under_rules_of(options_), options_, hooks);
 }
 
-EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
+EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times) const {
   Stopwatch watch;
   EncodedLevel made;
-  const auto encode = [&](const Mesh& mesh, int level) {
-    times_.refine += watch.lap();
-    made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, &made.statistics.by_libdraco);
-    times_.encode += watch.lap();
-    made.statistics.level = level;
-    made.statistics.vertices = mesh.topology.vertex_count;
-    made.statistics.faces = mesh.topology.face_count();
-    made.statistics.times = times_;
-    made.statistics.found = coarse().found;
-  };
+  made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, &made.statistics.by_libdraco);
+  times.encode += watch.lap();
+  made.statistics.level = level;
+  made.statistics.vertices = mesh.topology.vertex_count;
+  made.statistics.faces = mesh.topology.face_count();
+  made.statistics.times = times;
+  made.statistics.found = coarse().found;
+  return made;
+}
 
+EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
+  Stopwatch watch;
   const auto stop = [&] {
     require_time();
     return hooks.cancelled && hooks.cancelled();
   };
+  const auto poll = [&] {
+    if (stop()) throw Problem(Code::cancelled, "The client went away.");
+  };
+  StageTimes encoded;  // with what was spent on the last level that was encoded
+  Aside aside;         // encodes a level while the next is made
   Hooks core_hooks{.cancelled = stop, .threads = hooks.threads};
   if (hooks.on_level) {
     core_hooks.on_level = [&](const Level& level) {
       if (level.last) return;  // it is sent with the reason why it is the last
-      encode(level.mesh, level.level);
-      hooks.on_level(made);
+      times_.refine += watch.lap();
+      aside.wait();
+      times_.encode = encoded.encode;
+      const auto hand_on = [&, number = level.level, times = times_](const Mesh& mesh) {
+        const EncodedLevel made = encode(mesh, number, times);
+        encoded = made.statistics.times;
+        hooks.on_level(made);
+      };
+      if (hooks.threads > 1)
+        aside.start([hand_on, mesh = level.mesh] { hand_on(mesh); });
+      else
+        hand_on(level.mesh);
+      (void)watch.lap();
     };
   }
-  const auto poll = [&] {
-    if (stop()) throw Problem(Code::cancelled, "The client went away.");
-  };
   const Result result = refine_coarse(core_hooks);
+  times_.refine += watch.lap();
+  aside.wait();
+  times_.encode = encoded.encode;
   poll();
+  EncodedLevel made = encode(result.mesh, result.levels, times_);
   made.statistics.stop_reason = result.stop_reason;
   made.statistics.error = result.error;
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
-  encode(result.mesh, result.levels);
   poll();  // Draco's encoder cannot be stopped; who left meanwhile is not given an answer
   if (hooks.on_level) hooks.on_level(made);
   return made;

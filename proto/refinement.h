@@ -45,7 +45,8 @@ struct EncodedLevel {
 /// How the caller takes part; both functions may be empty.
 struct RefinementHooks {
   /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
-  /// to stop.
+  /// to stop. With more than one thread a level is encoded, and this is called, beside the making of the next: one call
+  /// at a time, but not always from the thread that runs it all.
   std::function<void(const EncodedLevel&)> on_level{};
   std::function<bool()> cancelled{};  ///< asked between steps
   int threads = 1;                    ///< at most so many work on it at once
@@ -70,6 +71,8 @@ class Refinement {
   Refinement(const Parameters& parameters, const Limits& limits);
   [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
+  /// `times`: what was spent before.
+  [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times) const;
   void require_time() const;
   Result refine_coarse(const Hooks& hooks);
 

@@ -19,6 +19,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
     "$url/v1/refine?levels=4&flatness=1"
   [ "$status" = 200 ]
   grep -aq '"code": "takes_too_long"' "$body"
+  grep -aq 'Papilio-Levels: 0' "$body" # which had left before
   # Its status was sent before: the log and the metrics tell what became of it.
   eventually grep -q "msg=stream id=$(header X-Request-Id) code=takes_too_long detail=" "$BATS_FILE_TMPDIR/server.log"
   both_counted() { request "$url/metrics" && grep -q '^papilio_problems_total{code="takes_too_long"} 2' "$body"; }

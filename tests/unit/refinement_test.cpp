@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+
 #include "proto/draco_reader.h"
 #include "proto/findings.h"
 #include "proto/problem.h"
@@ -33,6 +39,60 @@ TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheAnswer) {
   }
   EXPECT_EQ(last.draco, levels.back().draco);
   EXPECT_EQ(Refinement(coarse(), parameters, {}).run().draco, last.draco);
+}
+
+TEST(Refinement, ALevelIsHandedOnWhileTheNextIsMade) {
+  std::atomic<int> steps = 0;
+  std::vector<int> levels;
+  const auto run = [&](int threads, const std::function<void()>& at_first) {
+    steps = 0;
+    levels.clear();
+    Refinement refinement(coarse(), parse_query({{"levels", "3"}}), {});
+    const auto look = [&](const EncodedLevel& level) {
+      levels.push_back(level.statistics.level);
+      if (level.statistics.level == 0) at_first();
+    };
+    (void)refinement.run({.on_level = look, .cancelled = [&] { return ++steps < 0; }, .threads = threads});
+    EXPECT_EQ(levels, (std::vector<int>{0, 1, 2, 3}));
+  };
+  int before = 0;  // steps up to the first level
+  run(1, [&] { before = steps; });
+  bool went_on = false;
+  run(2, [&] {
+    for (int i = 0; i < 2000 && steps == before; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    went_on = steps > before;
+  });
+  EXPECT_TRUE(went_on);
+}
+
+TEST(Refinement, LevelsAreTheSameOnMoreThreads) {
+  for (const QueryFields& fields : {QueryFields{{"levels", "4"}}, {{"levels", "4"}, {"tolerance", "0.0001"}}}) {
+    const auto levels = [&](int threads) {
+      std::vector<EncodedLevel> all;
+      Refinement refinement(coarse(), parse_query(fields), {});
+      (void)refinement.run({.on_level = [&](const EncodedLevel& level) { all.push_back(level); }, .threads = threads});
+      return all;
+    };
+    const std::vector<EncodedLevel> one = levels(1);
+    const std::vector<EncodedLevel> two = levels(2);
+    ASSERT_EQ(one.size(), two.size());
+    for (size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].draco, two[i].draco);
+      EXPECT_EQ(one[i].statistics.faces, two[i].statistics.faces);
+      EXPECT_EQ(one[i].statistics.level, two[i].statistics.level);
+    }
+  }
+}
+
+TEST(Refinement, WhoSeesTheLevelsMayStop) {
+  for (int threads : {1, 2})
+    for (int at : {0, 2, 3}) {
+      Refinement refinement(coarse(), parse_query({{"levels", "3"}}), {});
+      const auto stop = [&](const EncodedLevel& level) {
+        if (level.statistics.level == at) throw std::out_of_range("enough");
+      };
+      EXPECT_THROW((void)refinement.run({.on_level = stop, .threads = threads}), std::out_of_range);
+    }
 }
 
 TEST(Refinement, CertainOverflowIsRefusedBeforeTheWork) {
