@@ -15,7 +15,6 @@ namespace {
 struct AssembledLevel {
   static constexpr uint8_t hidden = 255;   ///< not in the result, nor its children
   static constexpr uint8_t divided = 254;  ///< its children are
-  static constexpr uint8_t uncut = 0;      ///< the number of the pattern of no split edge
 
   const LevelChoice* choice;
   const HierarchyLevel* level;
