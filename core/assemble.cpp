@@ -98,8 +98,8 @@ class Assembler {
     if (!coarse_.attributes.empty()) level.shown.push_back(f);
     const unsigned mask = level.choice->split_mask(f);
     std::array<uint32_t, 6> vertex = {corner[0], corner[1], corner[2]};
-    if (mask != 0)  // what is read of an edge that is not split is not used
-      for (uint32_t i = 0; i < 3; ++i) vertex[3 + i] = level.new_vertex[level.edge[3 * f + i]];
+    for (uint32_t i = 0; i < 3; ++i)
+      if ((mask >> i & 1U) != 0) vertex[3 + i] = level.new_vertex[level.edge[3 * f + i]];
     // What has children as support only is cut into the same four.
     const bool is_divided = mask == 7 && level.has_below && level.choice->red[f] != 0;
     level.fate[f] = is_divided ? AssembledLevel::divided : choose_transition(*level.level, f, mask, most_cosine_);

@@ -43,6 +43,8 @@ Foot find_foot(Vec3d along, Vec3d to_apex, Vec3d to_point) {
   if (of_other_end < 0 || of_end < 0) return {};
   if (of_apex < 0) return {Foot::beyond_side};
   const double height = dot(to_point, cross(along, to_apex));
+  constexpr double rounding_squared = 1e-30;  // of the height's parts: what is flat is to have none
+  if (height * height <= rounding_squared * dot(to_point, to_point) * aa * cc) return {Foot::above_face, 0};
   return {Foot::above_face, height * height / area_squared};
 }
 
@@ -74,8 +76,7 @@ double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
   // Which of its half-edges the edge names depends on how the level was made; what is rounded must not.
   if (topology.origin[h] > topology.tip(h) && topology.twin[h] != none) h = topology.twin[h];
   const TriangleCorners face = corners(mesh, h);
-  if (topology.kind[edge] != EdgeKind::smooth)
-    return std::sqrt(squared_distance_to_segment(point, face.a, face.b));
+  if (topology.kind[edge] != EdgeKind::smooth) return std::sqrt(squared_distance_to_segment(point, face.a, face.b));
   const TriangleCorners other = corners(mesh, topology.twin[h]);
   if (const auto squared = squared_distance_to_either(point, face.a, face.b, face.c, other.c))
     return std::sqrt(*squared);

@@ -92,7 +92,7 @@ class LevelMaker {
     Topology& out = below_.mesh.topology;
     const uint32_t count = 2 * edges_.count() + 3 * faces_.count();
     out.kind.assign(count, EdgeKind::smooth);
-    out.half_edge.resize(count);
+    out.half_edge.assign(count, none);
     for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
       if (!edges_.has(e)) continue;
       const EdgeKind kind = kind_below(e);
@@ -137,6 +137,7 @@ class LevelMaker {
       if (red.inner_twin[c] != SplitPattern::outside) {
         out.twin[h] = base + red.inner_twin[c];
         out.edge[h] = 2 * edges_.count() + 3 * faces_[f] + red.edge[c];
+        out.half_edge[out.edge[h]] = h;
       } else {
         const uint32_t parent = 3 * f + red.edge[c] / 2;
         const uint32_t half = red.edge[c] % 2;
@@ -144,8 +145,10 @@ class LevelMaker {
         // The half at the lower vertex comes first, whichever way the half-edge runs.
         const bool up = mesh_.origin[parent] < mesh_.tip(parent);
         out.edge[h] = 2 * edges_[mesh_.edge[parent]] + (up ? half : 1 - half);
+        // Edges name the half-edges that they name where everything is held.
+        uint32_t& named = out.half_edge[out.edge[h]];
+        if (named == none || mesh_.half_edge[mesh_.edge[parent]] == parent) named = h;
       }
-      out.half_edge[out.edge[h]] = h;
     }
   }
 

@@ -19,7 +19,7 @@ struct LevelChoice {
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
   /// infinity where nothing wants it. Empty where errors do not decide.
   List<float> error;
-  List<uint32_t> candidates;   ///< the edges whose error reaches the least threshold there may be
+  List<uint32_t> candidates;   ///< the edges whose error reaches the least threshold; else all that are wanted
   EdgeMarks split;             ///< [E] what is split for the result
   List<uint32_t> split_edges;  ///< the same as a list
   List<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none

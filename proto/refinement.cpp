@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "proto/findings.h"
 #include "proto/problem.h"
@@ -34,22 +36,33 @@ class Stopwatch {
 /// One piece of work at a time, done on a thread beside this one; or here, where the system has no more threads.
 class Aside {
  public:
-  /// After `wait`.
+  /// After `wait`. What the work holds is freed at its end.
   void start(std::function<void()> work) {
-    const auto kept = std::make_shared<const std::function<void()>>(std::move(work));
+    const auto kept = std::make_shared<std::function<void()>>(std::move(work));
+    const auto run = [this, kept] {
+      const std::function<void()> only_here = std::exchange(*kept, nullptr);
+      try {
+        only_here();
+      } catch (...) {
+        has_failed_ = true;
+        throw;
+      }
+    };
     try {
-      running_ = std::async(std::launch::async, [kept] { (*kept)(); });
+      running_ = std::async(std::launch::async, run);
     } catch (const std::system_error&) {
-      (*kept)();
+      run();
     }
   }
   /// For the end of what was started, if anything was. Throws what that has thrown.
   void wait() {
     if (running_.valid()) running_.get();
   }
+  [[nodiscard]] bool has_failed() const { return has_failed_; }
 
  private:
-  std::future<void> running_;  // waits at its end
+  std::atomic<bool> has_failed_ = false;
+  std::future<void> running_;  // the last to be made: waits at its end
 };
 
 std::string milliseconds_text(double milliseconds) {
@@ -113,16 +126,17 @@ EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times) c
 
 EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   Stopwatch watch;
+  StageTimes encoded;  // with what was spent on the last level that was encoded
+  Aside aside;         // encodes a level while the next is made
   const auto stop = [&] {
     require_time();
-    return hooks.cancelled && hooks.cancelled();
+    return aside.has_failed() || (hooks.cancelled && hooks.cancelled());
   };
   const auto poll = [&] {
     if (stop()) throw Problem(Code::cancelled, "The client went away.");
   };
-  StageTimes encoded;  // with what was spent on the last level that was encoded
-  Aside aside;         // encodes a level while the next is made
-  Hooks core_hooks{.cancelled = stop, .threads = hooks.threads};
+  const bool encodes_aside = hooks.on_level && hooks.threads > 1;
+  Hooks core_hooks{.cancelled = stop, .threads = encodes_aside ? hooks.threads - 1 : hooks.threads};
   if (hooks.on_level) {
     core_hooks.on_level = [&](const Level& level) {
       if (level.last) return;  // it is sent with the reason why it is the last
@@ -134,14 +148,21 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
         encoded = made.statistics.times;
         hooks.on_level(made);
       };
-      if (hooks.threads > 1)
+      if (encodes_aside)
         aside.start([hand_on, mesh = level.mesh] { hand_on(mesh); });
       else
         hand_on(level.mesh);
       (void)watch.lap();
     };
   }
-  const Result result = refine_coarse(core_hooks);
+  const Result result = [&] {
+    try {
+      return refine_coarse(core_hooks);
+    } catch (...) {
+      aside.wait();  // what was thrown there came first
+      throw;
+    }
+  }();
   times_.refine += watch.lap();
   aside.wait();
   times_.encode = encoded.encode;

@@ -46,7 +46,7 @@ struct EncodedLevel {
 struct RefinementHooks {
   /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
   /// to stop. With more than one thread a level is encoded, and this is called, beside the making of the next: one call
-  /// at a time, but not always from the thread that runs it all.
+  /// at a time, but not always from the thread that runs it all, and while that one may ask `cancelled`.
   std::function<void(const EncodedLevel&)> on_level{};
   std::function<bool()> cancelled{};  ///< asked between steps
   int threads = 1;                    ///< at most so many work on it at once

@@ -226,5 +226,39 @@ TEST(PreparedMesh, OtherRulesAreRefused) {
   }
 }
 
+/// A torus with triangles added at some of its edges.
+TriangleMesh torus_with_fins(std::mt19937& random) {
+  std::uniform_real_distribution<float> anywhere(-1, 1);
+  TriangleMesh mesh = torus(10, 8);
+  const size_t faces = mesh.triangles.size();
+  for (Vec3f& p : mesh.positions) p += 0.05F * Vec3f{anywhere(random), anywhere(random), anywhere(random)};
+  for (int i = 0; i < 12; ++i) {
+    const Triangle at = mesh.triangles[random() % faces];
+    const auto tip = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.push_back({1.5F * anywhere(random), 1.5F * anywhere(random), anywhere(random)});
+    mesh.triangles.push_back({at[0], at[1], tip});
+  }
+  return mesh;
+}
+
+TEST(PreparedMesh, GivesTheSameAtSharedEdgesWhereverTheLevelIsHeld) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 60; ++i) {
+    const Mesh mesh = build_mesh(torus_with_fins(random));
+    Options options{.levels = 4};
+    options.view = view_from(mesh, 50.0 * i, 0.8);
+    options.view->fov_y = 25;
+    options.view->error_pixels = 0.5 + 0.1 * i;
+    if (i % 2 == 0) options.view->lights = {{1, 2, 3}};
+    const PreparedMesh prepared(mesh, options, plenty);
+    (void)refine(prepared, Options{.levels = 3, .tolerance = 1e-4});  // has levels kept whole
+    const Result warm = refine(prepared, options);
+    const Result cold = refine(mesh, options);
+    EXPECT_EQ(warm.mesh.topology.origin, cold.mesh.topology.origin);
+    EXPECT_EQ(warm.error, cold.error);
+    EXPECT_EQ(warm.error_pixels, cold.error_pixels);
+  }
+}
+
 }  // namespace
 }  // namespace papilio

@@ -85,14 +85,19 @@ TEST(Refinement, LevelsAreTheSameOnMoreThreads) {
 }
 
 TEST(Refinement, WhoSeesTheLevelsMayStop) {
-  for (int threads : {1, 2})
-    for (int at : {0, 2, 3}) {
-      Refinement refinement(coarse(), parse_query({{"levels", "3"}}), {});
-      const auto stop = [&](const EncodedLevel& level) {
-        if (level.statistics.level == at) throw std::out_of_range("enough");
-      };
-      EXPECT_THROW((void)refinement.run({.on_level = stop, .threads = threads}), std::out_of_range);
-    }
+  for (int threads : {1, 2, 3})
+    for (int at : {0, 2, 3})
+      for (uint64_t limit : {5000U, 400U}) {  // faces: level 3 would pass the second, when level 2 is looked at
+        Refinement refinement(coarse(), parse_query({{"levels", "3"}, {"tolerance", "1e-9"}}),
+                              {.max_output_faces = limit});
+        const auto stop = [&](const EncodedLevel& level) {
+          if (level.statistics.level == at) throw std::out_of_range("enough");
+        };
+        if (at == 3 && limit < 1000)
+          EXPECT_THROW((void)refinement.run({.on_level = stop, .threads = threads}), Problem);
+        else
+          EXPECT_THROW((void)refinement.run({.on_level = stop, .threads = threads}), std::out_of_range);
+      }
 }
 
 TEST(Refinement, CertainOverflowIsRefusedBeforeTheWork) {
