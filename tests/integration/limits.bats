@@ -15,8 +15,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/fine.drc" "$url/v1/refine?levels=4&flatness=1"
   expect_problem 507 takes_too_long
   [[ $(field detail) == *'1 seconds'* ]]
-  request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$BATS_TEST_TMPDIR/fine.drc" \
-    "$url/v1/refine?levels=4&flatness=1"
+  request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" "$url/v1/refine?levels=8&flatness=1"
   [ "$status" = 200 ]
   grep -aq '"code": "takes_too_long"' "$body"
   grep -aq 'Papilio-Levels: 0' "$body" # which had left before

@@ -282,7 +282,7 @@ revalidate() {
 @test "a stream's first level arrives while later ones are still to be made; leaving stops the work" {
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: streamer' \
-    --data-binary @"$coarse" "$proxy/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+    --data-binary @"$coarse" "$proxy/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   exec 5<"$BATS_TEST_TMPDIR/stream"
   first=$(head -c 1000 <&5 | tr -d '\0')
@@ -297,7 +297,7 @@ revalidate() {
 at_work() { request "$url/ready" && [[ $status == 503 ]]; }
 
 @test "what the server says when it is busy comes through, with Retry-After" {
-  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+  curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   eventually at_work
   request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=0"
@@ -311,7 +311,7 @@ at_work() { request "$url/ready" && [[ $status == 503 ]]; }
 
 @test "a client that goes away stops its work behind the proxy" {
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
-    "$proxy/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+    "$proxy/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   eventually at_work
   kill -KILL "$running"

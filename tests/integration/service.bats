@@ -103,7 +103,7 @@ leave() {
 
 @test "busy: with every slot and place taken others get 429 and Retry-After, health stays" {
   start_server --slots 1 --queue 0
-  long_request long levels=6
+  long_request long 'levels=6&output.normals=true'
   until_full
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   expect_problem 429 busy
@@ -124,7 +124,7 @@ leave() {
 
 @test "a client that goes away stops its work" {
   start_server --slots 1 --queue 0
-  long_request leaver 'levels=6&flatness=1&growth=2'
+  long_request leaver 'levels=6&flatness=1&growth=2&output.normals=true'
   until_full
   leave "$running"
   stop_server
@@ -133,9 +133,9 @@ leave() {
 
 @test "a client that goes away while it waits gives up its place" {
   start_server --slots 1 --queue 1
-  long_request first levels=6
+  long_request first 'levels=6&output.normals=true'
   first=$running
-  long_request waiter 'levels=6&flatness=1&growth=2'
+  long_request waiter 'levels=6&flatness=1&growth=2&output.normals=true'
   until_full
   leave "$running"
   wait "$first"
@@ -145,7 +145,7 @@ leave() {
 
 @test "SIGTERM lets a running request finish, refuses others, and exits 0" {
   start_server --slots 1 --queue 0
-  long_request long levels=6
+  long_request long 'levels=6&output.normals=true'
   until_full
   kill -TERM "$server_pid"
   request "$url/v1/info"
@@ -160,7 +160,7 @@ leave() {
 
 @test "SIGHUP while the last requests are answered cuts none of them short" {
   start_server --slots 1 --queue 0
-  long_request long levels=6
+  long_request long 'levels=6&output.normals=true'
   until_full
   kill -TERM "$server_pid"
   until grep -q msg=draining "$BATS_FILE_TMPDIR/server.log"; do sleep 0.05; done

@@ -145,7 +145,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
 @test "a client that goes away stops its work" {
   start_https --slots 1 --queue 0
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
-    "$url/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+    "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   for _ in {1..500}; do
     request "$url/ready"
@@ -162,7 +162,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   start_https
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: leaver' \
-    --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2" 3>&- &
+    --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   exec 5<"$BATS_TEST_TMPDIR/stream"
   first=$(head -c 1000 <&5 | tr -d '\0')
