@@ -76,4 +76,13 @@ std::optional<std::string> negotiate(std::string_view accept, const std::vector<
   return best;
 }
 
+bool accepts_gzip(std::string_view accept_encoding) {
+  bool accepted = false;
+  for (const MediaRange& coding : parse(accept_encoding)) {
+    if (coding.type == "gzip" || coding.type == "x-gzip") return coding.quality > 0;
+    if (coding.type == "*") accepted = coding.quality > 0;
+  }
+  return accepted;
+}
+
 }  // namespace papilio::server

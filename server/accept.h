@@ -12,4 +12,7 @@ namespace papilio::server {
 /// first.
 [[nodiscard]] std::optional<std::string> negotiate(std::string_view accept, const std::vector<std::string>& offered);
 
+/// Whether `Accept-Encoding` takes gzip (RFC 9110, section 12.5.3). An empty one is taken to mean: as it is.
+[[nodiscard]] bool accepts_gzip(std::string_view accept_encoding);
+
 }  // namespace papilio::server

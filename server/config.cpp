@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "server/address_space.h"
+#include "server/page.h"
 
 namespace papilio::server {
 namespace {
@@ -106,6 +107,12 @@ void add_store_settings(Settings& settings, EngineOptions& engine) {
   settings.add("cache-seconds", engine.cache_seconds, 0, 31536000, "How long others may cache a result");
 }
 
+void add_page_settings(Settings& settings, EngineOptions& engine) {
+  settings.add("web", engine.web, "Folder of the viewer, which / answers; \"\": none")
+      ->default_str("found beside the program");
+  settings.add("samples", engine.samples, "Folder of .drc meshes that the viewer offers, besides a mug and a wheel");
+}
+
 void add_access_settings(Settings& settings, Config& config) {
   settings.add("keys", config.keys, "File of keys, `NAME KEY` or `NAME KEY manage` a line; SIGHUP reads it again");
   settings.add_flag("allow-open", config.allow_open, "Listen beyond loopback without keys");
@@ -149,6 +156,7 @@ void check_together(const Config& config) {
 ConfigOutcome parse_config(int argc, const char* const* argv) {
   ConfigOutcome outcome;
   Config& config = outcome.config;
+  config.engine.web = default_page_folder();
   config.engine.limits.max_compute_seconds = 60;
   config.engine.limits.max_compute_bytes = 2ULL << 30;
   CLI::App app{"papilio-server: refines Draco meshes over HTTP where they are curved, visible and large on screen."};
@@ -163,6 +171,7 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
   add_http_settings(settings, config.http);
   add_limits(settings, config);
   add_store_settings(settings, config.engine);
+  add_page_settings(settings, config.engine);
   add_access_settings(settings, config);
   add_log_settings(settings, config);
 

@@ -4,6 +4,7 @@
 
 #include "server/openapi.h"
 #include "server/routes/mesh_routes.h"
+#include "server/routes/page_routes.h"
 #include "server/routes/refine_route.h"
 #include "server/routes/service_routes.h"
 
@@ -57,6 +58,39 @@ const std::array table{
              Output::info,
              {},
              info_route},
+    Endpoint{"GET",
+             "/v1/samples/{name}",
+             "sample",
+             "A mesh to try things with",
+             Access::use,
+             WhileDraining::refuse,
+             false,
+             Input::none,
+             Output::sample,
+             {Code::not_found},
+             sample_route},
+    Endpoint{"GET",
+             "/",
+             "viewer",
+             "The viewer, a page for browsers",
+             Access::open,
+             WhileDraining::refuse,
+             false,
+             Input::none,
+             Output::page,
+             {Code::not_found},
+             page_route},
+    Endpoint{"GET",
+             "/assets/{name}",
+             "viewerFile",
+             "What the viewer consists of",
+             Access::open,
+             WhileDraining::refuse,
+             false,
+             Input::none,
+             Output::asset,
+             {Code::not_found},
+             asset_route},
     Endpoint{"GET",
              "/openapi.json",
              "openapi",

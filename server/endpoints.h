@@ -13,12 +13,12 @@ namespace papilio::server {
 /// What a request to an endpoint carries.
 enum class Input { none, mesh, mesh_or_form, parameters };
 /// What it is answered.
-enum class Output { refined, mesh, description, info, health, metrics, openapi, nothing };
+enum class Output { refined, mesh, description, info, health, metrics, openapi, page, asset, sample, nothing };
 
 /// One row of the table of endpoints: routes, access and the OpenAPI document are made from it.
 struct Endpoint {
   std::string_view method;
-  std::string_view path;  ///< with `{id}` for a mesh's id
+  std::string_view path;  ///< with `{id}` for a mesh's id, `{name}` for a file's or a sample's name
   std::string_view name;  ///< OpenAPI's operationId
   std::string_view summary;
   Access access;

@@ -15,7 +15,9 @@ Engine::Engine(const EngineOptions& options)
       admission_(options.slots, options.queue),
       store_(open_store(options.store)),
       results_(options.result_cache_bytes, options.slots + options.queue),
-      meshes_(options.mesh_cache_bytes) {}
+      meshes_(options.mesh_cache_bytes),
+      samples_(options.samples, options.limits),
+      page_(options.web) {}
 
 std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& abandoned) {
   const auto begin = std::chrono::steady_clock::now();

@@ -13,6 +13,8 @@
 #include "server/cache/result_cache.h"
 #include "server/http/http.h"
 #include "server/metrics.h"
+#include "server/page.h"
+#include "server/samples/samples.h"
 #include "server/store/mesh_store.h"
 
 namespace papilio::server {
@@ -27,12 +29,15 @@ struct EngineOptions {
   uint64_t result_cache_bytes = 256u << 20;  ///< results of stored meshes
   uint64_t mesh_cache_bytes = 512u << 20;    ///< stored meshes, decoded and partly refined
   int cache_seconds = 86400;                 ///< how long others may cache a result
+  std::string web;                           ///< folder of the viewer; empty: none
+  std::string samples;                       ///< folder of further samples; empty: none
   bool keyed = false;                        ///< keys are asked for, so that nobody else may keep what is answered
 };
 
 /// What the routes share: the work and what it is kept in. Threads may share it.
 class Engine {
  public:
+  /// Throws std::runtime_error, naming the setting, where the store, a sample or the viewer cannot be used.
   explicit Engine(const EngineOptions& options);
 
   [[nodiscard]] const EngineOptions& options() const { return options_; }
@@ -40,6 +45,8 @@ class Engine {
   [[nodiscard]] MeshStore& store() { return *store_; }
   [[nodiscard]] ResultCache& results() { return results_; }
   [[nodiscard]] Metrics& metrics() { return metrics_; }
+  [[nodiscard]] const Samples& samples() const { return samples_; }
+  [[nodiscard]] const Page& page() const { return page_; }
   [[nodiscard]] const proto::Limits& limits() const { return options_.limits; }
 
   /// Waits for a slot; throws as `Admission::enter`.
@@ -62,6 +69,8 @@ class Engine {
   ResultCache results_;
   Lru<const proto::PreparedMesh> meshes_;
   Metrics metrics_;
+  const Samples samples_;
+  const Page page_;
 };
 
 }  // namespace papilio::server

@@ -104,6 +104,8 @@ int serve(const Config& config) {
              {"slots", config.engine.slots},
              {"queue", config.engine.queue},
              {"store", std::string(engine.store().kind())},
+             {"web", config.engine.web.empty() ? "none" : config.engine.web},
+             {"samples", engine.samples().all().size()},
              {"keys", keys ? keys->size() : 0}});
 
   const int held_by_work = 2 * (config.engine.slots + config.engine.queue);

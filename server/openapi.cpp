@@ -121,6 +121,17 @@ ordered_json description_schema() {
             {"refined", {{"type", "string"}, {"description", "Path of its refinements"}}}}}};
 }
 
+ordered_json sample_schema() {
+  return {{"type", "object"},
+          {"required", {"name", "path", "vertices", "faces", "bytes"}},
+          {"properties",
+           {{"name", {{"type", "string"}}},
+            {"path", {{"type", "string"}, {"description", "Where its Draco bytes are"}}},
+            {"vertices", integer_schema("Of the mesh")},
+            {"faces", integer_schema("Of the mesh")},
+            {"bytes", integer_schema("Of the mesh as Draco")}}}};
+}
+
 ordered_json info_schema(const EngineOptions& options) {
   ordered_json limits{{"type", "object"}, {"properties", ordered_json::object()}};
   for (const NamedLimit& limit : named_limits(options)) {
@@ -129,13 +140,14 @@ ordered_json info_schema(const EngineOptions& options) {
     limits["required"].push_back(limit.name);
   }
   return {{"type", "object"},
-          {"required", {"name", "version", "schemes", "limits", "parameters"}},
+          {"required", {"name", "version", "schemes", "limits", "parameters", "samples"}},
           {"properties",
            {{"name", {{"type", "string"}}},
             {"version", {{"type", "string"}}},
             {"schemes", {{"type", "array"}, {"items", {{"type", "string"}}}}},
             {"limits", limits},
-            {"parameters", {{"type", "array"}, {"items", {{"type", "object"}}}}}}}};
+            {"parameters", {{"type", "array"}, {"items", {{"type", "object"}}}}},
+            {"samples", {{"type", "array"}, {"items", schema_reference("Sample")}}}}}};
 }
 
 ordered_json schemas(const EngineOptions& options) {
@@ -144,6 +156,7 @@ ordered_json schemas(const EngineOptions& options) {
       {"Problem", problem_schema()},
       {"Description", description_schema()},
       {"Info", info_schema(options)},
+      {"Sample", sample_schema()},
       {"Health", {{"type", "object"}, {"required", {"status"}}, {"properties", {{"status", {{"type", "string"}}}}}}}};
 }
 
@@ -212,6 +225,12 @@ ordered_json json_answer(const std::string& description, const std::string& sche
           {"content", content({json_type}, schema_reference(schema))}};
 }
 
+ordered_json file_answer(const std::string& description, const std::vector<std::string>& types) {
+  return {{"description", description},
+          {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control"})},
+          {"content", content(types, binary())}};
+}
+
 void add_successes(const Endpoint& endpoint, ordered_json& answers) {
   const ordered_json not_modified{{"description", "If-None-Match has the ETag"},
                                   {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})}};
@@ -244,6 +263,19 @@ void add_successes(const Endpoint& endpoint, ordered_json& answers) {
       break;
     case Output::openapi:
       answers["200"] = {{"description", "OpenAPI 3.1"}, {"content", {{json_type, {{"schema", {{"type", "object"}}}}}}}};
+      break;
+    case Output::page:
+      answers["200"] = file_answer("The page", {"text/html"});
+      answers["304"] = not_modified;
+      break;
+    case Output::asset:
+      answers["200"] =
+          file_answer("A script, a style sheet or a decoder", {"text/javascript", "text/css", "application/wasm"});
+      answers["304"] = not_modified;
+      break;
+    case Output::sample:
+      answers["200"] = file_answer("The mesh", {draco_type});
+      answers["304"] = not_modified;
       break;
     case Output::nothing:
       answers["204"] = {{"description", "Done"}};
@@ -294,6 +326,7 @@ ordered_json operation(const Endpoint& endpoint) {
   if (endpoint.access == Access::manage)
     one["description"] = "Where the server asks for keys, this takes one with the right to manage.";
   ordered_json parameters = ordered_json::array();
+  if (endpoint.path.find("{name}") != std::string_view::npos) parameters.push_back(reference("parameters/name"));
   if (endpoint.path.find("{id}") != std::string_view::npos) parameters.push_back(reference("parameters/id"));
   if (endpoint.parameters)
     for (const ParameterInfo& info : proto::parameter_table())
@@ -331,7 +364,13 @@ std::string openapi_json(const EngineOptions& options) {
                             {"in", "path"},
                             {"required", true},
                             {"description", "SHA-256 of the mesh's bytes"},
-                            {"schema", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}}}}};
+                            {"schema", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}}}},
+                          {"name",
+                           {{"name", "name"},
+                            {"in", "path"},
+                            {"required", true},
+                            {"description", "As /v1/info or the page has it"},
+                            {"schema", {{"type", "string"}}}}}};
   parameters.update(query_parameters());
   document["components"] = {
       {"schemas", schemas(options)},

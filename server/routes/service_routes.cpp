@@ -44,6 +44,13 @@ Response info_route(Engine& engine, Request& /*request*/) {
   for (const NamedLimit& limit : named_limits(engine.options()))
     document["limits"][std::string(limit.name)] = limit.value;
   document["parameters"] = ordered_json::parse(proto::parameters_json());
+  document["samples"] = ordered_json::array();
+  for (const Sample& sample : engine.samples().all())
+    document["samples"].push_back({{"name", sample.name},
+                                   {"path", "/v1/samples/" + sample.name},
+                                   {"vertices", sample.vertices},
+                                   {"faces", sample.faces},
+                                   {"bytes", sample.draco->size()}});
   return json_response(document);
 }
 

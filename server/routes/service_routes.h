@@ -9,7 +9,7 @@
 
 namespace papilio::server {
 
-/// GET /v1/info: version, limits, schemes, parameters.
+/// GET /v1/info: version, limits, schemes, parameters, samples.
 [[nodiscard]] Response info_route(Engine& engine, Request& request);
 /// GET /health: touches no lock of the work, so it answers whatever is going on.
 [[nodiscard]] Response health_route(Engine& engine, Request& request);

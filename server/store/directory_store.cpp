@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "proto/problem.h"
+#include "server/file_bytes.h"
 #include "server/log.h"
 #include "server/sha256.h"
 
@@ -145,14 +146,12 @@ bool DirectoryStore::contains(const std::string& id) {
 
 MeshStore::Bytes DirectoryStore::get(const std::string& id) {
   const fs::path file = file_of(id);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
+  errno = 0;
+  MeshStore::Bytes bytes = read_file(file);
+  if (bytes == nullptr) {
     if (errno != ENOENT) throw unavailable(file);
     return nullptr;
   }
-  auto bytes =
-      std::make_shared<const std::string>(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-  if (in.bad()) throw unavailable(file, "reading failed");
   if (sha256(*bytes) == id) return bytes;
   log_event("error", "store",
             {{"path", file.string()}, {"reason", "the content is not what the name says; the file is taken away"}});

@@ -7,7 +7,7 @@
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/mesh_figures.h"
 #include "tests/bench/report.h"
-#include "tests/support/models.h"
+#include "server/samples/models.h"
 
 // The paper's Table 1, measured on stand-ins for its models, beside its own figures.
 
@@ -41,7 +41,7 @@ std::vector<Model> models() {
   const TriangleMesh spock = head();
   return {{.name = "mug",
            .stand_in = "mug, made by program",
-           .coarse = test::mug(),
+           .coarse = server::mug(),
            .levels = 2,
            .thresholds = {0.6, 0.78},
            .view = {},
@@ -50,7 +50,7 @@ std::vector<Model> models() {
            .paper_view = {}},
           {.name = "wheel",
            .stand_in = "wheel, made by program",
-           .coarse = test::wheel(),
+           .coarse = server::wheel(),
            .levels = 4,
            .thresholds = {0.6, 0.7, 0.8, 0.9},
            .view = {},

@@ -9,26 +9,29 @@ source "$here/apt.sh"
 packages=()
 programs=() # as program:package, for what may have been installed in some other way
 meshes=no
+page=no
 (($#)) || set -- build test demo bench check fuzz soak
 for purpose in "$@"; do
   case $purpose in
     build)
       packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
         libcli11-dev libmeshoptimizer-dev libgtest-dev libgmock-dev libbenchmark-dev libssl-dev libhiredis-dev
-        prometheus-cpp-dev)
+        prometheus-cpp-dev ca-certificates)
+      page=yes
       ;;
     test)
-      meshes=yes packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx) programs+=(python3:python3)
+      meshes=yes packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx chromium fonts-dejavu-core)
+      programs+=(python3:python3)
       ;;
     demo) meshes=yes packages+=(curl jq ca-certificates) ;;
     bench) meshes=yes packages+=(ca-certificates) ;;
-    check) packages+=(clang-format clang-tidy shellcheck git jq) ;;
+    check) page=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
     fuzz) packages+=(clang libclang-rt-dev dpkg-dev ca-certificates) ;;
     soak) meshes=yes packages+=(wrk curl jq ca-certificates) ;;
     *) die "unknown purpose '$purpose'" ;;
   esac
 done
-[[ $meshes == no ]] || programs+=(node:nodejs npm:npm)
+[[ $meshes$page == nono ]] || programs+=(node:nodejs npm:npm)
 
 missing=()
 if command -v dpkg-query >/dev/null; then
@@ -63,4 +66,5 @@ if [[ ! -d $deps/openmesh ]]; then
 fi
 
 [[ $meshes == no ]] || "$here/real_meshes.sh"
+[[ $page == no ]] || "$here/web_packages.sh"
 [[ " $* " != *" test "* ]] || "$here/openapi_linter.sh"

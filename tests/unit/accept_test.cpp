@@ -24,5 +24,12 @@ TEST(Accept, TakesWhatTheClientLikesBest) {
   EXPECT_EQ(chosen("model/vnd;q=x, ;;, ,"), "none");
 }
 
+TEST(Accept, TakesGzipOnlyWhereItIsNamedOrAnythingIs) {
+  for (const char* yes : {"gzip", "br, gzip", "deflate;q=0.5, GZIP;q=0.1", "*", "x-gzip", "*;q=0, gzip"})
+    EXPECT_TRUE(accepts_gzip(yes)) << yes;
+  for (const char* no : {"", "identity", "br", "gzip;q=0", "gzip;q=0, *", "*;q=0", "gzipped"})
+    EXPECT_FALSE(accepts_gzip(no)) << no;
+}
+
 }  // namespace
 }  // namespace papilio::server

@@ -1,4 +1,4 @@
-#include "tests/support/models.h"
+#include "server/samples/models.h"
 
 #include <gtest/gtest.h>
 
@@ -34,14 +34,14 @@ void expect_clean(const TriangleMesh& model, const Expected& expected) {
   EXPECT_TRUE(test::is_consistent(mesh));
 }
 
-TEST(Models, MugHasTheCountsOfThePaperAndIsClosed) { expect_clean(test::mug(), {172, 344, 0}); }
+TEST(Models, MugHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::mug(), {172, 344, 0}); }
 
-TEST(Models, WheelHasTheCountsOfThePaperAndIsClosed) { expect_clean(test::wheel(), {163, 290, 18}); }
+TEST(Models, WheelHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::wheel(), {163, 290, 18}); }
 
 TEST(Models, FacesLookOutward) {
   // The clay of a mug of these measures, and the wheel's parts added up: torus, hub, spokes; all coarse polygons.
-  EXPECT_NEAR(signed_volume(test::mug()), 115, 15);
-  EXPECT_NEAR(signed_volume(test::wheel()), 8300, 500);
+  EXPECT_NEAR(signed_volume(server::mug()), 115, 15);
+  EXPECT_NEAR(signed_volume(server::wheel()), 8300, 500);
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
-#include "tests/support/models.h"
+#include "server/samples/models.h"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "tests/support/shapes.h"
-
-namespace papilio::test {
+namespace papilio::server {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -75,6 +73,23 @@ class Lathe {
   uint32_t sectors_, rings_, first_ = 0, first_pole_ = 0, last_pole_ = 0;
 };
 
+/// A closed tyre round z: `sectors` rings of `sides` corners each.
+void add_tyre(TriangleMesh& mesh, double radius, double tube, uint32_t sectors, uint32_t sides) {
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  for (uint32_t sector = 0; sector < sectors; ++sector) {
+    const double along = 2 * pi * sector / sectors;
+    for (uint32_t side = 0; side < sides; ++side) {
+      const double round = 2 * pi * side / sides;
+      const double distance = radius + tube * std::cos(round);
+      add_vertex(mesh, {distance * std::cos(along), distance * std::sin(along), tube * std::sin(round)});
+    }
+  }
+  const auto at = [&](uint32_t sector, uint32_t side) { return first + sector % sectors * sides + side % sides; };
+  for (uint32_t sector = 0; sector < sectors; ++sector)
+    for (uint32_t side = 0; side < sides; ++side)
+      add_quad(mesh, {at(sector, side), at(sector + 1, side), at(sector + 1, side + 1), at(sector, side + 1)});
+}
+
 /// A handle in the plane y = 0: ten sections of four corners on half an ellipse round (x, 0, z), from the upper hole in
 /// the wall to the lower.
 void add_handle(TriangleMesh& mesh, const Quad& upper_hole, const Quad& lower_hole) {
@@ -141,11 +156,12 @@ TriangleMesh mug() {
 
 TriangleMesh wheel() {
   constexpr int spokes = 8;
-  TriangleMesh mesh = torus(12, 6, 30, 4);
+  TriangleMesh mesh;
+  add_tyre(mesh, 30, 4, 12, 6);
   const std::vector<ProfilePoint> hub{{3, -5}, {4, -4}, {4, 0}, {4, 4}, {3, 5}};
   Lathe(mesh, 5, -5.5, hub, 5.5).add_faces(mesh, [](uint32_t, uint32_t) { return false; });
   for (int s = 0; s < spokes; ++s) add_spoke(mesh, 2 * pi * s / spokes, 2.5, 28, 0.8);
   return mesh;
 }
 
-}  // namespace papilio::test
+}  // namespace papilio::server

@@ -1,0 +1,38 @@
+// The commands that ask for what is on screen, to be copied.
+
+import { button, element } from './elements';
+
+export interface Command {
+  mode: string;
+  title: string;
+  text: string;
+}
+
+export function commandRows(commands: Command[]): HTMLElement[] {
+  return commands.map(({ mode, title, text }) => {
+    const row = element('div', 'command');
+    row.dataset.mode = mode;
+    const head = element('div', 'command-head');
+    const code = element('pre', '', text);
+    code.tabIndex = 0; // it scrolls
+    const copyButton = button('Copy', (pressed) => void copy(text, pressed, code));
+    copyButton.setAttribute('aria-label', `Copy the command for ${title.toLowerCase()}`);
+    head.append(element('span', '', title), copyButton);
+    row.append(head, code);
+    return row;
+  });
+}
+
+/// Says on the button how it went. Where the browser does not let the page copy (over HTTP from another machine), selects
+/// `shown` instead.
+export async function copy(text: string, pressed: HTMLButtonElement, shown?: HTMLElement): Promise<void> {
+  const before = pressed.textContent;
+  try {
+    await navigator.clipboard.writeText(text);
+    pressed.textContent = 'Copied';
+  } catch {
+    pressed.textContent = shown ? 'Selected: press Ctrl C' : 'Copy the address bar';
+    if (shown) getSelection()?.selectAllChildren(shown);
+  }
+  setTimeout(() => (pressed.textContent = before), 2000);
+}

@@ -1,0 +1,99 @@
+// Draco in the browser: the decoder that comes with three.js, in workers; the encoder of draco3d, which is fetched when
+// a mesh of another format is opened.
+
+import encoderWasmUrl from 'draco3d/draco_encoder.wasm?url';
+import encoderUrl from 'draco3d/draco_encoder_nodejs.js?url';
+import type { BufferGeometry } from 'three';
+import { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';
+
+import { Problem } from './service';
+
+export const dracoLoader = new DRACOLoader();
+
+/// Fetches the decoder, beside whatever else is fetched.
+export function fetchDecoder(): void {
+  dracoLoader.preload();
+}
+
+/// The mesh with its positions and, where it has them, its normals. Rejects with a Problem where the bytes are no mesh.
+export async function decode(draco: Uint8Array<ArrayBuffer>): Promise<BufferGeometry> {
+  const geometry = await new Promise<BufferGeometry>((resolve, reject) => {
+    const refuse = () => reject(new Problem('mesh_not_draco', 'This is no Draco mesh, or it is damaged.'));
+    dracoLoader.parse(draco.slice().buffer, resolve, refuse); // the copy goes to the worker for good
+  });
+  if (geometry.index === null || geometry.index.count === 0 || !geometry.hasAttribute('position'))
+    throw new Problem('mesh_unsupported', 'There are no triangles in this file, only points.');
+  for (const name of Object.keys(geometry.attributes))
+    if (name !== 'position' && name !== 'normal') geometry.deleteAttribute(name);
+  return geometry;
+}
+
+// What of draco3d's encoder is used.
+interface Encoder {
+  SetSpeedOptions(encoding: number, decoding: number): void;
+  SetEncodingMethod(method: number): void;
+  SetAttributeQuantization(attribute: number, bits: number): void;
+  EncodeMeshToDracoBuffer(mesh: unknown, out: DracoBytes): number;
+}
+interface DracoBytes {
+  GetValue(at: number): number;
+}
+interface EncoderModule {
+  Encoder: new () => Encoder;
+  MeshBuilder: new () => {
+    AddFacesToMesh(mesh: unknown, count: number, faces: Uint32Array): void;
+    AddFloatAttributeToMesh(mesh: unknown, type: number, count: number, components: number, values: Float32Array): void;
+  };
+  Mesh: new () => unknown;
+  DracoInt8Array: new () => DracoBytes;
+  POSITION: number;
+  MESH_EDGEBREAKER_ENCODING: number;
+  MESH_SEQUENTIAL_ENCODING: number;
+  destroy(object: unknown): void;
+}
+declare global {
+  var DracoEncoderModule: undefined | ((options: { locateFile: () => string }) => Promise<EncoderModule>);
+}
+
+let encoderModule: Promise<EncoderModule> | undefined;
+
+async function loadEncoder(): Promise<EncoderModule> {
+  await new Promise<void>((resolve, reject) => {
+    const script = document.createElement('script');
+    script.src = encoderUrl;
+    script.onload = () => resolve();
+    script.onerror = () => reject(new Problem('unreachable', 'The encoder for other formats cannot be fetched.', 2));
+    document.head.append(script);
+  });
+  return globalThis.DracoEncoderModule!({ locateFile: () => encoderWasmUrl });
+}
+
+/// Positions [vertices * 3] and triangles [faces * 3 vertices] as a Draco mesh, positions on a grid of 16 bits.
+export async function encode(positions: Float32Array, triangles: Uint32Array): Promise<Uint8Array<ArrayBuffer>> {
+  encoderModule ??= loadEncoder();
+  encoderModule.catch(() => (encoderModule = undefined)); // the next try fetches it again
+  const module = await encoderModule;
+  const builder = new module.MeshBuilder();
+  const mesh = new module.Mesh();
+  const encoder = new module.Encoder();
+  const out = new module.DracoInt8Array();
+  try {
+    builder.AddFacesToMesh(mesh, triangles.length / 3, triangles);
+    builder.AddFloatAttributeToMesh(mesh, module.POSITION, positions.length / 3, 3, positions);
+    encoder.SetSpeedOptions(5, 5);
+    encoder.SetAttributeQuantization(module.POSITION, 16);
+    let length = 0;
+    for (const method of [module.MESH_EDGEBREAKER_ENCODING, module.MESH_SEQUENTIAL_ENCODING]) {
+      encoder.SetEncodingMethod(method);
+      length = encoder.EncodeMeshToDracoBuffer(mesh, out);
+      if (length > 0) break;
+    }
+    if (length === 0)
+      throw new Problem('mesh_unusable', 'This mesh cannot be encoded: all its triangles are degenerate.');
+    const bytes = new Uint8Array(length);
+    for (let i = 0; i < length; ++i) bytes[i] = out.GetValue(i);
+    return bytes;
+  } finally {
+    for (const object of [out, encoder, mesh, builder]) module.destroy(object);
+  }
+}

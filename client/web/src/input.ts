@@ -1,0 +1,44 @@
+// Keys and dropped files.
+
+import { find } from './elements';
+import type { Stage } from './stage';
+
+/// While the picture has the focus: arrows turn it, with Shift they move it, + and - zoom, Home shows all of it.
+export function listenToKeys(surface: HTMLElement, stage: Stage): void {
+  const turn = Math.PI / 24;
+  const step = 1 / 20;
+  const arrows: Record<string, [right: number, up: number]> = {
+    ArrowLeft: [-1, 0],
+    ArrowRight: [1, 0],
+    ArrowUp: [0, 1],
+    ArrowDown: [0, -1],
+  };
+  surface.addEventListener('keydown', (event) => {
+    if (event.target !== event.currentTarget || event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrow = arrows[event.key];
+    if (arrow && event.shiftKey) stage.pan(step * arrow[0], step * arrow[1]);
+    else if (arrow) stage.orbit(turn * arrow[0], turn * arrow[1]);
+    else if (event.key === '+' || event.key === '=') stage.zoom(1 / 1.1);
+    else if (event.key === '-') stage.zoom(1.1);
+    else if (event.key === 'Home') stage.resetCamera();
+    else return;
+    event.preventDefault();
+  });
+}
+
+/// Files dropped anywhere on the page. `onDrop`: null where it was no file.
+export function listenToDrops(onDrop: (file: File | null) => void): void {
+  const hint = find('drop-hint');
+  document.addEventListener('dragover', (event) => {
+    event.preventDefault();
+    hint.hidden = false;
+  });
+  document.addEventListener('dragleave', (event) => {
+    if (event.relatedTarget === null) hint.hidden = true;
+  });
+  document.addEventListener('drop', (event) => {
+    event.preventDefault();
+    hint.hidden = true;
+    onDrop(event.dataTransfer?.files[0] ?? null);
+  });
+}

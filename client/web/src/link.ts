@@ -1,0 +1,99 @@
+// The whole state of the page in its address, behind the #; and the commands that ask for what is on screen.
+
+import type { Values } from './parameters';
+
+export const modes = ['coarse', 'uniform', 'adaptive', 'view'] as const;
+export type Mode = (typeof modes)[number];
+
+export const looks = ['shaded', 'wireframe', 'level', 'distance'] as const;
+export type Look = (typeof looks)[number];
+
+type Triple = [number, number, number];
+
+export interface Camera {
+  eye: Triple;
+  target: Triple;
+}
+
+export interface State {
+  /// A sample's name or a stored mesh's id; empty: a mesh that only this page has.
+  mesh: string;
+  /// Those shown side by side, one panel each.
+  modes: Mode[];
+  look: Look;
+  /// Null: as opening a mesh has it.
+  camera: Camera | null;
+  /// The view that the refinement is for, where that is not the camera's.
+  frozen: Camera | null;
+  values: Values;
+}
+
+const isId = (text: string) => /^[0-9a-f]{64}$/.test(text);
+
+/// Whether the mesh is a stored one, not a sample.
+export const isStored = (mesh: string): boolean => isId(mesh);
+
+export function toHash(state: State): string {
+  const fields: [string, string][] = [];
+  if (state.mesh) fields.push(['mesh', state.mesh]);
+  fields.push(['show', state.modes.join(',')], ['look', state.look]);
+  if (state.camera) fields.push(['camera', cameraText(state.camera)]);
+  if (state.frozen) fields.push(['frozen', cameraText(state.frozen)]);
+  fields.push(...state.values);
+  return fields.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('&');
+}
+
+/// What a hash says, over `defaults`. What it cannot mean is passed over. Where it says anything, the parameters are its
+/// alone.
+export function fromHash(hash: string, defaults: State): State {
+  const fields = new URLSearchParams(hash.replace(/^#/, ''));
+  const state: State = { ...defaults, values: new Map(defaults.values) };
+  if (fields.size === 0) return state;
+  const shown = (fields.get('show') ?? '').split(',');
+  const known = modes.filter((mode) => shown.includes(mode));
+  if (known.length > 0) state.modes = known;
+  state.mesh = fields.get('mesh') ?? defaults.mesh;
+  state.look = looks.find((look) => look === fields.get('look')) ?? defaults.look;
+  state.camera = cameraOf(fields.get('camera'));
+  state.frozen = cameraOf(fields.get('frozen'));
+  if (fields.has('show')) {
+    const own = new Set(['mesh', 'show', 'look', 'camera', 'frozen']);
+    state.values = new Map([...fields].filter(([name]) => !own.has(name)));
+  }
+  return state;
+}
+
+function cameraText({ eye, target }: Camera): string {
+  return [...eye, ...target].map(shortest).join(',');
+}
+
+function cameraOf(text: string | null): Camera | null {
+  const numbers = (text ?? '').split(',').map(Number);
+  if (text === null || numbers.length !== 6 || !numbers.every(Number.isFinite)) return null;
+  return { eye: numbers.slice(0, 3) as Triple, target: numbers.slice(3) as Triple };
+}
+
+/// Six digits are more than a screen shows.
+export function shortest(number: number): string {
+  return String(Number(number.toPrecision(6)));
+}
+
+/// What to type to get the same bytes. `query`: null for the mesh as it is. `id`: null for one that the server could not
+/// store; then `file` is its name on the user's disk.
+export function curlOf(
+  base: string,
+  query: string | null,
+  mesh: { id: string | null; file: string },
+  withKey: boolean,
+): string {
+  const curl = `curl -sS --fail-with-body${withKey ? ' -H "Authorization: Bearer $PAPILIO_KEY"' : ''}`;
+  if (query === null) return mesh.id === null ? '' : `${curl} -o coarse.drc '${base}v1/meshes/${mesh.id}'`;
+  const out = `${curl} -o refined.drc`;
+  if (mesh.id !== null) return `${out} '${base}v1/meshes/${mesh.id}/refined?${query}'`;
+  const body = `-H 'Content-Type: application/x-draco' --data-binary @${quoted(mesh.file)}`;
+  return `${out} ${body} '${base}v1/refine?${query}'`;
+}
+
+function quoted(word: string): string {
+  return /^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'\\''`)}'`;
+}

@@ -1,0 +1,99 @@
+// A file that the user drops or picks, as a Draco mesh: .drc as it is, other formats by three's loaders, positions and
+// triangles alone.
+
+import { BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
+
+import { dracoLoader, encode } from './draco';
+import { Problem } from './service';
+
+export const extensions = ['.drc', '.obj', '.ply', '.stl', '.glb'];
+
+/// Rejects with a Problem. `maxBytes`: of the service.
+export async function readMeshFile(file: File, maxBytes: number): Promise<Uint8Array<ArrayBuffer>> {
+  const extension = /\.[^.]*$/.exec(file.name.toLowerCase())?.[0] ?? '';
+  if (!extensions.includes(extension))
+    throw new Problem('unsupported', `${file.name} is no mesh file. Open one of ${extensions.join(', ')}.`);
+  if (file.size === 0) throw new Problem('empty', `${file.name} is empty.`);
+  if (extension === '.drc' && file.size > maxBytes)
+    throw new Problem('body_too_large', `${file.name} has ${file.size} bytes; this server takes ${maxBytes}.`);
+  const bytes = await file.arrayBuffer();
+  if (extension === '.drc') return new Uint8Array(bytes);
+  let geometries: BufferGeometry[];
+  try {
+    geometries = await load(extension, bytes);
+  } catch (error) {
+    throw new Problem(
+      'damaged',
+      `${file.name} cannot be read: ${error instanceof Error ? error.message : String(error)}`,
+    );
+  }
+  const { positions, triangles } = welded(geometries);
+  if (triangles.length === 0) throw new Problem('empty', `There are no triangles in ${file.name}.`);
+  return encode(positions, triangles);
+}
+
+async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeometry[]> {
+  switch (extension) {
+    case '.obj': {
+      const { OBJLoader } = await import('three/examples/jsm/loaders/OBJLoader.js');
+      return meshesIn(new OBJLoader().parse(new TextDecoder().decode(bytes)));
+    }
+    case '.ply': {
+      const { PLYLoader } = await import('three/examples/jsm/loaders/PLYLoader.js');
+      const geometry = new PLYLoader().parse(bytes);
+      return geometry.index === null ? [] : [geometry]; // without faces the points are no triangles
+    }
+    case '.stl': {
+      const { STLLoader } = await import('three/examples/jsm/loaders/STLLoader.js');
+      return [new STLLoader().parse(bytes)];
+    }
+    default: {
+      const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
+      const loader = new GLTFLoader().setDRACOLoader(dracoLoader);
+      // Files beside it could only come from elsewhere; what it needs of itself are blobs.
+      loader.manager.setURLModifier((url) => (/^(blob|data):/.test(url) ? url : 'data:,'));
+      return meshesIn((await loader.parseAsync(bytes, '')).scene);
+    }
+  }
+}
+
+/// In world coordinates.
+function meshesIn(scene: Object3D): BufferGeometry[] {
+  scene.updateMatrixWorld(true);
+  const found: BufferGeometry[] = [];
+  scene.traverse((object) => {
+    if (object instanceof Mesh)
+      found.push((object.geometry as BufferGeometry).clone().applyMatrix4(object.matrixWorld));
+  });
+  return found;
+}
+
+/// All triangles as one mesh; points at the same place are one vertex, as many formats repeat them in each triangle.
+function welded(geometries: BufferGeometry[]): { positions: Float32Array; triangles: Uint32Array } {
+  const positions: number[] = [];
+  const triangles: number[] = [];
+  const numbers = new Map<string, number>();
+  const point = new Vector3();
+  for (const geometry of geometries) {
+    const position = geometry.getAttribute('position');
+    const vertices = new Uint32Array(position.count);
+    for (let i = 0; i < position.count; ++i) {
+      point.fromBufferAttribute(position, i);
+      const [x, y, z] = [Math.fround(point.x), Math.fround(point.y), Math.fround(point.z)];
+      const at = `${x},${y},${z}`;
+      let vertex = numbers.get(at);
+      if (vertex === undefined) {
+        vertex = numbers.size;
+        numbers.set(at, vertex);
+        positions.push(x, y, z);
+      }
+      vertices[i] = vertex;
+    }
+    const corners = geometry.index?.count ?? position.count;
+    for (let i = 0; i + 2 < corners; i += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => vertices[geometry.index?.getX(i + k) ?? i + k]);
+      if (a !== b && b !== c && c !== a) triangles.push(a, b, c);
+    }
+  }
+  return { positions: new Float32Array(positions), triangles: new Uint32Array(triangles) };
+}

@@ -1,0 +1,244 @@
+// One of the meshes that are compared: what is asked of the server for it, and what has come.
+
+import type { BufferGeometry } from 'three';
+
+import { decode } from './draco';
+import { button, element } from './elements';
+import { LevelsOfVertices } from './levels';
+import type { Mode } from './link';
+import type { OpenMesh } from './mesh';
+import { type Level, Problem, type Summary } from './service';
+
+const titles: Record<Mode, string> = {
+  coarse: 'Coarse',
+  uniform: 'Uniform',
+  adaptive: 'Adaptive',
+  view: 'View-dependent',
+};
+
+/// How often a busy or silent server is asked again without being told to.
+const mostRetries = 5;
+
+/// A mesh that can be shown, and what it cost.
+export interface Shown {
+  mesh: OpenMesh;
+  geometry: BufferGeometry;
+  draco: Uint8Array<ArrayBuffer>;
+  vertices: number;
+  faces: number;
+  /// All of the answer's meshes up to this one, in bytes.
+  received: number;
+  /// Milliseconds by stage of the server; empty for the coarse mesh.
+  timing: Record<string, number>;
+  /// Milliseconds from the request to the decoded mesh.
+  roundTrip: number | null;
+  /// Null while further levels may come.
+  summary: Summary | null;
+  /// The meshes up to this one, coarse first.
+  levels: Uint8Array<ArrayBuffer>[];
+}
+
+export class Panel {
+  readonly element: HTMLElement;
+  readonly title: string;
+  /// For where there is little room.
+  readonly shortTitle: string;
+  /// There is another mesh to be drawn, or another state to be told.
+  onChange: () => void = () => {};
+  onProblem: (problem: Problem) => void = () => {};
+  /// The user wants this one alone, or all again.
+  onEnlarge: () => void = () => {};
+  shown: Shown | null = null;
+  #asked: { mesh: OpenMesh; query: string | null } | null = null;
+  #abort: AbortController | null = null;
+  #retries = 0;
+  #retryTimer: ReturnType<typeof setTimeout> | undefined;
+  #caption: HTMLElement;
+  #note: HTMLElement;
+  #message: HTMLElement;
+  #legend: HTMLElement;
+  #save: HTMLButtonElement;
+  #enlarge: HTMLButtonElement;
+
+  constructor(readonly mode: Mode) {
+    this.title = titles[mode];
+    this.shortTitle = mode === 'view' ? 'View' : this.title;
+    this.element = element('section', 'panel');
+    this.element.dataset.mode = mode;
+    this.element.setAttribute('aria-label', this.title);
+    const head = element('div', 'panel-head');
+    head.append(element('h2', '', this.title));
+    this.#caption = head.appendChild(element('span', 'caption'));
+    head.append(element('span', 'space'));
+    this.#enlarge = head.appendChild(button('', () => this.onEnlarge()));
+    this.#save = head.appendChild(button('Save', () => this.#saveFile()));
+    this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh as a Draco file`);
+    this.#save.hidden = true;
+    this.setEnlarged(false);
+    this.#note = element('p', 'note');
+    this.#message = element('div', 'message');
+    this.#message.setAttribute('role', 'status');
+    this.#legend = element('div', 'legend');
+    this.element.append(head, this.#note, this.#message, this.#legend);
+    this.#tell('idle');
+  }
+
+  /// Asks for the mesh with this query (null: the coarse mesh as it is) unless that is what is shown or on its way. What
+  /// is on its way is aborted; what is shown stays until there is better.
+  ask(mesh: OpenMesh, query: string | null, note = ''): void {
+    this.#note.textContent = note;
+    if (this.#asked?.mesh === mesh && this.#asked.query === query) return;
+    this.#asked = { mesh, query };
+    this.#retries = 0;
+    this.#start();
+  }
+
+  /// Gives up what is on its way.
+  stop(): void {
+    this.#abort?.abort();
+    clearTimeout(this.#retryTimer);
+    this.#asked = null;
+    this.#tell('idle');
+  }
+
+  setLegend(content: Node[]): void {
+    this.#legend.replaceChildren(...content);
+  }
+
+  /// Whether it is the only one on screen.
+  setEnlarged(isEnlarged: boolean): void {
+    this.#enlarge.textContent = isEnlarged ? 'Side by side' : 'Enlarge';
+    this.#enlarge.setAttribute('aria-label', isEnlarged ? 'Show all meshes side by side' : `Show ${this.title} alone`);
+  }
+
+  /// [faces] of what is shown.
+  async levelsOfFaces(shown: Shown): Promise<Uint8Array> {
+    const vertices = new LevelsOfVertices();
+    for (const [level, draco] of shown.levels.entries()) {
+      const isLast = level + 1 === shown.levels.length;
+      vertices.add(isLast ? shown.geometry : await decode(draco), level);
+    }
+    return vertices.ofFaces(shown.geometry);
+  }
+
+  #start(): void {
+    this.#abort?.abort();
+    clearTimeout(this.#retryTimer);
+    const { mesh, query } = this.#asked!;
+    const abort = new AbortController();
+    this.#abort = abort;
+    this.#message.replaceChildren();
+    if (query === null) {
+      this.#show({ ...coarse(mesh), summary: null });
+      this.#tell('done');
+      return;
+    }
+    this.#tell('busy');
+    this.#refine(mesh, query, abort.signal).catch((error: unknown) => {
+      if (abort.signal.aborted) return;
+      this.#fail(error);
+    });
+  }
+
+  async #refine(mesh: OpenMesh, query: string, signal: AbortSignal): Promise<void> {
+    const began = performance.now();
+    const levels: Level[] = [];
+    let summary: Summary | null = null;
+    let decoding: Promise<void> | null = null;
+    const decodeLatest = async () => {
+      for (let done = -1; done + 1 < levels.length; ) {
+        done = levels.length - 1;
+        const level = levels[done];
+        const isBetter = this.shown?.mesh !== mesh || level.faces > this.shown.faces;
+        if (summary === null && !isBetter) continue;
+        const geometry = await decode(level.draco);
+        signal.throwIfAborted();
+        const isLast = summary !== null && done === levels.length - 1;
+        this.#show({
+          mesh,
+          geometry,
+          draco: level.draco,
+          vertices: level.vertices,
+          faces: level.faces,
+          received: levels.slice(0, done + 1).reduce((sum, one) => sum + one.draco.length, 0),
+          timing: level.timing,
+          roundTrip: isLast ? performance.now() - began : null,
+          summary: isLast ? summary : null,
+          levels: levels.slice(0, done + 1).map((one) => one.draco),
+        });
+      }
+    };
+    const onLevel = (level: Level) => {
+      levels.push(level);
+      this.#tell('busy', `level ${levels.length - 1}`);
+      // Levels that come while one is decoded wait, and of those the last is next.
+      decoding ??= decodeLatest().finally(() => (decoding = null));
+      decoding.catch(() => {}); // told below
+    };
+    const ended = await mesh.refine(query, onLevel, signal);
+    await decoding;
+    summary = ended;
+    await decodeLatest();
+    this.#retries = 0;
+    this.#tell('done');
+  }
+
+  #show(shown: Shown): void {
+    this.shown = shown;
+    this.#caption.textContent = `${shown.faces.toLocaleString('en')} faces`;
+    this.element.dataset.faces = String(shown.faces);
+    this.#save.hidden = false;
+    this.onChange();
+  }
+
+  #tell(state: 'idle' | 'busy' | 'done' | 'failed', doing = ''): void {
+    this.element.dataset.state = state;
+    this.element.setAttribute('aria-busy', String(state === 'busy'));
+    this.element.style.setProperty('--doing', JSON.stringify(doing));
+    if (state !== 'busy') this.onChange();
+  }
+
+  #fail(error: unknown): void {
+    const problem =
+      error instanceof Problem
+        ? error
+        : new Problem('unexpected', error instanceof Error ? error.message : String(error));
+    const again = button('Try again', () => this.#start());
+    this.#message.replaceChildren(element('p', '', problem.message), again);
+    this.#tell('failed');
+    this.onProblem(problem);
+    if (problem.retryAfter !== null && this.#retries < mostRetries) {
+      ++this.#retries;
+      this.#countDown(Math.max(1, Math.ceil(problem.retryAfter)), again);
+    }
+  }
+
+  #countDown(seconds: number, again: HTMLButtonElement): void {
+    if (seconds === 0) return this.#start();
+    again.textContent = `Try again (by itself in ${seconds} s)`;
+    this.#retryTimer = setTimeout(() => this.#countDown(seconds - 1, again), 1000);
+  }
+
+  #saveFile(): void {
+    if (this.shown === null) return;
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([this.shown.draco]));
+    link.download = `${this.shown.mesh.name.replace(/\.[^.]*$/, '')}-${this.mode}.drc`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  }
+}
+
+function coarse(mesh: OpenMesh): Omit<Shown, 'summary'> {
+  return {
+    mesh,
+    geometry: mesh.geometry,
+    draco: mesh.draco,
+    vertices: mesh.vertices,
+    faces: mesh.faces,
+    received: mesh.draco.length,
+    timing: {},
+    roundTrip: null,
+    levels: [mesh.draco],
+  };
+}

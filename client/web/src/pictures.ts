@@ -1,0 +1,120 @@
+// Draws what the panels have, in the look that is chosen, with legends.
+
+import type { Object3D } from 'three';
+
+import { distancesToUniform } from './distance';
+import { coloured, rampColour, shaded, withEdges } from './drawing';
+import { element } from './elements';
+import type { Look } from './link';
+import type { OpenMesh } from './mesh';
+import type { Panel, Shown } from './panel';
+import type { Stage } from './stage';
+
+export class Pictures {
+  /// By what they are of, to which uniform mesh, and [faces] in the mesh's units.
+  #distances = new WeakMap<Shown, { uniform: Shown; faces: Float32Array }>();
+  #abort = new AbortController();
+  /// What each panel's picture is of.
+  #drawn = new Map<Panel, { shown: Shown; how: string }>();
+
+  constructor(readonly stage: Stage) {}
+
+  /// Draws these panels; what was being drawn is given up. `levels`: as many as were asked for. `uniform`: what distances
+  /// are to; null while it is not there. Rejects where a mesh cannot be decoded.
+  async draw(panels: Panel[], look: Look, levels: number, uniform: Shown | null): Promise<void> {
+    this.#abort.abort();
+    this.#abort = new AbortController();
+    const { signal } = this.#abort;
+    const pictures = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
+    try {
+      if (look === 'level') await this.#drawLevels(pictures, Math.max(levels, 1), signal);
+      else if (look === 'distance' && uniform !== null) await this.#drawDistances(pictures, uniform, signal);
+      else for (const picture of pictures) this.#drawPlain(picture, look);
+    } catch (error) {
+      if (!signal.aborted) throw error;
+    }
+  }
+
+  #drawPlain({ panel, shown }: Picture, look: Look): void {
+    this.#put({ panel, shown }, look, () =>
+      look === 'wireframe' ? withEdges(shown.geometry) : shaded(shown.geometry),
+    );
+    panel.setLegend(look === 'distance' ? [element('span', '', 'waiting for the uniform result …')] : []);
+  }
+
+  async #drawLevels(pictures: Picture[], levels: number, signal: AbortSignal): Promise<void> {
+    for (const { panel, shown } of pictures) {
+      const how = `levels ${levels}`;
+      if (!this.#has({ panel, shown }, how)) {
+        const ofFaces = await panel.levelsOfFaces(shown);
+        signal.throwIfAborted();
+        const shares = Array.from(ofFaces, (level) => level / levels);
+        this.#put({ panel, shown }, how, () => coloured(shown.geometry, shares));
+      }
+      panel.setLegend(levelLegend(levels));
+    }
+  }
+
+  async #drawDistances(pictures: Picture[], uniform: Shown, signal: AbortSignal): Promise<void> {
+    for (const { panel, shown } of pictures) {
+      if (this.#distances.get(shown)?.uniform === uniform) continue;
+      panel.setLegend([element('span', '', 'measuring …')]);
+      const faces =
+        shown === uniform
+          ? new Float32Array(shown.faces)
+          : await distancesToUniform(shown.geometry, uniform.geometry, signal);
+      signal.throwIfAborted();
+      this.#distances.set(shown, { uniform, faces });
+    }
+    // One scale for all, so that the colours compare.
+    const largest = pictures.map(({ shown }) => this.#distances.get(shown)!.faces.reduce((a, b) => Math.max(a, b), 0));
+    const most = Math.max(...largest) || 1;
+    const diagonal = diagonalOf(uniform.mesh);
+    for (const [i, { panel, shown }] of pictures.entries()) {
+      const { faces } = this.#distances.get(shown)!;
+      const share = (distance: number) => Math.sqrt(distance / most); // by the root: small ones differ too
+      this.#put({ panel, shown }, `distances ${most}`, () => coloured(shown.geometry, Array.from(faces, share)));
+      panel.setLegend(distanceLegend(largest[i] / diagonal, most / diagonal));
+    }
+  }
+
+  #has({ panel, shown }: Picture, how: string): boolean {
+    const drawn = this.#drawn.get(panel);
+    return drawn?.shown === shown && drawn.how === how;
+  }
+
+  #put(picture: Picture, how: string, make: () => Object3D): void {
+    if (this.#has(picture, how)) return;
+    this.#drawn.set(picture.panel, { shown: picture.shown, how });
+    this.stage.show(picture.panel.element, make());
+  }
+}
+
+interface Picture {
+  panel: Panel;
+  shown: Shown;
+}
+
+function diagonalOf(mesh: OpenMesh): number {
+  mesh.geometry.computeBoundingBox();
+  const box = mesh.geometry.boundingBox!;
+  return box.min.distanceTo(box.max);
+}
+
+function swatch(share: number, text: string): HTMLElement {
+  const made = element('span', 'swatch', text);
+  made.style.setProperty('--colour', rampColour(share));
+  return made;
+}
+
+function levelLegend(most: number): Node[] {
+  const swatches = Array.from({ length: most + 1 }, (_, level) => swatch(level / most, String(level)));
+  return [element('span', '', 'level'), ...swatches];
+}
+
+/// Both in shares of the diagonal.
+function distanceLegend(largest: number, most: number): Node[] {
+  const percent = (share: number) => `${Number((100 * share).toPrecision(2))} %`;
+  const marks = [0, 1 / 4, 1].map((share) => swatch(Math.sqrt(share), percent(share * most)));
+  return [...marks, element('span', '', `largest here ${percent(largest)} of the diagonal`)];
+}

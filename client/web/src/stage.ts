@@ -1,0 +1,271 @@
+// Where meshes are drawn: one canvas, one renderer and one camera for all panels, so that they always look the same way.
+
+import {
+  AmbientLight,
+  Box3,
+  type BufferGeometry,
+  CameraHelper,
+  DirectionalLight,
+  type Object3D,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Scene,
+  Sphere,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+
+import type { Camera } from './link';
+
+/// How long the camera must have been still to be at rest, in milliseconds.
+const rest = 200;
+
+interface View {
+  element: HTMLElement;
+  scene: Scene;
+  light: DirectionalLight;
+  content: Object3D | null;
+  frustum: CameraHelper | null;
+}
+
+/// How the picture is made, apart from where the camera is.
+export interface Lens {
+  fovY: number; // degrees
+  isOrthographic: boolean;
+  up: [number, number, number];
+}
+
+export class Stage {
+  /// The camera has come to rest somewhere else, or the panels have another size.
+  onRest: () => void = () => {};
+  /// The camera moves.
+  onMove: () => void = () => {};
+  #renderer: WebGLRenderer;
+  #surface: HTMLElement;
+  #camera = new PerspectiveCamera(45);
+  #controls: OrbitControls;
+  #lens: Lens = { fovY: 45, isOrthographic: false, up: [0, 1, 0] };
+  #views = new Map<HTMLElement, View>();
+  /// Those on screen.
+  #panels: HTMLElement[] = [];
+  #sphere = new Sphere(new Vector3(), 1);
+  /// What the camera is to show the whole of.
+  #framed: BufferGeometry | null = null;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #isDue = false;
+
+  /// `surface` is as large as the canvas; on it the mesh is turned. Throws where the browser has no WebGL.
+  constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
+    this.#surface = surface;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.#controls = this.#makeControls();
+    new ResizeObserver(() => this.#moved()).observe(surface);
+  }
+
+  /// The panels on screen: what each shows is drawn where it lies. Others keep what they show.
+  setPanels(elements: HTMLElement[]): void {
+    this.#panels = elements;
+    for (const element of elements) {
+      if (this.#views.has(element)) continue;
+      const scene = new Scene();
+      const light = new DirectionalLight(0xffffff, 2.4);
+      scene.add(new AmbientLight(0xffffff, 0.7), light, light.target);
+      this.#views.set(element, { element, scene, light, content: null, frustum: null });
+    }
+    this.draw();
+  }
+
+  /// Draws this in the panel from now on, and frees what was there.
+  show(element: HTMLElement, content: Object3D | null): void {
+    const view = this.#views.get(element);
+    if (view === undefined) return;
+    if (view.content) view.scene.remove(view.content);
+    dispose(view.content);
+    view.content = content;
+    if (content) view.scene.add(content);
+    this.draw();
+  }
+
+  /// Draws the frustum of a camera that is not the one looked through; null: none.
+  showFrustum(camera: Camera | null): void {
+    for (const view of this.#views.values()) {
+      if (view.frustum) view.scene.remove(view.frustum);
+      view.frustum?.dispose();
+      view.frustum = null;
+      if (camera === null) continue;
+      const distance = new Vector3(...camera.eye).distanceTo(new Vector3(...camera.target));
+      const looking = new PerspectiveCamera(this.#lens.fovY, aspectOf(view.element), distance / 8, distance);
+      looking.up.set(...this.#lens.up);
+      looking.position.set(...camera.eye);
+      looking.lookAt(new Vector3(...camera.target));
+      looking.updateMatrixWorld();
+      view.frustum = new CameraHelper(looking);
+      view.scene.add(view.frustum);
+    }
+    this.draw();
+  }
+
+  setLens(lens: Lens): void {
+    const isTurned = lens.up.some((x, i) => x !== this.#lens.up[i]);
+    this.#lens = lens;
+    if (isTurned) {
+      const { eye, target } = this.camera;
+      this.#controls.dispose(); // they take the camera's up when they are made
+      this.#controls = this.#makeControls();
+      this.camera = { eye, target };
+    }
+    this.draw();
+  }
+
+  get camera(): Camera {
+    return { eye: this.#camera.position.toArray(), target: this.#controls.target.toArray() };
+  }
+
+  set camera({ eye, target }: Camera) {
+    this.#camera.position.set(...eye);
+    this.#controls.target.set(...target);
+    this.#controls.update();
+    this.draw();
+  }
+
+  /// Pixels of the panel's picture, width and height.
+  pixelsOf(element: HTMLElement): [number, number] {
+    const bounds = element.getBoundingClientRect();
+    return [bounds.width, bounds.height].map((n) => Math.max(1, Math.round(n * devicePixelRatio))) as [number, number];
+  }
+
+  /// Looks at this mesh from now on, from where all of it is seen.
+  frame(geometry: BufferGeometry): void {
+    new Box3().setFromBufferAttribute(geometry.getAttribute('position') as never).getBoundingSphere(this.#sphere);
+    this.#sphere.radius = Math.max(this.#sphere.radius, 1e-30);
+    this.#framed = geometry;
+    this.resetCamera();
+  }
+
+  resetCamera(): void {
+    const position = this.#framed?.getAttribute('position');
+    if (position === undefined) return;
+    const aspect = Math.min(...this.#panels.map(aspectOf));
+    const high = 0.9 * Math.tan((this.#lens.fovY * Math.PI) / 360); // the caption takes the rest
+    const wide = 0.95 * aspect * Math.tan((this.#lens.fovY * Math.PI) / 360);
+    const up = new Vector3(...this.#lens.up).normalize();
+    const side = new Vector3(up.y, up.z, up.x).cross(up).normalize(); // any other would do
+    const back = side.clone().cross(up);
+    const towards = back.addScaledVector(side, -0.55).normalize().addScaledVector(up, 0.4).normalize();
+    const right = up.clone().cross(towards).normalize();
+    const above = towards.clone().cross(right);
+    const { center } = this.#sphere;
+    // From where the last vertex comes into the picture.
+    let distance = 0;
+    const point = new Vector3();
+    for (let v = 0; v < position.count; ++v) {
+      point.fromBufferAttribute(position, v).sub(center);
+      const across = Math.max(Math.abs(point.dot(above)) / high, Math.abs(point.dot(right)) / wide);
+      distance = Math.max(distance, point.dot(towards) + across);
+    }
+    const eye = towards.multiplyScalar(distance).add(center);
+    this.camera = { eye: eye.toArray(), target: center.toArray() };
+  }
+
+  /// Turns about the target; angles in radians.
+  orbit(right: number, up: number): void {
+    const arm = this.#camera.position.clone().sub(this.#controls.target);
+    const at = new Spherical().setFromVector3(arm);
+    at.theta += right;
+    at.phi -= up;
+    this.#camera.position.copy(this.#controls.target).add(new Vector3().setFromSpherical(at.makeSafe()));
+    this.#controls.update();
+  }
+
+  /// Moves camera and target, in shares of their distance.
+  pan(right: number, up: number): void {
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const step = new Vector3(right * distance, up * distance, 0).applyQuaternion(this.#camera.quaternion);
+    this.#camera.position.add(step);
+    this.#controls.target.add(step);
+    this.#controls.update();
+  }
+
+  zoom(factor: number): void {
+    this.#camera.position.sub(this.#controls.target).multiplyScalar(factor).add(this.#controls.target);
+    this.#controls.update();
+  }
+
+  draw(): void {
+    if (this.#isDue) return;
+    this.#isDue = true;
+    requestAnimationFrame(() => {
+      this.#isDue = false;
+      this.#drawNow();
+    });
+  }
+
+  #makeControls(): OrbitControls {
+    this.#camera.up.set(...this.#lens.up);
+    const controls = new OrbitControls(this.#camera, this.#surface);
+    controls.zoomToCursor = false;
+    controls.addEventListener('change', () => {
+      this.onMove();
+      this.#moved();
+    });
+    return controls;
+  }
+
+  #moved(): void {
+    this.draw();
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.onRest(), rest);
+  }
+
+  #drawNow(): void {
+    const bounds = this.#surface.getBoundingClientRect();
+    this.#renderer.setPixelRatio(devicePixelRatio);
+    this.#renderer.setSize(bounds.width, bounds.height, false);
+    this.#renderer.setScissorTest(true);
+    const toTarget = this.#camera.position.distanceTo(this.#controls.target);
+    const toMesh = this.#camera.position.distanceTo(this.#sphere.center);
+    this.#camera.fov = this.#lens.fovY;
+    this.#camera.near = Math.max(toMesh - 3 * this.#sphere.radius, toTarget / 1000);
+    this.#camera.far = Math.max(toMesh + 3 * this.#sphere.radius, 2 * toTarget);
+    for (const element of this.#panels) {
+      const { scene, light } = this.#views.get(element)!;
+      const at = element.getBoundingClientRect();
+      const place = [at.left - bounds.left, bounds.bottom - at.bottom, at.width, at.height] as const;
+      this.#renderer.setViewport(...place);
+      this.#renderer.setScissor(...place);
+      this.#camera.aspect = aspectOf(element);
+      this.#camera.updateProjectionMatrix();
+      this.#camera.updateMatrixWorld();
+      // From over the left shoulder.
+      light.position.set(-0.5, 0.7, 0.6).multiplyScalar(toTarget).applyMatrix4(this.#camera.matrixWorld);
+      light.target.position.copy(this.#controls.target);
+      this.#renderer.render(scene, this.#lens.isOrthographic ? this.#orthographic(toTarget) : this.#camera);
+    }
+  }
+
+  /// Shows at every depth what perspective shows at the target.
+  #orthographic(toTarget: number): OrthographicCamera {
+    const height = toTarget * Math.tan((this.#camera.fov * Math.PI) / 360);
+    const width = height * this.#camera.aspect;
+    const camera = new OrthographicCamera(-width, width, height, -height, this.#camera.near, this.#camera.far);
+    camera.position.copy(this.#camera.position);
+    camera.quaternion.copy(this.#camera.quaternion);
+    camera.updateMatrixWorld();
+    return camera;
+  }
+}
+
+function aspectOf(element: HTMLElement): number {
+  const { width, height } = element.getBoundingClientRect();
+  return Math.max(width, 1) / Math.max(height, 1);
+}
+
+function dispose(content: Object3D | null): void {
+  content?.traverse((object) => {
+    const { geometry, material } = object as { geometry?: { dispose(): void }; material?: { dispose(): void } };
+    geometry?.dispose();
+    material?.dispose();
+  });
+}

@@ -1,0 +1,41 @@
+import { gzipSync } from 'node:zlib';
+
+import { defineConfig, type Plugin } from 'vite';
+
+// Of Draco's decoder only the WebAssembly is used: the same in JavaScript, and the smaller one for glTF alone, stay out.
+function withoutUnusedDecoders(): Plugin {
+  return {
+    name: 'without-unused-decoders',
+    generateBundle(_, bundle) {
+      for (const [name, file] of Object.entries(bundle)) {
+        const from = file.type === 'asset' ? file.originalFileNames.join() : '';
+        if (/draco\/(gltf\/|draco_decoder\.js)/.test(from)) delete bundle[name];
+      }
+    },
+  };
+}
+
+// A .gz beside each file that becomes smaller by it.
+function gzipped(): Plugin {
+  return {
+    name: 'gzipped',
+    enforce: 'post',
+    generateBundle: {
+      order: 'post',
+      handler(_, bundle) {
+        for (const [name, file] of Object.entries(bundle)) {
+          const source = Buffer.from(file.type === 'chunk' ? file.code : file.source);
+          const small = gzipSync(source, { level: 9 });
+          if (small.length < 0.9 * source.length)
+            this.emitFile({ type: 'asset', fileName: `${name}.gz`, source: small });
+        }
+      },
+    },
+  };
+}
+
+export default defineConfig({
+  base: './', // behind a proxy the page may be anywhere
+  build: { target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 1000, emptyOutDir: true },
+  plugins: [withoutUnusedDecoders(), gzipped()],
+});
