@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check.sh: what is judged without running the programs: formatting (clang-format), static analysis (clang-tidy, with the
-# compile commands of build/release) and the shell scripts (shellcheck). All of them run, whatever comes of the others.
+# check.sh: what is judged without running the programs: formatting (clang-format, prettier), static analysis (clang-tidy,
+# with the compile commands of build/release; tsc) and the shell scripts (shellcheck). All of them run, whatever comes of the others.
 # The first two judge otherwise in each version: that of Debian 12 counts, and with another they are left out.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -60,6 +60,12 @@ if is_judge clang-tidy; then
   # shellcheck disable=SC2016 # the inner shell expands it
   printf '%s\0' "${analysed[@]}" | xargs -0 -r -n1 -P2 bash -c 'tidy "$1"' tidy || failed+=(clang-tidy)
 fi
+
+mapfile -t web < <(files client/web tests/web | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)
+echo "prettier: ${#web[@]} files"
+client/web/node_modules/.bin/prettier --log-level warn --check "${web[@]}" || failed+=(prettier)
+echo "tsc: client/web"
+client/web/node_modules/.bin/tsc --project client/web || failed+=(tsc)
 
 echo "shellcheck: ${#scripts[@]} scripts"
 shellcheck --external-sources "${scripts[@]}" || failed+=(shellcheck)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# test.sh PRESET [FILTER]: the unit tests (CTest), then the integration tests (bats), of what is built in build/PRESET;
-# FILTER is a regular expression on their names. Both run whatever comes of the first.
+# test.sh PRESET [FILTER]: the unit tests (CTest), the integration tests (bats) and those of the viewer (node), of what is
+# built in build/PRESET; FILTER is a regular expression on their names. All run whatever comes of the others.
 set -euo pipefail
 preset=$1
 filter=${2:-}
@@ -19,11 +19,12 @@ unit=(ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)"
 if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); fi
 "${unit[@]}" || failed=1
 
-if compgen -G 'tests/integration/*.bats' >/dev/null; then
-  command='bats --tap'
-  [[ -z $filter ]] || command+=" --filter ${filter// /.}" # prove splits it at spaces
-  prove --failures --comments --exec "$command" tests/integration/*.bats || failed=1
-else
-  echo "no integration tests in tests/integration"
+integration='bats --tap'
+web='node --test-reporter=tap'
+if [[ -n $filter ]]; then # prove splits it at spaces
+  integration+=" --filter ${filter// /.}"
+  web+=" --test-name-pattern=${filter// /.}"
 fi
+prove --failures --comments --exec "$integration" tests/integration/*.bats || failed=1
+prove --failures --comments --exec "$web" tests/web/*.test.mjs || failed=1
 exit "$failed"

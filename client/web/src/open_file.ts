@@ -29,6 +29,8 @@ export async function readMeshFile(file: File, maxBytes: number): Promise<Uint8A
   }
   const { positions, triangles } = welded(geometries);
   if (triangles.length === 0) throw new Problem('empty', `There are no triangles in ${file.name}.`);
+  if (!positions.every(Number.isFinite))
+    throw new Problem('mesh_unusable', `${file.name} has positions that are no numbers.`);
   return encode(positions, triangles);
 }
 

@@ -75,6 +75,8 @@ export class Panel {
     this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh as a Draco file`);
     this.#save.hidden = true;
     this.setEnlarged(false);
+    // What is pressed here must not turn the mesh, which takes all that the pointer does from then on.
+    this.element.addEventListener('pointerdown', (event) => event.stopPropagation());
     this.#note = element('p', 'note');
     this.#message = element('div', 'message');
     this.#message.setAttribute('role', 'status');

@@ -54,6 +54,8 @@ export class Stage {
   /// What the camera is to show the whole of.
   #framed: BufferGeometry | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
+  /// A finger or a button is down: the camera is not at rest, however still.
+  #isHeld = false;
   #isDue = false;
 
   /// `surface` is as large as the canvas; on it the mesh is turned. Throws where the browser has no WebGL.
@@ -206,6 +208,11 @@ export class Stage {
     this.#camera.up.set(...this.#lens.up);
     const controls = new OrbitControls(this.#camera, this.#surface);
     controls.zoomToCursor = false;
+    controls.addEventListener('start', () => (this.#isHeld = true));
+    controls.addEventListener('end', () => {
+      this.#isHeld = false;
+      this.#moved();
+    });
     controls.addEventListener('change', () => {
       this.onMove();
       this.#moved();
@@ -216,7 +223,7 @@ export class Stage {
   #moved(): void {
     this.draw();
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.onRest(), rest);
+    if (!this.#isHeld) this.#timer = setTimeout(() => this.onRest(), rest);
   }
 
   #drawNow(): void {

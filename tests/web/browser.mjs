@@ -1,0 +1,182 @@
+// A real server and a real browser for the tests of the viewer: Debian's Chromium, driven by playwright-core, WebGL in
+// software.
+
+import { execFile, spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { promisify } from 'node:util';
+
+const root = new URL('../..', import.meta.url).pathname;
+const { chromium } = createRequire(join(root, 'client/web/package.json'))('playwright-core');
+
+export const build = process.env.PAPILIO_BUILD ?? join(root, 'build/release');
+export const meshes = process.env.PAPILIO_MESHES ?? join(root, 'build/deps/meshes');
+export const axeSource = createRequire(join(root, 'client/web/package.json')).resolve('axe-core');
+
+/// Longest wait for anything, in milliseconds: the machines are slow at times, and slower under sanitizers.
+export const patience = Number(process.env.PAPILIO_PATIENCE ?? 60_000);
+
+/// Starts papilio-server, on a free port unless the arguments name one. `stop` ends it as an operator would.
+export async function startServer(...args) {
+  if (!args.includes('--port')) args.push('--port', '0');
+  const server = spawn(join(build, 'papilio-server'), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+  let log = '';
+  server.stderr.on('data', (text) => (log += text));
+  const exited = once(server, 'exit');
+  const first = await Promise.race([once(createInterface(server.stdout), 'line'), exited.then(() => null)]);
+  if (first === null) throw new Error(`the server did not start: ${log}`);
+  return {
+    url: `${first[0].replace('listening on ', '')}/`,
+    /// Signals are for what a test does to it.
+    process: server,
+    log: () => log,
+    stop: async () => {
+      server.kill('SIGTERM');
+      const [status] = await exited;
+      if (status !== 0) throw new Error(`the server ended with ${status}: ${log.slice(-4000)}`);
+    },
+  };
+}
+
+/// A sample of `papilio_...` in the server's metrics, summed over its labels; with `label` only of those that have it.
+export async function metric(server, name, label = '') {
+  const text = await (await fetch(`${server.url}metrics`)).text();
+  const lines = text.split('\n').filter((line) => line.startsWith(name) && line.includes(label));
+  return lines.reduce((sum, line) => sum + Number(line.split(' ').at(-1)), 0);
+}
+
+export async function launch() {
+  const program = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+  const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+  if (process.getuid() === 0) args.push('--no-sandbox'); // which root cannot have
+  return chromium.launch({ executablePath: program, args });
+}
+
+/// A page of its own on this server, and all that goes wrong in it: `faults` lists errors in the console, exceptions
+/// and requests to other hosts; what a refusal of the server leaves in the console only where `countRefusals`.
+export async function openPage(browser, url, { hash = '', countRefusals = true, ...options } = {}) {
+  const context = await browser.newContext({
+    viewport: { width: 1000, height: 700 },
+    ...options,
+  });
+  context.setDefaultTimeout(patience);
+  const page = await context.newPage();
+  const faults = [];
+  page.on('console', (message) => {
+    const isRefusal = message.text().startsWith('Failed to load resource');
+    if (message.type() === 'error' && (countRefusals || !isRefusal)) faults.push(message.text());
+  });
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('request', (request) => {
+    const at = new URL(request.url());
+    if (at.protocol !== 'blob:' && at.protocol !== 'data:' && at.host !== new URL(url).host) faults.push(request.url());
+  });
+  await page.goto(url + (hash ? `#${hash}` : ''));
+  return { page, faults, context };
+}
+
+/// Resolves once these panels have all that they asked for.
+export async function done(page, modes = ['coarse', 'uniform', 'adaptive', 'view']) {
+  for (const mode of modes) await page.locator(`.panel[data-mode=${mode}][data-state=done]`).waitFor();
+}
+
+export const facesOf = async (page, mode) =>
+  Number(await page.locator(`.panel[data-mode=${mode}]`).getAttribute('data-faces'));
+
+/// The requests for refinements from now on.
+export function refinements(page) {
+  const made = [];
+  page.on('request', (request) => {
+    if (/\/refined\?|\/v1\/refine\?/.test(request.url())) made.push(new URL(request.url()));
+  });
+  return made;
+}
+
+/// What is drawn in a panel below its caption, as PNG.
+export async function picture(page, mode) {
+  // Two frames, so that what was asked for is drawn.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  const box = await page.locator(`.panel[data-mode=${mode}]`).boundingBox();
+  return page.screenshot({
+    clip: {
+      x: box.x + 2,
+      y: box.y + 60,
+      width: box.width - 4,
+      height: box.height - 100,
+    },
+  });
+}
+
+/// Shares of the pixels: `drawn` of the first that are not the ground's colour, `differing` between the two.
+export function compare(page, first, second) {
+  return page.evaluate(
+    async (pictures) => {
+      const [a, b] = await Promise.all(
+        pictures.map(async (text) => {
+          const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+          const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+          const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+          canvas.drawImage(bitmap, 0, 0);
+          return canvas.getImageData(0, 0, bitmap.width, bitmap.height).data;
+        }),
+      );
+      const differ = (x, i, y, j) => [0, 1, 2].some((k) => Math.abs(x[i + k] - y[j + k]) > 16);
+      let drawn = 0;
+      let differing = 0;
+      for (let i = 0; i < a.length; i += 4) {
+        if (differ(a, i, a, 0)) ++drawn;
+        if (i >= b.length || differ(a, i, b, i)) ++differing;
+      }
+      return {
+        drawn: (4 * drawn) / a.length,
+        differing: (4 * differing) / a.length,
+      };
+    },
+    [first.toString('base64'), second.toString('base64')],
+  );
+}
+
+/// Drags the mesh by so many pixels.
+export async function drag(page, right, down) {
+  const box = await page.locator('#panels').boundingBox();
+  const [x, y] = [box.x + box.width / 4, box.y + box.height / 4];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let step = 1; step <= 5; ++step) await page.mouse.move(x + (right * step) / 5, y + (down * step) / 5);
+  await page.mouse.up();
+}
+
+/// Drops a file on the page, as from the desktop.
+export async function drop(page, name, bytes) {
+  const transfer = await page.evaluateHandle(
+    ([fileName, text]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], fileName));
+      return data;
+    },
+    [name, Buffer.from(bytes).toString('base64')],
+  );
+  await page.dispatchEvent('#stage', 'dragover', { dataTransfer: transfer });
+  await page.dispatchEvent('#stage', 'drop', { dataTransfer: transfer });
+}
+
+/// Runs a command line in a new folder, with these variables besides; resolves with the bytes of the file that it wrote.
+export async function run(command, file, variables = {}) {
+  const folder = mkdtempSync(join(tmpdir(), 'papilio-web-'));
+  try {
+    const options = {
+      cwd: folder,
+      env: { ...process.env, no_proxy: '*', ...variables },
+      timeout: patience,
+    };
+    await promisify(execFile)('bash', ['-c', command], options);
+    const { readFile } = await import('node:fs/promises');
+    return await readFile(join(folder, file));
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}

@@ -1,0 +1,75 @@
+// A cube in the formats that the viewer opens, made here: 8 vertices, 12 triangles.
+
+const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]);
+// Counter-clockwise seen from outside.
+const quads = [
+  [0, 2, 3, 1],
+  [4, 5, 7, 6],
+  [0, 1, 5, 4],
+  [2, 6, 7, 3],
+  [0, 4, 6, 2],
+  [1, 3, 7, 5],
+];
+const triangles = quads.flatMap(([a, b, c, d]) => [
+  [a, b, c],
+  [a, c, d],
+]);
+
+const lines = (rows) => rows.map((row) => row.join(' ')).join('\n');
+
+export function cubeObj() {
+  return `${lines(corners.map((p) => ['v', ...p]))}\n${lines(quads.map((q) => ['f', ...q.map((i) => i + 1)]))}\n`;
+}
+
+export function cubePly() {
+  const head = `ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n`;
+  return `${head}element face 12\nproperty list uchar int vertex_indices\nend_header\n${lines(corners)}\n${lines(
+    triangles.map((t) => [3, ...t]),
+  )}\n`;
+}
+
+export function cubeStl() {
+  const bytes = Buffer.alloc(84 + 50 * triangles.length);
+  bytes.writeUInt32LE(triangles.length, 80);
+  triangles.forEach((triangle, t) =>
+    triangle.forEach((corner, k) =>
+      corners[corner].forEach((x, axis) => bytes.writeFloatLE(x, 84 + 50 * t + 12 + 12 * k + 4 * axis)),
+    ),
+  );
+  return bytes;
+}
+
+export function cubeGlb() {
+  const positions = Buffer.from(new Float32Array(corners.flat()).buffer);
+  const indices = Buffer.from(new Uint16Array(triangles.flat()).buffer);
+  const binary = Buffer.concat([positions, indices]);
+  const json = {
+    asset: { version: '2.0' },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0, scale: [2, 2, 2] }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+    buffers: [{ byteLength: binary.length }],
+    bufferViews: [
+      { buffer: 0, byteOffset: 0, byteLength: positions.length },
+      { buffer: 0, byteOffset: positions.length, byteLength: indices.length },
+    ],
+    accessors: [
+      {
+        bufferView: 0,
+        componentType: 5126,
+        count: 8,
+        type: 'VEC3',
+        min: [0, 0, 0],
+        max: [1, 1, 1],
+      },
+      { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' },
+    ],
+  };
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const word = (...values) => Buffer.from(new Uint32Array(values).buffer);
+  const all = [word(padded.length, 0x4e4f534a), padded, word(binary.length, 0x004e4942), binary];
+  const length = 12 + all.reduce((sum, part) => sum + part.length, 0);
+  return Buffer.concat([word(0x46546c67, 2, length), ...all]);
+}

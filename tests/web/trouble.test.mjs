@@ -1,0 +1,198 @@
+// What the viewer says and does when something goes wrong, and who can use it.
+
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+
+import { axeSource, done, drag, facesOf, launch, meshes, openPage, run, startServer } from './browser.mjs';
+
+let server;
+let browser;
+before(async () => {
+  [server, browser] = await Promise.all([startServer(), launch()]);
+});
+after(async () => {
+  await browser.close();
+  await server.stop();
+});
+
+const message = (page, mode) => page.locator(`.panel[data-mode=${mode}] .message`);
+
+test('a result beyond a limit is refused where it would be, with the number; the others come', async () => {
+  const small = await startServer('--max-output-faces', '10000');
+  try {
+    const { page, faults } = await openPage(browser, small.url, {
+      countRefusals: false,
+    });
+    await done(page, ['coarse', 'adaptive', 'view']);
+    await message(page, 'uniform').filter({ hasText: '22016' }).waitFor();
+    await page.locator('[id="parameter-levels"]').fill('2');
+    await page.keyboard.press('Enter');
+    await done(page);
+    assert.equal(await message(page, 'uniform').innerText(), '');
+    assert.deepEqual(faults, []);
+  } finally {
+    await small.stop();
+  }
+});
+
+test('a busy server is asked again by itself, and at once where the user wants it', async () => {
+  const small = await startServer('--slots', '1', '--queue', '0');
+  let isOver = false;
+  const mesh = readFileSync(join(meshes, 'bunny600.drc'));
+  const occupy = async () => {
+    while (!isOver) {
+      const headers = { 'Content-Type': 'application/x-draco' };
+      const answer = await fetch(`${small.url}v1/refine?levels=6`, {
+        method: 'POST',
+        headers,
+        body: mesh,
+      });
+      await answer.arrayBuffer();
+    }
+  };
+  const { page } = await openPage(browser, small.url, {
+    countRefusals: false,
+    hash: 'mesh=mug&show=coarse,view&levels=3',
+  });
+  await done(page, ['coarse', 'view']);
+  const busy = [occupy(), occupy(), occupy(), occupy()];
+  try {
+    // Each new view may find the slot free by chance.
+    while ((await message(page, 'view').locator('button', { hasText: 'by itself in' }).count()) === 0) {
+      await drag(page, 40, 0);
+      await page.waitForTimeout(700);
+    }
+    assert.ok((await message(page, 'view').innerText()).length > 40);
+    assert.ok((await facesOf(page, 'view')) > 344, 'the last good mesh stays');
+  } finally {
+    isOver = true;
+    await Promise.all(busy);
+  }
+  await done(page, ['view']);
+  await small.stop();
+});
+
+test('a server that is gone is missed in words, and found again', async () => {
+  const first = await startServer();
+  const port = new URL(first.url).port;
+  const { page } = await openPage(browser, first.url, { countRefusals: false });
+  await done(page);
+  await first.stop();
+  await drag(page, 60, 0);
+  await message(page, 'view').filter({ hasText: 'cannot be reached' }).waitFor();
+  const again = await startServer('--port', port);
+  try {
+    // Its store is a new one: the page stores the mesh again by itself.
+    await message(page, 'view').getByRole('button').click();
+    await done(page);
+  } finally {
+    await again.stop();
+  }
+});
+
+test('a mesh that the store has given up is stored again', async () => {
+  const { page } = await openPage(browser, server.url, {
+    countRefusals: false,
+  });
+  await done(page);
+  const command = await page.locator('.command[data-mode=coarse] pre').innerText();
+  const address = /'([^']+)'/.exec(command)[1];
+  assert.equal((await fetch(address, { method: 'DELETE' })).status, 204);
+  await drag(page, 60, 0);
+  await page.waitForResponse((response) => response.url().endsWith('/v1/meshes') && response.status() === 201);
+  await done(page);
+});
+
+test('where keys are asked for, the page asks for one, and the command leaves room for it', async () => {
+  const key = '0123456789abcdef0123456789abcdef';
+  const file = join(mkdtempSync(join(tmpdir(), 'papilio-keys-')), 'keys');
+  writeFileSync(file, `someone ${key}\n`);
+  const keyed = await startServer('--keys', file);
+  try {
+    const { page } = await openPage(browser, keyed.url, {
+      countRefusals: false,
+    });
+    await page.locator('#alert', { hasText: /key/i }).waitFor();
+    await page.getByRole('textbox', { name: 'Key' }).fill(key);
+    await page.keyboard.press('Enter');
+    await done(page);
+    assert.ok(await page.locator('#alert').isHidden());
+    const command = await page.locator('.command[data-mode=view] pre').innerText();
+    assert.ok(!command.includes(key));
+    assert.ok((await run(command, 'refined.drc', { PAPILIO_KEY: key })).length > 1000);
+  } finally {
+    await keyed.stop();
+  }
+});
+
+test('the server cannot be asked what it has: said, with a way to go on', async () => {
+  const page = await browser.newPage();
+  await page.route('**/v1/**', (route) => route.abort());
+  await page.goto(server.url);
+  await page.locator('#alert', { hasText: 'cannot be reached' }).waitFor();
+  await page.unroute('**/v1/**');
+  await page.getByRole('button', { name: 'Try again' }).first().click();
+  await page.waitForTimeout(500);
+  if (await page.locator('#alert').isVisible()) await page.getByRole('button', { name: 'Try again' }).first().click();
+  await page.locator('.panel[data-mode=coarse][data-state=done]').waitFor();
+  await page.close();
+});
+
+for (const [what, options] of [
+  ['light', { colorScheme: 'light' }],
+  ['dark', { colorScheme: 'dark' }],
+  ['on a small screen', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
+])
+  test(`names, contrast and roles are as axe-core wants them: ${what}`, async () => {
+    const { page, context } = await openPage(browser, server.url, options);
+    await done(page);
+    await page.locator('[id="parameter-levels"]').focus();
+    await page.evaluate(readFileSync(axeSource, 'utf8'));
+    const found = await page.evaluate(async () => (await globalThis.axe.run()).violations);
+    const told = found.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`);
+    assert.deepEqual(told, []);
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `${overflow} pixels wider than the screen`);
+    await context.close();
+  });
+
+test('all of it can be reached and worked by keys alone, and the focus is seen', async () => {
+  const { page, faults } = await openPage(browser, server.url);
+  await done(page);
+  const reached = new Set();
+  for (let i = 0; i < 80; ++i) {
+    await page.keyboard.press('Tab');
+    const at = await page.evaluate(() => {
+      const element = document.activeElement;
+      if (element === null || element === document.body) return null;
+      const shown = element.id === 'file' ? element.previousElementSibling : element;
+      return {
+        id: element.id || element.name || element.textContent,
+        outline: getComputedStyle(shown).outlineStyle,
+      };
+    });
+    if (at === null) break;
+    reached.add(at.id);
+    assert.notEqual(at.outline, 'none', at.id);
+  }
+  for (const id of [
+    'sample',
+    'file',
+    'reset-camera',
+    'copy-link',
+    'stage',
+    'Enlarge',
+    'Save',
+    'mode',
+    'look',
+    'frozen',
+    'parameter-levels',
+    'parameter-output.normals',
+    'Copy',
+  ])
+    assert.ok(reached.has(id), `${id} is not among ${[...reached].join(', ')}`);
+  assert.deepEqual(faults, []);
+});

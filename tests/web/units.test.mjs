@@ -1,0 +1,140 @@
+// The viewer's parts that need no browser, compiled by esbuild.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { createRequire } from 'node:module';
+import { test } from 'node:test';
+
+const web = new URL('../../client/web/', import.meta.url).pathname;
+const esbuild = createRequire(`${web}node_modules/vite/package.json`)('esbuild');
+
+async function load(name) {
+  const { outputFiles } = await esbuild.build({
+    entryPoints: [`${web}src/${name}.ts`],
+    bundle: true,
+    format: 'esm',
+    write: false,
+  });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
+}
+
+const { boundaryOf, partsOf } = await load('multipart');
+const link = await load('link');
+const { faultOf, rangeOf, queryOf } = await load('parameters');
+const { valuesFor } = await load('requests');
+
+const answer = Buffer.from(
+  '--b\r\nContent-Type: a/b\r\nContent-Length: 6\r\n\r\n\r\n--b\r\r\n--b\r\nContent-Type: c/d\r\nContent-Length: 0\r\n\r\n\r\n--b--\r\n',
+);
+
+async function partsFrom(bytes, chunkSize) {
+  const stream = new ReadableStream({
+    start(controller) {
+      for (let at = 0; at < bytes.length; at += chunkSize)
+        controller.enqueue(new Uint8Array(bytes.subarray(at, at + chunkSize)));
+      controller.close();
+    },
+  });
+  const parts = [];
+  for await (const { headers, body } of partsOf(stream, 'b'))
+    parts.push([headers.get('content-type'), Buffer.from(body).toString()]);
+  return parts;
+}
+
+test('parts are the same however the answer is cut, even where a body looks like a boundary', async () => {
+  for (let size = 1; size <= answer.length; ++size)
+    assert.deepEqual(await partsFrom(answer, size), [
+      ['a/b', '\r\n--b\r'],
+      ['c/d', ''],
+    ]);
+});
+
+test('an answer that ends too soon is an error, wherever it ends', async () => {
+  for (let length = 0; length < answer.length - 2; ++length)
+    await assert.rejects(partsFrom(answer.subarray(0, length), 7), /ended too soon/, String(length));
+  await assert.rejects(partsFrom(Buffer.from('hello\r\n'), 7), /not divided/);
+  await assert.rejects(partsFrom(Buffer.from('--b\r\n\r\nx'), 7), /length/);
+});
+
+test('the boundary is found in all ways to write it', () => {
+  assert.equal(boundaryOf('multipart/mixed; boundary=abc-1'), 'abc-1');
+  assert.equal(boundaryOf('multipart/mixed; charset=x; Boundary="a b"; c=d'), 'a b');
+  assert.equal(boundaryOf('application/json'), null);
+});
+
+const defaults = {
+  mesh: 'mug',
+  modes: [...link.modes],
+  look: 'wireframe',
+  camera: null,
+  frozen: null,
+  values: new Map([['levels', '3']]),
+};
+
+test('a state comes back from its link; what a link cannot mean is passed over', () => {
+  const state = {
+    mesh: 'f'.repeat(64),
+    modes: ['coarse', 'view'],
+    look: 'distance',
+    camera: { eye: [1, -2.5, 3e-7], target: [0, 0, 1e9] },
+    frozen: { eye: [0, 0, 3], target: [0, 0, 0] },
+    values: new Map([
+      ['flatness', '0.8,0.9'],
+      ['view.lights', '0,0,1,1,0,0'],
+      ['tension', 'off'],
+    ]),
+  };
+  assert.deepEqual(link.fromHash(`#${link.toHash(state)}`, defaults), state);
+  assert.deepEqual(link.fromHash('', defaults), defaults);
+  assert.deepEqual(link.fromHash('#mesh=wheel', defaults), { ...defaults, mesh: 'wheel' });
+  const strange = link.fromHash('#mesh=a&show=none,coarse&look=red&camera=1,2,x,4,5,6&levels=1', defaults);
+  assert.deepEqual(strange, { ...defaults, mesh: 'a', modes: ['coarse'], values: new Map([['levels', '1']]) });
+});
+
+test('commands say what they mean to a shell, whatever a file is called', () => {
+  const base = 'http://host/';
+  assert.equal(link.curlOf(base, null, { id: null, file: 'a' }, false), '');
+  assert.match(
+    link.curlOf(base, 'levels=2', { id: 'ab', file: 'a' }, true),
+    /-H "Authorization: Bearer \$PAPILIO_KEY"/,
+  );
+  for (const file of ['a.drc', "it's $HOME `x`.drc", 'a b"c\\.drc']) {
+    const command = link.curlOf(base, 'levels=2&flatness=0.8,0.9', { id: null, file }, false);
+    const words = execFileSync('bash', ['-c', `curl() { printf '%s\\0' "$@"; }; ${command}`])
+      .toString()
+      .split('\0');
+    assert.ok(words.includes(`@${file}`), command);
+    assert.ok(words.includes('http://host/v1/refine?levels=2&flatness=0.8,0.9'));
+  }
+});
+
+test('values are judged as the server would', () => {
+  const flatness = { name: 'flatness', type: 'numbers', min: -1, max: 1, least: 1, most: 10 };
+  for (const text of ['0.8', '-1,1', '1e-3']) assert.equal(faultOf(flatness, text), null, text);
+  for (const text of ['', '2', 'a', '0.8,', Array(11).fill('0').join()])
+    assert.notEqual(faultOf(flatness, text), null, text);
+  const lights = { name: 'view.lights', type: 'numbers', min: -1e18, max: 1e18, least: 3, most: 24, group: 3 };
+  assert.equal(faultOf(lights, '0,0,1,1,0,0'), null);
+  assert.match(faultOf(lights, '0,0,1,1'), /1 to 8 times 3 numbers/);
+  assert.match(faultOf({ name: 'levels', type: 'integer', min: 0, max: 10 }, '1.5'), /whole/);
+  assert.equal(rangeOf({ name: 'w', type: 'number', min: 0, max: 1e18, unit: 'pixels' }), 'at least 0, pixels');
+});
+
+test('what chooses where to refine has no part in the uniform result, nor a view in the adaptive one', () => {
+  const values = new Map(
+    Object.entries({
+      tolerance: '1',
+      max_faces: '2',
+      w: '0.1',
+      'view.near': '1',
+      'output.speed': '5',
+      simplify_hidden: 'true',
+    }),
+  );
+  const view = { camera: { eye: [0, 0, 1 / 3], target: [0, 0, 0] }, pixels: [800, 600] };
+  const names = (mode) => [...valuesFor(mode, values, view).keys()];
+  assert.deepEqual(names('uniform'), ['w', 'output.speed']);
+  assert.deepEqual(names('adaptive'), ['tolerance', 'max_faces', 'w', 'output.speed']);
+  const kinds = ['view.eye', 'view.viewport', 'w'].map((name) => ({ name }));
+  assert.equal(queryOf(valuesFor('view', values, view), kinds), 'view.eye=0,0,0.333333&view.viewport=800,600&w=0.1');
+});
