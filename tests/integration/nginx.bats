@@ -74,6 +74,19 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   done
 }
 
+@test "the viewer comes through: page, policy, compressed files that stay" {
+  request "$proxy/"
+  [ "$status" = 200 ]
+  [[ $(header Content-Security-Policy) == *"default-src 'none'"* && $(header Cache-Control) == no-cache ]]
+  script=$(grep -o 'assets/index-[^"]*\.js' "$body")
+  request -H 'Accept-Encoding: gzip' "$proxy/$script"
+  [ "$(header Content-Encoding)" = gzip ]
+  [[ $(header Cache-Control) == *immutable ]]
+  gunzip <"$body" | cmp - "$PAPILIO_BUILD/web/$script"
+  request "$proxy/v1/samples/mug"
+  [ "$(decoded_faces "$body")" = 344 ]
+}
+
 @test "what the server refuses comes through as it is" {
   request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=11"
   expect_problem 400 bad_parameter

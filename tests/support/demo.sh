@@ -28,14 +28,14 @@ die() {
 
 tests/support/coarse_meshes.sh release
 coarse=build/deps/meshes/bunny600.drc
-mkdir -p build/demo
-rm -f build/demo/*
+rm -rf build/demo
+tests/support/demo_samples.sh build/demo/samples
 info=$(build/release/papilio info --json "$coarse")
 
 # Port 8080, or a free one where something else answers there.
 port=8080
 if (exec 3<>/dev/tcp/127.0.0.1/8080) 2>/dev/null; then port=0; fi
-build/release/papilio-server --host 127.0.0.1 --port "$port" >build/demo/server.out 2>build/demo/server.log &
+build/release/papilio-server --host 127.0.0.1 --port "$port" --samples build/demo/samples >build/demo/server.out 2>build/demo/server.log &
 server_pid=$!
 for _ in {1..100}; do
   if [[ -s build/demo/server.out ]] || ! kill -0 "$server_pid" 2>/dev/null; then break; fi
@@ -88,10 +88,12 @@ refine 'to a pixel, from the front' view "levels=3&$view&view.error_pixels=1&vie
 refine 'the best 4000 faces' budget 'levels=3&max_faces=4000'
 printf '\nThe requests, to be pasted again in %s; the meshes are in build/demo:\n%s' "$root" "$commands"
 
+printf '\nThe viewer, with these and other meshes: %s/\n' "$url"
+
 if [[ ${1:-} == --exit ]]; then
   stop_server || die "the server did not stop cleanly; what it said is in build/demo/server.log"
   exit 0
 fi
-printf '\nThe server is at %s ; GET /v1/info lists what it takes. Ctrl-C stops it.\n' "$url"
+printf 'The server stays up; Ctrl-C stops it.\n'
 trap 'echo; stop_server || exit 1; exit 0' INT TERM
 wait "$server_pid" || die "the server ended by itself; what it said is in build/demo/server.log"

@@ -6,6 +6,7 @@ import type { Panel, Shown } from './panel';
 type Row = [name: string, value: (shown: Shown) => string | null, title?: string];
 
 const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 });
+const significant = (n: number | undefined) => (n === undefined ? null : String(Number(n.toPrecision(2))));
 const milliseconds = (n: number | undefined) => (n === undefined ? null : n.toFixed(n < 10 ? 1 : 0));
 
 /// `uniformFaces`: of the uniform result; `uniformBytes`: null where it was not fetched.
@@ -26,10 +27,10 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
     ['round trip ms', (one) => milliseconds(one.roundTrip ?? undefined), 'From the request to the mesh, here'],
     [
       'error',
-      (one) => (one.summary ? `${Number((100 * one.summary.error).toPrecision(2))} %` : null),
+      (one) => (one.summary ? `${significant(100 * one.summary.error)} %` : null),
       'Left, as the server says: a share of the diagonal',
     ],
-    ['error px', (one) => one.summary?.error_pixels?.toPrecision(2) ?? null, 'Left, in pixels of the view'],
+    ['error px', (one) => significant(one.summary?.error_pixels), 'Left, in pixels of the view'],
   ];
   const table = element('table');
   const head = table.createTHead().insertRow();
