@@ -3,11 +3,12 @@
 
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
+import { after, before } from 'node:test';
 import { promisify } from 'node:util';
 
 const root = new URL('../..', import.meta.url).pathname;
@@ -42,18 +43,24 @@ export async function startServer(...args) {
   };
 }
 
-/// A sample of `papilio_...` in the server's metrics, summed over its labels; with `label` only of those that have it.
-export async function metric(server, name, label = '') {
-  const text = await (await fetch(`${server.url}metrics`)).text();
-  const lines = text.split('\n').filter((line) => line.startsWith(name) && line.includes(label));
-  return lines.reduce((sum, line) => sum + Number(line.split(' ').at(-1)), 0);
-}
-
 export async function launch() {
   const program = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
   const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
   if (process.getuid() === 0) args.push('--no-sandbox'); // which root cannot have
   return chromium.launch({ executablePath: program, args });
+}
+
+/// One of each for all tests of a file, from before the first to after the last.
+export function serverAndBrowser() {
+  const shared = { server: null, browser: null };
+  before(async () => {
+    [shared.server, shared.browser] = await Promise.all([startServer(), launch()]);
+  });
+  after(async () => {
+    await shared.browser.close();
+    await shared.server.stop();
+  });
+  return shared;
 }
 
 /// A page of its own on this server, and all that goes wrong in it: `faults` lists errors in the console, exceptions
@@ -174,8 +181,7 @@ export async function run(command, file, variables = {}) {
       timeout: patience,
     };
     await promisify(execFile)('bash', ['-c', command], options);
-    const { readFile } = await import('node:fs/promises');
-    return await readFile(join(folder, file));
+    return readFileSync(join(folder, file));
   } finally {
     rmSync(folder, { recursive: true });
   }

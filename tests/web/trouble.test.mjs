@@ -4,26 +4,18 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { axeSource, done, drag, facesOf, launch, meshes, openPage, run, startServer } from './browser.mjs';
+import { axeSource, done, drag, facesOf, meshes, openPage, run, serverAndBrowser, startServer } from './browser.mjs';
 
-let server;
-let browser;
-before(async () => {
-  [server, browser] = await Promise.all([startServer(), launch()]);
-});
-after(async () => {
-  await browser.close();
-  await server.stop();
-});
+const shared = serverAndBrowser();
 
 const message = (page, mode) => page.locator(`.panel[data-mode=${mode}] .message`);
 
 test('a result beyond a limit is refused where it would be, with the number; the others come', async () => {
   const small = await startServer('--max-output-faces', '10000');
   try {
-    const { page, faults } = await openPage(browser, small.url, {
+    const { page, faults } = await openPage(shared.browser, small.url, {
       countRefusals: false,
     });
     await done(page, ['coarse', 'adaptive', 'view']);
@@ -53,7 +45,7 @@ test('a busy server is asked again by itself, and at once where the user wants i
       await answer.arrayBuffer();
     }
   };
-  const { page } = await openPage(browser, small.url, {
+  const { page } = await openPage(shared.browser, small.url, {
     countRefusals: false,
     hash: 'mesh=mug&show=coarse,view&levels=3',
   });
@@ -78,7 +70,7 @@ test('a busy server is asked again by itself, and at once where the user wants i
 test('a server that is gone is missed in words, and found again', async () => {
   const first = await startServer();
   const port = new URL(first.url).port;
-  const { page } = await openPage(browser, first.url, { countRefusals: false });
+  const { page } = await openPage(shared.browser, first.url, { countRefusals: false });
   await done(page);
   await first.stop();
   await drag(page, 60, 0);
@@ -94,7 +86,7 @@ test('a server that is gone is missed in words, and found again', async () => {
 });
 
 test('a mesh that the store has given up is stored again', async () => {
-  const { page } = await openPage(browser, server.url, {
+  const { page } = await openPage(shared.browser, shared.server.url, {
     countRefusals: false,
   });
   await done(page);
@@ -112,7 +104,7 @@ test('where keys are asked for, the page asks for one, and the command leaves ro
   writeFileSync(file, `someone ${key}\n`);
   const keyed = await startServer('--keys', file);
   try {
-    const { page } = await openPage(browser, keyed.url, {
+    const { page } = await openPage(shared.browser, keyed.url, {
       countRefusals: false,
     });
     await page.locator('#alert', { hasText: /key/i }).waitFor();
@@ -129,9 +121,9 @@ test('where keys are asked for, the page asks for one, and the command leaves ro
 });
 
 test('the server cannot be asked what it has: said, with a way to go on', async () => {
-  const page = await browser.newPage();
+  const page = await shared.browser.newPage();
   await page.route('**/v1/**', (route) => route.abort());
-  await page.goto(server.url);
+  await page.goto(shared.server.url);
   await page.locator('#alert', { hasText: 'cannot be reached' }).waitFor();
   await page.unroute('**/v1/**');
   await page.getByRole('button', { name: 'Try again' }).first().click();
@@ -147,7 +139,7 @@ for (const [what, options] of [
   ['on a small screen', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
 ])
   test(`names, contrast and roles are as axe-core wants them: ${what}`, async () => {
-    const { page, context } = await openPage(browser, server.url, options);
+    const { page, context } = await openPage(shared.browser, shared.server.url, options);
     await done(page);
     await page.locator('[id="parameter-levels"]').focus();
     await page.evaluate(readFileSync(axeSource, 'utf8'));
@@ -160,7 +152,7 @@ for (const [what, options] of [
   });
 
 test('all of it can be reached and worked by keys alone, and the focus is seen', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const reached = new Set();
   for (let i = 0; i < 80; ++i) {

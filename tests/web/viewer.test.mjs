@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import {
   compare,
@@ -11,32 +11,23 @@ import {
   drag,
   drop,
   facesOf,
-  launch,
   meshes,
   openPage,
   picture,
   refinements,
   run,
-  startServer,
+  serverAndBrowser,
 } from './browser.mjs';
 import { cubeGlb, cubeObj, cubePly, cubeStl } from './mesh_files.mjs';
 import { startProxy } from './proxy.mjs';
 
-let server;
-let browser;
-before(async () => {
-  [server, browser] = await Promise.all([startServer(), launch()]);
-});
-after(async () => {
-  await browser.close();
-  await server.stop();
-});
+const shared = serverAndBrowser();
 
 /// Nothing is asked for any more: the camera has been at rest for longer than it takes to notice.
 const quiet = (page) => page.waitForTimeout(700);
 
 test('the sample is shown four ways: finer where refined, and drawn', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const [coarse, uniform, adaptive, view] = await Promise.all(
     ['coarse', 'uniform', 'adaptive', 'view'].map((mode) => facesOf(page, mode)),
@@ -73,10 +64,10 @@ test('the sample is shown four ways: finer where refined, and drawn', async () =
 test('the first picture takes one round trip, and levels are shown as they arrive', async () => {
   // Of what the service computes nothing comes but the coarse level of the uniform result.
   const first = 1400;
-  const proxy = await startProxy(server.url, (url) => (url.includes('/refined?') ? first : Infinity));
-  const late = await startProxy(server.url, (url) => (/^\/v1\/(meshes|refine)/.test(url) ? 0 : Infinity));
+  const proxy = await startProxy(shared.server.url, (url) => (url.includes('/refined?') ? first : Infinity));
+  const late = await startProxy(shared.server.url, (url) => (/^\/v1\/(meshes|refine)/.test(url) ? 0 : Infinity));
   try {
-    const waiting = await openPage(browser, late.url);
+    const waiting = await openPage(shared.browser, late.url);
     await done(waiting.page, ['coarse']); // without an answer to anything but the sample itself
     const { drawn } = await compare(
       waiting.page,
@@ -86,7 +77,7 @@ test('the first picture takes one round trip, and levels are shown as they arriv
     assert.ok(drawn > 0.1, `${drawn} of the picture`);
     await waiting.context.close();
 
-    const { page, faults } = await openPage(browser, proxy.url, {
+    const { page, faults } = await openPage(shared.browser, proxy.url, {
       hash: 'mesh=mug&show=uniform&levels=3',
     });
     const panel = page.locator('.panel[data-mode=uniform]');
@@ -103,11 +94,11 @@ test('the first picture takes one round trip, and levels are shown as they arriv
 });
 
 test('the sample and the parameters are asked for at once', async () => {
-  const page = await browser.newPage();
+  const page = await shared.browser.newPage();
   const events = [];
   page.on('request', (request) => events.push(`> ${new URL(request.url()).pathname}`));
   page.on('response', (response) => events.push(`< ${new URL(response.url()).pathname}`));
-  await page.goto(server.url);
+  await page.goto(shared.server.url);
   await done(page);
   const firstAnswer = events.findIndex((event) => event.startsWith('< /v1/'));
   const before = events.slice(0, firstAnswer);
@@ -117,7 +108,7 @@ test('the sample and the parameters are asked for at once', async () => {
 });
 
 test('when the camera rests, exactly one request asks for the new view', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await quiet(page);
   const made = refinements(page);
@@ -147,13 +138,13 @@ test('when the camera rests, exactly one request asks for the new view', async (
 });
 
 test('a newer view aborts the older request; the last good mesh stays until then', async () => {
-  const { page } = await openPage(browser, server.url);
+  const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await quiet(page);
   const faces = await facesOf(page, 'view');
   const failed = [];
   page.on('requestfailed', (request) => failed.push(request));
-  server.process.kill('SIGSTOP');
+  shared.server.process.kill('SIGSTOP');
   let older;
   try {
     [older] = await Promise.all([page.waitForRequest(/refined\?/), drag(page, 80, 0)]);
@@ -171,14 +162,14 @@ test('a newer view aborts the older request; the last good mesh stays until then
     const { drawn } = await compare(page, await picture(page, 'view'), await picture(page, 'view'));
     assert.ok(drawn > 0.1);
   } finally {
-    server.process.kill('SIGCONT');
+    shared.server.process.kill('SIGCONT');
   }
   await done(page);
   assert.notEqual(await facesOf(page, 'view'), faces);
 });
 
 test('a file that is no mesh is refused in words, and what was open stays', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   for (const [name, bytes, words] of [
     ['notes.txt', 'hello', /notes\.txt is no mesh file/],
@@ -204,7 +195,7 @@ test('a file that is no mesh is refused in words, and what was open stays', asyn
 });
 
 test('files of all formats are opened, and sent as Draco', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const bunny = readFileSync(join(meshes, 'bunny600.drc'));
   await drop(page, 'bunny.drc', bunny);
@@ -242,7 +233,7 @@ test('files of all formats are opened, and sent as Draco', async () => {
 });
 
 test('the command shown gives the bytes that are on screen', async () => {
-  const { page } = await openPage(browser, server.url);
+  const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await page.locator('[data-mode=view] pre').waitFor();
   for (const mode of ['coarse', 'uniform', 'adaptive', 'view']) {
@@ -260,7 +251,7 @@ test('the command shown gives the bytes that are on screen', async () => {
 });
 
 test('a frozen view keeps its refinement while it is looked at from elsewhere', async () => {
-  const { page, faults } = await openPage(browser, server.url, {
+  const { page, faults } = await openPage(shared.browser, shared.server.url, {
     hash: 'mesh=mug&show=view&look=wireframe&levels=3&view.error_pixels=0.5&view.edge_pixels=0',
   });
   await done(page, ['view']);
@@ -280,7 +271,7 @@ test('a frozen view keeps its refinement while it is looked at from elsewhere', 
   const { differing } = await compare(page, before, await picture(page, 'view'));
   assert.ok(differing > 0.03, 'it was turned');
   // The link keeps it.
-  const copy = await openPage(browser, page.url());
+  const copy = await openPage(shared.browser, page.url());
   await done(copy.page, ['view']);
   assert.equal(await facesOf(copy.page, 'view'), faces);
   assert.ok(await copy.page.getByLabel(/Freeze the view/).isChecked());
@@ -293,7 +284,7 @@ test('a frozen view keeps its refinement while it is looked at from elsewhere', 
 });
 
 test('a link restores the whole state', async () => {
-  const { page } = await openPage(browser, server.url);
+  const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await drop(page, 'bunny.drc', readFileSync(join(meshes, 'bunny600.drc')));
   await page.locator('.panel[data-mode=coarse][data-faces="600"]').waitFor();
@@ -312,7 +303,7 @@ test('a link restores the whole state', async () => {
     commands: await one.locator('#commands pre').allInnerTexts(),
     hash: new URL(one.url()).hash,
   });
-  const copy = await openPage(browser, page.url());
+  const copy = await openPage(shared.browser, page.url());
   await done(copy.page, modes);
   await quiet(copy.page);
   await done(copy.page, modes);
@@ -327,7 +318,7 @@ test('a link restores the whole state', async () => {
 });
 
 test('colours by level and by distance to uniform, with legends that say what they mean', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const shaded = await picture(page, 'adaptive');
   await page.getByLabel('By level').check();
@@ -350,7 +341,7 @@ test('colours by level and by distance to uniform, with legends that say what th
   const byDistance = await picture(page, 'adaptive');
   assert.ok((await compare(page, byLevel, byDistance)).differing > 0.1);
   // Without its panel the uniform result is fetched all the same.
-  const alone = await openPage(browser, server.url, {
+  const alone = await openPage(shared.browser, shared.server.url, {
     hash: 'mesh=mug&show=adaptive&look=distance&levels=2&tolerance=0.004',
   });
   await alone.page.locator('.panel[data-mode=adaptive] .legend', { hasText: 'largest here' }).waitFor();
@@ -358,7 +349,7 @@ test('colours by level and by distance to uniform, with legends that say what th
 });
 
 test('one mesh alone, and side by side again', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await page.getByRole('button', { name: 'Show Adaptive alone' }).click();
   assert.equal(await page.locator('.panel').count(), 1);
@@ -372,9 +363,9 @@ test('one mesh alone, and side by side again', async () => {
 });
 
 test('every parameter of the server has a control, which says what it takes', async () => {
-  const { page, faults } = await openPage(browser, server.url);
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
-  const info = await (await fetch(`${server.url}v1/info`)).json();
+  const info = await (await fetch(`${shared.server.url}v1/info`)).json();
   for (const { name } of info.parameters) assert.equal(await page.locator(`[id="parameter-${name}"]`).count(), 1, name);
   const made = refinements(page);
   // Out of range: said at the control, nothing asked.
