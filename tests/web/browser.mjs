@@ -8,7 +8,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
-import { after, before } from 'node:test';
+import { after, afterEach, before } from 'node:test';
 import { promisify } from 'node:util';
 
 const root = new URL('../..', import.meta.url).pathname;
@@ -60,6 +60,7 @@ export function serverAndBrowser() {
     await shared.browser.close();
     await shared.server.stop();
   });
+  afterEach(() => Promise.all(shared.browser.contexts().map((context) => context.close())));
   return shared;
 }
 

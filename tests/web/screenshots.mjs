@@ -33,7 +33,7 @@ try {
   const frozen = await openPage(browser, server.url, {
     ...screen,
     colorScheme: 'dark',
-    hash: `mesh=bunny&show=view&look=wireframe&camera=${camera}&frozen=${camera}&${close}`,
+    hash: `mesh=bunny&show=view&look=wireframe&camera=${camera}&frozen=${camera},905,755&${close}`,
   });
   await done(frozen.page, ['view']);
   await frozen.page.getByRole('button', { name: 'Whole mesh' }).click();

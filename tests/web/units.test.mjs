@@ -77,7 +77,7 @@ test('a state comes back from its link; what a link cannot mean is passed over',
     modes: ['coarse', 'view'],
     look: 'distance',
     camera: { eye: [1, -2.5, 3e-7], target: [0, 0, 1e9] },
-    frozen: { eye: [0, 0, 3], target: [0, 0, 0] },
+    frozen: { eye: [0, 0, 3], target: [0, 0, 0], pixels: [640, 480] },
     values: new Map([
       ['flatness', '0.8,0.9'],
       ['view.lights', '0,0,1,1,0,0'],
@@ -131,7 +131,7 @@ test('what chooses where to refine has no part in the uniform result, nor a view
       simplify_hidden: 'true',
     }),
   );
-  const view = { camera: { eye: [0, 0, 1 / 3], target: [0, 0, 0] }, pixels: [800, 600] };
+  const view = { eye: [0, 0, 1 / 3], target: [0, 0, 0], pixels: [800, 600] };
   const names = (mode) => [...valuesFor(mode, values, view).keys()];
   assert.deepEqual(names('uniform'), ['w', 'output.speed']);
   assert.deepEqual(names('adaptive'), ['tolerance', 'max_faces', 'w', 'output.speed']);

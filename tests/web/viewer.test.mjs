@@ -270,6 +270,10 @@ test('a frozen view keeps its refinement while it is looked at from elsewhere', 
   assert.equal(await facesOf(page, 'view'), faces);
   const { differing } = await compare(page, before, await picture(page, 'view'));
   assert.ok(differing > 0.03, 'it was turned');
+  // Of whatever size its panel becomes.
+  await page.setViewportSize({ width: 900, height: 600 });
+  await quiet(page);
+  assert.equal(made.length, 0);
   // The link keeps it.
   const copy = await openPage(shared.browser, page.url());
   await done(copy.page, ['view']);

@@ -8,18 +8,27 @@ import { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';
 
 import { Problem } from './service';
 
-export const dracoLoader = new DRACOLoader();
+let loader = new DRACOLoader();
 
-/// Fetches the decoder, beside whatever else is fetched.
-export function fetchDecoder(): void {
-  dracoLoader.preload();
+/// Fetches the decoder, beside whatever else is fetched. Rejects with a Problem where it cannot be had now.
+export async function fetchDecoder(): Promise<DRACOLoader> {
+  const fetching = loader;
+  try {
+    // What it waits for itself: where that fails, all that it is given to decode fails as well.
+    await (fetching.preload() as DRACOLoader & { decoderPending: Promise<void> }).decoderPending;
+  } catch {
+    if (loader === fetching) loader = new DRACOLoader(); // for the next try
+    throw new Problem('unreachable', 'The server cannot be reached: the Draco decoder did not come.', 2);
+  }
+  return fetching;
 }
 
 /// The mesh with its positions and, where it has them, its normals. Rejects with a Problem where the bytes are no mesh.
 export async function decode(draco: Uint8Array<ArrayBuffer>): Promise<BufferGeometry> {
+  const decoder = await fetchDecoder();
   const geometry = await new Promise<BufferGeometry>((resolve, reject) => {
     const refuse = () => reject(new Problem('mesh_not_draco', 'This is no Draco mesh, or it is damaged.'));
-    dracoLoader.parse(draco.slice().buffer, resolve, refuse); // the copy goes to the worker for good
+    decoder.parse(draco.slice().buffer, resolve, refuse); // the copy goes to the worker for good
   });
   if (geometry.index === null || geometry.index.count === 0 || !geometry.hasAttribute('position'))
     throw new Problem('mesh_unsupported', 'There are no triangles in this file, only points.');

@@ -15,6 +15,11 @@ export interface Camera {
   target: Triple;
 }
 
+/// A view that is kept: where from, and the pixels of its picture.
+export interface Frozen extends Camera {
+  pixels: [number, number];
+}
+
 export interface State {
   /// A sample's name or a stored mesh's id; empty: a mesh that only this page has.
   mesh: string;
@@ -24,7 +29,7 @@ export interface State {
   /// Null: as opening a mesh has it.
   camera: Camera | null;
   /// The view that the refinement is for, where that is not the camera's.
-  frozen: Camera | null;
+  frozen: Frozen | null;
   values: Values;
 }
 
@@ -38,7 +43,7 @@ export function toHash(state: State): string {
   if (state.mesh) fields.push(['mesh', state.mesh]);
   fields.push(['show', state.modes.join(',')], ['look', state.look]);
   if (state.camera) fields.push(['camera', cameraText(state.camera)]);
-  if (state.frozen) fields.push(['frozen', cameraText(state.frozen)]);
+  if (state.frozen) fields.push(['frozen', [cameraText(state.frozen), ...state.frozen.pixels].join(',')]);
   fields.push(...state.values);
   return fields.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('&');
 }
@@ -54,8 +59,10 @@ export function fromHash(hash: string, defaults: State): State {
   if (known.length > 0) state.modes = known;
   state.mesh = fields.get('mesh') ?? defaults.mesh;
   state.look = looks.find((look) => look === fields.get('look')) ?? defaults.look;
-  state.camera = cameraOf(fields.get('camera'));
-  state.frozen = cameraOf(fields.get('frozen'));
+  state.camera = cameraOf(numbersOf(fields.get('camera'), 6));
+  const frozen = numbersOf(fields.get('frozen'), 8);
+  const kept = cameraOf(frozen);
+  state.frozen = kept && { ...kept, pixels: frozen!.slice(6) as [number, number] };
   if (fields.has('show')) {
     const own = new Set(['mesh', 'show', 'look', 'camera', 'frozen']);
     state.values = new Map([...fields].filter(([name]) => !own.has(name)));
@@ -67,10 +74,14 @@ function cameraText({ eye, target }: Camera): string {
   return [...eye, ...target].map(shortest).join(',');
 }
 
-function cameraOf(text: string | null): Camera | null {
+/// Null where the text is not so many numbers.
+function numbersOf(text: string | null, count: number): number[] | null {
   const numbers = (text ?? '').split(',').map(Number);
-  if (text === null || numbers.length !== 6 || !numbers.every(Number.isFinite)) return null;
-  return { eye: numbers.slice(0, 3) as Triple, target: numbers.slice(3) as Triple };
+  return text !== null && numbers.length === count && numbers.every(Number.isFinite) ? numbers : null;
+}
+
+function cameraOf(numbers: number[] | null): Camera | null {
+  return numbers && { eye: numbers.slice(0, 3) as Triple, target: numbers.slice(3, 6) as Triple };
 }
 
 /// Six digits are more than a screen shows.

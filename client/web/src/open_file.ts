@@ -3,7 +3,7 @@
 
 import { BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
 
-import { dracoLoader, encode } from './draco';
+import { encode, fetchDecoder } from './draco';
 import { Problem } from './service';
 
 export const extensions = ['.drc', '.obj', '.ply', '.stl', '.glb'];
@@ -51,7 +51,7 @@ async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeomet
     }
     default: {
       const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
-      const loader = new GLTFLoader().setDRACOLoader(dracoLoader);
+      const loader = new GLTFLoader().setDRACOLoader(await fetchDecoder());
       // Files beside it could only come from elsewhere; what it needs of itself are blobs.
       loader.manager.setURLModifier((url) => (/^(blob|data):/.test(url) ? url : 'data:,'));
       return meshesIn((await loader.parseAsync(bytes, '')).scene);

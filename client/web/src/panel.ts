@@ -49,6 +49,8 @@ export class Panel {
   /// The user wants this one alone, or all again.
   onEnlarge: () => void = () => {};
   shown: Shown | null = null;
+  /// Why what was asked for last did not come; null: it has, or may yet.
+  problem: Problem | null = null;
   #asked: { mesh: OpenMesh; query: string | null } | null = null;
   #abort: AbortController | null = null;
   #retries = 0;
@@ -130,6 +132,7 @@ export class Panel {
     const abort = new AbortController();
     this.#abort = abort;
     this.#message.replaceChildren();
+    this.problem = null;
     if (query === null) {
       this.#show({ ...coarse(mesh), summary: null });
       this.#tell('done');
@@ -145,42 +148,47 @@ export class Panel {
   async #refine(mesh: OpenMesh, query: string, signal: AbortSignal): Promise<void> {
     const began = performance.now();
     const levels: Level[] = [];
-    let summary: Summary | null = null;
-    let decoding: Promise<void> | null = null;
-    const decodeLatest = async () => {
-      for (let done = -1; done + 1 < levels.length; ) {
-        done = levels.length - 1;
-        const level = levels[done];
-        const isBetter = this.shown?.mesh !== mesh || level.faces > this.shown.faces;
-        if (summary === null && !isBetter) continue;
-        const geometry = await decode(level.draco);
+    let latest: { level: number; geometry: BufferGeometry } | null = null;
+    const show = (level: number, geometry: BufferGeometry, summary: Summary | null) => {
+      const draco = levels.slice(0, level + 1).map((one) => one.draco);
+      this.#show({
+        mesh,
+        geometry,
+        draco: draco[level],
+        vertices: levels[level].vertices,
+        faces: levels[level].faces,
+        received: draco.reduce((sum, one) => sum + one.length, 0),
+        timing: levels[level].timing,
+        roundTrip: summary && performance.now() - began,
+        summary,
+        levels: draco,
+      });
+    };
+    // Shows levels that are better than what is on screen. Those that come while one is decoded wait, and of those the
+    // last is next.
+    const showBetter = async () => {
+      for (let level = -1; level + 1 < levels.length; ) {
+        level = levels.length - 1;
+        if (this.shown?.mesh === mesh && levels[level].faces <= this.shown.faces) continue;
+        latest = { level, geometry: await decode(levels[level].draco) };
         signal.throwIfAborted();
-        const isLast = summary !== null && done === levels.length - 1;
-        this.#show({
-          mesh,
-          geometry,
-          draco: level.draco,
-          vertices: level.vertices,
-          faces: level.faces,
-          received: levels.slice(0, done + 1).reduce((sum, one) => sum + one.draco.length, 0),
-          timing: level.timing,
-          roundTrip: isLast ? performance.now() - began : null,
-          summary: isLast ? summary : null,
-          levels: levels.slice(0, done + 1).map((one) => one.draco),
-        });
+        show(level, latest.geometry, null);
       }
     };
+    let showing: Promise<void> | null = null;
     const onLevel = (level: Level) => {
       levels.push(level);
       this.#tell('busy', `level ${levels.length - 1}`);
-      // Levels that come while one is decoded wait, and of those the last is next.
-      decoding ??= decodeLatest().finally(() => (decoding = null));
-      decoding.catch(() => {}); // told below
+      showing ??= showBetter().finally(() => (showing = null));
+      showing.catch(() => {}); // told below
     };
-    const ended = await mesh.refine(query, onLevel, signal);
-    await decoding;
-    summary = ended;
-    await decodeLatest();
+    const summary = await mesh.refine(query, onLevel, signal);
+    await showing;
+    const last = levels.length - 1;
+    const decoded = latest as { level: number; geometry: BufferGeometry } | null;
+    const geometry = decoded?.level === last ? decoded.geometry : await decode(levels[last].draco);
+    signal.throwIfAborted();
+    show(last, geometry, summary);
     this.#retries = 0;
     this.#tell('done');
   }
@@ -205,6 +213,7 @@ export class Panel {
       error instanceof Problem
         ? error
         : new Problem('unexpected', error instanceof Error ? error.message : String(error));
+    this.problem = problem;
     const again = button('Try again', () => this.#start());
     this.#message.replaceChildren(element('p', '', problem.message), again);
     this.#tell('failed');

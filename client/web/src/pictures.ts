@@ -20,26 +20,26 @@ export class Pictures {
   constructor(readonly stage: Stage) {}
 
   /// Draws these panels; what was being drawn is given up. `levels`: as many as were asked for. `uniform`: what distances
-  /// are to; null while it is not there. Rejects where a mesh cannot be decoded.
-  async draw(panels: Panel[], look: Look, levels: number, uniform: Shown | null): Promise<void> {
+  /// are to, or why that is not there. Rejects where a mesh cannot be decoded.
+  async draw(panels: Panel[], look: Look, levels: number, uniform: Shown | string): Promise<void> {
     this.#abort.abort();
     this.#abort = new AbortController();
     const { signal } = this.#abort;
     const pictures = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
     try {
       if (look === 'level') await this.#drawLevels(pictures, Math.max(levels, 1), signal);
-      else if (look === 'distance' && uniform !== null) await this.#drawDistances(pictures, uniform, signal);
-      else for (const picture of pictures) this.#drawPlain(picture, look);
+      else if (look === 'distance' && typeof uniform !== 'string') await this.#drawDistances(pictures, uniform, signal);
+      else for (const picture of pictures) this.#drawPlain(picture, look, look === 'distance' ? String(uniform) : '');
     } catch (error) {
       if (!signal.aborted) throw error;
     }
   }
 
-  #drawPlain({ panel, shown }: Picture, look: Look): void {
+  #drawPlain({ panel, shown }: Picture, look: Look, words: string): void {
     this.#put({ panel, shown }, look, () =>
       look === 'wireframe' ? withEdges(shown.geometry) : shaded(shown.geometry),
     );
-    panel.setLegend(look === 'distance' ? [element('span', '', 'waiting for the uniform result …')] : []);
+    panel.setLegend(words === '' ? [] : [element('span', '', words)]);
   }
 
   async #drawLevels(pictures: Picture[], levels: number, signal: AbortSignal): Promise<void> {

@@ -17,7 +17,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
-import type { Camera } from './link';
+import type { Camera, Frozen } from './link';
 
 /// How long the camera must have been still to be at rest, in milliseconds.
 const rest = 200;
@@ -91,14 +91,15 @@ export class Stage {
   }
 
   /// Draws the frustum of a camera that is not the one looked through; null: none.
-  showFrustum(camera: Camera | null): void {
+  showFrustum(camera: Frozen | null): void {
     for (const view of this.#views.values()) {
       if (view.frustum) view.scene.remove(view.frustum);
       view.frustum?.dispose();
       view.frustum = null;
       if (camera === null) continue;
       const distance = new Vector3(...camera.eye).distanceTo(new Vector3(...camera.target));
-      const looking = new PerspectiveCamera(this.#lens.fovY, aspectOf(view.element), distance / 8, distance);
+      const aspect = camera.pixels[0] / camera.pixels[1];
+      const looking = new PerspectiveCamera(this.#lens.fovY, aspect, distance / 8, distance);
       looking.up.set(...this.#lens.up);
       looking.position.set(...camera.eye);
       looking.lookAt(new Vector3(...camera.target));

@@ -5,7 +5,19 @@ import { decode, fetchDecoder } from './draco';
 import { button, element, find } from './elements';
 import { figures } from './figures';
 import { listenToDrops, listenToKeys } from './input';
-import { curlOf, fromHash, isStored, type Look, looks, type Mode, modes, shortest, type State, toHash } from './link';
+import {
+  curlOf,
+  type Frozen,
+  fromHash,
+  isStored,
+  type Look,
+  looks,
+  type Mode,
+  modes,
+  shortest,
+  type State,
+  toHash,
+} from './link';
 import { OpenMesh } from './mesh';
 import { extensions, readMeshFile } from './open_file';
 import { Panel } from './panel';
@@ -65,9 +77,11 @@ export class Viewer {
     this.#setPanels();
   }
 
+  /// Fetches what is to be there first; again what could not be had.
   async start(): Promise<void> {
-    fetchDecoder();
-    await Promise.all([this.#fetchInfo(), this.#openNamed(this.#state.mesh)]);
+    fetchDecoder().catch(() => {}); // told by what is decoded
+    const info = this.#info === null ? this.#fetchInfo() : null;
+    await Promise.all([info, this.#mesh === null ? this.#openNamed(this.#state.mesh) : null]);
   }
 
   // Opening
@@ -76,7 +90,7 @@ export class Viewer {
     try {
       this.#info = await fetchInfo();
     } catch (error) {
-      this.#tell(error, () => void this.#fetchInfo());
+      this.#tell(error, () => void this.start());
       return;
     }
     this.#form.setKinds(this.#info.parameters);
@@ -107,7 +121,8 @@ export class Viewer {
       const geometry = await decode(draco);
       if (isLatest()) this.#show(new OpenMesh(name, draco, geometry), isNamed);
     } catch (error) {
-      if (isLatest()) this.#tell(error, () => void this.#open(name, isNamed, read));
+      const again = () => (this.#mesh === null ? this.start() : this.#open(name, isNamed, read));
+      if (isLatest()) this.#tell(error, () => void again());
       if (isLatest()) this.#nameMesh();
     } finally {
       if (isLatest()) find('stage').setAttribute('aria-busy', 'false');
@@ -161,12 +176,14 @@ export class Viewer {
   }
 
   #queryFor(mode: Mode, info: Info): string {
-    const view = { camera: this.#state.frozen ?? this.#stage.camera, pixels: this.#pixels() };
+    const view = this.#state.frozen ?? this.#view();
     return queryOf(valuesFor(mode, this.#state.values, view), info.parameters);
   }
 
-  #pixels(): [number, number] {
-    return this.#stage.pixelsOf(this.#panels.get('view')!.element);
+  /// What the camera sees now, in the panel that is for it.
+  #view(): Frozen {
+    const panel = this.#visible().find(({ mode }) => mode === 'view') ?? this.#visible()[0];
+    return { ...this.#stage.camera, pixels: this.#stage.pixelsOf(panel.element) };
   }
 
   #setLens(): void {
@@ -211,8 +228,10 @@ export class Viewer {
     const latest = this.#panels.get('uniform')!.shown;
     const uniform = latest !== null && latest.mesh === mesh && latest.summary !== null ? latest : null;
     const levels = levelsOf(this.#state.values);
+    const failure = this.#panels.get('uniform')!.problem;
+    const missing = failure ? `no uniform result: ${failure.message}` : 'waiting for the uniform result …';
     this.#pictures
-      .draw(this.#visible(), this.#state.look, levels, uniform)
+      .draw(this.#visible(), this.#state.look, levels, uniform ?? missing)
       .catch((error: unknown) => this.#tell(error));
     if (mesh === null) return;
     const current = this.#visible().filter((panel) => panel.shown?.mesh === mesh);
@@ -222,10 +241,10 @@ export class Viewer {
 
   /// Where the camera is, in the form.
   #showCamera(): void {
-    const { eye, target } = this.#stage.camera;
+    const { eye, target, pixels } = this.#view();
     this.#form.setPlaceholder('view.eye', eye.map(shortest).join(','));
     this.#form.setPlaceholder('view.target', target.map(shortest).join(','));
-    this.#form.setPlaceholder('view.viewport', this.#pixels().join(','));
+    this.#form.setPlaceholder('view.viewport', pixels.join(','));
   }
 
   #showFrozen(): void {
@@ -300,7 +319,7 @@ export class Viewer {
     listenToKeys(find('stage'), stage);
     const frozen = find<HTMLInputElement>('frozen');
     frozen.addEventListener('change', () => {
-      this.#state.frozen = frozen.checked ? stage.camera : null;
+      this.#state.frozen = frozen.checked ? this.#view() : null;
       this.#showFrozen();
       this.#refresh();
     });
