@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/refine.h"
-#include "tests/support/invariants.h"
 #include "server/samples/models.h"
+#include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 #include "tests/support/uniform_hierarchy.h"
@@ -85,8 +85,8 @@ TEST_P(RedGreenOnRealMeshes, TwoViewsAgreeWhereBothAreFine) {
 }
 
 TEST(RedGreen, AnglesStayLarge) {
-  const std::vector<TriangleMesh> meshes{server::mug(), server::wheel(), real_mesh("cgal/pig.off"), real_mesh("cgal/fandisk.off"),
-                                         real_mesh("cgal/knot.off")};
+  const std::vector<TriangleMesh> meshes{server::mug(), server::wheel(), real_mesh("cgal/pig.off"),
+                                         real_mesh("cgal/fandisk.off"), real_mesh("cgal/knot.off")};
   for (const TriangleMesh& triangles : meshes) {
     const Mesh coarse = build_mesh(triangles);
     for (Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {

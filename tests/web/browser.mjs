@@ -11,7 +11,7 @@ import { createInterface } from 'node:readline';
 import { after, afterEach, before } from 'node:test';
 import { promisify } from 'node:util';
 
-const root = new URL('../..', import.meta.url).pathname;
+export const root = new URL('../..', import.meta.url).pathname;
 const { chromium } = createRequire(join(root, 'client/web/package.json'))('playwright-core');
 
 export const build = process.env.PAPILIO_BUILD ?? join(root, 'build/release');

@@ -72,8 +72,9 @@ export class Panel {
     head.append(element('h2', '', this.title));
     this.#caption = head.appendChild(element('span', 'caption'));
     head.append(element('span', 'space'));
-    this.#enlarge = head.appendChild(button('', () => this.onEnlarge()));
-    this.#save = head.appendChild(button('Save', () => this.#saveFile()));
+    const actions = head.appendChild(element('span', 'actions'));
+    this.#enlarge = actions.appendChild(button('', () => this.onEnlarge()));
+    this.#save = actions.appendChild(button('Save', () => this.#saveFile()));
     this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh as a Draco file`);
     this.#save.hidden = true;
     this.setEnlarged(false);

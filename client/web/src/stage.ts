@@ -154,9 +154,10 @@ export class Stage {
     const high = 0.9 * Math.tan((this.#lens.fovY * Math.PI) / 360); // the caption takes the rest
     const wide = 0.95 * aspect * Math.tan((this.#lens.fovY * Math.PI) / 360);
     const up = new Vector3(...this.#lens.up).normalize();
-    const side = new Vector3(up.y, up.z, up.x).cross(up).normalize(); // any other would do
-    const back = side.clone().cross(up);
-    const towards = back.addScaledVector(side, -0.55).normalize().addScaledVector(up, 0.4).normalize();
+    const axes = [new Vector3(0, 0, 1), new Vector3(1, 0, 0)];
+    const front = axes.find((axis) => Math.abs(axis.dot(up)) < 0.8)!; // with y up, z
+    const side = up.clone().cross(front).normalize();
+    const towards = side.clone().cross(up).addScaledVector(side, 0.55).normalize().addScaledVector(up, 0.4).normalize();
     const right = up.clone().cross(towards).normalize();
     const above = towards.clone().cross(right);
     const { center } = this.#sphere;
