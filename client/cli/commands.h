@@ -44,6 +44,14 @@ struct CompareFlags {
 };
 void compare_command(const CompareFlags& flags);
 
+struct HealthFlags {
+  std::string server = "http://127.0.0.1:8080";
+  RemoteOptions remote;
+  bool ready = false;  ///< whether it takes work, not only whether it is alive
+};
+/// Prints the server's word for it; anything but yes is an exception.
+void health_command(const HealthFlags& flags);
+
 /// A mistake in how the program was called: exit status 2.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -99,6 +99,16 @@ void add_compare(CLI::App& app) {
   command->callback([flags] { compare_command(*flags); });
 }
 
+void add_health(CLI::App& app) {
+  auto flags = std::make_shared<HealthFlags>();
+  CLI::App* command = app.add_subcommand("health", "Ask a server whether it is alive: exit status 0 or 1");
+  command->add_option("--server", flags->server, "http://host:port or https://")->capture_default_str();
+  command->add_option("--ca", flags->remote.ca_file, "PEM file of the certificates to trust for https")
+      ->check(CLI::ExistingFile);
+  command->add_flag("--ready", flags->ready, "Ask whether it takes work now");
+  command->callback([flags] { health_command(*flags); });
+}
+
 void add_parameters_command(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("parameters", "Print the table of refinement parameters as Markdown");
@@ -119,6 +129,7 @@ int run(int argc, char** argv) {
   add_info(app);
   add_convert(app);
   add_compare(app);
+  add_health(app);
   add_parameters_command(app);
   try {
     app.parse(argc, argv);

@@ -154,4 +154,18 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
   }
 }
 
+std::string Remote::health(Health question) const {
+  constexpr int longest_seconds = 3;
+  httplib::Client client = connect(origin_, options_);
+  client.set_connection_timeout(longest_seconds);
+  client.set_read_timeout(longest_seconds);
+  const auto answer = client.Get(prefix_ + (question == Health::ready ? "/ready" : "/health"));
+  if (!answer) throw no_answer(origin_, answer.error());
+  if (answer->status != 200) throw error_from(answer->status, answer->body);
+  const json document = json::parse(answer->body, nullptr, false);
+  if (!document.is_object() || !document.contains("status") || !document["status"].is_string())
+    throw ServerError(answer->status, "", "What answers at " + origin_ + " is no papilio-server.");
+  return document["status"];
+}
+
 }  // namespace papilio::client

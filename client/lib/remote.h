@@ -29,6 +29,12 @@ struct RemoteOptions {
   std::string key{};      ///< sent as `Authorization: Bearer`; "": none
 };
 
+/// What can be asked of a server besides work.
+enum class Health {
+  alive,  ///< GET /health: never waits on work
+  ready,  ///< GET /ready: takes work now
+};
+
 /// A Papilio server. One object may be used by one thread at a time.
 class Remote {
  public:
@@ -45,6 +51,10 @@ class Remote {
   /// last. Throws `ServerError`, also for a problem that comes in the middle.
   void refine_levels(std::string_view draco, const proto::Parameters& parameters,
                      const std::function<void(const proto::Part&)>& on_part) const;
+
+  /// The server's word for yes, "alive" or "ready", within seconds. Throws `ServerError` where the answer is another or
+  /// does not come.
+  [[nodiscard]] std::string health(Health question) const;
 
  private:
   std::string origin_;  ///< "http://host:port"

@@ -186,3 +186,20 @@ END
   sed -n '/^| parameter |/,/^$/p' "$readme" | sed '/^$/d' >found
   diff found table
 }
+
+@test "health: a server's state as an exit status" {
+  run "$papilio" health --server "$url"
+  [ "$status" = 0 ]
+  [ "$output" = alive ]
+  run "$papilio" health --ready --server "$url"
+  [ "$status" = 0 ]
+  [ "$output" = ready ]
+  run "$papilio" health --server http://127.0.0.1:1
+  [ "$status" = 1 ]
+  [[ $output == *"No answer from http://127.0.0.1:1"* ]]
+  run "$papilio" health --server "$url/v1"
+  [ "$status" = 1 ]
+  run "$papilio" health --server localhost
+  [ "$status" != 0 ]
+  [[ $output == *"must be a URL"* ]]
+}
