@@ -135,6 +135,7 @@ export class Viewer {
     this.#mesh = mesh;
     this.#state.mesh = isNamed ? mesh.name : '';
     this.#alert(null);
+    this.#setLens(); // which way is up, and how wide the picture is
     this.#stage.frame(mesh.geometry);
     if (this.#state.camera) this.#stage.camera = this.#state.camera;
     this.#showFrozen();
