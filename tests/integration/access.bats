@@ -29,6 +29,9 @@ DELETE /v1/meshes/$(coarse_id) manage
 GET /metrics manage
 GET /v1/info open
 GET /openapi.json open
+GET /v1/samples/mug use
+GET / open
+GET /assets/$(basename "$PAPILIO_BUILD"/web/assets/index-*.css) open
 GET /health open
 GET /ready open
 END
