@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # check.sh: what is judged without running the programs: formatting (clang-format, prettier), static analysis (clang-tidy,
-# with the compile commands of build/release; tsc) and the shell scripts (shellcheck). All of them run, whatever comes of the others.
-# The first two judge otherwise in each version: that of Debian 12 counts, and with another they are left out.
+# with the compile commands of build/release; tsc) and the shell scripts (shellcheck). All of them run, whatever comes of
+# the others.
+# clang-format and clang-tidy judge otherwise in each version: that of Debian 12 counts, and with another they are left out.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."

@@ -53,7 +53,8 @@ test('a busy server is asked again by itself, and at once where the user wants i
   const busy = [occupy(), occupy(), occupy(), occupy()];
   try {
     // Each new view may find the slot free by chance.
-    while ((await message(page, 'view').locator('button', { hasText: 'by itself in' }).count()) === 0) {
+    const waits = message(page, 'view').locator('button', { hasText: 'by itself in' });
+    for (let tries = 0; tries < 60 && (await waits.count()) === 0; ++tries) {
       await drag(page, 40, 0);
       await page.waitForTimeout(700);
     }

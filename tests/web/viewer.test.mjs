@@ -327,12 +327,12 @@ test('colours by level and by distance to uniform, with legends that say what th
   const shaded = await picture(page, 'adaptive');
   await page.getByLabel('By level').check();
   const legend = (mode) => page.locator(`.panel[data-mode=${mode}] .legend`);
-  await legend('uniform').filter({ hasText: 'level' }).waitFor();
-  await page.waitForTimeout(500);
+  await legend('view').filter({ hasText: 'level' }).waitFor(); // the last to be drawn
   assert.equal(await legend('uniform').locator('.swatch').count(), 4);
   const byLevel = await picture(page, 'adaptive');
   assert.ok((await compare(page, shaded, byLevel)).differing > 0.1);
   await page.getByLabel('By distance to uniform').check();
+  await legend('view').filter({ hasText: 'largest here' }).waitFor();
   await legend('uniform').filter({ hasText: 'largest here 0 %' }).waitFor();
   const largest = async (mode) => Number(/largest here ([\d.]+) %/.exec(await legend(mode).innerText())[1]);
   // The tolerance, .1 % of the diagonal, bounds what each level leaves out; the coarse mesh is further away.
@@ -341,7 +341,6 @@ test('colours by level and by distance to uniform, with legends that say what th
     await legend('adaptive').innerText(),
   );
   assert.ok((await largest('coarse')) > 1, await legend('coarse').innerText());
-  await page.waitForTimeout(500);
   const byDistance = await picture(page, 'adaptive');
   assert.ok((await compare(page, byLevel, byDistance)).differing > 0.1);
   // Without its panel the uniform result is fetched all the same.
