@@ -3,11 +3,11 @@
 #include <optional>
 
 #include "core/refine.h"
+#include "server/samples/models.h"
 #include "tests/bench/head.h"
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/mesh_figures.h"
 #include "tests/bench/report.h"
-#include "server/samples/models.h"
 
 // The paper's Table 1, measured on stand-ins for its models, beside its own figures.
 

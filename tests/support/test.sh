@@ -20,7 +20,7 @@ if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); f
 "${unit[@]}" || failed=1
 
 integration='bats --tap'
-web='node --test-reporter=tap'
+web=tests/support/web_test.sh
 if [[ -n $filter ]]; then # prove splits it at spaces
   integration+=" --filter ${filter// /.}"
   web+=" --test-name-pattern=${filter// /.}"

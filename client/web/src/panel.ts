@@ -16,8 +16,8 @@ const titles: Record<Mode, string> = {
   view: 'View-dependent',
 };
 
-/// How often a busy or silent server is asked again without being told to.
-const mostRetries = 5;
+/// A server that stays busy or silent is asked again by itself, after pauses that double up to this many seconds.
+const longestPause = 60;
 
 /// A mesh that can be shown, and what it cost.
 export interface Shown {
@@ -219,10 +219,9 @@ export class Panel {
     this.#message.replaceChildren(element('p', '', problem.message), again);
     this.#tell('failed');
     this.onProblem(problem);
-    if (problem.retryAfter !== null && this.#retries < mostRetries) {
-      ++this.#retries;
-      this.#countDown(Math.max(1, Math.ceil(problem.retryAfter)), again);
-    }
+    if (problem.retryAfter === null) return;
+    const pause = Math.max(1, Math.ceil(problem.retryAfter)) * 2 ** this.#retries++;
+    this.#countDown(Math.min(pause, longestPause), again);
   }
 
   #countDown(seconds: number, again: HTMLButtonElement): void {
