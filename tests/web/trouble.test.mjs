@@ -1,7 +1,7 @@
 // What the viewer says and does when something goes wrong, and who can use it.
 
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -106,7 +106,8 @@ test('a mesh that the store has given up is stored again', async () => {
 
 test('where keys are asked for, the page asks for one, and the command leaves room for it', async () => {
   const key = '0123456789abcdef0123456789abcdef';
-  const file = join(mkdtempSync(join(tmpdir(), 'papilio-keys-')), 'keys');
+  const folder = mkdtempSync(join(tmpdir(), 'papilio-keys-'));
+  const file = join(folder, 'keys');
   writeFileSync(file, `someone ${key}\n`);
   const keyed = await startServer('--keys', file);
   try {
@@ -123,6 +124,7 @@ test('where keys are asked for, the page asks for one, and the command leaves ro
     assert.ok((await run(command, 'refined.drc', { PAPILIO_KEY: key })).length > 1000);
   } finally {
     await keyed.stop();
+    rmSync(folder, { recursive: true });
   }
 });
 
