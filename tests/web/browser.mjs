@@ -21,10 +21,13 @@ export const axeSource = createRequire(join(root, 'client/web/package.json')).re
 /// Longest wait for anything, in milliseconds: the machines are slow at times, and slower under sanitizers.
 export const patience = Number(process.env.PAPILIO_PATIENCE ?? 60_000);
 
+const running = new Set();
+
 /// Starts papilio-server, on a free port unless the arguments name one. `stop` ends it as an operator would.
 export async function startServer(...args) {
   if (!args.includes('--port')) args.push('--port', '0');
   const server = spawn(join(build, 'papilio-server'), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+  running.add(server);
   let log = '';
   server.stderr.on('data', (text) => (log += text));
   const exited = once(server, 'exit');
@@ -38,6 +41,7 @@ export async function startServer(...args) {
     stop: async () => {
       server.kill('SIGTERM');
       const [status] = await exited;
+      running.delete(server);
       if (status !== 0) throw new Error(`the server ended with ${status}: ${log.slice(-4000)}`);
     },
   };
@@ -59,6 +63,7 @@ export function serverAndBrowser() {
   after(async () => {
     await shared.browser.close();
     await shared.server.stop();
+    for (const left of running) left.kill('SIGKILL'); // by tests that failed
   });
   afterEach(() => Promise.all(shared.browser.contexts().map((context) => context.close())));
   return shared;
