@@ -234,6 +234,31 @@ request_to() { request "${@:2}" "$proxy$1"; }
   [ "$(header Count)" = 1 ]
 }
 
+@test "a server that cannot be reached in time is passed over, for POST too" {
+  # A socket whose queue is full takes no connection, and refuses none.
+  python3 -c 'import socket, time
+full = socket.socket()
+full.bind(("127.0.0.1", 0))
+full.listen(0)
+waiting = [socket.socket() for _ in range(3)]
+for one in waiting: one.setblocking(False) or one.connect_ex(full.getsockname())
+print(full.getsockname()[1], flush=True)
+time.sleep(60)' >"$BATS_TEST_TMPDIR/full" 3>&- &
+  local full_pid=$! before=$proxy conf=$BATS_FILE_TMPDIR/passed/conf/nginx/upstream.conf
+  eventually test -s "$BATS_TEST_TMPDIR/full"
+  start_proxy passed
+  sed -i "s/^  server .*/  server 127.0.0.1:$(<"$BATS_TEST_TMPDIR/full");\n  server ${url#http:\/\/};/" "$conf"
+  kill -HUP "$proxy_pid"
+  sleep 1
+  for _ in 1 2 3; do
+    request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=1"
+    [ "$status" = 200 ]
+  done
+  grep -q 'upstream timed out' "$BATS_FILE_TMPDIR/passed/error.log" # it has been tried
+  kill "$proxy_pid" "$full_pid"
+  proxy=$before # for teardown
+}
+
 expect_cached() { # PATH STATUS [CURL-ARGUMENT...]
   request "${@:3}" "$proxy$1"
   [[ $status == 200 && $(header X-Cache-Status) == "$2" ]] || { echo "$1: $status $(header X-Cache-Status)"; return 1; }

@@ -3,7 +3,7 @@
 
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -188,6 +188,21 @@ export async function run(command, file, variables = {}) {
     };
     await promisify(execFile)('bash', ['-c', command], options);
     return readFileSync(join(folder, file));
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+/// What `papilio compare` says of two Draco meshes.
+export async function surfaceDistances(first, second) {
+  const folder = mkdtempSync(join(tmpdir(), 'papilio-web-'));
+  try {
+    const files = [first, second].map((bytes, i) => {
+      writeFileSync(join(folder, `${i}.drc`), bytes);
+      return join(folder, `${i}.drc`);
+    });
+    const { stdout } = await promisify(execFile)(join(build, 'papilio'), ['compare', '--json', ...files]);
+    return JSON.parse(stdout);
   } finally {
     rmSync(folder, { recursive: true });
   }

@@ -6,14 +6,25 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 
-import { axeSource, done, drag, facesOf, meshes, openPage, run, serverAndBrowser, startServer } from './browser.mjs';
+import {
+  axeSource,
+  done,
+  drag,
+  drop,
+  facesOf,
+  meshes,
+  openPage,
+  run,
+  serverAndBrowser,
+  startServer,
+} from './browser.mjs';
 
 const shared = serverAndBrowser();
 
 const message = (page, mode) => page.locator(`.panel[data-mode=${mode}] .message`);
 
 test('a result beyond a limit is refused where it would be, with the number; the others come', async () => {
-  const small = await startServer('--max-output-faces', '10000');
+  const small = await startServer('--max-output-faces', '10000', '--max-body-bytes', '1200');
   try {
     const { page, faults } = await openPage(shared.browser, small.url, {
       countRefusals: false,
@@ -24,6 +35,10 @@ test('a result beyond a limit is refused where it would be, with the number; the
     await page.keyboard.press('Enter');
     await done(page);
     assert.equal(await message(page, 'uniform').innerText(), '');
+    // A file beyond what the server takes is not sent at all.
+    await drop(page, 'bunny.drc', readFileSync(join(meshes, 'bunny600.drc')));
+    await page.locator('#alert-text', { hasText: '1543 bytes; this server takes 1200' }).waitFor();
+    assert.equal(await facesOf(page, 'coarse'), 344);
     assert.deepEqual(faults, []);
   } finally {
     await small.stop();

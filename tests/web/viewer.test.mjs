@@ -16,6 +16,7 @@ import {
   picture,
   refinements,
   run,
+  surfaceDistances,
   serverAndBrowser,
 } from './browser.mjs';
 import { cubeGlb, cubeObj, cubePly, cubeStl } from './mesh_files.mjs';
@@ -335,11 +336,12 @@ test('colours by level and by distance to uniform, with legends that say what th
   await legend('view').filter({ hasText: 'largest here' }).waitFor();
   await legend('uniform').filter({ hasText: 'largest here 0 %' }).waitFor();
   const largest = async (mode) => Number(/largest here ([\d.]+) %/.exec(await legend(mode).innerText())[1]);
-  // The tolerance, .1 % of the diagonal, bounds what each level leaves out; the coarse mesh is further away.
-  assert.ok(
-    (await largest('adaptive')) > 0 && (await largest('adaptive')) <= 0.3,
-    await legend('adaptive').innerText(),
-  );
+  // As `papilio compare` has it for the same meshes, in two digits.
+  const commands = page.locator('.command[data-mode=uniform] pre, .command[data-mode=adaptive] pre');
+  const [uniform, adaptive] = await Promise.all((await commands.allInnerTexts()).map((one) => run(one, 'refined.drc')));
+  const { max_forward, diagonal } = await surfaceDistances(uniform, adaptive);
+  const measured = (100 * max_forward) / diagonal;
+  assert.ok(Math.abs((await largest('adaptive')) / measured - 1) < 0.06, `${await largest('adaptive')}, ${measured}`);
   assert.ok((await largest('coarse')) > 1, await legend('coarse').innerText());
   const byDistance = await picture(page, 'adaptive');
   assert.ok((await compare(page, byLevel, byDistance)).differing > 0.1);

@@ -2,8 +2,7 @@
 
 import {
   BufferAttribute,
-  type BufferGeometry,
-  BufferGeometry as Geometry,
+  BufferGeometry,
   Color,
   DoubleSide,
   Group,
@@ -26,7 +25,7 @@ export function withEdges(geometry: BufferGeometry): Object3D {
     ends[2 * i] = corners[i];
     ends[2 * i + 1] = corners[i % 3 === 2 ? i - 2 : i + 1];
   }
-  const edges = new Geometry();
+  const edges = new BufferGeometry();
   edges.setAttribute('position', geometry.getAttribute('position'));
   edges.setIndex(new BufferAttribute(ends, 1));
   return new Group().add(shaded(geometry), new LineSegments(edges, new LineBasicMaterial({ color: 0x16344f })));
@@ -44,7 +43,7 @@ export function coloured(geometry: BufferGeometry, shares: ArrayLike<number>): O
     if (i % 3 === 0) colour.set(rampColour(shares[i / 3]));
     colours.set([colour.r, colour.g, colour.b], 3 * i);
   }
-  const faces = new Geometry();
+  const faces = new BufferGeometry();
   faces.setAttribute('position', new BufferAttribute(positions, 3));
   faces.setAttribute('color', new BufferAttribute(colours, 3));
   return new Mesh(faces, material({ vertexColors: true, flatShading: true }));

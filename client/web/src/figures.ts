@@ -18,7 +18,11 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
     ['faces', (one) => whole(one.faces)],
     ['vertices', (one) => whole(one.vertices)],
     ['bytes', (one) => whole(one.draco.length), 'Of the mesh as Draco'],
-    ['all levels', (one) => whole(one.received), 'Bytes of all levels that came, this one with them'],
+    [
+      'all levels',
+      (one) => whole(one.levels.reduce((sum, draco) => sum + draco.length, 0)),
+      'Bytes of all levels that came, this one with them',
+    ],
     ['fewer faces', (one) => saved(one.faces, uniformFaces), 'Than the uniform result'],
     ['fewer bytes', (one) => saved(one.draco.length, uniformBytes), 'Than the uniform result'],
     ['decode ms', (one) => milliseconds(one.timing.decode), 'Of the server'],

@@ -26,13 +26,11 @@ export interface Shown {
   draco: Uint8Array<ArrayBuffer>;
   vertices: number;
   faces: number;
-  /// All of the answer's meshes up to this one, in bytes.
-  received: number;
   /// Milliseconds by stage of the server; empty for the coarse mesh.
   timing: Record<string, number>;
   /// Milliseconds from the request to the decoded mesh.
   roundTrip: number | null;
-  /// Null while further levels may come.
+  /// Null while further levels may come, and for the coarse mesh.
   summary: Summary | null;
   /// The meshes up to this one, coarse first.
   levels: Uint8Array<ArrayBuffer>[];
@@ -100,6 +98,7 @@ export class Panel {
 
   /// Gives up what is on its way.
   stop(): void {
+    if (this.#asked === null) return;
     this.#abort?.abort();
     clearTimeout(this.#retryTimer);
     this.#asked = null;
@@ -135,7 +134,7 @@ export class Panel {
     this.#message.replaceChildren();
     this.problem = null;
     if (query === null) {
-      this.#show({ ...coarse(mesh), summary: null });
+      this.#show(coarse(mesh));
       this.#tell('done');
       return;
     }
@@ -158,7 +157,6 @@ export class Panel {
         draco: draco[level],
         vertices: levels[level].vertices,
         faces: levels[level].faces,
-        received: draco.reduce((sum, one) => sum + one.length, 0),
         timing: levels[level].timing,
         roundTrip: summary && performance.now() - began,
         summary,
@@ -240,16 +238,16 @@ export class Panel {
   }
 }
 
-function coarse(mesh: OpenMesh): Omit<Shown, 'summary'> {
+function coarse(mesh: OpenMesh): Shown {
   return {
     mesh,
     geometry: mesh.geometry,
     draco: mesh.draco,
     vertices: mesh.vertices,
     faces: mesh.faces,
-    received: mesh.draco.length,
     timing: {},
     roundTrip: null,
+    summary: null,
     levels: [mesh.draco],
   };
 }

@@ -9,6 +9,7 @@ import {
   type Object3D,
   OrthographicCamera,
   PerspectiveCamera,
+  Quaternion,
   Scene,
   Sphere,
   Spherical,
@@ -23,7 +24,6 @@ import type { Camera, Frozen } from './link';
 const rest = 200;
 
 interface View {
-  element: HTMLElement;
   scene: Scene;
   light: DirectionalLight;
   content: Object3D | null;
@@ -74,7 +74,7 @@ export class Stage {
       const scene = new Scene();
       const light = new DirectionalLight(0xffffff, 2.4);
       scene.add(new AmbientLight(0xffffff, 0.7), light, light.target);
-      this.#views.set(element, { element, scene, light, content: null, frustum: null });
+      this.#views.set(element, { scene, light, content: null, frustum: null });
     }
     this.draw();
   }
@@ -175,11 +175,14 @@ export class Stage {
 
   /// Turns about the target; angles in radians.
   orbit(right: number, up: number): void {
-    const arm = this.#camera.position.clone().sub(this.#controls.target);
+    // Spherical coordinates are about y.
+    const upright = new Quaternion().setFromUnitVectors(this.#camera.up.clone().normalize(), new Vector3(0, 1, 0));
+    const arm = this.#camera.position.clone().sub(this.#controls.target).applyQuaternion(upright);
     const at = new Spherical().setFromVector3(arm);
     at.theta += right;
     at.phi -= up;
-    this.#camera.position.copy(this.#controls.target).add(new Vector3().setFromSpherical(at.makeSafe()));
+    arm.setFromSpherical(at.makeSafe()).applyQuaternion(upright.invert());
+    this.#camera.position.copy(this.#controls.target).add(arm);
     this.#controls.update();
   }
 
@@ -207,6 +210,7 @@ export class Stage {
   }
 
   #makeControls(): OrbitControls {
+    this.#isHeld = false;
     this.#camera.up.set(...this.#lens.up);
     const controls = new OrbitControls(this.#camera, this.#surface);
     controls.zoomToCursor = false;

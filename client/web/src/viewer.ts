@@ -360,12 +360,11 @@ export class Viewer {
   async #followLink(): Promise<void> {
     const { mesh } = this.#state;
     const next = fromHash(location.hash, defaults);
-    const { camera, frozen } = next;
     if (next.mesh !== mesh) await this.#openNamed(next.mesh);
-    this.#state = { ...next, camera, frozen, mesh: this.#state.mesh };
+    this.#state = { ...next, mesh: this.#state.mesh };
     this.#form.setValues(this.#state.values);
     this.#showChoices();
-    if (camera) this.#stage.camera = camera;
+    if (next.camera) this.#stage.camera = next.camera;
     this.#setPanels();
     this.#refresh();
   }
