@@ -416,3 +416,16 @@ test('every parameter of the server has a control, which says what it takes', as
   assert.ok((await compare(page, before, await picture(page, 'coarse'))).differing > 0.02);
   assert.deepEqual(faults, []);
 });
+
+test('keys turn the mesh about the way up, whichever that is', async () => {
+  const hash = 'mesh=wheel&show=view&levels=1&view.up=0,0,1&camera=60,10,20,0,0,0';
+  const { page, faults } = await openPage(shared.browser, shared.server.url, { hash });
+  await done(page, ['view']);
+  await page.locator('#stage').focus();
+  const [request] = await Promise.all([page.waitForRequest(/refined\?/), page.keyboard.press('ArrowRight')]);
+  const eye = new URL(request.url()).searchParams.get('view.eye').split(',').map(Number);
+  assert.ok(Math.abs(eye[2] - 20) < 1e-3, `${eye}`);
+  assert.ok(Math.abs(Math.hypot(...eye) - Math.hypot(60, 10, 20)) < 1e-3, `${eye}`);
+  assert.ok(Math.abs(eye[1] - 10) > 1, `${eye}`);
+  assert.deepEqual(faults, []);
+});
