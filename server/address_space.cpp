@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -44,9 +45,16 @@ uint64_t address_space_needed(const Config& config) {
          store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
 }
 
+uint64_t address_space_bound(const Config& config) {
+  if (config.max_memory_bytes > 0) return config.max_memory_bytes;
+  const uint64_t needed = address_space_needed(config);
+  if (config.container_memory_bytes == 0) return needed;
+  return std::min(needed, std::max(stacks(config) + config.container_memory_bytes, address_space_of_threads(config)));
+}
+
 void limit_address_space(const Config& config) {
   if (is_sanitized) return;
-  const uint64_t bytes = config.max_memory_bytes > 0 ? config.max_memory_bytes : address_space_needed(config);
+  const uint64_t bytes = address_space_bound(config);
   rlimit limit{};
   ::getrlimit(RLIMIT_AS, &limit);
   limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? bytes : std::min<rlim_t>(bytes, limit.rlim_max);

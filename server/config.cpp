@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <iostream>
 #include <map>
-#include <thread>
 
 #include "server/address_space.h"
+#include "server/container_limits.h"
 #include "server/page.h"
 
 namespace papilio::server {
@@ -27,6 +27,16 @@ void name_environment_twins(const CLI::App& app) {
     const bool may_hold_password = option->check_lname("store");
     std::cerr << "The environment has " << option->get_envname() << (may_hold_password ? "" : "=")
               << (may_hold_password ? "" : value) << '\n';
+  }
+}
+
+/// What CLI11 from 2.4 on passes over in silence: values of the environment that are not right. Throws CLI::ParseError.
+void refuse_wrong_environment(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const char* value = option->get_envname().empty() ? nullptr : std::getenv(option->get_envname().c_str());
+    if (value == nullptr || *value == '\0' || option->count() > 0) continue;
+    option->add_result(value);
+    option->run_callback();
   }
 }
 
@@ -86,8 +96,8 @@ void add_limits(Settings& settings, Config& config) {
   settings.add("max-compute-bytes", limits.max_compute_bytes, uint64_t{0}, most_kept,
                "Most memory of a refinement's level: 507; 0: no limit");
   settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
-               "Address space of the process; 0: what the other settings may need");
-  settings.add("slots", config.engine.slots, 0, 1024, "Requests computed at once; 0: one a core");
+               "Address space of the process; 0: what the other settings may need, and no more than the container has");
+  settings.add("slots", config.engine.slots, 0, 1024, "Requests computed at once; 0: one a core that the container has");
   settings.add("queue", config.engine.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
   settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");
 }
@@ -177,8 +187,11 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
 
   try {
     app.parse(argc, argv);
+    refuse_wrong_environment(app);
+    const ContainerLimits container = container_limits();
+    config.container_memory_bytes = container.memory_bytes.value_or(0);
     if (config.engine.slots == 0)
-      config.engine.slots = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+      config.engine.slots = usable_cores(container);
     check_together(config);
   } catch (const CLI::ParseError& error) {
     outcome.exit = true;

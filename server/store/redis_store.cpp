@@ -5,10 +5,12 @@
 
 #include <cerrno>
 #include <charconv>
+#include <stdexcept>
 
 #include "proto/problem.h"
 #include "server/log.h"
 #include "server/sha256.h"
+#include "server/store/host_addresses.h"
 
 namespace papilio::server {
 
@@ -19,7 +21,8 @@ namespace {
 
 constexpr timeval longest_wait{2, 0};
 constexpr std::chrono::seconds away_interval{1};
-constexpr std::chrono::seconds longest_try{8};  ///< to connect, authenticate, select and ask
+constexpr size_t most_addresses = 2;             ///< of a name
+constexpr std::chrono::seconds longest_try{12};  ///< to look up, connect (twice), authenticate, select and ask
 
 Problem no_answer() {
   return {Code::store_unavailable,
@@ -149,9 +152,24 @@ Problem RedisStore::away(std::string_view reason) {
   return unavailable(reason);
 }
 
+RedisStore::Context RedisStore::reach() {
+  if (address_.host.empty()) return Context(redisConnectUnixWithTimeout(address_.path.c_str(), longest_wait));
+  Context context;
+  try {
+    std::vector<std::string> hosts = host_addresses(address_.host, std::chrono::seconds(longest_wait.tv_sec));
+    if (hosts.size() > most_addresses) hosts.resize(most_addresses);
+    for (const std::string& host : hosts) {
+      context.reset(redisConnectWithTimeout(host.c_str(), address_.port, longest_wait));
+      if (context != nullptr && context->err == 0) break;
+    }
+  } catch (const std::runtime_error& error) {
+    throw away(error.what());
+  }
+  return context;
+}
+
 RedisStore::Context RedisStore::connect() {
-  Context context(address_.host.empty() ? redisConnectUnixWithTimeout(address_.path.c_str(), longest_wait)
-                                        : redisConnectWithTimeout(address_.host.c_str(), address_.port, longest_wait));
+  Context context = reach();
   if (context == nullptr || context->err != 0) throw away(context ? context->errstr : "out of memory");
   redisSetTimeout(context.get(), longest_wait);
   const auto require = [&](const std::vector<std::string_view>& words) {

@@ -58,6 +58,7 @@ class RedisStore final : public MeshStore {
   /// One question, with its words; on a connection that turns out to be lost it is asked once more on a new one.
   Reply ask(const std::vector<std::string_view>& words);
   [[nodiscard]] Context connect();
+  [[nodiscard]] Context reach();  ///< connected, but not yet logged in; null or with an error when nobody is there
   [[nodiscard]] static Reply ask_on(redisContext& context, const std::vector<std::string_view>& words);
   [[nodiscard]] Context take_idle();
   /// Takes note that Redis is away, and gives the words for it.

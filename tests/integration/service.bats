@@ -44,9 +44,12 @@ teardown() {
   run "$server" --port 70000
   [ "$status" = 2 ]
   [[ $output == *--port*65535* ]]
-  PAPILIO_SLOTS=many run "$server"
+  PAPILIO_SLOTS=many run timeout 20 "$server" --port 0
   [ "$status" = 2 ]
   [[ $output == *slots* && $output == *PAPILIO_SLOTS=many* ]]
+  PAPILIO_TLS_CERT=/nowhere PAPILIO_TLS_KEY=/nowhere run timeout 20 "$server" --port 0
+  [ "$status" = 2 ]
+  [[ $output == */nowhere* && $output != *listening* ]]
   run "$server" --colour red
   [ "$status" = 2 ]
   run "$server" --help
@@ -74,7 +77,7 @@ teardown() {
 }
 
 @test "a refusal names what the environment has, but no password" {
-  PAPILIO_PORT=99999 PAPILIO_STORE=redis://user:secret@localhost run "$server"
+  PAPILIO_PORT=99999 PAPILIO_STORE=redis://user:secret@localhost run timeout 20 "$server"
   [ "$status" = 2 ]
   [[ $output == *PAPILIO_PORT=99999* && $output == *PAPILIO_STORE* && $output != *secret* ]]
 }
