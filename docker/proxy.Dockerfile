@@ -1,5 +1,5 @@
 # nginx with docker/nginx.conf, for docker/compose.yaml. Not as root: it listens above 1024 and writes to /work alone.
-ARG DEBIAN=docker.io/library/debian:trixie-slim
+ARG DEBIAN=debian:13.7-slim
 FROM ${DEBIAN}
 RUN apt-get update && apt-get install -y --no-install-recommends nginx-light \
  && rm -rf /var/lib/apt/lists/* /var/cache/apt /var/log/*

@@ -1,6 +1,6 @@
 # Redis (Debian's: valkey or redis) as the shared store of meshes, for docker/compose.yaml. What is acknowledged is on
 # disk: an append-only file in /data, synced before it is acknowledged.
-ARG DEBIAN=docker.io/library/debian:trixie-slim
+ARG DEBIAN=debian:13.7-slim
 FROM ${DEBIAN}
 RUN apt-get update && apt-get install -y --no-install-recommends redis-server redis-tools \
  && rm -rf /var/lib/apt/lists/* /var/cache/apt /var/log/* \

@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -12,20 +11,12 @@
 namespace papilio::server {
 namespace {
 
-constexpr uint64_t stack_bytes = 8ULL << 20;
 constexpr uint64_t arena_bytes = 128ULL << 20;  ///< glibc's malloc maps so much at a time for each of 8 arenas a core
 constexpr uint64_t base_bytes = 1ULL << 30;     ///< the program, its libraries
 constexpr uint64_t least_base_bytes = 128ULL << 20;
 /// A level, the levels above it, and what is encoded from it.
 constexpr uint64_t levels_held = 3;
 constexpr uint64_t unlimited_compute_bytes = 8ULL << 30;
-
-constexpr bool is_sanitized =
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    true;
-#else
-    false;
-#endif
 
 uint64_t stacks(const Config& config) {
   return (static_cast<uint64_t>(config.http.threads) + static_cast<uint64_t>(config.engine.slots)) * stack_bytes;
@@ -45,16 +36,9 @@ uint64_t address_space_needed(const Config& config) {
          store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
 }
 
-uint64_t address_space_bound(const Config& config) {
-  if (config.max_memory_bytes > 0) return config.max_memory_bytes;
-  const uint64_t needed = address_space_needed(config);
-  if (config.container_memory_bytes == 0) return needed;
-  return std::min(needed, std::max(stacks(config) + config.container_memory_bytes, address_space_of_threads(config)));
-}
-
 void limit_address_space(const Config& config) {
   if (is_sanitized) return;
-  const uint64_t bytes = address_space_bound(config);
+  const uint64_t bytes = config.max_memory_bytes > 0 ? config.max_memory_bytes : address_space_needed(config);
   rlimit limit{};
   ::getrlimit(RLIMIT_AS, &limit);
   limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? bytes : std::min<rlim_t>(bytes, limit.rlim_max);

@@ -96,7 +96,7 @@ void add_limits(Settings& settings, Config& config) {
   settings.add("max-compute-bytes", limits.max_compute_bytes, uint64_t{0}, most_kept,
                "Most memory of a refinement's level: 507; 0: no limit");
   settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
-               "Address space of the process; 0: what the other settings may need, and no more than the container has");
+               "Address space of the process; 0: what the other settings may need");
   settings.add("slots", config.engine.slots, 0, 1024, "Requests computed at once; 0: one a core that the container has");
   settings.add("queue", config.engine.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
   settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");

@@ -18,7 +18,7 @@ struct Config {
   std::string keys;                       ///< file of keys; empty: none are asked for
   bool allow_open = false;                ///< listen beyond loopback without keys
   std::vector<std::string> cors_origins;  ///< whose pages may use the service
-  uint64_t max_memory_bytes = 0;          ///< address space of the process; 0: see address_space_bound
+  uint64_t max_memory_bytes = 0;          ///< address space of the process; 0: as much as the other settings may need
   uint64_t container_memory_bytes = 0;    ///< memory that the container has; 0: no limit
   int drain_seconds = 30;                 ///< longest wait for running requests after SIGTERM
   std::string log_level = "info";

@@ -12,6 +12,7 @@
 
 #include "server/address_space.h"
 #include "server/config.h"
+#include "server/container_memory.h"
 #include "server/cors.h"
 #include "server/endpoints.h"
 #include "server/heap.h"
@@ -71,6 +72,7 @@ int serve(const Config& config) {
   const sigset_t signals = block_signals();
   start_log(config.log_level, config.log_format);
   limit_address_space(config);
+  if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0) bound_by_container(config.container_memory_bytes);
   set_up_heap(config.engine.slots);
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);

@@ -15,7 +15,7 @@ void ThreadPool::begin_thread() {
   threads_.emplace_back();
   try {
     const auto self = std::prev(threads_.end());
-    *self = std::thread([this, self, stays] { run(self, stays); });  // waits for the mutex first
+    self->thread = std::thread([this, self, stays] { run(self, stays); });  // waits for the mutex first
   } catch (...) {
     threads_.pop_back();
     throw;
@@ -39,7 +39,7 @@ void ThreadPool::enqueue(std::function<void()> work) {
     count_waiting();
   }
   changed_.notify_one();
-  for (std::thread& thread : ended) thread.join();
+  for (Thread& one : ended) one.thread.join();
 }
 
 void ThreadPool::run(Threads::iterator self, bool stays) {
@@ -77,7 +77,7 @@ void ThreadPool::shutdown() {
   Threads ended;
   ended.swap(ended_);
   lock.unlock();
-  for (std::thread& thread : ended) thread.join();
+  for (Thread& one : ended) one.thread.join();
 }
 
 }  // namespace papilio::server

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <thread>
 
+#include "server/container_memory.h"
+
 namespace papilio::server {
 
 /// Threads that begin when there is work for them and end when there has been none for a while. With a fixed number of
@@ -31,7 +33,11 @@ class ThreadPool {
   void shutdown();
 
  private:
-  using Threads = std::list<std::thread>;
+  struct Thread {
+    StackSpace stack;  ///< until it is joined
+    std::thread thread;
+  };
+  using Threads = std::list<Thread>;
 
   void begin_thread();  ///< with the mutex held
   void run(Threads::iterator self, bool stays);

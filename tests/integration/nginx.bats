@@ -6,16 +6,17 @@ load helpers
 PATH=$PATH:/usr/sbin # where nginx is
 
 # start_proxy NAME [SED-EXPRESSION]...: nginx with the shipped files, on a free port, in front of $url; sets $proxy and
-# $proxy_pid. The expressions change nginx.conf, and each must.
+# $proxy_pid. The expressions change nginx.conf or limits.conf, and each must.
 start_proxy() {
   local folder=$BATS_FILE_TMPDIR/$1 before
   shift
   mkdir -p "$folder/conf"
   cp -r "$BATS_TEST_DIRNAME/../../docker/nginx.conf" "$BATS_TEST_DIRNAME/../../docker/nginx" "$folder/conf"
+  local files=("$folder/conf/nginx.conf" "$folder/conf/nginx/limits.conf")
   for expression in "$@"; do
-    before=$(md5sum <"$folder/conf/nginx.conf")
-    sed -i "$expression" "$folder/conf/nginx.conf"
-    [[ $(md5sum <"$folder/conf/nginx.conf") != "$before" ]] || { echo "changes nothing: $expression" >&2; return 1; }
+    before=$(md5sum "${files[@]}")
+    sed -i "$expression" "${files[@]}"
+    [[ $(md5sum "${files[@]}") != "$before" ]] || { echo "changes nothing: $expression" >&2; return 1; }
   done
   sed -i "s/127\.0\.0\.1:8080/${url#http://}/" "$folder/conf/nginx/upstream.conf"
   grep -qF "server ${url#http://} " "$folder/conf/nginx/upstream.conf"

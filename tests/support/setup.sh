@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh [build|test|demo|bench|check|fuzz|soak]...: installs what these need and is not there yet; without arguments, everything.
+# setup.sh [build|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there yet; without arguments, everything.
 # Says what it does; when there is nothing to do it does nothing, quickly and silently.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -10,7 +10,8 @@ packages=()
 programs=() # as program:package, for what may have been installed in some other way
 meshes=no
 page=no
-(($#)) || set -- build test demo bench check fuzz soak
+manifests=no
+(($#)) || set -- build test demo bench check fuzz soak container
 for purpose in "$@"; do
   case $purpose in
     build)
@@ -28,6 +29,11 @@ for purpose in "$@"; do
     check) page=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
     fuzz) packages+=(clang libclang-rt-dev dpkg-dev ca-certificates) ;;
     soak) meshes=yes packages+=(wrk curl jq ca-certificates) ;;
+    container)
+      meshes=yes manifests=yes
+      packages+=(buildah podman runc netavark aardvark-dns catatonit docker-compose iptables iproute2 util-linux mmdebstrap bats perl curl jq
+        wrk redis-server ca-certificates)
+      ;;
     *) die "unknown purpose '$purpose'" ;;
   esac
 done
@@ -67,4 +73,5 @@ fi
 
 [[ $meshes == no ]] || "$here/real_meshes.sh"
 [[ $page == no ]] || "$here/web_packages.sh"
+[[ $manifests == no ]] || "$here/manifest_tools.sh"
 [[ " $* " != *" test "* ]] || "$here/openapi_linter.sh"

@@ -1,0 +1,11 @@
+# The whole suite on Debian 13, the Debian of the images: `./dev container suite` builds this, and it fails when a test
+# does. What set-up brings is a layer of its own, kept until set-up itself changes.
+ARG DEBIAN=debian:13.7-slim
+FROM ${DEBIAN}
+WORKDIR /papilio
+COPY dev ./
+COPY tests/support tests/support
+COPY client/web/package.json client/web/package-lock.json client/web/.npmrc client/web/
+RUN tests/support/setup.sh build test
+COPY . .
+RUN --mount=type=cache,target=/root/.cache/ccache ./dev test
