@@ -97,7 +97,8 @@ void add_limits(Settings& settings, Config& config) {
                "Most memory of a refinement's level: 507; 0: no limit");
   settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
                "Address space of the process; 0: what the other settings may need");
-  settings.add("slots", config.engine.slots, 0, 1024, "Requests computed at once; 0: one a core that the container has");
+  settings.add("slots", config.engine.slots, 0, 1024,
+               "Requests computed at once; 0: one a core that the container has");
   settings.add("queue", config.engine.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
   settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");
 }
@@ -190,8 +191,7 @@ ConfigOutcome parse_config(int argc, const char* const* argv) {
     refuse_wrong_environment(app);
     const ContainerLimits container = container_limits();
     config.container_memory_bytes = container.memory_bytes.value_or(0);
-    if (config.engine.slots == 0)
-      config.engine.slots = usable_cores(container);
+    if (config.engine.slots == 0) config.engine.slots = usable_cores(container);
     check_together(config);
   } catch (const CLI::ParseError& error) {
     outcome.exit = true;

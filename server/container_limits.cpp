@@ -36,7 +36,8 @@ std::optional<double> share(const std::optional<int64_t>& quota, const std::opti
 }
 
 std::optional<double> cores_of(const fs::path& group) {
-  if (const auto words = words_of(group / "cpu.max"); words.size() == 2) return share(number(words[0]), number(words[1]));
+  if (const auto words = words_of(group / "cpu.max"); words.size() == 2)
+    return share(number(words[0]), number(words[1]));
   const auto quota = words_of(group / "cpu.cfs_quota_us"), period = words_of(group / "cpu.cfs_period_us");
   return quota.empty() || period.empty() ? std::nullopt : share(number(quota[0]), number(period[0]));
 }
@@ -60,8 +61,8 @@ void lower(std::optional<T>& least, const std::optional<T>& limit) {
 ContainerLimits container_limits(const fs::path& groups, const fs::path& membership) {
   ContainerLimits limits;
   std::ifstream in(membership);
-  // A line is NUMBER:CONTROLLERS:PATH; version 2's has no controllers. Inside a container the path may be the host's, and
-  // lead nowhere: its group is then the root of what is mounted.
+  // A line is NUMBER:CONTROLLERS:PATH; version 2's has no controllers. Inside a container the path may be the host's,
+  // and lead nowhere: its group is then the root of what is mounted.
   for (std::string line; std::getline(in, line);) {
     const size_t first = line.find(':');
     const size_t second = first == std::string::npos ? first : line.find(':', first + 1);

@@ -32,7 +32,8 @@ void bound_by_container(uint64_t container_bytes) {
   if (is_sanitized) return;
   const std::lock_guard lock(mutex);
   bound = container_bytes - container_bytes / 16;
-  if (!apply()) throw std::runtime_error(std::string("the container's memory cannot be a bound: ") + std::strerror(errno));
+  if (!apply())
+    throw std::runtime_error(std::string("the container's memory cannot be a bound: ") + std::strerror(errno));
 }
 
 StackSpace::StackSpace() {

@@ -72,7 +72,8 @@ int serve(const Config& config) {
   const sigset_t signals = block_signals();
   start_log(config.log_level, config.log_format);
   limit_address_space(config);
-  if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0) bound_by_container(config.container_memory_bytes);
+  if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0)
+    bound_by_container(config.container_memory_bytes);
   set_up_heap(config.engine.slots);
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);

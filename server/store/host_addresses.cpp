@@ -31,7 +31,8 @@ std::vector<std::string> host_addresses(const std::string& host, std::chrono::mi
   std::array<unsigned char, sizeof(in6_addr)> binary{};
   if (inet_pton(AF_INET, host.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, host.c_str(), binary.data()) == 1)
     return {host};
-  std::packaged_task<std::vector<std::string>()> task([host, resolver = std::move(resolver)] { return resolver(host); });
+  std::packaged_task<std::vector<std::string>()> task(
+      [host, resolver = std::move(resolver)] { return resolver(host); });
   std::future<std::vector<std::string>> answer = task.get_future();
   std::thread(std::move(task)).detach();
   if (answer.wait_for(limit) != std::future_status::ready)

@@ -47,16 +47,32 @@ servers() {
   sleep 0.5
 }
 
-# load PATH [MESH]: requests a second, p50 and p99 in ms, through the proxy; fails when one was not answered with 200.
+# ticks SERVICE...: hundredths of a second of processor time that their processes have taken.
+ticks() {
+  local service pid total=0
+  for service in "$@"; do
+    pid=$(podman inspect --format '{{.State.Pid}}' "$(podman ps --quiet --filter name="$service")")
+    # shellcheck disable=SC2046 # several: nginx's workers
+    total=$((total + $(awk '{ sum += $14 + $15 } END { print sum + 0 }' \
+      $(printf '/proc/%s/stat ' "$pid" $(cat "/proc/$pid/task/$pid/children")))))
+  done
+  echo "$total"
+}
+
+# load PATH [MESH]: requests a second, p50 and p99 in ms, and microseconds of processor time a request in servers, proxy and
+# Redis; fails when one was not answered with 200.
 load() {
-  local figures
+  local figures servers proxy store requests second p50 p99
+  servers=$(ticks server-a server-b) proxy=$(ticks proxy) store=$(ticks store)
   figures=$(PAPILIO_MESH=${2:-} wrk --threads 1 --connections 4 --duration "${seconds}s" --timeout 30s \
     --script "$here/refine.lua" "$url$1" | sed -n 's/^figures: //p')
   [[ $figures == *" 0" ]] || {
     echo "throughput: $1: some requests failed: $figures" >&2
     return 1
   }
-  echo "${figures% *}"
+  read -r requests second p50 p99 _ <<<"$figures"
+  echo "$second $p50 $p99 $((($(ticks server-a server-b) - servers) * 10000 / requests))" \
+    "$((($(ticks proxy) - proxy) * 10000 / requests)) $((($(ticks store) - store) * 10000 / requests))"
 }
 
 # arithmetic PROCESSES: how many a second of a fixed piece of work get done.
@@ -74,13 +90,20 @@ id=$(curl -sS --noproxy '*' -H 'Content-Type: application/x-draco' --data-binary
 small='/v1/refine?levels=3&tolerance=0.001'
 large='/v1/refine?levels=5'
 kept="/v1/meshes/$id/refined?levels=3&tolerance=0.001"
+views="/v1/meshes/$id/refined?levels=4&view.error_pixels=0.5&view.edge_pixels=0&view.eye=EYE"
 for ((round = 0; round < rounds; round++)); do
   for count in 1 2; do
     servers "$count"
-    figures=$(load "$small" "$mesh") && echo "small $count $figures"
-    figures=$(load "$large" "$mesh") && echo "large $count $figures"
-    figures=$(load "$kept") && echo "kept $count $figures"
-    figures=$(arithmetic "$count") && echo "arithmetic $count $figures"
+    figures=$(load "$small" "$mesh")
+    echo "small $count $figures"
+    figures=$(load "$large" "$mesh")
+    echo "large $count $figures"
+    figures=$(load "$views")
+    echo "views $count $figures"
+    figures=$(load "$kept")
+    echo "kept $count $figures"
+    figures=$(arithmetic "$count")
+    echo "arithmetic $count $figures"
   done
 done >"$folder/figures"
 
@@ -95,15 +118,16 @@ awk -v rounds="$rounds" '
   }
   { n = ++seen[$1, $2]; for (f = 3; f <= NF; f++) value[$1, $2, f, n] = $f }
   function row(what, title) {
-    printf "| %s | %.0f | %.0f | %.2f | %.0f, %.0f | %.0f, %.0f |\n", title, of(what, 1, 3), of(what, 2, 3),
-      of(what, 2, 3) / of(what, 1, 3), of(what, 1, 4), of(what, 1, 5), of(what, 2, 4), of(what, 2, 5)
+    printf "| %s | %.0f | %.0f | %.2f | %.0f, %.0f | %.0f | %.0f | %.0f |\n", title, of(what, 1, 3), of(what, 2, 3),
+      of(what, 2, 3) / of(what, 1, 3), of(what, 2, 4), of(what, 2, 5), of(what, 2, 6), of(what, 2, 7), of(what, 2, 8)
   }
   END {
-    print "| through the proxy, four clients | one server, requests/s | two servers | ratio | p50, p99 of one, ms | of two |"
-    print "|---|---:|---:|---:|---:|---:|"
+    print "| through the proxy, four clients | one server, requests/s | two servers | ratio | p50, p99, ms | servers, µs a request | proxy | Redis |"
+    print "|---|---:|---:|---:|---:|---:|---:|---:|"
     row("small", "600 faces to 4,866, by tolerance")
     row("large", "600 faces to 614,400, uniform")
+    row("views", "a new view of a stored mesh, to half a pixel")
     row("kept", "a stored mesh, refined before: from the proxy")
-    printf "| plain arithmetic, one process and two | %.2f | %.2f | %.2f | | |\n", of("arithmetic", 1, 3), of("arithmetic", 2, 3),
+    printf "| plain arithmetic, one process and two | %.2f | %.2f | %.2f | | | | |\n", of("arithmetic", 1, 3), of("arithmetic", 2, 3),
       of("arithmetic", 2, 3) / of("arithmetic", 1, 3)
   }' "$folder/figures"
