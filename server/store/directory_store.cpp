@@ -26,6 +26,7 @@ namespace {
 constexpr std::string_view extension = ".drc";
 constexpr std::string_view unfinished = ".part";
 constexpr std::chrono::minutes count_interval{1};
+constexpr int most_counts = 3;                     ///< while meshes come and go; at the last they wait
 constexpr std::chrono::minutes longest_write{10};  ///< what is unfinished for longer was interrupted
 
 /// The operator's log has the reason, the client only what concerns it.
@@ -107,15 +108,12 @@ fs::path DirectoryStore::file_of(const std::string& id) const {
 
 bool DirectoryStore::put(const std::string& id, std::string_view bytes) {
   if (contains(id)) return false;
-  const Room room(*this, bytes.size());
-  write(file_of(id), bytes);
-  const std::lock_guard lock(mutex_);
-  ++usage_.meshes;
-  usage_.bytes += bytes.size();
+  Room room(*this, bytes.size());
+  write(file_of(id), bytes, room);
   return true;
 }
 
-void DirectoryStore::write(const fs::path& file, std::string_view bytes) const {
+void DirectoryStore::write(const fs::path& file, std::string_view bytes, Room& room) {
   std::error_code error;
   const bool is_new = fs::create_directories(file.parent_path(), error);
   if (is_new && !File(directory_, O_RDONLY | O_DIRECTORY).sync()) throw unavailable(directory_);
@@ -125,7 +123,7 @@ void DirectoryStore::write(const fs::path& file, std::string_view bytes) const {
     const File out(part, O_WRONLY | O_CREAT | O_EXCL);
     written = out.is_open() && out.write(bytes) && out.sync();
   }
-  if (!written || ::rename(part.c_str(), file.c_str()) != 0) {
+  if (!written || !publish(part, file, room)) {
     const int reason = errno;
     fs::remove(part, error);
     if (reason == ENOSPC || reason == EDQUOT)
@@ -133,6 +131,17 @@ void DirectoryStore::write(const fs::path& file, std::string_view bytes) const {
     throw unavailable(part, std::strerror(reason));
   }
   if (!File(file.parent_path(), O_RDONLY | O_DIRECTORY).sync()) throw unavailable(file);
+}
+
+bool DirectoryStore::publish(const fs::path& part, const fs::path& file, Room& room) {
+  const std::lock_guard lock(mutex_);
+  if (::rename(part.c_str(), file.c_str()) != 0) return false;
+  const uint64_t bytes = room.give_up();
+  being_written_ -= bytes;
+  usage_.bytes += bytes;
+  ++usage_.meshes;
+  ++changes_;
+  return true;
 }
 
 bool DirectoryStore::contains(const std::string& id) {
@@ -164,17 +173,18 @@ bool DirectoryStore::remove(const std::string& id) {
   const uint64_t bytes = fs::file_size(file, error);
   if (error == std::errc::no_such_file_or_directory) return false;
   if (error) throw unavailable(file, error.message());
+  const std::lock_guard lock(mutex_);
   if (!fs::remove(file, error)) {
     if (error) throw unavailable(file, error.message());
     return false;
   }
-  const std::lock_guard lock(mutex_);
   usage_.meshes -= std::min<uint64_t>(usage_.meshes, 1);
   usage_.bytes -= std::min(usage_.bytes, bytes);
+  ++changes_;
   return true;
 }
 
-void DirectoryStore::count_files() {
+MeshStore::Usage DirectoryStore::files() const {
   Usage counted;
   std::error_code error;
   for (auto file = fs::recursive_directory_iterator(directory_, error); file != fs::recursive_directory_iterator();
@@ -186,9 +196,22 @@ void DirectoryStore::count_files() {
     ++counted.meshes;
     counted.bytes += bytes;
   }
-  const std::lock_guard lock(mutex_);
-  usage_ = counted;
-  counted_ = std::chrono::steady_clock::now();
+  return counted;
+}
+
+void DirectoryStore::count_files() {
+  std::unique_lock lock(mutex_);
+  for (int count = 1;; ++count) {
+    const uint64_t changes = changes_;
+    const bool others_wait = count == most_counts;
+    if (!others_wait) lock.unlock();
+    const Usage counted = files();
+    if (!others_wait) lock.lock();
+    if (changes_ != changes) continue;
+    usage_ = counted;
+    counted_ = std::chrono::steady_clock::now();
+    return;
+  }
 }
 
 bool DirectoryStore::reserve(uint64_t bytes) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 
 #include "server/store/mesh_store.h"
 
@@ -26,7 +27,7 @@ class DirectoryStore final : public MeshStore {
 
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& id) const;
-  void write(const std::filesystem::path& file, std::string_view bytes) const;
+  [[nodiscard]] Usage files() const;
   void count_files();
   /// False when there is no room, or the count is too old to know.
   [[nodiscard]] bool reserve(uint64_t bytes);
@@ -39,11 +40,17 @@ class DirectoryStore final : public MeshStore {
     ~Room();
     Room(const Room&) = delete;
     Room& operator=(const Room&) = delete;
+    /// It is the caller's from now on: how much it is.
+    [[nodiscard]] uint64_t give_up() { return std::exchange(bytes_, 0); }
 
    private:
     DirectoryStore& store_;
-    const uint64_t bytes_;
+    uint64_t bytes_;
   };
+
+  void write(const std::filesystem::path& file, std::string_view bytes, Room& room);
+  /// Renames the written part and counts it; false with errno.
+  bool publish(const std::filesystem::path& part, const std::filesystem::path& file, Room& room);
 
   const std::filesystem::path directory_;
   const uint64_t budget_;
@@ -51,6 +58,7 @@ class DirectoryStore final : public MeshStore {
   /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a
   /// refusal.
   Usage usage_;
+  uint64_t changes_ = 0;        ///< guarded by mutex_: meshes put and removed so far, their files with them
   uint64_t being_written_ = 0;  ///< guarded by mutex_
   std::chrono::steady_clock::time_point counted_;
 };

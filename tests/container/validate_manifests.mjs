@@ -22,6 +22,10 @@ const refuse = (name, text) => {
 
 const typed = [];
 for (const [index, object] of objects.entries()) {
+  if (object.kind === 'Secret') {
+    // Kustomize 5 breaks long values into lines, which Kubernetes takes and the schema's base64 does not.
+    for (const key of Object.keys(object.data ?? {})) object.data[key] = object.data[key].replace(/\s/g, '');
+  }
   const name = `${object.kind}/${object.metadata?.name}`;
   console.log(name);
   const module = `kubernetes-models/${object.apiVersion}`;

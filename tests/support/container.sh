@@ -16,7 +16,7 @@ cd "$root"
   echo "container: this needs root, for its networks: sudo ./dev container" >&2
   exit 1
 }
-mkdir -p "$containers"
+mkdir -p "$containers/cache"
 exec 8>"$containers/lock"
 flock -n 8 || {
   echo "container: another ./dev container runs here" >&2
@@ -64,16 +64,19 @@ base() {
 site_of() {
   # shellcheck disable=SC2016 # apt's own variables
   apt-get indextargets --format '$(SITE) $(RELEASE)' 'Created-By: Packages' 'Origin: Debian' |
-    awk -v security="$1" '($2 ~ /-security$/) == (security == "security") { print $1; exit }'
+    awk -v security="$1" '($2 ~ /-security$/) == (security == "security") && !found++ { print $1 }'
 }
 
 # image NAME DOCKERFILE: builds it, with this machine's certificates and npm settings, should it have any of its own.
 image() {
-  local options=(-v /etc/ssl/certs:/etc/ssl/certs:ro -v "$containers/npmrc:/root/.npmrc:ro") log=$containers/$1.log began=$SECONDS
+  local log=$containers/$1.log began=$SECONDS
+  local options=(--isolation chroot --layers --pull-never --format docker -v /etc/ssl/certs:/etc/ssl/certs:ro
+    -v "$containers/npmrc:/root/.npmrc:ro")
   { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
+  chmod 600 "$containers/npmrc"
   echo "container: building $1"
-  buildah bud --isolation chroot --layers --pull-never --format docker "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 || {
-    tail -n 60 "$log" >&2
+  TMPDIR=$containers/cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 || {
+    { grep -A12 '^not ok ' "$log" | head -n 100; tail -n 60 "$log"; } >&2
     echo "container: $2 cannot be built; all it said is in ${log#"$root"/}" >&2
     return 1
   }
@@ -84,8 +87,11 @@ image() {
 # The engine that docker-compose talks to; nothing of it is left behind.
 service_pid=
 chains_before=
+forwarding=/proc/sys/net/ipv4/ip_forward
+forwarding_before=
 start_service() {
   chains_before=$(netavark_chains)
+  forwarding_before=$(cat "$forwarding")
   export DOCKER_HOST=unix://$containers/podman.sock
   podman system service --time=0 "$DOCKER_HOST" >"$containers/service.log" 2>&1 8>&- &
   service_pid=$!
@@ -108,8 +114,9 @@ clean_up() {
   podman network prune --force >/dev/null 2>&1 || true
   [[ -z $service_pid ]] || kill "$service_pid" 2>/dev/null || true
   rm -f "$containers/podman.sock"
-  # netavark leaves its chains, empty.
+  # netavark leaves its chains, empty, and packets forwarded.
   [[ -n $service_pid && -z $chains_before ]] || return 0
+  [[ $(cat "$forwarding") == "$forwarding_before" ]] || echo "$forwarding_before" >"$forwarding"
   local table chain
   for table in filter nat; do
     iptables -t "$table" -S 2>/dev/null | sed -n 's/^-A \(.*-j NETAVARK.*\)/-D \1/p' |

@@ -154,23 +154,27 @@ TEST_P(DirectoryStoreTest, WhatCannotBeReadIsNotAbsent) {
   }
 }
 
+// Many rounds: where a count of the files missed one that was put meanwhile, one round in a hundred kept two.
 TEST_P(DirectoryStoreTest, MeshesPutAtOnceDoNotPassTheBudgetTogether) {
   const std::string bytes(900'000, 'x');
   const auto store = open(1'000'000);
-  std::atomic<int> kept = 0;
-  std::vector<std::jthread> threads;
-  for (int t = 0; t < 8; ++t)
-    threads.emplace_back([&, t] {
-      const std::string mesh = bytes + std::to_string(t);
-      try {
-        kept += store->put(sha256(mesh), mesh) ? 1 : 0;
-      } catch (const Problem& problem) {
-        EXPECT_EQ(problem.code(), Code::store_full);
-      }
-    });
-  threads.clear();
-  EXPECT_EQ(kept, 1);
-  EXPECT_EQ(store->usage()->meshes, 1U);
+  for (int round = 0; round < 100; ++round) {
+    std::atomic<int> kept = 0;
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t)
+      threads.emplace_back([&, t] {
+        const std::string mesh = bytes + std::to_string(t);
+        try {
+          kept += store->put(sha256(mesh), mesh) ? 1 : 0;
+        } catch (const Problem& problem) {
+          EXPECT_EQ(problem.code(), Code::store_full);
+        }
+      });
+    threads.clear();
+    ASSERT_EQ(kept, 1) << "in round " << round;
+    ASSERT_EQ(store->usage()->meshes, 1U);
+    for (int t = 0; t < 8; ++t) (void)store->remove(sha256(bytes + std::to_string(t)));
+  }
 }
 
 TEST(RedisAddress, IsRead) {
