@@ -67,7 +67,8 @@ load() {
   figures=$(PAPILIO_MESH=${2:-} wrk --threads 1 --connections 4 --duration "${seconds}s" --timeout 30s \
     --script "$here/refine.lua" "$url$1" | sed -n 's/^figures: //p')
   [[ $figures == *" 0" ]] || {
-    echo "throughput: $1: some requests failed: $figures" >&2
+    echo "throughput: $1: some requests failed: $figures; the proxy says:" >&2
+    podman logs "$(podman ps --quiet --filter name=proxy)" 2>&1 | grep -v ' status=200 ' | tail -n 20 >&2
     return 1
   }
   read -r requests second p50 p99 _ <<<"$figures"

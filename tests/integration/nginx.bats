@@ -444,3 +444,11 @@ smuggle() {
   [ "$status" = 200 ]
   [[ $(head -1 "$headers") == HTTP/2* ]]
 }
+
+@test "the cache has room for the keys of as many results as its size allows" {
+  # nginx counts blocks of 4 KB; a key takes 128 bytes. Otherwise it answers 500 when a view too many is asked for.
+  local zone size
+  read -r zone size < <(sed -nE 's/.*proxy_cache_path .*keys_zone=refined:([0-9]+)m max_size=([0-9]+)g .*/\1 \2/p' \
+    "$BATS_TEST_DIRNAME/../../docker/nginx.conf")
+  (((zone << 20) / 128 > (size << 30) / 4096 * 5 / 4))
+}
