@@ -25,7 +25,6 @@ setup_file() {
   eventually answers "$first"
   eventually answers "$second"
   # What the load's questions are answered with, by this machine's own build.
-
   local query
   for query in "${light[@]}" "${heavy[@]}"; do
     # shellcheck disable=SC2086,SC2046 # name=value&name=value as flags and their values
@@ -99,7 +98,7 @@ stop_load() {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3&tolerance=0.001"
   [ "$status" = 200 ]
   cmp "$body" "$(right "${light[3]}")"
-  [ -n "$(header Papilio-Reason)$(header Papilio-Stopped)$(header Papilio-Faces)" ]
+  [ "$(header Papilio-Faces)" = "$(decoded_faces "$body")" ]
   request "$url/"
   [[ $status == 200 && $(header Content-Type) == text/html* ]]
   request "$url/metrics"

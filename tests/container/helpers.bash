@@ -26,7 +26,8 @@ start_container() {
   local port
   port=$(free_port)
   url=http://127.0.0.1:$port
-  container=$(podman run --detach --network host --read-only --cap-drop ALL --security-opt no-new-privileges \
+  # In the test's folder: where a container runs out of memory, its monitor leaves a file "oom" in the folder it began in.
+  container=$(cd "$BATS_TEST_TMPDIR" && podman run --detach --network host --read-only --cap-drop ALL --security-opt no-new-privileges \
     -e PAPILIO_HOST=127.0.0.1 -e "PAPILIO_PORT=$port" "${options[@]}" papilio "${@:2}" 3>&-)
   eventually answers "$url"
 }

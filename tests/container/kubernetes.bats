@@ -55,6 +55,7 @@ teardown() {
 @test "the objects agree with each other and with the image" {
   local labels
   labels=$(object Deployment '.spec.template.metadata.labels["app.kubernetes.io/name"]')
+  [ "$labels" = papilio ]
   [ "$(object Service '.spec.selector["app.kubernetes.io/name"]')" = "$labels" ]
   [ "$(object PodDisruptionBudget '.spec.selector.matchLabels["app.kubernetes.io/name"]')" = "$labels" ]
   [ "$(object NetworkPolicy '.spec.podSelector.matchLabels["app.kubernetes.io/name"]')" = "$labels" ]
