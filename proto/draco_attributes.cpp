@@ -24,36 +24,6 @@ static_assert(draco::GeometryAttribute::GENERIC == 1 + static_cast<int>(Attribut
 static_assert(draco::DT_INT8 == 1 + static_cast<int>(ValueType::int8));
 static_assert(draco::DT_BOOL == 1 + static_cast<int>(ValueType::boolean));
 
-/// Calls `visit` with a number of the type.
-template <class Visit>
-auto with_number(ValueType type, Visit visit) {
-  switch (type) {
-    case ValueType::int8:
-      return visit(int8_t{});
-    case ValueType::uint8:
-      return visit(uint8_t{});
-    case ValueType::int16:
-      return visit(int16_t{});
-    case ValueType::uint16:
-      return visit(uint16_t{});
-    case ValueType::int32:
-      return visit(int32_t{});
-    case ValueType::uint32:
-      return visit(uint32_t{});
-    case ValueType::int64:
-      return visit(int64_t{});
-    case ValueType::uint64:
-      return visit(uint64_t{});
-    case ValueType::float32:
-      return visit(float{});
-    case ValueType::float64:
-      return visit(double{});
-    case ValueType::boolean:
-      break;
-  }
-  return visit(bool{});
-}
-
 AttributeFormat format_of(const draco::Mesh& mesh, int number) {
   const draco::PointAttribute& attribute = *mesh.attribute(number);
   AttributeFormat format;
@@ -179,6 +149,30 @@ VertexPoints::VertexPoints(const Mesh& mesh) : vertex_(mesh.attributes.point_cou
     if (has_several[vertex_[p]]) on_seams_.push_back(p);
 }
 
+StoredValues store_values(const Attribute& attribute, const AttributeFormat& format, const VertexPoints& points) {
+  StoredValues stored;
+  stored.bytes = with_number(format.type, [&](auto zero) { return to_bytes<decltype(zero)>(attribute.values); });
+  const auto count = static_cast<uint32_t>(points.vertex().size());
+  const size_t stride = stored.bytes.size() / count;
+  const std::vector<uint32_t> same = find_same(stored.bytes, stride, points);
+  stored.value.resize(count);
+  uint32_t kept = 0;
+  for (uint32_t p = 0; p < count; ++p) {
+    stored.value[p] = same[p] == p ? kept : stored.value[same[p]];
+    if (same[p] != p) continue;
+    std::memmove(&stored.bytes[kept * stride], &stored.bytes[p * stride], stride);
+    ++kept;
+  }
+  stored.bytes.resize(kept * stride);
+  return stored;
+}
+
+draco::GeometryAttribute::Type draco_type(AttributeKind kind) {
+  return static_cast<draco::GeometryAttribute::Type>(1 + static_cast<int>(kind));
+}
+
+draco::DataType draco_type(ValueType type) { return static_cast<draco::DataType>(1 + static_cast<int>(type)); }
+
 int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
                          const VertexPoints* points) {
   draco::GeometryAttribute description;
@@ -192,28 +186,17 @@ int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, 
   return number;
 }
 
-int add_point_attribute(draco::Mesh& out, const Attribute& attribute, const AttributeFormat& format,
-                        const VertexPoints& points) {
-  const std::vector<char> bytes =
-      with_number(format.type, [&](auto zero) { return to_bytes<decltype(zero)>(attribute.values); });
-  const auto count = static_cast<uint32_t>(points.vertex().size());
-  const size_t stride = bytes.size() / count;
-  const std::vector<uint32_t> same = find_same(bytes, stride, points);
-  std::vector<uint32_t> value(count);
-  uint32_t value_count = 0;
-  for (uint32_t p = 0; p < count; ++p) value[p] = same[p] == p ? value_count++ : value[same[p]];
-
+int add_point_attribute(draco::Mesh& out, const StoredValues& values, uint32_t components,
+                        const AttributeFormat& format) {
   draco::GeometryAttribute description;
-  description.Init(static_cast<draco::GeometryAttribute::Type>(1 + static_cast<int>(format.kind)), nullptr,
-                   static_cast<uint8_t>(attribute.components),
-                   static_cast<draco::DataType>(1 + static_cast<int>(format.type)), format.normalized,
-                   static_cast<int64_t>(stride), 0);
-  const int number = out.AddAttribute(description, false, value_count);
+  const int64_t stride = int64_t{components} * draco::DataTypeLength(draco_type(format.type));
+  description.Init(draco_type(format.kind), nullptr, static_cast<uint8_t>(components), draco_type(format.type),
+                   format.normalized, stride, 0);
+  const int number = out.AddAttribute(description, false, static_cast<uint32_t>(values.bytes.size() / stride));
   draco::PointAttribute& added = *out.attribute(number);
-  for (uint32_t p = 0; p < count; ++p) {
-    added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(value[p]));
-    if (same[p] == p) added.SetAttributeValue(draco::AttributeValueIndex(value[p]), bytes.data() + p * stride);
-  }
+  added.buffer()->Write(0, values.bytes.data(), values.bytes.size());
+  for (uint32_t p = 0; p < values.value.size(); ++p)
+    added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(values.value[p]));
   added.set_unique_id(format.id);
   if (!format.name.empty()) {
     auto metadata = std::make_unique<draco::AttributeMetadata>();

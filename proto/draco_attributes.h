@@ -32,13 +32,54 @@ class VertexPoints {
   std::vector<uint32_t> on_seams_;
 };
 
+/// The values of an attribute as Draco stores them. Integers are rounded and held to their range. Points of one vertex
+/// share a value where theirs are the same, so that it has only its own seams.
+struct StoredValues {
+  std::vector<char> bytes;      ///< [values] in the attribute's type, component by component
+  std::vector<uint32_t> value;  ///< [P] the number of each point's value
+};
+[[nodiscard]] StoredValues store_values(const Attribute& attribute, const AttributeFormat& format,
+                                        const VertexPoints& points);
+
+/// Calls `visit` with a number (0) of the type.
+template <class Visit>
+auto with_number(ValueType type, Visit visit) {
+  switch (type) {
+    case ValueType::int8:
+      return visit(int8_t{});
+    case ValueType::uint8:
+      return visit(uint8_t{});
+    case ValueType::int16:
+      return visit(int16_t{});
+    case ValueType::uint16:
+      return visit(uint16_t{});
+    case ValueType::int32:
+      return visit(int32_t{});
+    case ValueType::uint32:
+      return visit(uint32_t{});
+    case ValueType::int64:
+      return visit(int64_t{});
+    case ValueType::uint64:
+      return visit(uint64_t{});
+    case ValueType::float32:
+      return visit(float{});
+    case ValueType::float64:
+      return visit(double{});
+    case ValueType::boolean:
+      break;
+  }
+  return visit(bool{});
+}
+
+[[nodiscard]] draco::GeometryAttribute::Type draco_type(AttributeKind kind);
+[[nodiscard]] draco::DataType draco_type(ValueType type);
+
 /// Adds an attribute with one value a vertex, which all its points share. Returns its number.
 int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
                          const VertexPoints* points);
 
-/// Adds an attribute of the points. Integers are rounded and held to their range. Points of one vertex share a value
-/// where theirs are the same, so that it has only its own seams. Returns its number.
-int add_point_attribute(draco::Mesh& out, const Attribute& attribute, const AttributeFormat& format,
-                        const VertexPoints& points);
+/// Adds an attribute of the points, with its name. Returns its number.
+int add_point_attribute(draco::Mesh& out, const StoredValues& values, uint32_t components,
+                        const AttributeFormat& format);
 
 }  // namespace papilio::proto

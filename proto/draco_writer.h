@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "proto/mesh_format.h"
 
 namespace papilio::proto {
+
+struct OutputAttribute;
 
 /// The cube in whose grid positions are quantised. It comes from the coarse mesh alone, so that a vertex
 /// stays where it is from level to level and from view to view.
@@ -49,7 +52,8 @@ struct OutputOptions {
                                       const AttributeEncoding& attributes = {}, bool* by_libdraco = nullptr);
 /// The same by libdraco alone.
 [[nodiscard]] std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box,
-                                              const OutputOptions& options, const AttributeEncoding& attributes = {});
+                                              const OutputOptions& options, uint32_t position_id,
+                                              std::span<const OutputAttribute> attributes = {});
 
 /// Encodes triangles as they are, positions and the attributes of `format` to the bit: what the client sends of a mesh
 /// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws

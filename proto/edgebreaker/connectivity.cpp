@@ -187,8 +187,9 @@ class Holes {
 template <class Symbols>
 class Walk {
  public:
-  explicit Walk(const CornerMesh& mesh)
+  Walk(const CornerMesh& mesh, std::span<const Seams> attributes)
       : mesh_(mesh),
+        attributes_(attributes),
         symbols_(mesh),
         holes_(mesh),
         face_state_(mesh.face_count(), unvisited),
@@ -327,13 +328,31 @@ class Walk {
   void write(draco::EncoderBuffer& out) {
     draco::EncodeVarint<uint32_t>(mesh_.vertex_count(), &out);
     draco::EncodeVarint<uint32_t>(mesh_.face_count(), &out);
-    out.Encode(uint8_t{0});  // attributes with seams of their own
+    out.Encode(static_cast<uint8_t>(attributes_.size()));
     draco::EncodeVarint<uint32_t>(symbols_.count(), &out);
     draco::EncodeVarint<uint32_t>(splits_, &out);
     write_events(out);
     symbols_.write_before_starts(out);
     starts_.EndEncoding(&out);
+    write_seams(out);
     symbols_.write_after_starts(out);
+  }
+
+  /// A bit for each edge of two faces, at the first of them that a decoder meets.
+  void write_seams(draco::EncoderBuffer& out) {
+    if (attributes_.empty()) return;
+    std::vector<draco::RAnsBitEncoder> bits(attributes_.size());
+    for (draco::RAnsBitEncoder& encoder : bits) encoder.StartEncoding();
+    std::ranges::fill(face_state_, unvisited);
+    for (uint32_t corner : corners_) {
+      face_state_[CornerMesh::face(corner)] = visited;
+      for (uint32_t c : {corner, CornerMesh::next(corner), CornerMesh::previous(corner)}) {
+        if (is_visited(mesh_.opposite(c))) continue;
+        for (size_t a = 0; a < bits.size(); ++a)
+          bits[a].EncodeBit(!attributes_[a].empty() && attributes_[a].is_seam[c] != 0);
+      }
+    }
+    for (draco::RAnsBitEncoder& encoder : bits) encoder.EndEncoding(&out);
   }
 
   void write_events(draco::EncoderBuffer& out) const {
@@ -351,6 +370,7 @@ class Walk {
   }
 
   const CornerMesh& mesh_;
+  std::span<const Seams> attributes_;
   Symbols symbols_;
   Holes holes_;
   Array<uint8_t> face_state_;            ///< [faces] FaceState
@@ -366,9 +386,10 @@ class Walk {
 
 }  // namespace
 
-Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal, draco::EncoderBuffer& out) {
-  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh).run(out);
-  return Walk<ValenceSymbols>(mesh).run(out);
+Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
+                                   draco::EncoderBuffer& out) {
+  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes).run(out);
+  return Walk<ValenceSymbols>(mesh, attributes).run(out);
 }
 
 }  // namespace papilio::proto::edgebreaker

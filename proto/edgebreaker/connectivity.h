@@ -2,9 +2,11 @@
 
 #include <draco/core/encoder_buffer.h>
 
+#include <span>
 #include <vector>
 
 #include "proto/edgebreaker/corner_mesh.h"
+#include "proto/edgebreaker/seams.h"
 
 namespace papilio::proto::edgebreaker {
 
@@ -15,9 +17,9 @@ enum class Traversal : uint8_t {
 };
 
 /// Walks over all faces, one that touches those before after another, and writes how they touch: Draco's bitstream
-/// specification, edgebreaker connectivity. Returns the corner at which the walk came to each face, in the order in
-/// which a decoder meets them. [faces]
+/// specification, edgebreaker connectivity; and for each attribute beside the positions which edges are its seams.
+/// Returns the corner at which the walk came to each face, in the order in which a decoder meets them. [faces]
 [[nodiscard]] Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal,
-                                                 draco::EncoderBuffer& out);
+                                                 std::span<const Seams> attributes, draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

@@ -21,6 +21,17 @@ class CornerMesh {
       add_face(f, &mesh.origin[size_t{3} * f], &mesh.twin[size_t{3} * f]);
   }
 
+  /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
+  /// [corners] where the edge opposite to the corner is one.
+  CornerMesh(const CornerMesh& whole, const Array<uint8_t>& is_seam, const Array<uint32_t>& vertex,
+             uint32_t vertex_count)
+      : vertex_count_(vertex_count), corners_(whole.corner_count()) {
+    for (uint32_t c = 0; c < corner_count(); ++c) {
+      corners_[c] = {vertex[c], is_seam[c] != 0 ? none : whole.opposite(c)};
+      if (corners_[c].opposite == none) at_boundary_.push_back(c);
+    }
+  }
+
   [[nodiscard]] uint32_t vertex_count() const { return vertex_count_; }
   [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(corners_.size() / 3); }
   [[nodiscard]] uint32_t corner_count() const { return static_cast<uint32_t>(corners_.size()); }
@@ -33,6 +44,15 @@ class CornerMesh {
   [[nodiscard]] uint32_t opposite(uint32_t corner) const { return corners_[corner].opposite; }
   [[nodiscard]] uint32_t right(uint32_t corner) const { return opposite(next(corner)); }
   [[nodiscard]] uint32_t left(uint32_t corner) const { return opposite(previous(corner)); }
+  /// The corner at the same vertex in the next face, counter-clockwise, or clockwise; `none` beyond a boundary.
+  [[nodiscard]] uint32_t swing_left(uint32_t corner) const {
+    const uint32_t across = opposite(next(corner));
+    return across == none ? none : next(across);
+  }
+  [[nodiscard]] uint32_t swing_right(uint32_t corner) const {
+    const uint32_t across = opposite(previous(corner));
+    return across == none ? none : previous(across);
+  }
 
   /// Has what belongs to a corner's face fetched, for a walk that may soon come there; `none` may be given.
   void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }

@@ -10,10 +10,6 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// A point of the grid, and what is computed with it; the fourth lane is never looked at. Compilers have such types for
-/// every machine.
-using GridPoint = int32_t __attribute__((vector_size(16)));
-
 GridPoint all(int32_t number) { return GridPoint{number, number, number, number}; }
 GridPoint smaller(GridPoint a, GridPoint b) { return a < b ? a : b; }
 GridPoint larger(GridPoint a, GridPoint b) { return a > b ? a : b; }
@@ -104,13 +100,15 @@ class Writer {
 
 }  // namespace
 
-void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Array<Vec3f>& positions,
-                     const QuantizationBox& box, int bits, Prediction prediction, int compression_level,
-                     draco::EncoderBuffer& out) {
+Array<GridPoint> to_grid(const Array<Vec3f>& positions, const QuantizationBox& box, int bits) {
   const Grid grid(box, bits);
   Array<GridPoint> values(positions.size());
   std::ranges::transform(positions, values.begin(), [&](Vec3f p) { return grid.at(p); });
+  return values;
+}
 
+void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Array<GridPoint>& values,
+                     Prediction prediction, int compression_level, draco::EncoderBuffer& out) {
   const auto count = static_cast<uint32_t>(order.corners.size());
   Writer writer(mesh, values);
   uint32_t done = 0;
@@ -139,6 +137,9 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Arr
     throw std::runtime_error("Draco's entropy coder refuses the positions");
   out.Encode(writer.corrections().low());
   out.Encode(writer.corrections().high());
+}
+
+void write_grid(const QuantizationBox& box, int bits, draco::EncoderBuffer& out) {
   for (const float c : {box.origin.x, box.origin.y, box.origin.z, box.range}) out.Encode(c);
   out.Encode(static_cast<uint8_t>(bits));
 }

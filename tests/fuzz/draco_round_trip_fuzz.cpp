@@ -27,10 +27,12 @@ void require_near(const Array<Vec3f>& some, const Array<Vec3f>& others, double d
 void write_and_read(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
   const Mesh mesh = build_mesh(soup);
   const proto::QuantizationBox box = proto::quantization_box(mesh.positions);
-  if (const auto own = proto::edgebreaker::write(mesh, box, output, 0); own && mesh.attributes.empty())
-    fuzz::require(*own == proto::write_with_libdraco(mesh, box, output), "our bytes are libdraco's");
-  const proto::FormattedMesh read =
-      proto::read_draco(proto::write_draco(mesh, box, output, proto::attribute_encoding(mesh, soup.format)), {});
+  const proto::AttributeEncoding encoding = proto::attribute_encoding(mesh, soup.format);
+  const auto attributes = proto::output_attributes(mesh, output, encoding);
+  const uint32_t id = soup.format.position_id;
+  if (const auto own = proto::edgebreaker::write(mesh, box, output, id, attributes))
+    fuzz::require(*own == proto::write_with_libdraco(mesh, box, output, id, attributes), "our bytes are libdraco's");
+  const proto::FormattedMesh read = proto::read_draco(proto::write_draco(mesh, box, output, encoding), {});
   fuzz::require(read.triangles.size() == mesh.topology.face_count(), "faces are kept");
   const double cell = double{box.range} / ((1 << output.position_bits) - 1);
   const double rounding = 1e-6 * (largest_difference(box.origin, {}) + box.range);

@@ -1,0 +1,89 @@
+#include "proto/output_attribute.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/normals.h"
+
+namespace papilio::proto {
+namespace {
+
+constexpr int normal_bits = 10;
+// A quarter of a texel of a texture of 4096; at 12 bits a whole one, and the picture would swim where faces are small.
+constexpr int texture_bits = 14;
+constexpr int value_bits = 16;  // of values whose meaning is not known
+constexpr double largest_integer = 1 << 20;
+
+/// Whether Draco's octahedral coding takes it.
+bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
+  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
+}
+
+bool is_integer_of_32_bits(ValueType type) { return type <= ValueType::uint32; }
+
+/// Draco's entropy coder counts symbols in a table as long as the largest, and crashes where predictions from values
+/// of 31 bits overflow.
+bool is_too_large(const Attribute& attribute, const AttributeFormat& format) {
+  if (format.type != ValueType::int32 && format.type != ValueType::uint32) return false;
+  const auto [low, high] = std::ranges::minmax(attribute.values);
+  return std::max(-low, high) > largest_integer;
+}
+
+void choose_coding(OutputAttribute& output, const Attribute& attribute, const AttributeEncoding::Grid& grid) {
+  const AttributeFormat& format = output.format;
+  if (is_unit_normal(attribute, format)) {
+    output.coding = Coding::octahedral;
+    output.bits = normal_bits;
+  } else if (format.type == ValueType::float32 && format.kind != AttributeKind::normal && grid.range > 0) {
+    output.coding = Coding::grid;
+    output.bits = format.kind == AttributeKind::tex_coord ? texture_bits : value_bits;
+    output.grid = grid;
+  }
+}
+
+/// The id of the normals that are replaced, or the lowest that is free.
+uint32_t id_for_normals(const MeshFormat& format) {
+  const auto& attributes = format.attributes;
+  const auto own = std::ranges::find(attributes, AttributeKind::normal, &AttributeFormat::kind);
+  if (own != attributes.end()) return own->id;
+  uint32_t id = 0;
+  while (id == format.position_id || std::ranges::count(attributes, id, &AttributeFormat::id) > 0) ++id;
+  return id;
+}
+
+OutputAttribute new_normals(const Mesh& mesh, const MeshFormat& format) {
+  const Array<Vec3f> normals = vertex_normals(mesh);
+  OutputAttribute output{.format = {.kind = AttributeKind::normal, .id = id_for_normals(format)},
+                         .coding = Coding::octahedral,
+                         .bits = normal_bits};
+  output.values.bytes.resize(normals.size() * sizeof(Vec3f));
+  std::memcpy(output.values.bytes.data(), normals.data(), output.values.bytes.size());
+  return output;
+}
+
+}  // namespace
+
+OutputAttribute exact_attribute(const Attribute& attribute, const AttributeFormat& format, const VertexPoints& points) {
+  return {.format = format,
+          .components = attribute.components,
+          .coding = is_integer_of_32_bits(format.type) ? Coding::integers : Coding::as_is,
+          .is_too_large = is_too_large(attribute, format),
+          .values = store_values(attribute, format, points)};
+}
+
+std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const OutputOptions& options,
+                                               const AttributeEncoding& encoding) {
+  std::vector<OutputAttribute> outputs;
+  std::optional<VertexPoints> points;
+  for (size_t a = 0; a < encoding.format.attributes.size(); ++a) {
+    const AttributeFormat& format = encoding.format.attributes[a];
+    if (options.normals && format.kind == AttributeKind::normal) continue;
+    if (!points) points.emplace(mesh);
+    const Attribute& attribute = mesh.attributes.attributes[a];
+    choose_coding(outputs.emplace_back(exact_attribute(attribute, format, *points)), attribute, encoding.grids[a]);
+  }
+  if (options.normals) outputs.push_back(new_normals(mesh, encoding.format));
+  return outputs;
+}
+
+}  // namespace papilio::proto
