@@ -8,7 +8,6 @@
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_delta_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_wrap_encoding_transform.h>
-#include <draco/compression/entropy/symbol_encoding.h>
 #include <draco/core/bit_utils.h>
 #include <draco/core/quantization_utils.h>
 #include <draco/core/varint_encoding.h>
@@ -16,8 +15,10 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <stdexcept>
+#include <span>
 #include <vector>
+
+#include "proto/edgebreaker/symbols.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -195,9 +196,8 @@ class ValueWriter {
     out.Encode(static_cast<int8_t>(predictor->GetPredictionMethod()));
     out.Encode(static_cast<int8_t>(predictor->GetTransformType()));
     out.Encode(uint8_t{1});  // entropy coded
-    draco::Options options;
-    draco::SetSymbolEncodingCompressionLevel(&options, 10 - speed_);
-    return draco::EncodeSymbols(symbols, count, components, &options, &out) && predictor->EncodePredictionData(&out);
+    write_symbols(std::span(symbols, integers.values.size()), integers.components, 10 - speed_, out);
+    return predictor->EncodePredictionData(&out);
   }
 
   const OutputAttribute& attribute_;

@@ -1,14 +1,14 @@
 #include "proto/edgebreaker/connectivity.h"
 
 #include <draco/compression/bit_coders/rans_bit_encoder.h>
-#include <draco/compression/entropy/symbol_encoding.h>
 #include <draco/compression/mesh/mesh_edgebreaker_shared.h>
 #include <draco/core/varint_encoding.h>
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <unordered_map>
+
+#include "proto/edgebreaker/symbols.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -19,7 +19,7 @@ enum FaceState : uint8_t { unvisited, visited, visited_split };
 /// Collects the symbols, and writes them last to first, as they are decoded.
 class StandardSymbols {
  public:
-  explicit StandardSymbols(const CornerMesh& mesh) { symbols_.reserve(mesh.face_count()); }
+  explicit StandardSymbols(CornerMesh& mesh) { symbols_.reserve(mesh.face_count()); }
 
   void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t /*corner*/, const Array<uint8_t>& /*faces*/) {
     symbols_.push_back(static_cast<uint8_t>(symbol));
@@ -47,24 +47,26 @@ class StandardSymbols {
 };
 
 /// Codes each symbol in the context of the valence, in the part of the mesh that is not yet written, of the vertex that
-/// the next one turns round.
+/// the next one turns round. Where the walk falls in two a vertex does, too: while this lasts, corners of the mesh
+/// beyond it are at a new one.
 class ValenceSymbols {
  public:
-  explicit ValenceSymbols(const CornerMesh& mesh) : mesh_(mesh), vertex_(mesh.corner_count()) {
-    valence_.assign(mesh.vertex_count(), 0);
-    for (uint32_t c = 0; c < mesh.corner_count(); ++c) {
-      vertex_[c] = mesh.vertex(c);
-      ++valence_[mesh.vertex(c)];
-    }
+  explicit ValenceSymbols(CornerMesh& mesh) : mesh_(mesh), valence_(mesh.vertex_count(), 0) {
+    for (uint32_t c = 0; c < mesh.corner_count(); ++c) ++valence_[mesh.vertex(c)];
     // At a boundary there is one more edge than faces.
     for (uint32_t c : mesh.at_boundary()) ++valence_[mesh.vertex(CornerMesh::next(c))];
+  }
+  ValenceSymbols(const ValenceSymbols&) = delete;
+  ValenceSymbols& operator=(const ValenceSymbols&) = delete;
+  ~ValenceSymbols() {
+    for (size_t i = moved_.size(); i-- > 0;) mesh_.set_vertex(moved_[i].corner, moved_[i].vertex);
   }
 
   void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner, const Array<uint8_t>& faces) {
     ++count_;
     const uint32_t next = CornerMesh::next(corner);
     const uint32_t previous = CornerMesh::previous(corner);
-    const int active = valence_[vertex_[next]];
+    const int active = valence_[mesh_.vertex(next)];
     switch (symbol) {
       case draco::TOPOLOGY_C:
         take(next, 1);
@@ -99,18 +101,12 @@ class ValenceSymbols {
   [[nodiscard]] uint32_t count() const { return count_; }
 
   void write_before_starts(draco::EncoderBuffer& /*out*/) const {}
-  void write_after_starts(draco::EncoderBuffer& out) const {
-    for (const std::vector<uint32_t>& symbols : contexts_) {
-      draco::EncodeVarint<uint32_t>(static_cast<uint32_t>(symbols.size()), &out);
-      if (!symbols.empty() && !draco::EncodeSymbols(symbols.data(), static_cast<int>(symbols.size()), 1, nullptr, &out))
-        throw std::runtime_error("Draco's entropy coder refuses the symbols");
-    }
-  }
+  void write_after_starts(draco::EncoderBuffer& out) const { write_symbol_lists(contexts_, out); }
 
  private:
   static constexpr int least_valence = 2, most_valence = 7;
 
-  void take(uint32_t corner, int edges) { valence_[vertex_[corner]] -= edges; }
+  void take(uint32_t corner, int edges) { valence_[mesh_.vertex(corner)] -= edges; }
 
   /// The vertex at the corner falls in two: one for the faces on the left, which keeps its number, one for those on the
   /// right.
@@ -119,23 +115,28 @@ class ValenceSymbols {
     for (uint32_t c = mesh_.left(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
          c = mesh_.opposite(CornerMesh::next(c)))
       ++left;
-    valence_[vertex_[corner]] = left + 1;
+    valence_[mesh_.vertex(corner)] = left + 1;
     const auto added = static_cast<uint32_t>(valence_.size());
     int right = 0;
     for (uint32_t c = mesh_.right(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
          c = mesh_.opposite(CornerMesh::previous(c))) {
       ++right;
-      vertex_[CornerMesh::next(c)] = added;
+      moved_.push_back({CornerMesh::next(c), mesh_.vertex(CornerMesh::next(c))});
+      mesh_.set_vertex(CornerMesh::next(c), added);
     }
     valence_.push_back(right + 1);
   }
 
-  const CornerMesh& mesh_;
-  Array<uint32_t> vertex_;    ///< [corner]
-  std::vector<int> valence_;  ///< [vertices, and those that came of splits]
+  struct Moved {
+    uint32_t corner, vertex;
+  };
+
+  CornerMesh& mesh_;
+  List<int> valence_;  ///< [vertices, and those that came of splits]
+  List<Moved> moved_;  ///< corners that are at another vertex now, and where they were
   int last_ = -1;
   uint32_t count_ = 0;
-  std::array<std::vector<uint32_t>, most_valence - least_valence + 1> contexts_;
+  std::array<List<uint32_t>, most_valence - least_valence + 1> contexts_;
 };
 
 /// The boundary loops: which vertices are on each, and which loops the walk has come to.
@@ -145,7 +146,7 @@ class Holes {
     for (uint32_t c : mesh.at_boundary()) find(c);
   }
 
-  [[nodiscard]] bool has(uint32_t vertex) const { return !hole_.empty() && hole_[vertex] != none; }
+  [[nodiscard]] bool has(uint32_t vertex) const { return vertex < hole_.size() && hole_[vertex] != none; }
   [[nodiscard]] bool is_visited(uint32_t vertex) const { return visited_[hole_[vertex]] != 0; }
 
   /// Calls visit(vertex) for the others on the loop of the corner's vertex.
@@ -187,7 +188,7 @@ class Holes {
 template <class Symbols>
 class Walk {
  public:
-  Walk(const CornerMesh& mesh, std::span<const Seams> attributes)
+  Walk(CornerMesh& mesh, std::span<const Seams> attributes)
       : mesh_(mesh),
         attributes_(attributes),
         symbols_(mesh),
@@ -272,7 +273,7 @@ class Walk {
     face_state_[face] = visited;
     corners_.push_back(corner);
     const bool on_hole = holes_.has(vertex);
-    if (vertex_visited_[vertex] == 0) {
+    if (is_new(vertex)) {
       vertex_visited_[vertex] = 1;
       if (!on_hole) {
         put(draco::TOPOLOGY_C, corner);
@@ -306,6 +307,11 @@ class Walk {
     stack_.back() = left;
     stack_.push_back(right);
     return none;
+  }
+
+  /// Vertices that came of splits (ValenceSymbols) are not.
+  [[nodiscard]] bool is_new(uint32_t vertex) const {
+    return vertex < vertex_visited_.size() && vertex_visited_[vertex] == 0;
   }
 
   void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner) { symbols_.put(symbol, corner, face_state_); }
@@ -386,7 +392,7 @@ class Walk {
 
 }  // namespace
 
-Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
+Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
                                    draco::EncoderBuffer& out) {
   if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes).run(out);
   return Walk<ValenceSymbols>(mesh, attributes).run(out);

@@ -18,8 +18,9 @@ enum class Traversal : uint8_t {
 
 /// Walks over all faces, one that touches those before after another, and writes how they touch: Draco's bitstream
 /// specification, edgebreaker connectivity; and for each attribute beside the positions which edges are its seams.
-/// Returns the corner at which the walk came to each face, in the order in which a decoder meets them. [faces]
-[[nodiscard]] Array<uint32_t> write_connectivity(const CornerMesh& mesh, Traversal traversal,
+/// Returns the corner at which the walk came to each face, in the order in which a decoder meets them. [faces] The mesh
+/// is lent: afterwards it is as it was.
+[[nodiscard]] Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal,
                                                  std::span<const Seams> attributes, draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

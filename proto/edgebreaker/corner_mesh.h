@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/mesh.h"
@@ -54,6 +55,9 @@ class CornerMesh {
     return across == none ? none : previous(across);
   }
 
+  /// Gives the corner a vertex of another number.
+  void set_vertex(uint32_t corner, uint32_t vertex) { corners_[corner].vertex = vertex; }
+
   /// Has what belongs to a corner's face fetched, for a walk that may soon come there; `none` may be given.
   void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }
 
@@ -68,23 +72,36 @@ class CornerMesh {
   };
 
   void add_face(uint32_t f, const uint32_t* origin, const uint32_t* twin) {
-    const uint32_t across[3] = {twin[1], twin[2], twin[0]};  // the edge opposite to each corner
-    uint32_t neighbour[3];
-    for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t t = across[i];
-      neighbour[i] = t / 3;
-      corners_[size_t{3} * f + i] = {origin[i], t == none ? none : t + (t == 3 * neighbour[i] ? 2 : -1)};
+    const uint32_t a = twin[1];  // what runs against the edge opposite to each corner
+    const uint32_t b = twin[2];
+    const uint32_t c = twin[0];
+    Corner* corner = &corners_[size_t{3} * f];
+    if ((a | b | c) == none && (a == none || b == none || c == none)) {
+      add_face_at_boundary(f, origin, {a, b, c});
+      return;
     }
-    if ((across[0] | across[1] | across[2]) == none) {
-      for (uint32_t i = 0; i < 3; ++i) {
-        if (across[i] != none) continue;
-        at_boundary_.push_back(3 * f + i);
-        neighbour[i] = none - i;  // not the same one
-      }
-    }
-    has_faces_folded_together_ |=
-        neighbour[0] == neighbour[1] || neighbour[1] == neighbour[2] || neighbour[2] == neighbour[0];
+    corner[0] = {origin[0], previous_of(a)};
+    corner[1] = {origin[1], previous_of(b)};
+    corner[2] = {origin[2], previous_of(c)};
+    note_if_folded(corner[0].opposite, b);
+    note_if_folded(corner[1].opposite, c);
+    note_if_folded(corner[2].opposite, a);
   }
+  /// Where a face runs against two edges of another, it comes to the later one first.
+  void note_if_folded(uint32_t before_first, uint32_t second) {
+    has_faces_folded_together_ = has_faces_folded_together_ || before_first == second;
+  }
+
+  void add_face_at_boundary(uint32_t f, const uint32_t* origin, const std::array<uint32_t, 3>& across) {
+    for (uint32_t i = 0; i < 3; ++i) {
+      corners_[size_t{3} * f + i] = {origin[i], across[i] == none ? none : previous_of(across[i])};
+      if (across[i] == none) at_boundary_.push_back(3 * f + i);
+      if (across[i] != none) note_if_folded(previous_of(across[i]), across[(i + 1) % 3]);
+    }
+  }
+
+  /// In fewer steps than `previous`.
+  static uint32_t previous_of(uint32_t half_edge) { return half_edge - 1 + (half_edge % 3 == 0 ? 3 : 0); }
 
   uint32_t vertex_count_;
   Array<Corner> corners_;

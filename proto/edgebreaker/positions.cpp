@@ -1,11 +1,10 @@
 #include "proto/edgebreaker/positions.h"
 
-#include <draco/compression/entropy/symbol_encoding.h>
-#include <draco/core/options.h>
-
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
+#include <span>
+
+#include "proto/edgebreaker/symbols.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -14,23 +13,23 @@ GridPoint all(int32_t number) { return GridPoint{number, number, number, number}
 GridPoint smaller(GridPoint a, GridPoint b) { return a < b ? a : b; }
 GridPoint larger(GridPoint a, GridPoint b) { return a > b ? a : b; }
 
+using Floats = float __attribute__((vector_size(16)));
+
 /// As Draco rounds, to the bit.
 class Grid {
  public:
   Grid(const QuantizationBox& box, int bits)
-      : origin_(box.origin), steps_per_unit_(static_cast<float>((1 << bits) - 1) / box.range) {}
-  [[nodiscard]] GridPoint at(Vec3f p) const {
-    return GridPoint{step(p.x - origin_.x), step(p.y - origin_.y), step(p.z - origin_.z), 0};
+      : origin_{box.origin.x, box.origin.y, box.origin.z, 0},
+        steps_per_unit_(static_cast<float>((1 << bits) - 1) / box.range) {}
+  /// Rounded down.
+  [[nodiscard]] GridPoint at(Floats p) const {
+    const Floats steps = (p - origin_) * steps_per_unit_ + 0.5F;
+    const GridPoint towards_zero = __builtin_convertvector(steps, GridPoint);
+    return towards_zero + (__builtin_convertvector(towards_zero, Floats) > steps);  // true is -1
   }
 
  private:
-  /// Rounded down.
-  [[nodiscard]] int32_t step(float offset) const {
-    const float steps = offset * steps_per_unit_ + 0.5F;
-    const auto towards_zero = static_cast<int32_t>(steps);
-    return towards_zero - (static_cast<float>(towards_zero) > steps ? 1 : 0);
-  }
-  Vec3f origin_;
+  Floats origin_;
   float steps_per_unit_;
 };
 
@@ -103,7 +102,13 @@ class Writer {
 Array<GridPoint> to_grid(const Array<Vec3f>& positions, const QuantizationBox& box, int bits) {
   const Grid grid(box, bits);
   Array<GridPoint> values(positions.size());
-  std::ranges::transform(positions, values.begin(), [&](Vec3f p) { return grid.at(p); });
+  Floats p{};
+  for (size_t v = 0; v + 1 < positions.size(); ++v) {
+    std::memcpy(&p, &positions[v], sizeof p);  // the fourth is the next one's
+    values[v] = grid.at(p);
+  }
+  std::memcpy(&p, &positions.back(), sizeof(Vec3f));
+  values.back() = grid.at(p);
   return values;
 }
 
@@ -131,10 +136,7 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Arr
   out.Encode(static_cast<int8_t>(prediction));
   out.Encode(wrapped);
   out.Encode(uint8_t{1});  // entropy coded
-  draco::Options options;
-  draco::SetSymbolEncodingCompressionLevel(&options, compression_level);
-  if (!draco::EncodeSymbols(writer.symbols().data(), static_cast<int>(3 * count), 3, &options, &out))
-    throw std::runtime_error("Draco's entropy coder refuses the positions");
+  write_symbols(std::span(writer.symbols().data(), size_t{3} * count), 3, compression_level, out);
   out.Encode(writer.corrections().low());
   out.Encode(writer.corrections().high());
 }

@@ -93,7 +93,7 @@ std::optional<std::string> write(const Mesh& mesh, const QuantizationBox& box, c
                                  uint32_t position_id, std::span<const OutputAttribute> attributes) {
   if (options.speed < slowest || !mesh.topology.pinched.empty() || !std::ranges::all_of(attributes, can_write))
     return std::nullopt;
-  const CornerMesh corners(mesh.topology);
+  CornerMesh corners(mesh.topology);
   if (is_seen_otherwise(corners)) return std::nullopt;
   const bool is_standard = options.speed >= standard_speed || mesh.topology.face_count() < few_faces;
   const Traversal traversal = is_standard ? Traversal::standard : Traversal::valence;
