@@ -42,7 +42,9 @@ class Assembler {
     uint32_t vertices = coarse.vertex_count;
     for (const LevelChoice& choice : levels) vertices += static_cast<uint32_t>(choice.split_edges.size());
     out_.topology.vertex_count = vertices;
-    out_.topology.origin.resize(3 * count_assembled(levels));
+    const uint64_t faces = count_assembled(levels);
+    out_.topology.origin.resize(3 * faces);
+    places_.reserve(faces);
     out_.positions.reserve(vertices);
     out_.positions = coarse_.positions;
     levels_.reserve(levels.size());
@@ -97,6 +99,11 @@ class Assembler {
   void place(AssembledLevel& level, uint32_t f, const std::array<uint32_t, 3>& corner) {
     if (!coarse_.attributes.empty()) level.shown.push_back(f);
     const unsigned mask = level.choice->split_mask(f);
+    if (mask == 0) {
+      level.fate[f] = 0;
+      std::ranges::copy(corner, begin_faces(level, f, 1));
+      return;
+    }
     std::array<uint32_t, 6> vertex = {corner[0], corner[1], corner[2]};
     for (uint32_t i = 0; i < 3; ++i)
       if ((mask >> i & 1U) != 0) vertex[3 + i] = level.new_vertex[level.edge[3 * f + i]];
@@ -111,14 +118,26 @@ class Assembler {
       }
       return;
     }
+    uint32_t* out = begin_faces(level, f, cut.children);
+    for (uint32_t c = 0; c < cut.children; ++c)
+      for (uint8_t local : cut.corner[c]) *out++ = vertex[local];
+  }
+
+  /// What a face is, or is cut into, comes next in the result. Returns where the corners of these so many faces go.
+  uint32_t* begin_faces(AssembledLevel& level, uint32_t f, uint32_t count) {
+    uint32_t* out = &out_.topology.origin[half_edge_count_];
     level.first[f] = half_edge_count_;
     places_.push_back({level.number, f});
-    for (uint32_t c = 0; c < cut.children; ++c)
-      for (uint8_t local : cut.corner[c]) out_.topology.origin[half_edge_count_++] = vertex[local];
+    half_edge_count_ += 3 * count;
+    return out;
   }
 
   /// Finds the twins of the faces in the result that a face is or is cut into, and their edges.
   void connect(const AssembledLevel& level, uint32_t f) {
+    if (level.fate[f] == 0) {
+      connect_whole(level, f);
+      return;
+    }
     const SplitPattern& cut = transition_pattern(level.fate[f]);
     const uint32_t base = level.first[f];
     const std::array<uint32_t, 6> against = find_twins(level, 3 * f, level.fate[f] / 2U);
@@ -129,6 +148,21 @@ class Assembler {
     for (uint32_t c = 0; c < 3U * cut.children; ++c)
       number_edge(base + c,
                   cut.is_outside(c) ? level.mesh->kind[level.edge[3 * f + cut.edge[c] / 2]] : EdgeKind::smooth);
+  }
+
+  /// The same for a face that is not cut.
+  void connect_whole(const AssembledLevel& level, uint32_t f) {
+    const uint32_t base = level.first[f];
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t h = 3 * f + i;
+      const uint32_t t = level.twin[h];
+      if (t != none && level.fate[Topology::face(t)] == 0)
+        out_.topology.twin[base + i] = level.first[Topology::face(t)] + t % 3;
+      else
+        out_.topology.twin[base + i] = twin_in_result(level, h, 0);
+    }
+    if (!with_edges_) return;
+    for (uint32_t i = 0; i < 3; ++i) number_edge(base + i, level.mesh->kind[level.edge[3 * f + i]]);
   }
 
   /// What runs in the result against the halves of a face's half-edges h to h + 2 whose edges are in the mask, against

@@ -50,6 +50,12 @@ class ErrorFinder {
     reached_ = std::move(below);
   }
 
+  /// Smaller deviations of the level are not the largest.
+  [[nodiscard]] float surely_too_little(size_t k) const {
+    constexpr double rounding = 1 - 1e-6;
+    return static_cast<float>(rounding * left_.least_that_matters(scales_[k]));
+  }
+
   /// Whether an edge that stays may have the largest deviation. The error of one that is wanted is often known better
   /// than what follows from the bound.
   [[nodiscard]] bool may_matter(const LevelChoice& choice, uint32_t e, double scale) const {
@@ -63,13 +69,17 @@ class ErrorFinder {
   void add_whole(size_t k) {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
+    const Trial& trial = choice.level->trial;
+    float too_little = surely_too_little(k);
     for (uint32_t e : choice.region.edges) {
+      if (trial.no_less_than_deviation_at(e) < too_little) continue;
       if (choice.split[e] != 0 || !may_matter(choice, e, scales_[k])) continue;
       const uint32_t h = mesh.half_edge[e];
       const uint32_t t = mesh.twin[h];
       if (reached_[Topology::face(h)] == 0 && (t == none || reached_[Topology::face(t)] == 0)) continue;
       if (is_near(k, e, 1) || !choice.shown[e]) continue;
       add(k, e);
+      too_little = surely_too_little(k);
     }
     for (uint32_t h : choice.level->shared) {
       const uint32_t e = mesh.edge[h];

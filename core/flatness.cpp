@@ -31,52 +31,66 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
 
 }  // namespace
 
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
-                      const Region& region, EdgeMarks& marks) {
+List<uint32_t> find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
+                           double threshold, const Region& region) {
   const Topology& topology = mesh.topology;
   std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
   const double least = threshold - product_rounding;
-  for (uint32_t e : region.edges) {
-    const float known = products.empty() ? unknown : products.get(e);
-    if (known != unknown) {
-      if (known < least) marks[e] = 1;
-      continue;
-    }
-    const uint32_t h = topology.half_edge[e];
-    const uint32_t t = topology.twin[h];
-    if (topology.kind[e] == EdgeKind::cut) continue;  // no curve: what lies beyond its ends is not known
-    if (topology.kind[e] != EdgeKind::smooth) {
-      if (!curves) curves.emplace(topology);
-      if (turns(mesh, *curves, h, threshold)) marks[e] = 1;
-      continue;
-    }
+  const auto product_at = [&](uint32_t h, uint32_t t) {
     const Vec3f n1 = normals[Topology::face(h)];
     const Vec3f n2 = normals[Topology::face(t)];
-    const float product = has_normal(n1) && has_normal(n2) ? dot(n1, n2) : flat;
+    return has_normal(n1) && has_normal(n2) ? dot(n1, n2) : flat;
+  };
+  const auto is_curved = [&](uint32_t e) {
+    const uint32_t h = topology.half_edge[e];
+    if (topology.kind[e] == EdgeKind::cut) return false;  // no curve: what lies beyond its ends is not known
+    if (topology.kind[e] != EdgeKind::smooth) {
+      if (!curves) curves.emplace(topology);
+      return turns(mesh, *curves, h, threshold);
+    }
+    const float product = product_at(h, topology.twin[h]);
     if (!products.empty()) products.put(e, product);
-    if (product < least) marks[e] = 1;
+    return product < least;
+  };
+  List<uint32_t> found;
+  for (uint32_t e : region.edges) {
+    const float known = products.empty() ? unknown : products.get(e);
+    if (known != unknown ? known < least : is_curved(e)) found.push_back(e);
   }
+  return found;
 }
 
 void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks) {
-  mark_by_flatness(mesh, normals, {}, threshold, whole_region(mesh.topology), marks);
+  for (uint32_t e : find_curved(mesh, normals, {}, threshold, whole_region(mesh.topology))) marks[e] = 1;
 }
 
-void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {
-  if (growth == Growth::off) return;
-  const EdgeMarks seeds = marks;
-  if (growth == Growth::faces) {
-    for (uint32_t f : region.faces)
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        if (seeds[mesh.edge[h]] == 0) continue;
-        marks[mesh.edge[Topology::next(h)]] = 1;
-        marks[mesh.edge[Topology::previous(h)]] = 1;
-      }
-    return;
+namespace {
+
+void grow_over_faces(const Topology& mesh, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
+  const auto mark_others = [&](uint32_t h) {
+    marks[mesh.edge[Topology::next(h)]] = 1;
+    marks[mesh.edge[Topology::previous(h)]] = 1;
+  };
+  EdgeMarks shared;  // of the seeds: one edge does not name all of its faces
+  for (uint32_t e : seeds) {
+    if (mesh.kind[e] == EdgeKind::shared) {
+      if (shared.empty()) shared.assign(mesh.edge_count(), 0);
+      shared[e] = 1;
+      continue;
+    }
+    const uint32_t h = mesh.half_edge[e];
+    mark_others(h);
+    if (const uint32_t t = mesh.twin[h]; t != none) mark_others(t);
   }
+  if (shared.empty()) return;
+  for (uint32_t f : region.faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+      if (shared[mesh.edge[h]] != 0) mark_others(h);
+}
+
+void grow_over_vertices(const Topology& mesh, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
   List<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t e : region.edges) {
-    if (seeds[e] == 0) continue;
+  for (uint32_t e : seeds) {
     touched[mesh.origin[mesh.half_edge[e]]] = 1;
     touched[mesh.tip(mesh.half_edge[e])] = 1;
   }
@@ -84,6 +98,16 @@ void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& 
     if (touched[mesh.origin[mesh.half_edge[e]]] != 0 || touched[mesh.tip(mesh.half_edge[e])] != 0) marks[e] = 1;
 }
 
-void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) { grow(mesh, growth, whole_region(mesh), marks); }
+}  // namespace
+
+void grow(const Topology& mesh, Growth growth, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
+  for (uint32_t e : seeds) marks[e] = 1;
+  if (growth == Growth::faces) grow_over_faces(mesh, seeds, region, marks);
+  if (growth == Growth::vertices) grow_over_vertices(mesh, seeds, region, marks);
+}
+
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
+  grow(mesh, growth, marked(marks), whole_region(mesh), marks);
+}
 
 }  // namespace papilio

@@ -1,7 +1,9 @@
 #include "region.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <functional>
 #include <numeric>
 
 namespace papilio {
@@ -13,21 +15,47 @@ Region whole_region(const Topology& mesh) {
   return region;
 }
 
+namespace {
+
+using Word = uint64_t;
+constexpr size_t words_a_block = 8;
+constexpr size_t block = words_a_block * sizeof(Word);
+
+/// Block by block, as bytes hold what is in one, and many bytes are added at once.
+size_t count_marked(const List<uint8_t>& marks) {
+  size_t count = 0;
+  for (size_t first = 0; first < marks.size(); first += block) {
+    uint8_t in_block = 0;
+    if (first + block <= marks.size())
+      for (size_t i = 0; i < block; ++i) in_block += marks[first + i] != 0 ? 1 : 0;
+    else
+      for (size_t i = first; i < marks.size(); ++i) in_block += marks[i] != 0 ? 1 : 0;
+    count += in_block;
+  }
+  return count;
+}
+
+}  // namespace
+
 List<uint32_t> marked(const List<uint8_t>& marks) {
-  const auto count = marks.size() - static_cast<size_t>(std::ranges::count(marks, 0));
+  const size_t count = count_marked(marks);
   List<uint32_t> numbers(count + 1);  // one more than needed: what is not marked is written, and then replaced
   size_t known = 0;
-  for (size_t i = 0; i < marks.size();) {
-    uint64_t eight = 1;
-    if (i % 8 == 0 && i + 8 <= marks.size()) std::memcpy(&eight, &marks[i], 8);
-    if (eight == 0) {
-      i += 8;
-      continue;
+  const auto look_at = [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      numbers[known] = static_cast<uint32_t>(i);
+      known += marks[i] != 0 ? 1 : 0;
     }
-    numbers[known] = static_cast<uint32_t>(i);
-    known += marks[i] != 0 ? 1 : 0;
-    ++i;
+  };
+  size_t first = 0;
+  for (; first + block <= marks.size() && known < count; first += block) {
+    std::array<Word, words_a_block> words;
+    std::memcpy(words.data(), &marks[first], block);
+    if (std::accumulate(words.begin(), words.end(), Word{0}, std::bit_or<>()) == 0) continue;
+    for (size_t w = 0; w < words_a_block; ++w)
+      if (words[w] != 0) look_at(first + w * sizeof(Word), first + (w + 1) * sizeof(Word));
   }
+  if (known < count) look_at(first, marks.size());
   numbers.pop_back();
   return numbers;
 }

@@ -115,8 +115,8 @@ List<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int le
   EdgeMarks curved;
   if (!options_.flatness.empty()) {
     curved.assign(mesh.topology.edge_count(), 0);
-    mark_by_flatness(mesh, trial.normals, trial.products, flatness_of(level), region, curved);
-    grow(mesh.topology, options_.growth, region, curved);
+    const List<uint32_t> seeds = find_curved(mesh, trial.normals, trial.products, flatness_of(level), region);
+    grow(mesh.topology, options_.growth, seeds, region, curved);
   }
   List<uint32_t> wanted;
   for (uint32_t e : region.edges)

@@ -107,8 +107,10 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && choice.may_divide(f) &&
            (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
-  List<uint32_t> faces;  // the order decides where dividing one makes a sliver of another
-  std::ranges::copy_if(choice.region.faces, std::back_inserter(faces), must_be_divided);
+  List<uint8_t> is_at_split(mesh.face_count(), 0);
+  choice.visit_faces_of_split([&](uint32_t f, uint32_t) { is_at_split[f] = 1; });
+  List<uint32_t> faces = marked(is_at_split);  // the order decides where dividing one makes a sliver of another
+  std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();

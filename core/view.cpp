@@ -198,15 +198,23 @@ double Camera::projected_length(Vec3d a, Vec3d b) const {
   return std::hypot(x, y);
 }
 
-/// What is not near the border is decided by squares, without a root.
+/// What is not near the border is decided by squares, without a root; and in perspective by products with both depths,
+/// without a division.
 bool Camera::looks_shorter(Vec3d a, Vec3d b, double pixels) const {
   constexpr double rounding = 1e-9;
-  const auto [x, y] = projected_difference(a, b);
-  const double squared = x * x + y * y;
-  const double border = pixels * pixels;
-  if (squared > (1 + rounding) * border) return false;
-  if (squared < (1 - rounding) * border) return true;
-  return std::hypot(x, y) < pixels;
+  const Vec3d from_eye_a = a - eye_;
+  const Vec3d from_eye_b = b - eye_;
+  const double depth_a = dot(forward_, from_eye_a);
+  const double depth_b = dot(forward_, from_eye_b);
+  if (perspective_ && depth_a >= near_ && depth_b >= near_ && pixels_per_unit_ < most_pixels_per_unit * near_) {
+    const double x = depth_b * dot(right_, from_eye_a) - depth_a * dot(right_, from_eye_b);
+    const double y = depth_b * dot(up_, from_eye_a) - depth_a * dot(up_, from_eye_b);
+    const double seen = pixels_per_unit_ * pixels_per_unit_ * (x * x + y * y);
+    const double border = pixels * depth_a * depth_b * (pixels * depth_a * depth_b);
+    if (seen > (1 + rounding) * border) return false;
+    if (seen < (1 - rounding) * border) return true;
+  }
+  return projected_length(a, b) < pixels;
 }
 
 std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {
