@@ -15,6 +15,17 @@ struct Region {
 /// All of the mesh.
 [[nodiscard]] Region whole_region(const Topology& mesh);
 
+/// Keeps of a list what `is_wanted`, in its order. Nobody can guess which those are: so without branches.
+template <class IsWanted>
+void keep_if(List<uint32_t>& numbers, const IsWanted& is_wanted) {
+  size_t kept = 0;
+  for (uint32_t number : numbers) {
+    numbers[kept] = number;
+    kept += is_wanted(number) ? 1 : 0;
+  }
+  numbers.resize(kept);
+}
+
 /// The numbers of what is marked, in ascending order.
 [[nodiscard]] List<uint32_t> marked(const List<uint8_t>& marks);
 

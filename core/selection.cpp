@@ -109,39 +109,37 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<dou
   return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
 }
 
-template <class MayWant, class Shown>
-List<uint32_t> Selection::wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                    const MayWant& may_want, const Shown& shown) const {
-  EdgeMarks curved;
-  if (!options_.flatness.empty()) {
-    curved.assign(mesh.topology.edge_count(), 0);
-    const List<uint32_t> seeds = find_curved(mesh, trial.normals, trial.products, flatness_of(level), region);
-    grow(mesh.topology, options_.growth, seeds, region, curved);
-  }
-  List<uint32_t> wanted;
-  for (uint32_t e : region.edges)
-    if ((curved.empty() || curved[e] != 0) && may_want(e) && shown[e] != 0 &&
-        (!camera_ || looks_long(mesh, e, *camera_, options_.view->edge_pixels)))
-      wanted.push_back(e);
-  return wanted;
+List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
+  if (options_.flatness.empty()) return region.edges;
+  EdgeMarks marks(mesh.topology.edge_count(), 0);
+  const List<uint32_t> seeds = find_curved(mesh, trial.normals, trial.products, flatness_of(level), region);
+  grow(mesh.topology, options_.growth, seeds, region, marks);
+  List<uint32_t> edges = region.edges;
+  keep_if(edges, [&](uint32_t e) { return marks[e] != 0; });
+  return edges;
 }
 
 List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                  const EdgeMarks& shown) const {
-  const auto any = [](uint32_t) { return true; };
-  return wanted_of(mesh, trial, level, region, any, shown);
+  List<uint32_t> edges = curved(mesh, trial, level, region);
+  keep_if(edges, [&](uint32_t e) { return shown[e] != 0; });
+  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
+  return edges;
 }
 
 List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                  const EdgesShown& shown, const Box& box, float least) const {
+  List<uint32_t> edges = curved(mesh, trial, level, region);
   const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
-  const auto may_reach = [&](uint32_t e) {
-    if (needed <= 0) return true;
-    if (trial.no_less_than_deviation_at(e) < needed || trial.most_deviation_at(mesh, e) < needed) return false;
+  if (needed > 0) {
+    keep_if(edges, [&](uint32_t e) { return trial.no_less_than_deviation_at(e) >= needed; });
+    keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
     // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
-    return trial.planes.empty() || trial.deviation_at(mesh, e) >= needed;
-  };
-  return wanted_of(mesh, trial, level, region, may_reach, shown);
+    if (!trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
+  }
+  shown.keep_shown(edges);
+  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
+  return edges;
 }
 
 List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,

@@ -104,9 +104,8 @@ class Selection {
 
  private:
   friend class ErrorLeft;
-  template <class MayWant, class Shown>
-  [[nodiscard]] List<uint32_t> wanted_of(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                         const MayWant& may_want, const Shown& shown) const;
+  /// The region's edges that flatness wants split, with growth; all of them without it.
+  [[nodiscard]] List<uint32_t> curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;

@@ -309,11 +309,22 @@ EdgesShown::~EdgesShown() = default;
 
 bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || memory_->is_shown(edge); }
 
+void EdgesShown::keep_shown(List<uint32_t>& edges) const {
+  if (memory_ == nullptr) return;
+  Memory& memory = *memory_;
+  keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
+}
+
 bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
   if (edge_pixels == 0) return true;
   const uint32_t h = mesh.topology.half_edge[edge];
   return !camera.looks_shorter(to_double(mesh.positions[mesh.topology.origin[h]]),
                                to_double(mesh.positions[mesh.topology.tip(h)]), edge_pixels);
+}
+
+void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, List<uint32_t>& edges) {
+  if (edge_pixels == 0) return;
+  keep_if(edges, [&](uint32_t e) { return looks_long(mesh, e, camera, edge_pixels); });
 }
 
 void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,

@@ -136,6 +136,8 @@ class EdgesShown {
   ~EdgesShown();
 
   [[nodiscard]] bool operator[](uint32_t edge) const;
+  /// Keeps those edges of the list that are.
+  void keep_shown(List<uint32_t>& edges) const;
 
  private:
   class Memory;
@@ -144,6 +146,9 @@ class EdgesShown {
 
 /// Whether the edge looks at least so long, in pixels.
 [[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
+
+/// Keeps those edges of the list that do.
+void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, List<uint32_t>& edges);
 
 /// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
