@@ -34,6 +34,14 @@ struct AssembledLevel {
   [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].level->child[f]; }
 };
 
+/// Most are already: what was wanted, and behind it what that needs.
+List<uint32_t> in_order(List<uint32_t> numbers) {
+  const auto behind = std::ranges::is_sorted_until(numbers);
+  std::sort(behind, numbers.end());
+  std::inplace_merge(numbers.begin(), behind, numbers.end());
+  return numbers;
+}
+
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine, bool with_edges)
@@ -89,7 +97,7 @@ class Assembler {
     level.fate.assign(mesh.face_count(), AssembledLevel::hidden);
     level.first.resize(mesh.face_count());
     level.new_vertex.resize(mesh.edge_count());
-    for (uint32_t e : marked(choice.split)) {
+    for (uint32_t e : in_order(choice.split_edges)) {
       level.new_vertex[e] = static_cast<uint32_t>(out_.positions.size());
       out_.positions.push_back(level.level->trial.at(e));
     }

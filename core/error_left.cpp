@@ -91,9 +91,8 @@ class ErrorFinder {
   /// Of the last level nothing below was judged.
   void add_last_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    const Trial& trial = choice.level->trial;
     for (uint32_t e : choice.split_edges) {
-      if (!left_.may_grow_by(split_leaves * trial.no_less_than_deviation_at(e), scales_[k])) continue;
+      if (!may_be_largest(k, e, split_leaves)) continue;
       if (is_near(k, e, split_leaves) || !choice.shown[e]) continue;
       add(k, e, split_leaves);
     }
@@ -104,19 +103,24 @@ class ErrorFinder {
     choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
       const bool has_children = choice.has_children(f);
       if (has_children && choice.split_mask(f) == 7) return;
-      if (reached_[f] == 0 || !choice.shown[e]) return;
+      if (reached_[f] == 0) return;
       // Its halves may have been judged, though nothing below was wanted.
       if (has_children) {
         const auto [first, second] = halves(k, f, e);
         const LevelChoice& below = levels_[k + 1];
         if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
           for (uint32_t half : {first, second})
-            if (below.shown[half]) add(k + 1, half);
+            if (may_be_largest(k + 1, half) && choice.shown[e] && below.shown[half]) add(k + 1, half);
           return;
         }
       }
-      add(k, e, split_leaves);
+      if (may_be_largest(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
     });
+  }
+
+  /// By what is known of the deviation.
+  [[nodiscard]] bool may_be_largest(size_t k, uint32_t e, double share = 1) const {
+    return left_.may_grow_by(share * levels_[k].level->trial.no_less_than_deviation_at(e), scales_[k]);
   }
 
   /// The two edges of the level below that a face's edge is split into.
