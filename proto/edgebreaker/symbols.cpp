@@ -102,10 +102,10 @@ class Table {
 
   /// Has libdraco make the table and write it; reads it from there.
   template <int unique_bits>
-  void make(const Census& census, draco::EncoderBuffer& out) {
+  void make(std::span<const uint64_t> counts, draco::EncoderBuffer& out) {
     const size_t start = out.size();
     draco::RAnsSymbolEncoder<unique_bits> maker;
-    if (!maker.Create(census.counts.data(), static_cast<int>(census.counts.size()), &out))
+    if (!maker.Create(counts.data(), static_cast<int>(counts.size()), &out))
       throw std::runtime_error("Draco's entropy coder refuses the symbols");
     read_table(std::span(out.data() + start, out.size() - start));
   }
@@ -215,11 +215,18 @@ class Stream {
   }
   [[nodiscard]] bool is_done() const { return symbols_.empty(); }
 
+  /// Has the list, which the symbols are those of, and bytes that come behind it kept until it is written.
+  void keep(List<uint32_t> symbols, Array<uint8_t> behind) {
+    kept_ = std::move(symbols);
+    behind_ = std::move(behind);
+  }
+
   void write(draco::EncoderBuffer& out) {
     end();
     const auto size = static_cast<size_t>(at_ - bytes_.data());
     draco::EncodeVarint<uint64_t>(size, &out);
     out.Encode(bytes_.data(), size);
+    out.Encode(behind_.data(), behind_.size());
   }
 
  private:
@@ -243,6 +250,8 @@ class Stream {
   Array<uint8_t> bytes_;
   uint8_t* at_;
   uint64_t state_;
+  List<uint32_t> kept_;
+  Array<uint8_t> behind_;
 };
 
 /// Probabilities are finer the more different symbols there are; how much finer is a matter of the level.
@@ -269,7 +278,50 @@ void with_constant(int bits, const Visit& visit) {
   visit.template operator()<most>();
 }
 
-/// Writes what comes before the stream of the symbols, which is returned; or everything, as bits or by libdraco.
+/// How many bits each value's largest component has. [values]
+List<uint32_t> find_bit_lengths(std::span<const uint32_t> symbols, uint32_t components) {
+  List<uint32_t> lengths(symbols.size() / components);
+  for (size_t i = 0; i < lengths.size(); ++i) {
+    uint32_t bits = 0;
+    for (uint32_t symbol : symbols.subspan(i * components, components)) bits |= symbol;
+    lengths[i] = bit_length(bits);
+  }
+  return lengths;
+}
+
+/// The components' bits, one behind the other, the lowest of each first.
+Array<uint8_t> pack(std::span<const uint32_t> symbols, uint32_t components, const List<uint32_t>& lengths) {
+  Array<uint8_t> bytes(symbols.size() * sizeof(uint32_t) + sizeof(uint64_t));
+  uint8_t* at = bytes.data();
+  uint64_t bits = 0;
+  uint32_t held = 0;
+  for (size_t i = 0; i < symbols.size(); ++i) {
+    bits |= uint64_t{symbols[i]} << held;
+    held += lengths[i / components];
+    std::memcpy(at, &bits, sizeof bits);
+    at += held / 8;
+    bits >>= held / 8 * 8;
+    held %= 8;
+  }
+  bytes.resize(static_cast<size_t>(at - bytes.data()) + (held > 0 ? 1 : 0));
+  return bytes;
+}
+
+/// How many bits each value has, by a table; and behind it these bits.
+Stream prepare_tagged(std::span<const uint32_t> symbols, uint32_t components, const Census& census,
+                      draco::EncoderBuffer& out) {
+  constexpr int tag_bits = 5;
+  out.Encode(static_cast<uint8_t>(draco::SYMBOL_CODING_TAGGED));
+  Table table(draco::ComputeRAnsPrecisionFromUniqueSymbolsBitLength(tag_bits));
+  table.make<tag_bits>(std::span(census.bit_lengths).first(1U << tag_bits), out);
+  List<uint32_t> lengths = find_bit_lengths(symbols, components);
+  Array<uint8_t> packed = pack(symbols, components, lengths);
+  Stream stream(lengths, std::move(table));
+  stream.keep(std::move(lengths), std::move(packed));
+  return stream;
+}
+
+/// Writes what comes before the stream of the symbols, which is returned; or all of it by libdraco.
 std::optional<Stream> prepare(std::span<const uint32_t> symbols, uint32_t components, int compression_level,
                               draco::EncoderBuffer& out) {
   uint32_t largest = 0;
@@ -286,9 +338,10 @@ std::optional<Stream> prepare(std::span<const uint32_t> symbols, uint32_t compon
       out.Encode(static_cast<uint8_t>(draco::SYMBOL_CODING_RAW));
       out.Encode(static_cast<uint8_t>(unique_bits));
       Table table(draco::ComputeRAnsPrecisionFromUniqueSymbolsBitLength(unique_bits));
-      with_constant<most_raw_bits>(unique_bits, [&]<int bits>() { table.make<bits>(census, out); });
+      with_constant<most_raw_bits>(unique_bits, [&]<int bits>() { table.make<bits>(census.counts, out); });
       return Stream(symbols, std::move(table));
     }
+    return prepare_tagged(symbols, components, census, out);
   }
   draco::Options options;
   draco::SetSymbolEncodingCompressionLevel(&options, compression_level);

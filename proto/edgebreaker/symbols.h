@@ -14,8 +14,8 @@ inline constexpr int default_compression_level = 7;
 
 /// Writes symbols entropy coded, to the byte as draco::EncodeSymbols does: asymmetric numeral systems over a table of
 /// probabilities, or, where that is shorter, the bits of each value after how many they are. `components` of them make
-/// a value, at least 1; `compression_level` 0 to 10. Tables, and bits where they are shorter, are libdraco's. Nothing
-/// is written for no symbols. Throws std::runtime_error where Draco refuses: more than 2^18 different symbols.
+/// a value, at least 1; `compression_level` 0 to 10. Tables are libdraco's, and so is all where a symbol has more than
+/// 18 bits. Nothing is written for no symbols. Throws std::runtime_error where Draco refuses.
 void write_symbols(std::span<const uint32_t> symbols, uint32_t components, int compression_level,
                    draco::EncoderBuffer& out);
 
