@@ -16,8 +16,19 @@ TriangleCorners corners(const Mesh& mesh, uint32_t h) {
   return {at(mesh.topology.origin[h]), at(mesh.topology.tip(h)), at(mesh.topology.apex(h))};
 }
 
-/// Where a point lies that is a vector `to_point` from the end of a triangle's side: `along` leads to the side's other
-/// end, `to_apex` to the third corner.
+/// A side of triangles, and a point: from an end of the side `along` leads to its other end, `to_point` to the point.
+struct Side {
+  Side(Vec3d end, Vec3d other_end, Vec3d point)
+      : along(other_end - end),
+        to_point(point - end),
+        aa(dot(along, along)),
+        pa(dot(to_point, along)),
+        pp(dot(to_point, to_point)) {}
+  Vec3d along, to_point;
+  double aa, pa, pp;
+};
+
+/// Where the point lies, seen from the triangle whose third corner `to_apex` leads to.
 struct Foot {
   enum : uint8_t {
     above_face,    ///< above the triangle
@@ -27,32 +38,33 @@ struct Foot {
   double squared_height = 0;  ///< above the plane
 };
 
-Foot find_foot(Vec3d along, Vec3d to_apex, Vec3d to_point) {
+inline Foot find_foot(const Side& side, Vec3d to_apex) {
   constexpr double least_sine_squared = 1e-8;
-  const double aa = dot(along, along);
-  const double ac = dot(along, to_apex);
+  const double aa = side.aa;
+  const double pa = side.pa;
+  const double ac = dot(side.along, to_apex);
   const double cc = dot(to_apex, to_apex);
   const double area_squared = aa * cc - ac * ac;  // of the parallelogram
   if (area_squared <= least_sine_squared * aa * cc) return {};
-  const double pa = dot(to_point, along);
-  const double pc = dot(to_point, to_apex);
+  const double pc = dot(side.to_point, to_apex);
   // The foot is made of the corners in these shares of the area.
   const double of_other_end = cc * pa - ac * pc;
   const double of_apex = aa * pc - ac * pa;
   const double of_end = area_squared - of_other_end - of_apex;
   if (of_other_end < 0 || of_end < 0) return {};
   if (of_apex < 0) return {Foot::beyond_side};
-  const double height = dot(to_point, cross(along, to_apex));
+  const double height = dot(side.to_point, cross(side.along, to_apex));
   constexpr double rounding_squared = 1e-30;  // of the height's parts: what is flat is to have none
-  if (height * height <= rounding_squared * dot(to_point, to_point) * aa * cc) return {Foot::above_face, 0};
+  if (height * height <= rounding_squared * side.pp * aa * cc) return {Foot::above_face, 0};
   return {Foot::above_face, height * height / area_squared};
 }
 
 /// The distance to two triangles at one side where it is found easily: mostly the point is above one of them, or above
 /// the side itself.
 std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, Vec3d apex, Vec3d other_apex) {
-  const Foot one = find_foot(b - a, apex - a, point - a);
-  const Foot other = find_foot(b - a, other_apex - a, point - a);
+  const Side side(a, b, point);
+  const Foot one = find_foot(side, apex - a);
+  const Foot other = find_foot(side, other_apex - a);
   if (one.where == Foot::anywhere_else || other.where == Foot::anywhere_else) return {};
   if (one.where == Foot::above_face && other.where == Foot::above_face)
     return std::min(one.squared_height, other.squared_height);
