@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -25,27 +26,52 @@ std::array<Vec3d, 6> local_points(const HierarchyLevel& level, uint32_t face, un
 
 double squared_length(Vec3d a) { return dot(a, a); }
 
-/// The cosine of a triangle's smallest angle, squared. That angle is opposite the shortest side, and not above 60
-/// degrees; 1 for a triangle without area that has a side of no length.
-double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
-  double shortest = squared_length(b - a);
-  double second = squared_length(c - b);
-  double third = squared_length(a - c);
+/// The cosine of a triangle's smallest angle, squared, from the squares of its sides. That angle is opposite the
+/// shortest side, and not above 60 degrees; 1 for a triangle without area that has a side of no length.
+double squared_cosine_of_smallest_angle(double shortest, double second, double third) {
   if (second < shortest) std::swap(shortest, second);
   if (third < shortest) std::swap(shortest, third);
   const double twice_product = second + third - shortest;  // of the other sides, with the cosine
   return shortest > 0 ? 0.25 * twice_product * twice_product / (second * third) : 1;
 }
 
-/// The same for the smallest angle of the pattern's pieces.
-double squared_cosine_of_smallest_angle(const SplitPattern& pattern, const std::array<Vec3d, 6>& points) {
-  double largest = 0;
-  for (uint32_t c = 0; c < pattern.children; ++c) {
-    const auto& corner = pattern.corner[c];
-    largest =
-        std::max(largest, squared_cosine_of_smallest_angle(points[corner[0]], points[corner[1]], points[corner[2]]));
+/// That of the smallest angle of a face's pieces, for each way to cut it.
+struct Cosines {
+  double first_diagonal, second_diagonal;
+};
+
+/// The pieces are those of split_pattern(mask, ...), for masks 1 to 6. What they share is computed once.
+Cosines cosines_of_pieces(unsigned mask, const std::array<Vec3d, 6>& points) {
+  const bool has_two = std::popcount(mask) == 2;
+  const uint32_t i = has_two ? first_of_two_targets(mask) : static_cast<uint32_t>(std::countr_zero(mask));
+  const Vec3d& a = points[i];
+  const Vec3d& b = points[(i + 1) % 3];
+  const Vec3d& c = points[(i + 2) % 3];
+  const Vec3d& on_ab = points[3 + i];
+  const double first_half = squared_length(on_ab - a);
+  const double second_half = squared_length(b - on_ab);
+  const double across = squared_length(c - on_ab);
+  const double ca = squared_length(a - c);
+  const double beside_a = squared_cosine_of_smallest_angle(first_half, across, ca);
+  if (!has_two) {
+    const double both =
+        std::max(beside_a, squared_cosine_of_smallest_angle(second_half, squared_length(c - b), across));
+    return {both, both};
   }
-  return largest;
+  const Vec3d& on_bc = points[3 + (i + 1) % 3];
+  const double from_b = squared_length(on_bc - b);
+  const double to_c = squared_length(c - on_bc);
+  const double between = squared_length(on_bc - on_ab);
+  const double other_across = squared_length(on_bc - a);
+  const double tip = squared_cosine_of_smallest_angle(second_half, from_b, between);
+  return {std::max({tip, squared_cosine_of_smallest_angle(first_half, between, other_across),
+                    squared_cosine_of_smallest_angle(other_across, to_c, ca)}),
+          std::max({tip, beside_a, squared_cosine_of_smallest_angle(between, to_c, across)})};
+}
+
+/// That of the face itself.
+double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
+  return squared_cosine_of_smallest_angle(squared_length(b - a), squared_length(c - b), squared_length(a - c));
 }
 
 // What is known of a face's transitions: three bits a mask, of which the lowest says whether the others are known.
@@ -54,9 +80,10 @@ enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const std::array<Vec3d, 6> points = local_points(level, face, mask);
   uint32_t found = is_known;
-  double cosine = squared_cosine_of_smallest_angle(split_pattern(mask, false), points);
-  if (mask == 3 || mask == 5 || mask == 6) {
-    const double second = squared_cosine_of_smallest_angle(split_pattern(mask, true), points);
+  const Cosines cosines = cosines_of_pieces(mask, points);
+  double cosine = cosines.first_diagonal;
+  if (std::popcount(mask) == 2) {
+    const double second = cosines.second_diagonal;
     const uint32_t i = first_of_two_targets(mask);
     const auto& origin = level.mesh.topology.origin;
     const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
