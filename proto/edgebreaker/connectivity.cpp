@@ -299,9 +299,9 @@ class Walk {
       put(draco::TOPOLOGY_L, corner);
       return right;
     }
+    if (on_hole && !holes_.is_visited(vertex)) go_round_hole(corner);  // before the vertex falls in two
     put(draco::TOPOLOGY_S, corner);
     ++splits_;
-    if (on_hole && !holes_.is_visited(vertex)) go_round_hole(corner);
     face_state_[face] = visited_split;
     split_symbol_[face] = symbols_.count() - 1;
     stack_.back() = left;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/refine.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/edgebreaker/writer.h"
@@ -24,14 +25,28 @@ void require_near(const Array<Vec3f>& some, const Array<Vec3f>& others, double d
                   "every position is where one was");
 }
 
+void require_libdracos_bytes(const Mesh& mesh, const proto::QuantizationBox& box, const proto::OutputOptions& output,
+                             const proto::AttributeEncoding& encoding) {
+  const auto attributes = proto::output_attributes(mesh, output, encoding);
+  const uint32_t id = encoding.format.position_id;
+  if (const auto own = proto::edgebreaker::write(mesh, box, output, id, attributes))
+    fuzz::require(*own == proto::write_with_libdraco(mesh, box, output, id, attributes), "our bytes are libdraco's");
+}
+
+/// Few faces are written in another way than many.
+void write_refined(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
+  Mesh mesh = build_mesh(soup);
+  const proto::QuantizationBox box = proto::quantization_box(mesh.positions);
+  const proto::AttributeEncoding encoding = proto::attribute_encoding(mesh, soup.format);
+  while (mesh.topology.face_count() < 1000) mesh = refine(std::move(mesh), {.levels = 1}).mesh;
+  require_libdracos_bytes(mesh, box, output, encoding);
+}
+
 void write_and_read(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
   const Mesh mesh = build_mesh(soup);
   const proto::QuantizationBox box = proto::quantization_box(mesh.positions);
   const proto::AttributeEncoding encoding = proto::attribute_encoding(mesh, soup.format);
-  const auto attributes = proto::output_attributes(mesh, output, encoding);
-  const uint32_t id = soup.format.position_id;
-  if (const auto own = proto::edgebreaker::write(mesh, box, output, id, attributes))
-    fuzz::require(*own == proto::write_with_libdraco(mesh, box, output, id, attributes), "our bytes are libdraco's");
+  require_libdracos_bytes(mesh, box, output, encoding);
   const proto::FormattedMesh read = proto::read_draco(proto::write_draco(mesh, box, output, encoding), {});
   fuzz::require(read.triangles.size() == mesh.topology.face_count(), "faces are kept");
   const double cell = double{box.range} / ((1 << output.position_bits) - 1);
@@ -52,6 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     fuzz::require(exact.topology.face_count() == build_mesh(soup).topology.face_count(), "faces are kept exactly");
     require_near(exact.positions, soup.positions, 0);
     write_and_read(soup, output);
+    if (bytes.flag()) write_refined(soup, output);
   });
   return 0;
 }

@@ -56,6 +56,18 @@ TEST(Edgebreaker, IsLibdracosOnRandomManifolds) {
   EXPECT_GT(own, 3000);
 }
 
+// Few faces are never coded by valence.
+TEST(Edgebreaker, IsLibdracosOnRandomManifoldsOfManyFaces) {
+  std::mt19937 random(17);
+  int own = 0;
+  for (int i = 0; i < 150; ++i) {
+    Mesh mesh = build_mesh(random_manifold(random));
+    while (mesh.topology.face_count() < 1000) mesh = refine(std::move(mesh), {.levels = 1}).mesh;
+    own += is_the_same(mesh, {.position_bits = 11, .speed = 2 + i % 3}) ? 1 : 0;
+  }
+  EXPECT_GT(own, 100);
+}
+
 TEST(Edgebreaker, IsLibdracosOnRefinedRealMeshes) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const Mesh coarse = build_mesh(real_mesh(name));
