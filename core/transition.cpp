@@ -28,11 +28,11 @@ double squared_length(Vec3d a) { return dot(a, a); }
 
 /// The cosine of a triangle's smallest angle, squared, from the squares of its sides. That angle is opposite the
 /// shortest side, and not above 60 degrees; 1 for a triangle without area that has a side of no length.
-double squared_cosine_of_smallest_angle(double shortest, double second, double third) {
-  if (second < shortest) std::swap(shortest, second);
-  if (third < shortest) std::swap(shortest, third);
-  const double twice_product = second + third - shortest;  // of the other sides, with the cosine
-  return shortest > 0 ? 0.25 * twice_product * twice_product / (second * third) : 1;
+double squared_cosine_of_smallest_angle(double a, double b, double c) {
+  if (b < a) std::swap(a, b);
+  if (c < a) std::swap(a, c);
+  const double twice_product = b + c - a;  // of the other sides, with the cosine
+  return a > 0 ? 0.25 * twice_product * twice_product / (b * c) : 1;
 }
 
 /// That of the smallest angle of a face's pieces, for each way to cut it.
