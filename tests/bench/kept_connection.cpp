@@ -18,6 +18,7 @@ constexpr size_t receive_bytes = 256 << 10;
 }  // namespace
 
 std::string_view KeptConnection::ask(std::string_view request) {
+  if (is_closed_by_peer()) close();
   if (fd_ < 0) connect();
   if (::send(fd_, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
     throw std::runtime_error("papilio-server does not take a request");
@@ -39,6 +40,12 @@ std::string_view KeptConnection::ask(std::string_view request) {
   while (end_ < head_bytes + body_bytes) receive();
   if (head.find("\r\nConnection: close\r\n") != std::string::npos) close();
   return std::string_view(bytes_).substr(head_bytes, body_bytes);
+}
+
+/// As a server does when nothing came for long: all rows take their turns, and there are many.
+bool KeptConnection::is_closed_by_peer() const {
+  char byte = 0;
+  return fd_ >= 0 && ::recv(fd_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
 }
 
 void KeptConnection::connect() {

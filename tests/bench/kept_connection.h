@@ -19,6 +19,7 @@ class KeptConnection {
   std::string_view ask(std::string_view request);
 
  private:
+  [[nodiscard]] bool is_closed_by_peer() const;
   void connect();
   void close();
   void receive();
