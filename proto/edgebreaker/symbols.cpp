@@ -2,7 +2,6 @@
 
 #include <draco/compression/entropy/rans_symbol_encoder.h>
 #include <draco/compression/entropy/symbol_encoding.h>
-#include <draco/core/bit_utils.h>
 #include <draco/core/decoder_buffer.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/core/varint_encoding.h>
