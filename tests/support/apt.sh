@@ -30,11 +30,14 @@ as_root() {
   fi
 }
 
-# Once per set-up, and only when something is to be fetched. A list that cannot be refreshed need not be one we use.
+# Once per set-up, and only when something is to be fetched; once more when a list could not be had, as networks do fail.
+# A list that cannot be refreshed then, too, need not be one we use.
 apt_update() {
   [[ -z ${PAPILIO_APT_UPDATED:-} ]] || return 0
   export PAPILIO_APT_UPDATED=yes
   say "refreshing the package lists"
+  as_root -o APT::Update::Error-Mode=any update 2>/dev/null && return 0
+  sleep 10
   as_root update || say "some package lists could not be refreshed; going on with what there is"
 }
 
@@ -44,7 +47,8 @@ apt_install() {
   fi
   apt_update
   say "installing $*"
-  as_root install -y --no-install-recommends "$@" || die "could not install: $*"
+  as_root install -y --no-install-recommends "$@" || { sleep 10 && as_root install -y --no-install-recommends "$@"; } ||
+    die "could not install: $*"
 }
 
 # unpack_package PACKAGE FOLDER: the package's files under FOLDER, without installing it or what it depends on.

@@ -67,21 +67,29 @@ site_of() {
     awk -v security="$1" '($2 ~ /-security$/) == (security == "security") && !found++ { print $1 }'
 }
 
-# image NAME DOCKERFILE: builds it, with this machine's certificates and npm settings, should it have any of its own.
+# image NAME DOCKERFILE: builds it. What fails before a test ran is tried once more: networks do fail.
 image() {
   local log=$containers/$1.log began=$SECONDS
-  local options=(--isolation chroot --layers --pull-never --format docker -v /etc/ssl/certs:/etc/ssl/certs:ro
-    -v "$containers/npmrc:/root/.npmrc:ro")
-  { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
-  chmod 600 "$containers/npmrc"
   echo "container: building $1"
-  TMPDIR=$containers/cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 || {
-    { grep -A12 '^not ok ' "$log" | head -n 100; tail -n 60 "$log"; } >&2
+  build_image "$@" || { no_test_ran "$log" && sleep 15 && echo "container: once more" && build_image "$@"; } || {
     echo "container: $2 cannot be built; all it said is in ${log#"$root"/}" >&2
     return 1
   }
   echo "container: $1 is built, in $((SECONDS - began)) s, $(podman image inspect --format '{{.Size}}' "$1" |
     awk '{ printf "%.0f MB", $1 / 1e6 }')"
+}
+no_test_ran() { ! grep -qE '^(not )?ok |tests passed' "$1"; }
+
+# The same once, with this machine's certificates and npm settings, should it have any of its own; says why it failed.
+build_image() {
+  local log=$containers/$1.log
+  local options=(--isolation chroot --layers --pull-never --format docker -v /etc/ssl/certs:/etc/ssl/certs:ro
+    -v "$containers/npmrc:/root/.npmrc:ro")
+  { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
+  chmod 600 "$containers/npmrc"
+  TMPDIR=$containers/cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 && return 0
+  { { grep -A12 '^not ok ' "$log" || true; } | head -n 100; tail -n 60 "$log"; } >&2
+  return 1
 }
 
 # The engine that docker-compose talks to; nothing of it is left behind.

@@ -143,6 +143,7 @@ test('a newer view aborts the older request; the last good mesh stays until then
   await done(page);
   await quiet(page);
   const faces = await facesOf(page, 'view');
+  const made = refinements(page);
   const failed = [];
   page.on('requestfailed', (request) => failed.push(request));
   shared.server.process.kill('SIGSTOP');
@@ -150,14 +151,15 @@ test('a newer view aborts the older request; the last good mesh stays until then
   try {
     [older] = await Promise.all([page.waitForRequest(/refined\?/), drag(page, 80, 0)]);
     await quiet(page);
-    assert.equal(failed.length, 0);
+    assert.equal(failed.length, made.length - 1);
     const [newer] = await Promise.all([page.waitForRequest(/refined\?/), drag(page, 80, 40)]);
     assert.notEqual(newer.url(), older.url());
     await page.waitForFunction(() => document.querySelector('.panel[data-mode=view]').dataset.state === 'busy');
     await quiet(page);
+    // On a busy machine the camera may come to rest twice: all but the last are aborted.
     assert.deepEqual(
       failed.map((request) => request.url()),
-      [older.url()],
+      made.slice(0, -1).map((url) => url.href),
     );
     assert.equal(await facesOf(page, 'view'), faces);
     const { drawn } = await compare(page, await picture(page, 'view'), await picture(page, 'view'));
