@@ -18,7 +18,7 @@ void give_block(void* block, size_t bytes) noexcept;
 
 /// Bytes kept for later; never more than `spare_limit`.
 [[nodiscard]] size_t spare_bytes() noexcept;
-inline constexpr size_t spare_limit = size_t{1} << 30;
+inline constexpr size_t spare_limit = size_t{2} << 30;
 /// Gives back to the system what is kept.
 void release_spare_blocks() noexcept;
 

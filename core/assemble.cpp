@@ -51,7 +51,7 @@ class Assembler {
     for (const LevelChoice& choice : levels) vertices += static_cast<uint32_t>(choice.split_edges.size());
     out_.topology.vertex_count = vertices;
     const uint64_t faces = count_assembled(levels);
-    out_.topology.origin.resize(3 * faces);
+    out_.topology.origin.resize(3 * faces + 12);
     places_.reserve(faces);
     out_.positions.reserve(vertices);
     out_.positions = coarse_.positions;
@@ -65,13 +65,15 @@ class Assembler {
     Topology& topology = out_.topology;
     topology.pinched = coarse_.topology.pinched;
     topology.darts = coarse_.topology.darts;
-    topology.twin.resize(half_edge_count_);
+    topology.origin.resize(half_edge_count_);
+    topology.twin.resize(size_t{half_edge_count_} + 12);
     if (with_edges_) {
       topology.edge.resize(half_edge_count_);
       topology.half_edge.reserve(half_edge_count_ / 2 + topology.vertex_count / 2);
       topology.kind.reserve(topology.half_edge.capacity());
     }
     for (const Place& place : places_) connect(levels_[place.level], place.face);
+    topology.twin.resize(half_edge_count_);
     if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
   }
@@ -112,9 +114,13 @@ class Assembler {
       std::ranges::copy(corner, begin_faces(level, f, 1));
       return;
     }
-    std::array<uint32_t, 6> vertex = {corner[0], corner[1], corner[2]};
-    for (uint32_t i = 0; i < 3; ++i)
-      if ((mask >> i & 1U) != 0) vertex[3 + i] = level.new_vertex[level.edge[3 * f + i]];
+    const uint32_t* edge = &level.edge[size_t{3} * f];
+    const std::array<uint32_t, 6> vertex = {corner[0],
+                                            corner[1],
+                                            corner[2],
+                                            level.new_vertex[edge[0]],  // there or not: the pattern knows
+                                            level.new_vertex[edge[1]],
+                                            level.new_vertex[edge[2]]};
     // What has children as support only is cut into the same four.
     const bool is_divided = mask == 7 && level.has_below && level.choice->red[f] != 0;
     level.fate[f] = is_divided ? AssembledLevel::divided : choose_transition(*level.level, f, mask, most_cosine_);
@@ -127,11 +133,13 @@ class Assembler {
       return;
     }
     uint32_t* out = begin_faces(level, f, cut.children);
-    for (uint32_t c = 0; c < cut.children; ++c)
-      for (uint8_t local : cut.corner[c]) *out++ = vertex[local];
+    for (const auto& child : cut.corner)
+      for (uint8_t local : child) *out++ = vertex[local];
   }
 
-  /// What a face is, or is cut into, comes next in the result. Returns where the corners of these so many faces go.
+  /// What a face is, or is cut into, comes next in the result. Returns where the corners of these so many faces go;
+  /// there is always room for four faces: how many there are nobody can guess, so that many are written, and what was
+  /// too much is written over by the next.
   uint32_t* begin_faces(AssembledLevel& level, uint32_t f, uint32_t count) {
     uint32_t* out = &out_.topology.origin[half_edge_count_];
     level.first[f] = half_edge_count_;
@@ -148,10 +156,9 @@ class Assembler {
     }
     const SplitPattern& cut = transition_pattern(level.fate[f]);
     const uint32_t base = level.first[f];
-    const std::array<uint32_t, 6> against = find_twins(level, 3 * f, level.fate[f] / 2U);
+    const std::array<uint32_t, 7> against = find_twins(level, f);
     uint32_t* twin = &out_.topology.twin[base];
-    for (uint32_t c = 0; c < 3U * cut.children; ++c)
-      twin[c] = cut.is_outside(c) ? against[cut.edge[c]] : base + cut.inner_twin[c];
+    for (uint32_t c = 0; c < 12; ++c) twin[c] = against[cut.twin_from[c]] + cut.twin_step[c];  // four faces, as above
     if (!with_edges_) return;
     for (uint32_t c = 0; c < 3U * cut.children; ++c)
       number_edge(base + c,
@@ -173,23 +180,25 @@ class Assembler {
     for (uint32_t i = 0; i < 3; ++i) number_edge(base + i, level.mesh->kind[level.edge[3 * f + i]]);
   }
 
-  /// What runs in the result against the halves of a face's half-edges h to h + 2 whose edges are in the mask, against
-  /// the whole of the others: [2 * side + half].
-  [[nodiscard]] static std::array<uint32_t, 6> find_twins(const AssembledLevel& level, uint32_t h, unsigned mask) {
-    std::array<uint32_t, 6> twins{};
+  /// What runs in the result against the halves of a face's split sides, against the whole of the others:
+  /// [2 * side + half]; and behind these the face's own first half-edge.
+  [[nodiscard]] static std::array<uint32_t, 7> find_twins(const AssembledLevel& level, uint32_t f) {
+    std::array<uint32_t, 7> twins{};
     for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t t = level.twin[h + i];
-      const unsigned is_split = mask >> i & 1U;
+      const uint32_t h = 3 * f + i;
+      const uint32_t t = level.twin[h];
+      const unsigned is_split = level.fate[f] >> (i + 1) & 1U;  // by the mask, twice the pattern's number
       if (t != none && level.fate[Topology::face(t)] < AssembledLevel::divided) {
         const auto& outer = transition_pattern(level.fate[Topology::face(t)]).outer;
         const uint32_t base = level.first[Topology::face(t)];
         twins[2 * i] = base + outer[2 * (t % 3) + is_split];
         twins[2 * i + 1] = base + outer[2 * (t % 3)];
       } else {
-        twins[2 * i] = twin_in_result(level, h + i, 0);
-        if (is_split != 0) twins[2 * i + 1] = twin_in_result(level, h + i, 1);
+        twins[2 * i] = twin_in_result(level, h, 0);
+        if (is_split != 0) twins[2 * i + 1] = twin_in_result(level, h, 1);
       }
     }
+    twins[6] = level.first[f];
     return twins;
   }
 
@@ -273,7 +282,7 @@ class Assembler {
 uint64_t count_assembled(std::span<const LevelChoice> levels) {
   // A split edge may only be one all of whose faces are in the result: each of them becomes one more.
   uint64_t faces = levels[0].region.faces.size();
-  for (const LevelChoice& choice : levels) choice.visit_faces_of_split([&](uint32_t, uint32_t) { ++faces; });
+  for (const LevelChoice& choice : levels) faces += choice.count_faces_of_split();
   return faces;
 }
 

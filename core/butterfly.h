@@ -1,8 +1,5 @@
 #pragma once
 
-#include <vector>
-
-#include "features.h"
 #include "mesh.h"
 #include "split_plan.h"
 #include "tension.h"
@@ -21,11 +18,5 @@ namespace papilio {
 template <class Real>
 [[nodiscard]] Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
                                            const SplitPlan& plan, Real w = 0, const TensionField* tension = nullptr);
-
-/// The same, to the bit, where every edge is split and w is 0: writes the new vertex of each edge to `made` [E].
-/// `positions` [V] are an `Array`'s (lanes.h); `features` are those of the level. Up to so many threads work on it.
-/// O(F), and several times as fast.
-void uniform_butterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
-                       const TensionField* tension = nullptr, int threads = 1);
 
 }  // namespace papilio

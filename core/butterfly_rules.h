@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 
 #include "curve.h"
 #include "face_shares.h"
+#include "family.h"
 #include "fan.h"
 #include "lanes.h"
 #include "stencil.h"
@@ -36,6 +39,99 @@ class InteriorWeights {
 template <class Real>
 inline const InteriorWeights<Real> interior_weights;
 
+/// The points of the rule for a closed fan that is not regular: its centre and its ring, the vertices ring(0),
+/// ring(1), .. The valence is below `stencil::harmonic_valence`; one that is known when this is compiled is faster.
+template <class Real, uint32_t known_valence = 0>
+class InteriorRing {
+ public:
+  template <class Ring>
+  InteriorRing(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring)
+      : valence_(valence),
+        weights_(interior_weights<Real>.ring(valence)),
+        centre_(interior_weights<Real>.centre(valence) * widen(positions[centre])) {
+    for (uint32_t j = 0; j < this->valence(); ++j)
+      points_[j] = points_[this->valence() + j] = widen(positions[ring(j)]);
+  }
+  [[nodiscard]] Vec3T<Real> split(uint32_t spoke) const {
+    Wide<Real> sum = centre_;
+    for (uint32_t j = 0; j < valence(); ++j) sum += weights_[j] * points_[spoke + j];
+    Vec3T<Real> q;
+    store(sum, q);
+    return q;
+  }
+
+ private:
+  [[nodiscard]] uint32_t valence() const { return known_valence != 0 ? known_valence : valence_; }
+
+  uint32_t valence_;
+  const Real* weights_;
+  Wide<Real> centre_;
+  std::array<Wide<Real>, size_t{2} * (known_valence != 0 ? known_valence : stencil::harmonic_valence)> points_;
+};
+
+/// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th. Arguments as above.
+template <class Real, class Ring, class Add>
+void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring, const Add& add) {
+  const auto split = [&]<uint32_t known_valence>(std::integral_constant<uint32_t, known_valence> /*of*/) {
+    const InteriorRing<Real, known_valence> points(positions, centre, valence, ring);
+    for (uint32_t i = 0; i < (known_valence != 0 ? known_valence : valence); ++i) add(i, points.split(i));
+  };
+  switch (valence) {
+    case 3:
+      return split(std::integral_constant<uint32_t, 3>());
+    case 4:
+      return split(std::integral_constant<uint32_t, 4>());
+    case 5:
+      return split(std::integral_constant<uint32_t, 5>());
+    case 7:
+      return split(std::integral_constant<uint32_t, 7>());
+    case 8:
+      return split(std::integral_constant<uint32_t, 8>());
+    case 9:
+      return split(std::integral_constant<uint32_t, 9>());
+    default:
+      return split(std::integral_constant<uint32_t, 0>());
+  }
+}
+
+/// The eight-point rule where every edge is split, for four faces at once (family.h): each position is loaded once, and
+/// the edges between the four are done. `positions` are those of the faces' level.
+template <class Real>
+class FamilyRule {
+ public:
+  explicit FamilyRule(const Vec3T<Real>* positions) : p_(positions) {}
+
+  /// Adds what the family of face `parent` knows of its edges: for each of its four faces what
+  /// `ButterflyRules::add_face_shares` adds, to the bit.
+  template <class Shares>
+  void add_shares(uint32_t parent, const Family& family, Shares& shares) const {
+    std::array<Wide<Real>, 3> corner, middle, across_first, across_second;
+    for (uint32_t i = 0; i < 3; ++i) {
+      corner[i] = widen(p_[family.corner[i]]);
+      middle[i] = widen(p_[family.middle[i]]);
+      across_first[i] = widen(p_[family.across_first[i]]);
+      across_second[i] = widen(p_[family.across_second[i]]);
+    }
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t next = (i + 1) % 3;
+      const uint32_t before = (i + 2) % 3;
+      // Child i has the corners corner[i], middle[i] and middle[before].
+      const Wide<Real>& wing = middle[next];  // across its inner side
+      shares.add(parent, family.twin[i], family.first_half(i),
+                 share_(corner[i], middle[i], middle[before], wing, across_second[before]));
+      shares.add(parent, family.twin[before], family.second_half(before),
+                 share_(middle[before], corner[i], middle[i], across_first[i], wing));
+      shares.set(family.inner_edge(i),
+                 share_(middle[i], middle[before], corner[i], across_second[before], across_first[i]) +
+                     share_(middle[before], middle[i], wing, corner[next], corner[before]));
+    }
+  }
+
+ private:
+  const Vec3T<Real>* p_;
+  stencil::FaceShare<Real> share_{};
+};
+
 /// The rules of one level: the new vertex of an edge from the positions round it. Which rule holds where is told in
 /// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both
 /// half-edges of an edge give the same.
@@ -60,6 +156,13 @@ class ButterflyRules {
       split_interior_spokes_by_harmonics(fan, add);
     else
       split_curve_spokes(fan, add);
+  }
+
+  /// Whether all of a closed fan's hinges count whole, so that its rule is the plain one: without tension they do.
+  template <class Spokes, class EdgeOf>
+  [[nodiscard]] bool are_whole(const Spokes& spokes, const EdgeOf& edge_of) const {
+    return !tensed_ ||
+           std::ranges::all_of(spokes, [&](const auto& spoke) { return tensed_->is_whole(edge_of(spoke)); });
   }
 
   [[nodiscard]] Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
@@ -106,48 +209,15 @@ class ButterflyRules {
     shares.add(f, twin[2], edge[2], share_(p[2], p[0], p[1], wing[0], wing[1]));
   }
 
-  /// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th, whose other end is
-  /// the vertex ring(j). The valence is below `stencil::harmonic_valence`.
-  template <class Ring, class Add>
-  void split_ring(uint32_t centre, uint32_t valence, const Ring& ring, const Add& add) const {
-    const InteriorRing points(*this, centre, valence, ring);
-    for (uint32_t i = 0; i < valence; ++i) add(i, points.split(i));
-  }
-
  private:
-  /// The points of the rule for a closed fan that is not regular.
-  class InteriorRing {
-   public:
-    template <class Ring>
-    InteriorRing(const ButterflyRules& rules, uint32_t centre, uint32_t valence, const Ring& ring)
-        : valence_(valence),
-          weights_(interior_weights<Real>.ring(valence)),
-          centre_(interior_weights<Real>.centre(valence) * rules.wide(centre)) {
-      for (uint32_t j = 0; j < valence; ++j) points_[j] = points_[valence + j] = rules.wide(ring(j));
-    }
-    [[nodiscard]] Point split(uint32_t spoke) const {
-      Wide<Real> sum = centre_;
-      for (uint32_t j = 0; j < valence_; ++j) sum += weights_[j] * points_[spoke + j];
-      Point q;
-      store(sum, q);
-      return q;
-    }
-
-   private:
-    uint32_t valence_;
-    const Real* weights_;
-    Wide<Real> centre_;
-    std::array<Wide<Real>, size_t{2} * stencil::harmonic_valence> points_;  // twice round
-  };
-
   template <class Wants, class Add>
   void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
     const uint32_t k = fan.valence();
-    const InteriorRing points(*this, fan.centre, k, [&](uint32_t j) { return fan.ring[j]; });
+    const InteriorRing<Real> points(p_, fan.centre, k, [&](uint32_t j) { return fan.ring[j]; });
     const Real* s = interior_weights<Real>.ring(k);
+    const bool is_plain = k == 2 || are_whole(fan.spokes, [&](uint32_t spoke) { return mesh_.edge[spoke]; });
     for (uint32_t i = 0; i < k; ++i)
-      if (wants(fan.spokes[i]))
-        add(fan.spokes[i], tensed_ && k > 2 ? tensed_->interior_spoke(fan, s, i) : points.split(i));
+      if (wants(fan.spokes[i])) add(fan.spokes[i], is_plain ? points.split(i) : tensed_->interior_spoke(fan, s, i));
   }
 
   template <class Add>

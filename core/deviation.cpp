@@ -11,67 +11,53 @@
 namespace papilio {
 namespace {
 
-TriangleCorners corners(const Mesh& mesh, uint32_t h) {
-  const auto at = [&](uint32_t v) { return to_double(mesh.positions[v]); };
-  return {at(mesh.topology.origin[h]), at(mesh.topology.tip(h)), at(mesh.topology.apex(h))};
-}
+/// One number for each of two triangles: computed at once.
+using Both = double __attribute__((vector_size(16)));
+using BothTrue = int64_t __attribute__((vector_size(16)));
 
-/// A side of triangles, and a point: from an end of the side `along` leads to its other end, `to_point` to the point.
-struct Side {
-  Side(Vec3d end, Vec3d other_end, Vec3d point)
-      : along(other_end - end),
-        to_point(point - end),
-        aa(dot(along, along)),
-        pa(dot(to_point, along)),
-        pp(dot(to_point, to_point)) {}
-  Vec3d along, to_point;
-  double aa, pa, pp;
+struct BothVectors {
+  BothVectors(Vec3d one, Vec3d other) : x{one.x, other.x}, y{one.y, other.y}, z{one.z, other.z} {}
+  Both x, y, z;
 };
 
-/// Where the point lies, seen from the triangle whose third corner `to_apex` leads to.
-struct Foot {
-  enum : uint8_t {
-    above_face,    ///< above the triangle
-    beyond_side,   ///< across that side, and no other
-    anywhere_else  ///< or not known for sure
-  } where = anywhere_else;
-  double squared_height = 0;  ///< above the plane
-};
+Both dot(Vec3d a, const BothVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-inline Foot find_foot(const Side& side, Vec3d to_apex) {
-  constexpr double least_sine_squared = 1e-8;
-  const double aa = side.aa;
-  const double pa = side.pa;
-  const double ac = dot(side.along, to_apex);
-  const double cc = dot(to_apex, to_apex);
-  const double area_squared = aa * cc - ac * ac;  // of the parallelogram
-  if (area_squared <= least_sine_squared * aa * cc) return {};
-  const double pc = dot(side.to_point, to_apex);
-  // The foot is made of the corners in these shares of the area.
-  const double of_other_end = cc * pa - ac * pc;
-  const double of_apex = aa * pc - ac * pa;
-  const double of_end = area_squared - of_other_end - of_apex;
-  if (of_other_end < 0 || of_end < 0) return {};
-  if (of_apex < 0) return {Foot::beyond_side};
-  const double height = dot(side.to_point, cross(side.along, to_apex));
-  constexpr double rounding_squared = 1e-30;  // of the height's parts: what is flat is to have none
-  if (height * height <= rounding_squared * side.pp * aa * cc) return {Foot::above_face, 0};
-  return {Foot::above_face, height * height / area_squared};
-}
+bool is_any(BothTrue both) { return (both[0] | both[1]) != 0; }
 
 /// The distance to two triangles at one side where it is found easily: mostly the point is above one of them, or above
-/// the side itself.
+/// the side itself. Else, and where it is not known for sure, nothing.
 std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, Vec3d apex, Vec3d other_apex) {
-  const Side side(a, b, point);
-  const Foot one = find_foot(side, apex - a);
-  const Foot other = find_foot(side, other_apex - a);
-  if (one.where == Foot::anywhere_else || other.where == Foot::anywhere_else) return {};
-  if (one.where == Foot::above_face && other.where == Foot::above_face)
-    return std::min(one.squared_height, other.squared_height);
+  constexpr double least_sine_squared = 1e-8;
+  constexpr double rounding_squared = 1e-30;  // of the height's parts: what is flat is to have none
+  const Vec3d along = b - a;
+  const Vec3d to_point = point - a;
+  const BothVectors to_apex(apex - a, other_apex - a);
+  const double aa = papilio::dot(along, along);
+  const double pa = papilio::dot(to_point, along);
+  const double pp = papilio::dot(to_point, to_point);
+  const Both ac = dot(along, to_apex);
+  const Both cc = to_apex.x * to_apex.x + to_apex.y * to_apex.y + to_apex.z * to_apex.z;
+  const Both area_squared = aa * cc - ac * ac;  // of the parallelogram
+  const Both pc = dot(to_point, to_apex);
+  // The foot of the point on the plane is made of the corners in these shares of the area.
+  const Both of_other_end = cc * pa - ac * pc;
+  const Both of_apex = aa * pc - ac * pa;
+  const Both of_end = area_squared - of_other_end - of_apex;
+  if (is_any((area_squared <= least_sine_squared * aa * cc) | (of_other_end < 0) | (of_end < 0))) return {};
+
+  // What is left is above the triangle, or across the common side and no other.
+  const BothTrue is_beyond = of_apex < 0;
   // From beyond the side the nearest is on the side, which is the other triangle's, too.
-  if (one.where == Foot::above_face) return one.squared_height;
-  if (other.where == Foot::above_face) return other.squared_height;
-  return squared_distance_to_segment(point, a, b);
+  if (is_beyond[0] != 0 && is_beyond[1] != 0) return squared_distance_to_segment(point, a, b);
+  const Both height = to_point.x * (along.y * to_apex.z - along.z * to_apex.y) +
+                      to_point.y * (along.z * to_apex.x - along.x * to_apex.z) +
+                      to_point.z * (along.x * to_apex.y - along.y * to_apex.x);
+  const BothTrue is_flat = height * height <= rounding_squared * pp * aa * cc;
+  const Both squared = is_flat ? Both{} : height * height / area_squared;
+  // Which of the two it is nobody can guess: so without branches.
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Both above_either = is_beyond ? Both{infinity, infinity} : squared;
+  return std::min(above_either[0], above_either[1]);
 }
 
 /// Infinity is kept for what is not to be reached: a budget's threshold where nothing fits.
@@ -81,18 +67,27 @@ float to_finite(double number) {
 
 }  // namespace
 
-double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
-  const Topology& topology = mesh.topology;
-  uint32_t h = topology.half_edge[edge];
+double deviation_from_faces(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_apex) {
   const Vec3d point = to_double(q);
-  // Which of its half-edges the edge names depends on how the level was made; what is rounded must not.
-  if (topology.origin[h] > topology.tip(h) && topology.twin[h] != none) h = topology.twin[h];
-  const TriangleCorners face = corners(mesh, h);
-  if (topology.kind[edge] != EdgeKind::smooth) return std::sqrt(squared_distance_to_segment(point, face.a, face.b));
-  const TriangleCorners other = corners(mesh, topology.twin[h]);
+  const TriangleCorners face{to_double(a), to_double(b), to_double(apex)};
+  const TriangleCorners other{face.b, face.a, to_double(other_apex)};
   if (const auto squared = squared_distance_to_either(point, face.a, face.b, face.c, other.c))
     return std::sqrt(*squared);
   return std::sqrt(std::min(squared_distance(point, face), squared_distance(point, other)));
+}
+
+double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
+  const Topology& topology = mesh.topology;
+  const auto at = [&](uint32_t v) { return mesh.positions[v]; };
+  uint32_t h = topology.half_edge[edge];
+  const uint32_t t = topology.twin[h];
+  // Which of its half-edges the edge names depends on how the level was made; what is rounded must not.
+  if (topology.origin[h] > topology.tip(h) && t != none) h = t;
+  const Vec3f a = at(topology.origin[h]);
+  const Vec3f b = at(topology.tip(h));
+  if (topology.kind[edge] != EdgeKind::smooth)
+    return std::sqrt(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)));
+  return deviation_from_faces(q, a, b, at(topology.apex(h)), at(topology.apex(topology.twin[h])));
 }
 
 ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, const Camera* camera)

@@ -21,6 +21,10 @@ namespace papilio {
 /// In the mesh's unit.
 [[nodiscard]] double deviation(const Mesh& mesh, uint32_t edge, Vec3f q);
 
+/// That of a smooth edge from a to b, from the apexes of its two faces, the one on its left first. The same to the bit
+/// where a is the vertex with the lower number.
+[[nodiscard]] double deviation_from_faces(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_apex);
+
 /// Turns deviations into the one number by which edges are compared, with the threshold that makes one a target.
 class ErrorMeasure {
  public:

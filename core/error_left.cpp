@@ -71,13 +71,16 @@ class ErrorFinder {
     const Topology& mesh = mesh_of(k);
     const Trial& trial = choice.level->trial;
     float too_little = surely_too_little(k);
-    for (uint32_t e : choice.region.edges) {
-      if (trial.no_less_than_deviation_at(e) < too_little) continue;
-      if (choice.split[e] != 0 || !may_matter(choice, e, scales_[k])) continue;
+    // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
+    List<uint32_t> edges;
+    if (trial.planes.empty()) keep_if(edges = choice.region.edges, [&](uint32_t e) { return choice.split[e] == 0; });
+    for (uint32_t e : trial.planes.empty() ? edges : choice.region.edges) {
+      if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
+      if (!may_matter(choice, e, scales_[k]) || is_near(k, e, 1)) continue;
       const uint32_t h = mesh.half_edge[e];
       const uint32_t t = mesh.twin[h];
       if (reached_[Topology::face(h)] == 0 && (t == none || reached_[Topology::face(t)] == 0)) continue;
-      if (is_near(k, e, 1) || !choice.shown[e]) continue;
+      if (!choice.shown[e]) continue;
       add(k, e);
       too_little = surely_too_little(k);
     }
@@ -100,22 +103,30 @@ class ErrorFinder {
 
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    choice.visit_faces_of_split([&](uint32_t f, uint32_t e) {
+    for (uint32_t f : choice.faces_at_split()) {
+      if (reached_[f] == 0) continue;
+      const unsigned mask = choice.split_mask(f);
       const bool has_children = choice.has_children(f);
-      if (has_children && choice.split_mask(f) == 7) return;
-      if (reached_[f] == 0) return;
-      // Its halves may have been judged, though nothing below was wanted.
-      if (has_children) {
-        const auto [first, second] = halves(k, f, e);
-        const LevelChoice& below = levels_[k + 1];
-        if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
-          for (uint32_t half : {first, second})
-            if (may_be_largest(k + 1, half) && choice.shown[e] && below.shown[half]) add(k + 1, half);
-          return;
-        }
+      if (has_children && mask == 7) continue;
+      for (uint32_t i = 0; i < 3; ++i)
+        if ((mask >> i & 1U) != 0) add_side(k, f, i, has_children);
+    }
+  }
+
+  /// Side i of a face, which is split: its halves may have been judged, though nothing below was wanted.
+  void add_side(size_t k, uint32_t f, uint32_t i, bool has_children) {
+    const LevelChoice& choice = levels_[k];
+    const uint32_t e = mesh_of(k).edge[3 * f + i];
+    if (has_children) {
+      const auto [first, second] = halves(k, f, i);
+      const LevelChoice& below = levels_[k + 1];
+      if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
+        for (uint32_t half : {first, second})
+          if (may_be_largest(k + 1, half) && choice.shown[e] && below.shown[half]) add(k + 1, half);
+        return;
       }
-      if (may_be_largest(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
-    });
+    }
+    if (may_be_largest(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
   }
 
   /// By what is known of the deviation.
@@ -123,10 +134,8 @@ class ErrorFinder {
     return left_.may_grow_by(share * levels_[k].level->trial.no_less_than_deviation_at(e), scales_[k]);
   }
 
-  /// The two edges of the level below that a face's edge is split into.
-  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t e) const {
-    const uint32_t* edge = &mesh_of(k).edge[size_t{3} * f];
-    const uint32_t i = edge[0] == e ? 0 : edge[1] == e ? 1 : 2;
+  /// The two edges of the level below that side i of a face is split into.
+  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t i) const {
     const HierarchyLevel& below = *levels_[k + 1].level;
     const auto half = [&](uint32_t which) {
       return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * i + which]];

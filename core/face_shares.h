@@ -17,6 +17,8 @@ struct FaceShares {
   void add(uint32_t face, uint32_t twin, uint32_t edge, const Wide<Real>& share) const {
     add_share(twin < 3 * face, share, sums[edge]);
   }
+  /// Of an edge all of whose faces are known together.
+  void set(uint32_t edge, const Wide<Real>& sum) const { store(sum, sums[edge]); }
 };
 
 /// The same where faces come in ranges, in any order or at once, for those of a face which has neighbours in an earlier
@@ -34,6 +36,8 @@ class LateFaceShares {
     else
       shares_.add(face, twin, edge, share);
   }
+
+  void set(uint32_t edge, const Wide<Real>& sum) const { shares_.set(edge, sum); }
 
   /// Once all ranges are through.
   void end() const {

@@ -52,11 +52,11 @@ List<uint32_t> find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const 
     if (!products.empty()) products.put(e, product);
     return product < least;
   };
-  List<uint32_t> found;
-  for (uint32_t e : region.edges) {
+  List<uint32_t> found = region.edges;
+  keep_if(found, [&](uint32_t e) {
     const float known = products.empty() ? unknown : products.get(e);
-    if (known != unknown ? known < least : is_curved(e)) found.push_back(e);
-  }
+    return known != unknown ? known < least : is_curved(e);
+  });
   return found;
 }
 

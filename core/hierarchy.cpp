@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "region.h"
 #include "split_in_four.h"
-#include "split_pattern.h"
 
 namespace papilio {
 namespace {
@@ -12,167 +12,143 @@ namespace {
 /// Numbers the marked things in their order; `none` for the others.
 class Ranks {
  public:
-  explicit Ranks(const List<uint8_t>& marks) : rank_(marks.size(), none) {
-    for (size_t i = 0; i < marks.size(); ++i)
-      if (marks[i] != 0) rank_[i] = count_++;
+  explicit Ranks(const List<uint8_t>& marks) : numbers_(marked(marks)), rank_(marks.size(), none) {
+    for (uint32_t i = 0; i < numbers_.size(); ++i) rank_[numbers_[i]] = i;
   }
   [[nodiscard]] uint32_t operator[](uint32_t i) const { return rank_[i]; }
   [[nodiscard]] bool has(uint32_t i) const { return rank_[i] != none; }
-  [[nodiscard]] uint32_t count() const { return count_; }
+  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(numbers_.size()); }
+  /// What is marked.
+  [[nodiscard]] const List<uint32_t>& numbers() const { return numbers_; }
 
  private:
+  List<uint32_t> numbers_;
   List<uint32_t> rank_;
-  uint32_t count_ = 0;
 };
 
-/// Splits faces in four, as split() does where all are split, leaving the other faces out.
+/// Splits faces in four, leaving the other faces out.
 class LevelMaker {
  public:
   LevelMaker(const HierarchyLevel& above, const List<uint8_t>& red)
       : above_(above),
         mesh_(above.mesh.topology),
-        support_(with_neighbours(mesh_, red)),
-        faces_(support_),
+        faces_(with_neighbours(mesh_, red)),
         edges_(used_edges()),
         vertices_(used_vertices()) {}
 
-  HierarchyLevel run() {
+  LevelBelow run(int threads) {
+    Topology part = held_part();
+    below_.mesh.topology = split_in_four(part, threads);
     make_vertices();
-    make_edges();
-    make_faces();
-    note_shared();
-    return std::move(below_);
+    below_.parent = faces_.numbers();
+    below_.child.assign(mesh_.face_count(), none);
+    for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
+    for (uint32_t h : above_.shared)
+      if (faces_.has(Topology::face(h))) {
+        below_.shared.push_back(first_half(in_part(h)));
+        below_.shared.push_back(second_half(in_part(h)));
+      }
+    carry_features();
+    return {std::move(below_), std::move(part)};
   }
 
  private:
   [[nodiscard]] List<uint8_t> used_edges() const {
     List<uint8_t> used(mesh_.edge_count(), 0);
-    for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h)
-      if (support_[Topology::face(h)] != 0) used[mesh_.edge[h]] = 1;
+    for (uint32_t f : faces_.numbers())
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) used[mesh_.edge[h]] = 1;
     return used;
   }
   [[nodiscard]] List<uint8_t> used_vertices() const {
     List<uint8_t> used(mesh_.vertex_count, 0);
-    for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h)
-      if (support_[Topology::face(h)] != 0) used[mesh_.origin[h]] = 1;
+    for (uint32_t f : faces_.numbers())
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) used[mesh_.origin[h]] = 1;
     return used;
   }
 
-  void make_vertices() {
-    const uint32_t count = vertices_.count() + edges_.count();
-    below_.mesh.topology.vertex_count = count;
-    below_.mesh.positions.resize(count);
-    below_.from.resize(count);
-    below_.complete.assign(count, 1);
-    for (uint32_t v = 0; v < mesh_.vertex_count; ++v) {
-      if (!vertices_.has(v)) continue;
-      below_.mesh.positions[vertices_[v]] = above_.mesh.positions[v];
-      below_.from[vertices_[v]] = v;
-      below_.complete[vertices_[v]] = above_.complete[v];
-    }
-    for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
-      if (!edges_.has(e)) continue;
-      below_.mesh.positions[new_vertex(e)] = above_.trial.at(e);
-      below_.from[new_vertex(e)] = mesh_.vertex_count + e;
-    }
-    for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
-      if (faces_.has(Topology::face(h))) continue;
-      if (vertices_.has(mesh_.origin[h])) below_.complete[vertices_[mesh_.origin[h]]] = 0;
-      if (edges_.has(mesh_.edge[h])) below_.complete[new_vertex(mesh_.edge[h])] = 0;
-    }
+  /// The faces that get children, as a mesh of their own; where others are missing, edges are cut.
+  [[nodiscard]] Topology held_part() const {
+    Topology part;
+    part.vertex_count = vertices_.count();
+    const size_t half_edges = size_t{3} * faces_.count();
+    part.origin.resize(half_edges);
+    part.twin.resize(half_edges);
+    part.edge.resize(half_edges);
+    part.half_edge.assign(edges_.count(), none);
+    part.kind.resize(edges_.count());
+    for (uint32_t e = 0; e < edges_.count(); ++e) part.kind[e] = mesh_.kind[edges_.numbers()[e]];
+    uint32_t at = 0;
+    for (uint32_t f : faces_.numbers())
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h, ++at) {
+        const uint32_t t = mesh_.twin[h];
+        const uint32_t e = edges_[mesh_.edge[h]];
+        part.origin[at] = vertices_[mesh_.origin[h]];
+        part.edge[at] = e;
+        part.twin[at] = t == none || !faces_.has(Topology::face(t)) ? none : in_part(t);
+        if (t != none && part.twin[at] == none) part.kind[e] = EdgeKind::cut;
+        // Edges name the half-edges that they name where everything is held.
+        if (part.half_edge[e] == none || mesh_.half_edge[mesh_.edge[h]] == h) part.half_edge[e] = at;
+      }
     const auto carry = [&](const std::vector<uint32_t>& list, std::vector<uint32_t>& out) {
       for (uint32_t v : list)
         if (vertices_.has(v)) out.push_back(vertices_[v]);
     };
-    carry(mesh_.pinched, below_.mesh.topology.pinched);
-    carry(mesh_.darts, below_.mesh.topology.darts);
+    carry(mesh_.pinched, part.pinched);
+    carry(mesh_.darts, part.darts);
+    return part;
   }
 
-  void make_edges() {
-    Topology& out = below_.mesh.topology;
-    const uint32_t count = 2 * edges_.count() + 3 * faces_.count();
-    out.kind.assign(count, EdgeKind::smooth);
-    out.half_edge.assign(count, none);
-    for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
-      if (!edges_.has(e)) continue;
-      const EdgeKind kind = kind_below(e);
-      out.kind[2 * edges_[e]] = kind;
-      out.kind[2 * edges_[e] + 1] = kind;
+  void make_vertices() {
+    const uint32_t count = below_.mesh.topology.vertex_count;
+    below_.mesh.positions.resize(count);
+    below_.from.resize(count);
+    below_.complete.assign(count, 1);
+    uint32_t at = 0;
+    for (uint32_t v : vertices_.numbers()) {
+      below_.mesh.positions[at] = above_.mesh.positions[v];
+      below_.complete[at] = above_.complete[v];
+      below_.from[at++] = v;
     }
-  }
-
-  /// An edge of two faces one of which is missing is cut.
-  [[nodiscard]] EdgeKind kind_below(uint32_t e) const {
-    const uint32_t h = mesh_.half_edge[e];
-    const uint32_t t = mesh_.twin[h];
-    if (t == none) return mesh_.kind[e];
-    return faces_.has(Topology::face(h)) && faces_.has(Topology::face(t)) ? mesh_.kind[e] : EdgeKind::cut;
-  }
-
-  void make_faces() {
-    Topology& out = below_.mesh.topology;
-    const size_t count = size_t{12} * faces_.count();
-    out.origin.resize(count);
-    out.twin.resize(count);
-    out.edge.resize(count);
-    below_.parent.resize(faces_.count());
-    below_.child.assign(mesh_.face_count(), none);
+    for (uint32_t e : edges_.numbers()) {
+      below_.mesh.positions[at] = above_.trial.at(e);
+      below_.from[at++] = mesh_.vertex_count + e;
+    }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
-      if (!faces_.has(f)) continue;
-      below_.child[f] = 4 * faces_[f];
-      below_.parent[faces_[f]] = f;
-      split_face(f);
-    }
-  }
-
-  void split_face(uint32_t f) {
-    static const SplitPattern& red = split_pattern(7, false);
-    Topology& out = below_.mesh.topology;
-    const uint32_t base = 12 * faces_[f];
-    for (uint32_t c = 0; c < 12; ++c) {
-      const uint32_t h = base + c;
-      const uint8_t corner = red.corner[c / 3][c % 3];
-      out.origin[h] =
-          corner < 3 ? vertices_[mesh_.origin[3 * f + corner]] : new_vertex(mesh_.edge[3 * f + corner - 3U]);
-      if (red.inner_twin[c] != SplitPattern::outside) {
-        out.twin[h] = base + red.inner_twin[c];
-        out.edge[h] = 2 * edges_.count() + 3 * faces_[f] + red.edge[c];
-        out.half_edge[out.edge[h]] = h;
-      } else {
-        const uint32_t parent = 3 * f + red.edge[c] / 2;
-        const uint32_t half = red.edge[c] % 2;
-        out.twin[h] = outer_twin(parent, half);
-        // The half at the lower vertex comes first, whichever way the half-edge runs.
-        const bool up = mesh_.origin[parent] < mesh_.tip(parent);
-        out.edge[h] = 2 * edges_[mesh_.edge[parent]] + (up ? half : 1 - half);
-        // Edges name the half-edges that they name where everything is held.
-        uint32_t& named = out.half_edge[out.edge[h]];
-        if (named == none || mesh_.half_edge[mesh_.edge[parent]] == parent) named = h;
+      if (faces_.has(f)) continue;
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        if (vertices_.has(mesh_.origin[h])) below_.complete[vertices_[mesh_.origin[h]]] = 0;
+        if (edges_.has(mesh_.edge[h])) below_.complete[new_vertex(mesh_.edge[h])] = 0;
       }
     }
   }
 
-  void note_shared() {
-    for (uint32_t parent : above_.shared) {
-      if (!faces_.has(Topology::face(parent))) continue;
-      for (uint32_t half = 0; half < 2; ++half)
-        below_.shared.push_back(12 * faces_[Topology::face(parent)] +
-                                split_pattern(7, false).outer[2 * (parent % 3) + half]);
+  /// What descend() makes of the features, of what is held.
+  void carry_features() {
+    const Features& above = above_.features;
+    Features& out = below_.features;
+    out.level = above.level + 1;
+    out.has_darts = above.has_darts;
+    for (size_t i = 0; i < above.fan_count(); ++i) {
+      const uint32_t centre = above.centre[i];
+      if (!vertices_.has(centre) || below_.complete[vertices_[centre]] == 0) continue;
+      for (const Features::Spoke& spoke : above.spokes_of(i))
+        out.spokes.push_back({first_half(in_part(spoke.half_edge)),
+                              2 * edges_[spoke.edge] + (centre > spoke.tip ? 1 : 0), new_vertex(spoke.edge)});
+      out.first_spoke.push_back(static_cast<uint32_t>(out.spokes.size()));
+      out.centre.push_back(vertices_[centre]);
+      out.is_closed.push_back(above.is_closed[i]);
     }
+    for (uint32_t h : above.curve_half_edges)
+      if (faces_.has(Topology::face(h)))
+        for (uint32_t half : {first_half(in_part(h)), second_half(in_part(h))}) out.curve_half_edges.push_back(half);
   }
 
-  [[nodiscard]] uint32_t outer_twin(uint32_t h, uint32_t half) const {
-    static const SplitPattern& red = split_pattern(7, false);
-    const uint32_t t = mesh_.twin[h];
-    if (t == none || !faces_.has(Topology::face(t))) return none;
-    return 12 * faces_[Topology::face(t)] + red.outer[2 * (t % 3) + 1 - half];
-  }
-
+  /// Numbers in the part that is held.
+  [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 
   const HierarchyLevel& above_;
   const Topology& mesh_;
-  const List<uint8_t> support_;
   const Ranks faces_, edges_, vertices_;
   HierarchyLevel below_;
 };
@@ -211,11 +187,13 @@ HierarchyLevel coarsest_level(Mesh mesh) {
 }
 
 EdgeMarks edges_below_red(const HierarchyLevel& level) {
-  EdgeMarks marks = complete_edges(level);
-  if (level.is_whole) return marks;
+  if (level.is_whole) return complete_edges(level);
   const Topology& mesh = level.mesh.topology;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-    if (level.red[level.parent[h / 12]] == 0) marks[mesh.edge[h]] = 0;
+  EdgeMarks marks(mesh.edge_count(), 0);
+  for (const uint8_t is_red : {1, 0})  // first those of red faces, then without those of the others
+    for (uint32_t i = 0; i < level.parent.size(); ++i)
+      if (level.red[level.parent[i]] == is_red)
+        for (uint32_t h = 12 * i; h < 12 * i + 12; ++h) marks[mesh.edge[h]] = is_red;
   return marks;
 }
 
@@ -228,11 +206,14 @@ EdgeMarks complete_edges(const HierarchyLevel& level) {
 
 List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
   List<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-    if (faces[Topology::face(h)] != 0) touched[mesh.origin[h]] = 1;
-  List<uint8_t> marks(faces.size(), 0);
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-    if (touched[mesh.origin[h]] != 0) marks[Topology::face(h)] = 1;
+  for (uint32_t f = 0; f < faces.size(); ++f)
+    if (faces[f] != 0)
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+  List<uint8_t> marks(faces.size());
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const uint32_t* corner = &mesh.origin[size_t{3} * f];
+    marks[f] = touched[corner[0]] | touched[corner[1]] | touched[corner[2]];
+  }
   return marks;
 }
 
@@ -250,7 +231,7 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
   HierarchyLevel below;
   below.is_whole = true;
   below.features = level.features;
-  descend(below.features, mesh);
+  descend(below.features, mesh.vertex_count);
   below.mesh.topology = split_in_four(mesh, threads);
   below.mesh.positions.reserve(below.mesh.topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
@@ -267,13 +248,14 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
 
 }  // namespace
 
-HierarchyLevel refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
+LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
   const bool all = level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
                    std::ranges::find(red, 0) == red.end();
-  HierarchyLevel below = all ? refine_whole_level(level, threads) : LevelMaker(level, red).run();
-  below.red = std::move(red);
-  below.transitions = Memo<uint32_t>(below.mesh.topology.face_count(), 0);
-  below.box = bounding_box(below.mesh.positions);
+  LevelBelow below = all ? LevelBelow{refine_whole_level(level, threads), {}} : LevelMaker(level, red).run(threads);
+  HierarchyLevel& made = below.level;
+  made.red = std::move(red);
+  made.transitions = Memo<uint32_t>(made.mesh.topology.face_count(), 0);
+  made.box = bounding_box(made.mesh.positions);
   return below;
 }
 

@@ -24,7 +24,7 @@ namespace papilio {
 struct HierarchyLevel {
   Mesh mesh;                           ///< faces held; where others of the level are missing, edges are EdgeKind::cut
   bool is_whole = false;               ///< all the level's faces are held, with the numbers of the uniform mesh
-  Features features;                   ///< of a whole level
+  Features features;                   ///< of the vertices that are complete
   List<uint8_t> complete;              ///< [V] whether all the level's faces at the vertex are held
   List<uint32_t> from;                 ///< [V] a vertex of the level above, or its vertex count plus the edge split
   List<uint32_t> parent;               ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
@@ -53,8 +53,15 @@ struct HierarchyLevel {
 /// The faces that share a vertex with a marked one, themselves included. Marks [F].
 [[nodiscard]] List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces);
 
+struct LevelBelow {
+  HierarchyLevel level;
+  /// The faces above that have children in the level, as a mesh of their own: the level is what split_in_four() makes
+  /// of it. Empty where the level is whole: then it is all of the level above.
+  Topology parents;
+};
+
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// must have been tried. Up to so many threads work on it.
-[[nodiscard]] HierarchyLevel refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
+[[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
 }  // namespace papilio

@@ -70,6 +70,7 @@ class InPlace {
   }
 
   void note_error() {
+    if (!options_.measure_error) return;
     ErrorLeft left(selection_);
     for (uint32_t e : region_.edges)
       if (shown_[e] != 0)

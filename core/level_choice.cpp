@@ -21,6 +21,35 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
 
 }  // namespace
 
+uint64_t LevelChoice::count_faces_of_split() const {
+  const Topology& mesh = level->mesh.topology;
+  uint64_t count = 0;
+  for (uint32_t e : split_edges) {
+    const EdgeKind kind = mesh.kind[e];
+    count += kind == EdgeKind::boundary ? 1 : kind == EdgeKind::shared ? 0 : 2;
+  }
+  for (uint32_t h : level->shared) count += split[mesh.edge[h]];
+  return count;
+}
+
+List<uint32_t> LevelChoice::faces_at_split() const {
+  constexpr size_t few = 8;  // fewer than one edge for so many faces: then these are looked up
+  if (split_edges.size() * few > region.faces.size()) {
+    List<uint32_t> faces = region.faces;
+    keep_if(faces, [this](uint32_t f) { return split_mask(f) != 0; });
+    return faces;
+  }
+  const Topology& mesh = level->mesh.topology;
+  List<uint8_t> marks(mesh.face_count(), 0);
+  for (uint32_t e : split_edges) {
+    const uint32_t h = mesh.half_edge[e];
+    marks[Topology::face(h)] = 1;
+    if (mesh.twin[h] != none) marks[Topology::face(mesh.twin[h])] = 1;
+  }
+  for (uint32_t h : level->shared) marks[Topology::face(h)] |= split[mesh.edge[h]];
+  return marked(marks);
+}
+
 LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
   LevelChoice choice;
   choice.region = whole_region(level->mesh.topology);

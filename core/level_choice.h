@@ -39,20 +39,10 @@ struct LevelChoice {
     for (uint32_t e : split_edges) split[e] = 0;
     split_edges.clear();
   }
-  /// Calls `visit(face, edge)` for each face at each edge that is split. Edges of the region have all their faces
-  /// there.
-  template <class Visit>
-  void visit_faces_of_split(const Visit& visit) const {
-    const Topology& mesh = level->mesh.topology;
-    for (uint32_t e : split_edges) {
-      if (mesh.kind[e] == EdgeKind::shared) continue;
-      const uint32_t h = mesh.half_edge[e];
-      visit(Topology::face(h), e);
-      if (mesh.twin[h] != none) visit(Topology::face(mesh.twin[h]), e);
-    }
-    for (uint32_t h : level->shared)
-      if (split[mesh.edge[h]] != 0) visit(Topology::face(h), mesh.edge[h]);
-  }
+  /// How many faces there are at all edges that are split together. Edges of the region have all their faces there.
+  [[nodiscard]] uint64_t count_faces_of_split() const;
+  /// The faces at edges that are split, in ascending order.
+  [[nodiscard]] List<uint32_t> faces_at_split() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>

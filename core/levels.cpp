@@ -11,8 +11,10 @@ namespace {
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
 constexpr uint64_t bytes_per_kept_face = 122;
 constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and of what is computed on it
-/// All of a level is made by formula, for about as much as a part of one in so many faces takes.
-constexpr size_t part_as_dear_as_all = 3;
+/// All of a level costs about as much as so large a part of it.
+constexpr double part_as_dear_as_all = 0.75;
+/// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
+constexpr double part_as_dear_as_all_kept = 1.0 / 3;
 
 bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
@@ -25,7 +27,8 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
-  level->trial = try_split(level->mesh, options, complete_edges(*level), &level->features, progress.threads());
+  level->trial = try_split(level->mesh, options, complete_edges(*level),
+                           {.features = &level->features, .threads = progress.threads()});
   levels_.push_back(std::move(level));
 }
 
@@ -58,7 +61,7 @@ bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
   const auto level =
-      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red), progress_.threads()));
+      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red), progress_.threads()).level);
   List<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent[f / 4];
@@ -93,29 +96,38 @@ bool Levels::may_keep(const List<uint8_t>& red) const {
   return bytes <= prepared_->budget_;
 }
 
-List<uint8_t> Levels::or_everything(List<uint8_t> red) const {
+List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
   const HierarchyLevel& level = *levels_.back();
   if (!level.is_whole || level.trial.made.size() != level.mesh.topology.edge_count() ||
       !progress_.has_plenty(4 * red.size(), bytes_per_face))
     return red;
   const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
-  const auto held = static_cast<size_t>(std::ranges::count(support, 1));
-  if (held * part_as_dear_as_all >= red.size()) red.assign(red.size(), 1);
+  const auto held = static_cast<double>(std::ranges::count(support, 1));
+  if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
   return red;
 }
 
 void Levels::make(const List<uint8_t>& red) {
-  List<uint8_t> more = or_everything(prepared_ == nullptr ? red : with_margin(red));
-  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red);
+  List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
+                                            : or_everything(with_margin(red), part_as_dear_as_all_kept);
+  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
   const bool is_kept = may_keep(more);
-  const auto level =
-      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(more), progress_.threads()));
+  LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
+  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
+  TrialContext context{.features = &level->features, .threads = progress_.threads()};
+  List<uint8_t> asked_of;
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
+  if (level->is_whole) {
+    context.parents = &levels_.back()->mesh.topology;
+  } else if (is_last && !is_kept) {
+    for (uint32_t parent : level->parent) asked_of.push_back(level->red[parent]);
+    context.parents = &below.parents;
+    context.asked_of = &asked_of;
+  }
   level->trial =
-      try_split(level->mesh, options_, is_last && !is_kept ? edges_below_red(*level) : complete_edges(*level),
-                level->is_whole ? &level->features : nullptr, progress_.threads());
+      try_split(level->mesh, options_, asked_of.empty() ? complete_edges(*level) : edges_below_red(*level), context);
   if (is_kept) level->trial.keep_more(level->mesh.topology);
   if (is_kept)
     add_kept(level);

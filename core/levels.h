@@ -37,9 +37,9 @@ class Levels {
   /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
   /// next view, from a little further on, finds what it needs.
   [[nodiscard]] List<uint8_t> with_margin(const List<uint8_t>& red) const;
-  /// All faces of the deepest level if it is whole and most of them would be held: then all cost less. Else those
-  /// marked.
-  [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red) const;
+  /// All faces of the deepest level if it is whole and so large a part of them would be held: then all cost less. Else
+  /// those marked.
+  [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
   void make(const List<uint8_t>& red);
   void add_kept(std::shared_ptr<const HierarchyLevel> level);
 

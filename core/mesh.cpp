@@ -288,21 +288,33 @@ void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& r
 
 }  // namespace
 
-TriangleMesh Mesh::triangles() const {
-  TriangleMesh out;
-  const Array<uint32_t>& corners = attributes.empty() ? topology.origin : attributes.point;
-  out.triangles.resize(topology.face_count());
+namespace {
+
+Array<Triangle> in_threes(const Array<uint32_t>& corners) {
+  Array<Triangle> triangles(corners.size() / 3);
   static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
-  if (!corners.empty()) std::memcpy(out.triangles.data(), corners.data(), corners.size() * sizeof(uint32_t));
-  if (attributes.empty()) {
-    out.positions = positions;
-    return out;
-  }
-  out.attributes = attributes.attributes;
-  out.positions.resize(attributes.point_count);
-  for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
-    out.positions[attributes.point[h]] = positions[topology.origin[h]];
+  if (!corners.empty()) std::memcpy(triangles.data(), corners.data(), corners.size() * sizeof(uint32_t));
+  return triangles;
+}
+
+TriangleMesh points_and_triangles(const Mesh& mesh) {
+  const PointAttributes& points = mesh.attributes;
+  TriangleMesh out{Array<Vec3f>(points.point_count), in_threes(points.point), points.attributes};
+  for (uint32_t h = 0; h < points.point.size(); ++h)
+    out.positions[points.point[h]] = mesh.positions[mesh.topology.origin[h]];
   return out;
+}
+
+}  // namespace
+
+TriangleMesh Mesh::triangles() const& {
+  if (!attributes.empty()) return points_and_triangles(*this);
+  return {positions, in_threes(topology.origin)};
+}
+
+TriangleMesh Mesh::triangles() && {
+  if (!attributes.empty()) return points_and_triangles(*this);
+  return {std::move(positions), in_threes(topology.origin)};
 }
 
 namespace {

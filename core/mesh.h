@@ -52,8 +52,8 @@ struct Topology {
   [[nodiscard]] uint32_t half_edge_count() const { return static_cast<uint32_t>(origin.size()); }
 
   static uint32_t face(uint32_t h) { return h / 3; }
-  static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-  static uint32_t previous(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  static uint32_t next(uint32_t h) { return h + 1 - (h % 3 == 2 ? 3U : 0U); }
+  static uint32_t previous(uint32_t h) { return h - 1 + (h % 3 == 0 ? 3U : 0U); }
   [[nodiscard]] uint32_t tip(uint32_t h) const { return origin[next(h)]; }
   /// The vertex of h's face that h does not touch.
   [[nodiscard]] uint32_t apex(uint32_t h) const { return origin[previous(h)]; }
@@ -80,8 +80,10 @@ struct Mesh {
   Array<Vec3f> positions;  ///< [V]
   PointAttributes attributes{};
 
-  /// Copies the faces and positions out; with attributes, points in place of vertices.
-  [[nodiscard]] TriangleMesh triangles() const;
+  /// Copies the faces and positions out; with attributes, points in place of vertices. Of a mesh that is not needed any
+  /// more positions need no copy.
+  [[nodiscard]] TriangleMesh triangles() const&;
+  [[nodiscard]] TriangleMesh triangles() &&;
 };
 
 /// What was found in the triangles, and what was done about it.

@@ -42,7 +42,8 @@ struct Options {
   uint64_t face_limit = 16'000'000;  ///< a level that would have more faces is refused before it is made
   /// A level whose arrays would take more bytes than this is refused before it is made; 0: no limit.
   uint64_t memory_limit = 0;
-  bool edges = true;  ///< number the result's edges (mesh.h); whoever only writes its faces out does without
+  bool edges = true;          ///< number the result's edges (mesh.h); whoever only writes its faces out does without
+  bool measure_error = true;  ///< find the deviation left (`Result::error`); without it both errors are 0
 };
 
 /// Throws `Error` bad_option, naming the field, when an option is outside its range.

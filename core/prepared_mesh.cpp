@@ -24,7 +24,7 @@ PreparedMesh::PreparedMesh(Mesh coarse, const Options& rules, uint64_t byte_budg
     smallest_angle_ = smallest_angle(coarse);
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
-    level->trial = try_split(level->mesh, rules_, complete_edges(*level), &level->features);
+    level->trial = try_split(level->mesh, rules_, complete_edges(*level), {.features = &level->features});
     level->trial.keep_more(level->mesh.topology);
     kept_ = {std::move(level)};
     bytes_ = bytes_of(kept_);

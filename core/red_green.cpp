@@ -215,9 +215,11 @@ class RedGreen {
 
   void finish(Result& result, Mesh latest) {
     bring_back_what_was_kept();
-    const ErrorLeft left = error_left(choices_, selection_);
-    result.error = left.error();
-    result.error_pixels = left.pixels();
+    if (options_.measure_error) {
+      const ErrorLeft left = error_left(choices_, selection_);
+      result.error = left.error();
+      result.error_pixels = left.pixels();
+    }
     if (out_of_budget_)
       result.stop_reason = StopReason::budget;
     else

@@ -6,6 +6,7 @@
 
 #include "butterfly.h"
 #include "normals.h"
+#include "uniform_butterfly.h"
 
 namespace papilio {
 namespace {
@@ -19,28 +20,49 @@ float rounded_up(double number) { return static_cast<float>(1.000001 * number + 
 }  // namespace
 
 Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
-                           const Features* features, int threads) {
+                           const TrialContext& context) {
+  const Topology& topology = mesh.topology;
   std::optional<TensionField> field;
-  if (options.tension != Tension::off) field = tension_field(mesh.topology, normals, options.tension);
+  if (options.tension != Tension::off) field = tension_field(topology, normals, options.tension);
   const TensionField* tension = field ? &*field : nullptr;
-  const bool is_everything = plan.count() == mesh.topology.edge_count();
-  if (options.w != 0 || !is_everything)
-    return butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(options.w), tension);
-  Array<Vec3f> made(plan.count());
-  const auto split_with = [&](const Features& f) {
-    uniform_butterfly(mesh.topology, f, mesh.positions.data(), made.data(), tension, threads);
-  };
-  if (features != nullptr)
-    split_with(*features);
+  constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
+  if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
+    return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
+
+  Array<Vec3f> made(topology.edge_count());
+  std::optional<Features> found;
+  if (context.features == nullptr) found = find_features(topology);
+  const Features& features = found ? *found : *context.features;
+  if (tension == nullptr && context.parents != nullptr)
+    uniform_butterfly_below(*context.parents, &topology, features, mesh.positions.data(), made.data(), context.threads,
+                            context.asked_of);
   else
-    split_with(find_features(mesh.topology));
-  return made;
+    uniform_butterfly(topology, features, mesh.positions.data(), made.data(), tension, context.threads);
+  if (plan.count() == made.size()) return made;
+  Array<Vec3f> planned(plan.count());
+  for (uint32_t e = 0; e < made.size(); ++e)
+    if (plan.is_split(e)) planned[plan.before[e]] = made[e];
+  return planned;
 }
 
-Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const Features* features,
-                int threads) {
-  Trial trial{.normals = face_normals(mesh, threads), .tried = SplitPlan(try_edges), .made = {}};
-  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, features, threads);
+namespace {
+
+/// What is not asked for has none.
+Array<Vec3f> normals_of_children(const Mesh& mesh, const List<uint8_t>& asked_of) {
+  Array<Vec3f> normals(mesh.topology.face_count());
+  for (uint32_t f = 0; f < normals.size(); ++f) normals[f] = asked_of[f / 4] != 0 ? face_normal(mesh, f) : Vec3f{};
+  return normals;
+}
+
+}  // namespace
+
+Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const TrialContext& context) {
+  const bool are_all_asked = context.asked_of == nullptr || options.tension != Tension::off;
+  Trial trial{
+      .normals = are_all_asked ? face_normals(mesh, context.threads) : normals_of_children(mesh, *context.asked_of),
+      .tried = SplitPlan(try_edges),
+      .made = {}};
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, context);
   trial.forget();
   return trial;
 }

@@ -49,13 +49,22 @@ struct Trial {
   [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
 };
 
-/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w. `features`
-/// of the mesh, where they are known. Up to so many threads work on it.
+/// What is known of a mesh that is tried: all of it may be left out.
+struct TrialContext {
+  const Features* features = nullptr;  ///< its
+  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h); not one with cuts, unless:
+  /// [F of the parents]: normals are asked of the children of those marked, and edges to be tried lie between these
+  /// only; null: of all.
+  const List<uint8_t>* asked_of = nullptr;
+  int threads = 1;  ///< at most so many work on it
+};
+
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
 [[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                                         const SplitPlan& plan, const Features* features = nullptr, int threads = 1);
+                                         const SplitPlan& plan, const TrialContext& context = {});
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
-                              const Features* features = nullptr, int threads = 1);
+                              const TrialContext& context = {});
 
 class Selection {
  public:

@@ -7,22 +7,82 @@
 namespace papilio {
 namespace {
 
+/// One after the other: built in an array first and then copied, they are waited for.
+template <class... Numbers>
+void put(uint32_t* at, Numbers... numbers) {
+  static_assert(sizeof...(numbers) == 12);
+  ((*at++ = numbers), ...);
+}
+
+/// The rule: one face and its four children.
+class FourRule {
+ public:
+  /// Of a mesh with so many vertices and edges.
+  FourRule(uint32_t vertices, uint32_t edges) : vertices_(vertices), inner_edges_(2 * edges) {}
+
+  /// Corners and twins of the children of face f.
+  void split(uint32_t f, const uint32_t* corner, const uint32_t* twin, const uint32_t* edge, uint32_t* child_origin,
+             uint32_t* child_twin) const {
+    const uint32_t base = 12 * f;
+    const uint32_t middle[3] = {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]};
+    put(child_origin, corner[0], middle[0], middle[2],  //
+        middle[0], corner[1], middle[1],                //
+        middle[2], middle[1], corner[2],                //
+        middle[0], middle[1], middle[2]);
+    put(child_twin, against_first(twin[0]), base + 11, against_second(twin[2]),  //
+        against_second(twin[0]), against_first(twin[1]), base + 9,               //
+        base + 10, against_second(twin[1]), against_first(twin[2]),              //
+        base + 5, base + 6, base + 1);
+  }
+
+  /// Edges of the children of face f.
+  void number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
+    // Whether the half at the half-edge's tip comes first.
+    const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
+                              corner[2] > corner[0] ? 1U : 0U};
+    const uint32_t first[3] = {2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
+    const uint32_t second[3] = {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1};
+    const uint32_t inner = inner_edge(f);
+    put(child_edge, first[0], inner, second[2],  //
+        second[0], first[1], inner + 1,          //
+        inner + 2, second[1], first[2],          //
+        inner + 1, inner + 2, inner);
+  }
+
+  /// The first of the three edges inside face f.
+  [[nodiscard]] uint32_t inner_edge(uint32_t f) const { return inner_edges_ + 3 * f; }
+
+ private:
+  /// The child half-edges that run against the halves of a half-edge with this twin.
+  static uint32_t against_first(uint32_t twin) { return twin == none ? none : second_half(twin); }
+  static uint32_t against_second(uint32_t twin) { return twin == none ? none : first_half(twin); }
+
+  uint32_t vertices_;
+  uint32_t inner_edges_;
+};
+
+/// An empty level below one with so many vertices and edges, with room for so many half-edges.
+Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, size_t half_edges) {
+  Topology below;
+  below.vertex_count = vertices + edges;
+  below.pinched = mesh.pinched;
+  below.darts = mesh.darts;
+  below.origin.resize(half_edges);
+  below.twin.resize(half_edges);
+  return below;
+}
+
 template <bool numbers_edges>
 class FourSplitter {
  public:
-  explicit FourSplitter(const Topology& mesh)
-      : mesh_(mesh), vertices_(mesh.vertex_count), inner_edges_(2 * mesh.edge_count()) {}
+  explicit FourSplitter(const Topology& mesh) : mesh_(mesh), rule_(mesh.vertex_count, mesh.edge_count()) {}
 
   Topology run(int threads) {
-    child_.vertex_count = vertices_ + mesh_.edge_count();
-    child_.pinched = mesh_.pinched;
-    child_.darts = mesh_.darts;
     const size_t half_edges = size_t{4} * mesh_.half_edge_count();
-    child_.origin.resize(half_edges);
-    child_.twin.resize(half_edges);
+    child_ = level_below(mesh_, mesh_.vertex_count, mesh_.edge_count(), half_edges);
     if (numbers_edges) {
       child_.edge.resize(half_edges);
-      child_.half_edge.resize(inner_edges_ + mesh_.half_edge_count());
+      child_.half_edge.resize(rule_.inner_edge(mesh_.face_count()));
       child_.kind.resize(child_.half_edge.size());
     }
     const uint32_t parts = parts_of(mesh_.face_count(), threads);
@@ -47,57 +107,20 @@ class FourSplitter {
 
   void split_face(uint32_t f) {
     const uint32_t h = 3 * f;
-    const uint32_t* corner = &mesh_.origin[h];
-    const uint32_t* twin = &mesh_.twin[h];
-    const uint32_t* edge = &mesh_.edge[h];
     const uint32_t base = 12 * f;
-
-    const uint32_t middle[3] = {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]};
-    put(&child_.origin[base], corner[0], middle[0], middle[2],  //
-        middle[0], corner[1], middle[1],                        //
-        middle[2], middle[1], corner[2],                        //
-        middle[0], middle[1], middle[2]);
-    put(&child_.twin[base], against_first(twin[0]), base + 11, against_second(twin[2]),  //
-        against_second(twin[0]), against_first(twin[1]), base + 9,                       //
-        base + 10, against_second(twin[1]), against_first(twin[2]),                      //
-        base + 5, base + 6, base + 1);
-    if (numbers_edges) number_edges(f);
-  }
-
-  void number_edges(uint32_t f) {
-    const uint32_t h = 3 * f;
     const uint32_t* corner = &mesh_.origin[h];
     const uint32_t* edge = &mesh_.edge[h];
-    const uint32_t base = 12 * f;
-    // Whether the half at the half-edge's tip comes first.
-    const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
-                              corner[2] > corner[0] ? 1U : 0U};
-    const uint32_t first[3] = {2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
-    const uint32_t second[3] = {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1};
-    const uint32_t inner = inner_edges_ + h;
-    put(&child_.edge[base], first[0], inner, second[2],  //
-        second[0], first[1], inner + 1,                  //
-        inner + 2, second[1], first[2],                  //
-        inner + 1, inner + 2, inner);
-    const uint32_t at[3] = {base + 11, base + 9, base + 10};
-    std::copy_n(at, 3, &child_.half_edge[inner]);
+    rule_.split(f, corner, &mesh_.twin[h], edge, &child_.origin[base], &child_.twin[base]);
+    if (!numbers_edges) return;
+    rule_.number_edges(f, corner, edge, &child_.edge[base]);
+    const uint32_t inner = rule_.inner_edge(f);
+    put_three(&child_.half_edge[inner], base + 11, base + 9, base + 10);
     std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
   }
-
-  /// One after the other: built in an array first and then copied, they are waited for.
-  template <class... Numbers>
-  static void put(uint32_t* at, Numbers... numbers) {
-    static_assert(sizeof...(numbers) == 12);
-    ((*at++ = numbers), ...);
-  }
-
-  /// The child half-edges that run against the halves of a half-edge with this twin.
-  static uint32_t against_first(uint32_t twin) { return twin == none ? none : second_half(twin); }
-  static uint32_t against_second(uint32_t twin) { return twin == none ? none : first_half(twin); }
+  static void put_three(uint32_t* at, uint32_t a, uint32_t b, uint32_t c) { at[0] = a, at[1] = b, at[2] = c; }
 
   const Topology& mesh_;
-  const uint32_t vertices_;
-  const uint32_t inner_edges_;  ///< the first edge inside a face
+  const FourRule rule_;
   Topology child_;
 };
 
@@ -106,5 +129,28 @@ class FourSplitter {
 Topology split_in_four(const Topology& mesh, int threads) { return FourSplitter<true>(mesh).run(threads); }
 
 Topology split_last_in_four(const Topology& mesh, int threads) { return FourSplitter<false>(mesh).run(threads); }
+
+Topology split_last_in_sixteen(const Topology& mesh, int threads) {
+  const uint32_t vertices = mesh.vertex_count + mesh.edge_count();
+  const uint32_t edges = 2 * mesh.edge_count() + mesh.half_edge_count();
+  const FourRule rule(mesh.vertex_count, mesh.edge_count());
+  const FourRule rule_below(vertices, edges);
+  Topology below = level_below(mesh, vertices, edges, size_t{16} * mesh.half_edge_count());
+  for_each_part(parts_of(mesh.face_count(), threads), mesh.face_count(), [&](uint32_t, uint32_t first, uint32_t last) {
+    uint32_t origin[12];  // of the four children
+    uint32_t twin[12];
+    uint32_t edge[12];
+    for (uint32_t f = first; f < last; ++f) {
+      const uint32_t h = 3 * f;
+      rule.split(f, &mesh.origin[h], &mesh.twin[h], &mesh.edge[h], origin, twin);
+      rule.number_edges(f, &mesh.origin[h], &mesh.edge[h], edge);
+      for (uint32_t c = 0; c < 4; ++c) {
+        const size_t base = size_t{12} * (4 * f + c);
+        rule_below.split(4 * f + c, &origin[3 * c], &twin[3 * c], &edge[3 * c], &below.origin[base], &below.twin[base]);
+      }
+    }
+  });
+  return below;
+}
 
 }  // namespace papilio

@@ -25,5 +25,7 @@ namespace papilio {
 [[nodiscard]] Topology split_in_four(const Topology& mesh, int threads = 1);
 /// The same without its edges (mesh.h): for a level that is not split again.
 [[nodiscard]] Topology split_last_in_four(const Topology& mesh, int threads = 1);
+/// Two levels at once: split_last_in_four of split_in_four, without the level between.
+[[nodiscard]] Topology split_last_in_sixteen(const Topology& mesh, int threads = 1);
 
 }  // namespace papilio

@@ -42,6 +42,9 @@ constexpr void connect(SplitPattern& pattern) {
       pattern.edge[h] = half;
       pattern.outer[half] = static_cast<uint8_t>(h);
     }
+    const bool is_inside = pattern.inner_twin[h] != SplitPattern::outside;
+    pattern.twin_from[h] = is_inside ? 6 : pattern.edge[h];
+    pattern.twin_step[h] = is_inside ? pattern.inner_twin[h] : 0;
   }
 }
 

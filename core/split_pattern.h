@@ -20,6 +20,11 @@ struct SplitPattern {
   /// [2i + half] the child half-edge that is the first half (or the whole) or the second half of edge i.
   std::array<uint8_t, 6> outer{};
 
+  /// [child half-edge] where its twin is found, to be looked up without a branch: what runs against it is
+  /// against[twin_from] + twin_step, against[2i + half] being what runs against the halves of edge i, and against[6]
+  /// the first child half-edge.
+  std::array<uint8_t, 12> twin_from{}, twin_step{};
+
   static constexpr uint8_t outside = 255;
   [[nodiscard]] bool is_outside(uint32_t half_edge) const { return inner_twin[half_edge] == outside; }
 };

@@ -58,9 +58,9 @@ class TensedRules {
       shares.add(f, twin[i], edge[i], share(p[i], p[(i + 1) % 3], hinge[(i + 1) % 3], hinge[(i + 2) % 3]));
   }
 
-  /// Spoke i of a closed fan of K faces, K != 2. The ring is split into what the spoke's two faces foresee, marching
-  /// round the vertex as on a regular ring, and the differences from that, each by the factors of the hinges that lie
-  /// on the way.
+  /// Spoke i of a closed fan of K faces, K != 2, not all of whose hinges count whole. The ring is split into what the
+  /// spoke's two faces foresee, marching round the vertex as on a regular ring, and the differences from that, each by
+  /// the factors of the hinges that lie on the way.
   [[nodiscard]] Point interior_spoke(const Fan& fan, const Real* weights, uint32_t i) const {
     const uint32_t k = fan.valence();
     static const RingAngles angles;
@@ -106,6 +106,8 @@ class TensedRules {
     for (uint32_t s : fan.spokes) least = std::min(least, field_.factor[mesh_.edge[s]]);
     return Real(least);
   }
+  /// Whether the hinge counts whole.
+  [[nodiscard]] bool is_whole(uint32_t edge) const { return field_.factor[edge] == 1; }
   [[nodiscard]] Real least_factor(uint32_t h) const {
     const uint32_t t = mesh_.twin[h];
     float least = field_.factor[mesh_.edge[h]];
@@ -128,8 +130,12 @@ class TensedRules {
       if (factor < 1) q = factor * q + (1 - factor) * along_feature(h);
     }
     const Point m = midpoint(h);
-    const double moved = length(widen(q - m));
-    const double most = tension_bound * length(widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]));
+    const Vec3d off = widen(q - m);
+    const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
+    constexpr double sure = 0.99;  // most are, and spare the roots
+    if (dot(off, off) < sure * tension_bound * tension_bound * dot(along, along)) return q;
+    const double moved = length(off);
+    const double most = tension_bound * length(along);
     return moved > most ? m + Real(most / moved) * (q - m) : q;
   }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 namespace papilio {
 namespace {
@@ -12,27 +11,43 @@ namespace {
 /// No transition face gets an angle smaller than this share of the coarse mesh's smallest.
 constexpr double sliver_share = 0.4;
 
-/// The face's corners and, where an edge is in `mask`, its new vertex, numbered as in SplitPattern.
-std::array<Vec3d, 6> local_points(const HierarchyLevel& level, uint32_t face, unsigned mask) {
-  const Topology& mesh = level.mesh.topology;
-  std::array<Vec3d, 6> points;
-  for (uint32_t i = 0; i < 3; ++i) {
-    points[i] = to_double(level.mesh.positions[mesh.origin[3 * face + i]]);
-    if ((mask >> i & 1U) != 0) points[3 + i] = to_double(level.trial.at(mesh.edge[3 * face + i]));
-  }
-  return points;
-}
-
 double squared_length(Vec3d a) { return dot(a, a); }
 
 /// The cosine of a triangle's smallest angle, squared, from the squares of its sides. That angle is opposite the
 /// shortest side, and not above 60 degrees; 1 for a triangle without area that has a side of no length.
 double squared_cosine_of_smallest_angle(double a, double b, double c) {
-  if (b < a) std::swap(a, b);
-  if (c < a) std::swap(a, c);
-  const double twice_product = b + c - a;  // of the other sides, with the cosine
-  return a > 0 ? 0.25 * twice_product * twice_product / (b * c) : 1;
+  // Which is the shortest nobody can guess: so without branches.
+  const double shorter = std::min(a, b);
+  const double shortest = std::min(shorter, c);
+  const double one = std::max(a, b);
+  const double other = std::max(shorter, c);
+  const double twice_product = one + other - shortest;  // of the two, with the cosine
+  return shortest > 0 ? 0.25 * twice_product * twice_product / (one * other) : 1;
 }
+
+/// A face seen from the first edge that is split: it runs from corner a to b, and its new vertex is `on_ab`; where two
+/// are split the next is the second.
+struct SplitFace {
+  SplitFace(const HierarchyLevel& level, uint32_t face, unsigned mask)
+      : has_two(std::popcount(mask) == 2), first(first_target[mask]) {
+    const Topology& mesh = level.mesh.topology;
+    const auto corner = [&](uint32_t i) {
+      return to_double(level.mesh.positions[mesh.origin[3 * face + (first + i) % 3]]);
+    };
+    const auto middle = [&](uint32_t i) { return to_double(level.trial.at(mesh.edge[3 * face + (first + i) % 3])); };
+    a = corner(0);
+    b = corner(1);
+    c = corner(2);
+    on_ab = middle(0);
+    if (has_two) on_bc = middle(1);
+  }
+
+  static constexpr std::array<uint8_t, 8> first_target{0, 0, 1, 0, 2, 2, 1, 0};
+
+  bool has_two;
+  uint32_t first;
+  Vec3d a, b, c, on_ab, on_bc;
+};
 
 /// That of the smallest angle of a face's pieces, for each way to cut it.
 struct Cosines {
@@ -40,13 +55,8 @@ struct Cosines {
 };
 
 /// The pieces are those of split_pattern(mask, ...), for masks 1 to 6. What they share is computed once.
-Cosines cosines_of_pieces(unsigned mask, const std::array<Vec3d, 6>& points) {
-  const bool has_two = std::popcount(mask) == 2;
-  const uint32_t i = has_two ? first_of_two_targets(mask) : static_cast<uint32_t>(std::countr_zero(mask));
-  const Vec3d& a = points[i];
-  const Vec3d& b = points[(i + 1) % 3];
-  const Vec3d& c = points[(i + 2) % 3];
-  const Vec3d& on_ab = points[3 + i];
+Cosines cosines_of_pieces(const SplitFace& face) {
+  const auto& [has_two, first, a, b, c, on_ab, on_bc] = face;
   const double first_half = squared_length(on_ab - a);
   const double second_half = squared_length(b - on_ab);
   const double across = squared_length(c - on_ab);
@@ -57,7 +67,6 @@ Cosines cosines_of_pieces(unsigned mask, const std::array<Vec3d, 6>& points) {
         std::max(beside_a, squared_cosine_of_smallest_angle(second_half, squared_length(c - b), across));
     return {both, both};
   }
-  const Vec3d& on_bc = points[3 + (i + 1) % 3];
   const double from_b = squared_length(on_bc - b);
   const double to_c = squared_length(c - on_bc);
   const double between = squared_length(on_bc - on_ab);
@@ -68,7 +77,7 @@ Cosines cosines_of_pieces(unsigned mask, const std::array<Vec3d, 6>& points) {
           std::max({tip, beside_a, squared_cosine_of_smallest_angle(between, to_c, across)})};
 }
 
-/// That of the face itself.
+/// That of a face itself.
 double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
   return squared_cosine_of_smallest_angle(squared_length(b - a), squared_length(c - b), squared_length(a - c));
 }
@@ -77,22 +86,18 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
 enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
 
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
-  const std::array<Vec3d, 6> points = local_points(level, face, mask);
+  const SplitFace split(level, face, mask);
   uint32_t found = is_known;
-  const Cosines cosines = cosines_of_pieces(mask, points);
-  double cosine = cosines.first_diagonal;
-  if (std::popcount(mask) == 2) {
-    const double second = cosines.second_diagonal;
-    const uint32_t i = first_of_two_targets(mask);
-    const auto& origin = level.mesh.topology.origin;
-    const bool second_is_lower = origin[3 * face + (i + 2) % 3] < origin[3 * face + i];
-    if (second < cosine || (second == cosine && second_is_lower)) {
-      found |= second_diagonal;
-      cosine = second;
-    }
+  const auto [cosine_of_first, second] = cosines_of_pieces(split);
+  double cosine = cosine_of_first;
+  if (split.has_two) {
+    const uint32_t* corner = &level.mesh.topology.origin[size_t{3} * face];
+    const bool second_is_lower = corner[(split.first + 2) % 3] < corner[split.first];
+    if (second < cosine || (second == cosine && second_is_lower)) found |= second_diagonal;
+    cosine = std::min(cosine, second);
   }
   const double most = most_cosine * most_cosine;
-  if (cosine > most && squared_cosine_of_smallest_angle(points[0], points[1], points[2]) <= most) found |= has_sliver;
+  if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most) found |= has_sliver;
   return found;
 }
 
@@ -104,6 +109,16 @@ uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, d
   const uint32_t found = judge(level, face, mask, most_cosine);
   level.transitions.put(face, known | found << shift);
   return found;
+}
+
+/// Judges the faces of a level of which nothing is known, first those with one split edge and then those with two:
+/// alike ones in turn, so that the processor can foresee what comes.
+void judge_alike(const LevelChoice& choice, const List<uint32_t>& faces, double most_cosine) {
+  for (const bool has_two : {false, true}) {
+    List<uint32_t> alike = faces;
+    keep_if(alike, [&](uint32_t f) { return (std::popcount(choice.split_mask(f)) == 2) == has_two; });
+    for (uint32_t f : alike) (void)transition(*choice.level, f, choice.split_mask(f), most_cosine);
+  }
 }
 
 }  // namespace
@@ -133,9 +148,9 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && choice.may_divide(f) &&
            (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
-  List<uint8_t> is_at_split(mesh.face_count(), 0);
-  choice.visit_faces_of_split([&](uint32_t f, uint32_t) { is_at_split[f] = 1; });
-  List<uint32_t> faces = marked(is_at_split);  // the order decides where dividing one makes a sliver of another
+  List<uint32_t> faces = choice.faces_at_split();  // the order decides where dividing one makes a sliver of another
+  keep_if(faces, [&](uint32_t f) { return choice.split_mask(f) != 7; });
+  if (level.trial.planes.empty()) judge_alike(choice, faces, most_cosine);
   std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();

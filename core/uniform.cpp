@@ -1,128 +1,139 @@
 #include "uniform.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "attributes.h"
-#include "butterfly.h"
 #include "features.h"
-#include "lanes.h"
 #include "normals.h"
-#include "parallel.h"
 #include "split.h"
 #include "split_in_four.h"
+#include "uniform_butterfly.h"
+#include "uniform_error.h"
 
 namespace papilio {
 namespace {
 
 constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
 
-float largest_coordinate(const Array<Vec3f>& positions) {
-  Lanes largest{};
-  for (const Vec3f& p : positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
-  return std::max({largest.v[0], largest.v[1], largest.v[2]});
-}
-
 class Uniform {
  public:
   Uniform(const Options& options, const Selection& selection, const Progress& progress)
-      : options_(options), selection_(selection), progress_(progress) {}
+      : options_(options),
+        selection_(selection),
+        progress_(progress),
+        is_plain_(options.w == 0 && options.tension == Tension::off) {}
 
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
     features_ = find_features(mesh_.topology);
-    rounding_ = 2e-6 * largest_coordinate(mesh_.positions);
-    for (int level = 1; level <= options_.levels; ++level) {
+    faces_ = mesh_.topology.face_count();
+    leaves_one_out_ =
+        is_plain_ && !options_.edges && mesh_.attributes.empty() && !progress_.wants_levels() && features_.are_rings();
+    for (level_ = 1; level_ <= options_.levels; ++level_) {
       progress_.poll();
-      const uint64_t faces = 4ULL * mesh_.topology.face_count();
-      progress_.require_room(faces, level);
-      progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh_.attributes), level);
-      progress_.report(level - 1, mesh_);
+      faces_ *= 4;
+      progress_.require_room(faces_, level_);
+      progress_.require_memory(faces_, bytes_per_face + bytes_per_face_of(mesh_.attributes), level_);
+      progress_.report(level_ - 1, mesh_);
       make_vertices();
       progress_.poll();
-      const bool is_last = level == options_.levels;
-      if (is_last) result_.error = error_left();
-      split(is_last);
-      result_.levels = level;
+      if (is_last()) measure_error();
+      split();
+      result_.levels = level_;
     }
     result_.mesh = std::move(mesh_);
     return std::move(result_);
   }
 
  private:
+  [[nodiscard]] bool is_last() const { return level_ == options_.levels; }
+
   /// Appends the new vertices to the positions.
   void make_vertices() {
     const Topology& topology = mesh_.topology;
-    if (options_.w == 0 && options_.tension == Tension::off) {
-      append_vertices(nullptr);
+    if (is_plain_) {
+      make_plain_vertices();
       return;
     }
     const Array<Vec3f> normals =
         options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_, progress_.threads());
     if (options_.w == 0) {
       const TensionField field = tension_field(topology, normals, options_.tension);
-      append_vertices(&field);
+      Vec3f* made = make_room(topology.edge_count());
+      uniform_butterfly(topology, features_, mesh_.positions.data(), made, &field, progress_.threads());
     } else {
       const Array<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
       mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
     }
   }
 
-  void append_vertices(const TensionField* tension) {
+  void make_plain_vertices() {
     const Topology& topology = mesh_.topology;
-    mesh_.positions.resize(size_t{topology.vertex_count} + topology.edge_count());
-    Vec3f* positions = mesh_.positions.data();
-    uniform_butterfly(topology, features_, positions, positions + topology.vertex_count, tension, progress_.threads());
+    Vec3f* made = make_room(edge_count());
+    const Vec3f* positions = mesh_.positions.data();
+    if (level_ == 1)
+      uniform_butterfly(topology, features_, positions, made, nullptr, progress_.threads());
+    else
+      uniform_butterfly_below(parents_, is_left_out() ? nullptr : &topology, features_, positions, made,
+                              progress_.threads());
   }
 
-  /// That of the edges of the last level, which are not tried: a share of what their parents had. Most edges are seen
-  /// to matter less than another by how far their vertex is from the midpoint, which is on the surface.
-  [[nodiscard]] double error_left() const {
-    const uint32_t edges = mesh_.topology.edge_count();
-    const uint32_t parts = parts_of(edges, progress_.threads());
-    std::vector<ErrorLeft> left(parts, ErrorLeft(selection_));
-    for_each_part(parts, edges, [&](uint32_t part, uint32_t first, uint32_t last) {
-      ErrorLeft own(selection_);
-      add_error_left(first, last, own);
-      left[part] = own;
-    });
-    return std::ranges::max_element(left, {}, &ErrorLeft::distance)->error();
+  /// For so many positions behind those that are there: where they begin.
+  Vec3f* make_room(uint32_t count) {
+    mesh_.positions.resize(mesh_.positions.size() + count);
+    return mesh_.positions.data() + mesh_.topology.vertex_count;
   }
 
-  void add_error_left(uint32_t first, uint32_t last, ErrorLeft& left) const {
-    const Topology& topology = mesh_.topology;
-    float most_skipped = -1;  // its square
-    for (uint32_t e = first; e < last; ++e) {
-      const uint32_t h = topology.half_edge[e];
-      const Vec3f& made = mesh_.positions[topology.vertex_count + e];
-      const Lanes ends = widen(mesh_.positions[topology.origin[h]]) + widen(mesh_.positions[topology.tip(h)]);
-      if (squared_length(widen(made) - 0.5F * ends) <= most_skipped) continue;
-      left.add_distance(split_leaves * deviation(mesh_, e, made));
-      const double sure = left.distance() / split_leaves - rounding_;
-      if (sure > least_squared) most_skipped = static_cast<float>(sure * sure);
+  void measure_error() {
+    if (!options_.measure_error) return;
+    const Vec3f* made = mesh_.positions.data() + mesh_.topology.vertex_count;
+    ErrorLeft left(selection_);
+    left.add_distance(split_leaves *
+                      (is_left_out() ? largest_deviation_below(parents_, mesh_.positions, made, progress_.threads())
+                                     : largest_deviation(mesh_, made, progress_.threads())));
+    result_.error = left.error();
+  }
+
+  void split() {
+    Topology& topology = mesh_.topology;
+    if (!is_last()) descend(features_, topology.vertex_count);
+    if (!mesh_.attributes.empty()) {
+      Topology below = papilio::split(topology, everything(), mesh_.positions, mesh_.attributes);
+      keep_parents(std::exchange(topology, std::move(below)));
+    } else if (is_left_out()) {
+      topology = split_last_in_sixteen(parents_, progress_.threads());
+    } else if (is_last() && !options_.edges) {
+      topology = split_last_in_four(topology, progress_.threads());
+    } else if (leaves_one_out_ && level_ + 1 == options_.levels) {
+      Topology left_out;
+      left_out.vertex_count = topology.vertex_count + topology.edge_count();
+      keep_parents(std::exchange(topology, std::move(left_out)));
+    } else {
+      Topology below = split_in_four(topology, progress_.threads());
+      keep_parents(std::exchange(topology, std::move(below)));
     }
   }
 
-  void split(bool is_last) {
-    if (!is_last) descend(features_, mesh_.topology);
-    if (!mesh_.attributes.empty())
-      mesh_.topology = papilio::split(mesh_.topology, everything(), mesh_.positions, mesh_.attributes);
-    else if (is_last && !options_.edges)
-      mesh_.topology = split_last_in_four(mesh_.topology, progress_.threads());
-    else
-      mesh_.topology = split_in_four(mesh_.topology, progress_.threads());
+  void keep_parents(Topology parents) {
+    if (is_plain_ && !is_last()) parents_ = std::move(parents);
+  }
+
+  /// Whether the level to be split is one whose connectivity was left out.
+  [[nodiscard]] bool is_left_out() const { return leaves_one_out_ && is_last() && level_ > 1; }
+  [[nodiscard]] uint32_t edge_count() const {
+    return is_left_out() ? 2 * parents_.edge_count() + parents_.half_edge_count() : mesh_.topology.edge_count();
   }
 
   [[nodiscard]] SplitPlan everything() const { return SplitPlan(EdgeMarks(mesh_.topology.edge_count(), 1)); }
 
-  static constexpr double least_squared = 1e-15;  ///< squares of smaller floats lose digits
-
   const Options& options_;
   const Selection& selection_;
   const Progress& progress_;
-  Mesh mesh_;
+  const bool is_plain_;          ///< neither tension nor w: vertices follow from the level above, family by family
+  bool leaves_one_out_ = false;  ///< and the last level from that two above it: nobody sees the one between
+  int level_ = 0;                ///< at hand
+  uint64_t faces_ = 0;           ///< of it
+  Mesh mesh_;                    ///< of the level above, with the vertices of this one once they are there
+  Topology parents_;             ///< two levels above; where vertices are plain
   Features features_;
-  double rounding_ = 0;  ///< more than floats make of the distance between two points of the mesh
   Result result_;
 };
 

@@ -19,6 +19,7 @@ Options uniform_options(int levels) {
   options.tension = Tension::off;
   options.face_limit = 32'000'000;
   options.edges = false;
+  options.measure_error = false;
   return options;
 }
 

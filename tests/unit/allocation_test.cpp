@@ -86,19 +86,26 @@ TEST(Allocation, FailureIsAnErrorWhereverItHappens) {
 
 TEST(Allocation, TheSecondRunMakesNoArrayAnew) {
   const Mesh coarse = build_mesh(torus(40, 30));
-  for (const Tension tension : {Tension::off, Tension::soft}) {
-    const auto run = [&] {
-      blocks_made = 0;
-      (void)refine(Mesh(coarse), {.levels = 3, .tension = tension});
-      return blocks_made;
-    };
-    release_spare_blocks();
-    EXPECT_GT(run(), 10);
+  const View view{.eye = {4, 1, 1}, .error_pixels = 0.5};
+  for (const Tension tension : {Tension::off, Tension::soft})
+    for (const Options& options :
+         {Options{.levels = 3, .tension = tension}, Options{.levels = 3, .tension = tension, .edges = false},
+          Options{.levels = 3, .flatness = {0.98, 0.99}, .tension = tension},
+          Options{.levels = 3, .tension = tension, .tolerance = 2e-4},
+          Options{.levels = 3, .view = view, .tension = tension},
+          Options{.levels = 3, .tension = tension, .max_faces = 20000}}) {
+      const auto run = [&] {
+        blocks_made = 0;
+        (void)refine(Mesh(coarse), options);
+        return blocks_made;
+      };
+      release_spare_blocks();
+      EXPECT_GT(run(), 10);
 #if defined(__SANITIZE_ADDRESS__)
-    GTEST_SKIP() << "nothing is kept under this sanitizer";
+      GTEST_SKIP() << "nothing is kept under this sanitizer";
 #endif
-    EXPECT_EQ(run(), 0);
-  }
+      EXPECT_EQ(run(), 0);
+    }
   release_spare_blocks();
 }
 

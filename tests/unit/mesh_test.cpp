@@ -185,5 +185,17 @@ TEST(Mesh, HubsOfAnyValenceAreConnectedLikeOtherVertices) {
     }
 }
 
+TEST(Mesh, TrianglesOfOneThatIsNotNeededAnyMoreAreTheSame) {
+  TriangleMesh with_attributes = cube();
+  with_attributes.attributes = {
+      {.components = 1, .values = std::vector<double>(with_attributes.positions.size(), 0.5)}};
+  for (const TriangleMesh& triangles : {torus(5, 4), with_attributes}) {
+    Mesh mesh = build_mesh(triangles);
+    const TriangleMesh expected = mesh.triangles();
+    EXPECT_EQ(expected.triangles.size(), triangles.triangles.size());
+    EXPECT_EQ(std::move(mesh).triangles(), expected);
+  }
+}
+
 }  // namespace
 }  // namespace papilio

@@ -125,6 +125,22 @@ TEST(Tension, EqualsThePlainSchemeWhereEveryFactorIsOne) {
   with_all_factors_one(bunny, in_double(bunny), expect_equal);
 }
 
+TEST(Tension, IrregularVerticesAmongWholeHingesHaveThePlainBits) {
+  const Mesh mesh = refine(build_mesh(icosahedron()), {.levels = 1, .tension = Tension::off}).mesh;
+  const TensionField field = tension_field(mesh.topology, face_normals(mesh), Tension::soft);
+  ASSERT_TRUE(std::ranges::all_of(field.factor, [](float factor) { return factor == 1; }));
+  const SplitPlan plan = everything(mesh);
+  const Array<Vec3f> plain = butterfly(mesh.topology, mesh.positions, plan);
+  const Array<Vec3f> tensed = butterfly(mesh.topology, mesh.positions, plan, 0.0F, &field);
+  int spokes = 0;
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+    if (mesh.topology.origin[h] >= 12) continue;  // the icosahedron's vertices, of valence 5
+    EXPECT_EQ(tensed[mesh.topology.edge[h]], plain[mesh.topology.edge[h]]);
+    ++spokes;
+  }
+  EXPECT_EQ(spokes, 60);
+}
+
 TEST(Tension, IsAffineInvariantForGivenFactors) {
   const Mesh mesh = build_mesh(real_mesh("bunny600.obj"));
   const TensionField field = tension_field(mesh.topology, face_normals(mesh), Tension::soft);

@@ -6,11 +6,16 @@
 
 #include "core/butterfly.h"
 #include "core/crease.h"
+#include "core/deviation.h"
 #include "core/features.h"
 #include "core/normals.h"
+#include "core/refine.h"
+#include "core/selection.h"
 #include "core/split.h"
 #include "core/split_in_four.h"
 #include "core/tension.h"
+#include "core/uniform_butterfly.h"
+#include "core/uniform_error.h"
 #include "tests/support/shapes.h"
 #include "tests/support/whole_split.h"
 
@@ -84,6 +89,13 @@ TEST(SplitInFour, IsTheSplitOfEverything) {
       EXPECT_FALSE(last.has_edges());
       EXPECT_EQ(last.origin, expected.origin);
       EXPECT_EQ(last.twin, expected.twin);
+      const Topology two_levels_on = split_last_in_sixteen(mesh.topology);
+      const Topology one_by_one = split_last_in_four(made);
+      EXPECT_EQ(two_levels_on.vertex_count, one_by_one.vertex_count);
+      EXPECT_EQ(two_levels_on.origin, one_by_one.origin);
+      EXPECT_EQ(two_levels_on.twin, one_by_one.twin);
+      EXPECT_EQ(two_levels_on.pinched, one_by_one.pinched);
+      EXPECT_EQ(two_levels_on.darts, one_by_one.darts);
       mesh.topology = made;
       mesh.positions = positions;
     }
@@ -105,7 +117,7 @@ TEST(Features, DescendAsTheyWouldBeFound) {
   for (Mesh& mesh : shaken_meshes()) {
     Features features = find_features(mesh.topology);
     for (int level = 1; level <= 3; ++level) {
-      descend(features, mesh.topology);
+      descend(features, mesh.topology.vertex_count);
       mesh.topology = split_in_four(mesh.topology);
       Features found = find_features(mesh.topology);
       EXPECT_EQ(features.level, level);
@@ -134,10 +146,158 @@ TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
         uniform_butterfly(level.topology, features, level.positions.data(), &level.positions[vertices], used);
         for (size_t e = 0; e < expected.size(); ++e)
           ASSERT_EQ(level.positions[vertices + e], expected[e]) << "level " << k << ", edge " << e;
-        descend(features, level.topology);
+        descend(features, vertices);
         level.topology = split_in_four(level.topology);
       }
     }
+}
+
+/// A level of a mesh, and the connectivity of the level above.
+struct LevelBelow {
+  Topology parents;
+  Mesh mesh;
+  Features features{};
+};
+
+/// Makes it of a mesh or of such a level; its positions are those of the plain scheme.
+LevelBelow next_level(const Mesh& mesh, Features features) {
+  LevelBelow below{.parents = mesh.topology, .mesh = {split_in_four(mesh.topology), mesh.positions}};
+  below.mesh.positions.resize(below.mesh.topology.vertex_count);
+  uniform_butterfly(mesh.topology, features, mesh.positions.data(), &below.mesh.positions[mesh.topology.vertex_count]);
+  descend(features, mesh.topology.vertex_count);
+  below.features = std::move(features);
+  return below;
+}
+
+TEST(UniformButterfly, IsTheSameFromTheLevelAbove) {
+  int without_the_level = 0;
+  for (const Mesh& mesh : shaken_meshes()) {
+    LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    for (int k = 1; k < 3; ++k) {
+      const Topology& topology = level.mesh.topology;
+      const Vec3f* positions = level.mesh.positions.data();
+      Array<Vec3f> expected(topology.edge_count());
+      uniform_butterfly(topology, level.features, positions, expected.data());
+      Array<Vec3f> made(topology.edge_count(), Vec3f{});
+      uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data());
+      EXPECT_EQ(made, expected);
+      if (level.features.are_rings()) {
+        ++without_the_level;
+        made.assign(made.size(), Vec3f{});
+        uniform_butterfly_below(level.parents, nullptr, level.features, positions, made.data());
+        EXPECT_EQ(made, expected);
+      }
+      level = next_level(level.mesh, level.features);
+    }
+  }
+  EXPECT_GT(without_the_level, 20);
+}
+
+TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
+  std::mt19937 random(3);
+  size_t known = 0;
+  for (const Mesh& mesh : shaken_meshes()) {
+    const LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    const Topology& topology = level.mesh.topology;
+    const Vec3f* positions = level.mesh.positions.data();
+    Array<Vec3f> expected(topology.edge_count());
+    uniform_butterfly(topology, level.features, positions, expected.data());
+    List<uint8_t> asked_of(mesh.topology.face_count());
+    for (uint8_t& is_asked : asked_of) is_asked = random() % 4 != 0 ? 1 : 0;
+    Array<Vec3f> made(topology.edge_count(), Vec3f{});
+    uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data(), 1, &asked_of);
+    EdgeMarks is_asked(topology.edge_count(), 1);
+    for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
+      if (asked_of[h / 12] == 0) is_asked[topology.edge[h]] = 0;
+    for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+      if (is_asked[e] == 0) continue;
+      ASSERT_EQ(made[e], expected[e]);
+      ++known;
+    }
+  }
+  EXPECT_GT(known, 1000U);
+}
+
+TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
+  std::mt19937 random(4);
+  for (const Mesh& mesh : shaken_meshes())
+    for (const Tension tension : {Tension::off, Tension::soft, Tension::sharp})
+      for (const unsigned one_in : {2, 10}) {
+        EdgeMarks marks(mesh.topology.edge_count());
+        for (uint8_t& mark : marks) mark = random() % one_in == 0 ? 1 : 0;
+        const SplitPlan plan(marks);
+        const Array<Vec3f> normals = face_normals(mesh);
+        const Options options{.tension = tension};
+        const Array<Vec3f> all = make_vertices(mesh, normals, options, everything(mesh));
+        const Array<Vec3f> some = make_vertices(mesh, normals, options, plan);
+        ASSERT_EQ(some.size(), plan.count());
+        for (uint32_t e = 0; e < marks.size(); ++e)
+          if (marks[e] != 0) {
+            ASSERT_EQ(some[plan.before[e]], all[e]);
+          }
+      }
+}
+
+TEST(UniformError, IsTheLargestDeviation) {
+  for (const Mesh& mesh : shaken_meshes()) {
+    const LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    Array<Vec3f> made(level.mesh.topology.edge_count());
+    uniform_butterfly(level.mesh.topology, level.features, level.mesh.positions.data(), made.data());
+    double largest = 0;
+    for (uint32_t e = 0; e < level.mesh.topology.edge_count(); ++e)
+      largest = std::max(largest, deviation(level.mesh, e, made[e]));
+    EXPECT_GT(largest, 0);
+    EXPECT_EQ(largest_deviation(level.mesh, made.data(), 1), largest);
+    if (level.features.curve_half_edges.empty()) {
+      EXPECT_EQ(largest_deviation_below(level.parents, level.mesh.positions, made.data(), 1), largest);
+    }
+  }
+}
+
+void expect_same_result(const Result& one, const Result& other) {
+  EXPECT_EQ(one.mesh.positions, other.mesh.positions);
+  EXPECT_EQ(one.mesh.topology.vertex_count, other.mesh.topology.vertex_count);
+  EXPECT_EQ(one.mesh.topology.origin, other.mesh.topology.origin);
+  EXPECT_EQ(one.mesh.topology.twin, other.mesh.topology.twin);
+  EXPECT_EQ(one.error, other.error);
+}
+
+// A level in between is left out where nobody sees it; with edges, or with a hook, it is made.
+TEST(Uniform, LeavingALevelOutChangesNothing) {
+  std::vector<Mesh> meshes = shaken_meshes();
+  meshes.push_back(build_mesh(torus(120, 100)));  // enough for two threads
+  for (const Mesh& mesh : meshes)
+    for (int levels = 1; levels <= (mesh.topology.face_count() > 10000 ? 2 : 4); ++levels) {
+      Options options{.levels = levels, .tension = Tension::off};
+      const Result with_edges = refine(Mesh(mesh), options);
+      EXPECT_GT(with_edges.error, 0);
+      options.edges = false;
+      expect_same_result(refine(Mesh(mesh), options), with_edges);
+      expect_same_result(refine(Mesh(mesh), options, {.threads = 2}), with_edges);
+      int seen = 0;
+      const Hooks hooks{.on_level = [&](const Level& level) { seen += level.mesh.topology.face_count() > 0 ? 1 : 0; }};
+      expect_same_result(refine(Mesh(mesh), options, hooks), with_edges);
+      EXPECT_EQ(seen, levels + 1);
+    }
+}
+
+TEST(MeasureError, LeftOutChangesNothingElse) {
+  const Mesh mesh = build_mesh(torus(9, 7));
+  const View view{.eye = {4, 1, 1}, .error_pixels = 2};
+  for (const Options& measured :
+       {Options{.levels = 2}, Options{.levels = 3, .tension = Tension::off, .edges = false},
+        Options{.levels = 2, .flatness = {0.9}}, Options{.levels = 2, .tolerance = 1e-3},
+        Options{.levels = 2, .scheme = Scheme::in_place, .flatness = {0.9}}, Options{.levels = 2, .view = view}}) {
+    Options options = measured;
+    options.measure_error = false;
+    Result expected = refine(Mesh(mesh), measured);
+    const Result made = refine(Mesh(mesh), options);
+    EXPECT_GT(expected.error, 0);
+    EXPECT_EQ(expected.error_pixels > 0, measured.view.has_value());
+    expected.error = 0;
+    expect_same_result(made, expected);
+    EXPECT_EQ(made.error_pixels, 0);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+
+#include "mesh.h"
+
+namespace papilio {
+
+/// The four faces that one face, their parent, is split into (split_in_four.h), and the vertices across their outer
+/// sides. All is read off the level of the parent: with it the children are split in turn without being connected.
+///
+///            corner 2              Sides are the parent's: side i runs from corner i to corner i + 1. Child i < 3 has
+///             /    \               corner i, child 3 lies in the middle. The parent must have a twin at each side.
+///            /  2   \              Vertices and edges are those of the children's level.
+///     middle 2 --- middle 1
+///       /    \  3  /   \           across_first[i]: the vertex across the first half of side i, at corner i;
+///      /  0   \   /  1  \          across_second[i]: the one across its second half.
+/// corner 0 -- middle 0 -- corner 1
+class Family {
+ public:
+  Family(const Topology& parents, uint32_t parent) : first_inner_(2 * parents.edge_count() + 3 * parent) {
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t h = 3 * parent + i;
+      const uint32_t t = parents.twin[h];
+      corner[i] = parents.origin[h];
+      twin[i] = t;
+      edge_[i] = parents.edge[h];
+      middle[i] = parents.vertex_count + edge_[i];
+      across_first[i] = parents.vertex_count + parents.edge[Topology::next(t)];
+      across_second[i] = parents.vertex_count + parents.edge[Topology::previous(t)];
+    }
+  }
+
+  /// The two halves of side i.
+  [[nodiscard]] uint32_t first_half(uint32_t i) const { return 2 * edge_[i] + is_downward(i); }
+  [[nodiscard]] uint32_t second_half(uint32_t i) const { return 2 * edge_[i] + 1 - is_downward(i); }
+  /// The edge between child i and child 3.
+  [[nodiscard]] uint32_t inner_edge(uint32_t i) const { return first_inner_ + i; }
+
+  std::array<uint32_t, 3> corner, middle, across_first, across_second;
+  std::array<uint32_t, 3> twin;  ///< of each side, in the parent's level
+
+ private:
+  /// The half at the lower vertex has the lower number.
+  [[nodiscard]] uint32_t is_downward(uint32_t i) const { return corner[i] > corner[(i + 1) % 3] ? 1 : 0; }
+
+  std::array<uint32_t, 3> edge_;
+  uint32_t first_inner_;
+};
+
+}  // namespace papilio

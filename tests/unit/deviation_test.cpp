@@ -1,0 +1,67 @@
+#include "core/deviation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/triangle_distance.h"
+
+// The short way to the distance from two triangles against the long one, which asks each triangle for itself.
+
+namespace papilio {
+namespace {
+
+class RandomPoints {
+ public:
+  Vec3f in_box(float size) { return {size * share(), size * share(), size * share()}; }
+  float share() { return uniform_(random_); }
+
+ private:
+  std::mt19937 random_{5};
+  std::uniform_real_distribution<float> uniform_{-1, 1};
+};
+
+double by_triangles(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_apex) {
+  const auto squared = [&](Vec3f c) {
+    return squared_distance(to_double(q), {to_double(a), to_double(b), to_double(c)});
+  };
+  return std::sqrt(std::min(squared(apex), squared(other_apex)));
+}
+
+TEST(Deviation, OfTwoFacesIsTheDistanceToTheNearer) {
+  RandomPoints points;
+  int above_none = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f a = points.in_box(1);
+    const Vec3f b = points.in_box(1);
+    const Vec3f apex = points.in_box(1);
+    const Vec3f other_apex = points.in_box(1);
+    // Near the middle of the edge, where new vertices are; now and then far away.
+    const Vec3f q = 0.5F * (a + b) + points.in_box(i % 10 == 0 ? 2 : 0.2F);
+    const double expected = by_triangles(q, a, b, apex, other_apex);
+    ASSERT_NEAR(deviation_from_faces(q, a, b, apex, other_apex), expected, 1e-7) << i;
+    const double to_edge = std::sqrt(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)));
+    above_none += std::abs(expected - to_edge) < 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(above_none, 500);  // the distance to the edge itself is met, too
+}
+
+TEST(Deviation, OfAPointInAFaceIsNone) {
+  RandomPoints points;
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 0.5F + 0.4F * points.share();
+    EXPECT_EQ(deviation_from_faces({x, 0.01F, 0}, {0, 0, 0}, {1, 0, 0}, {0.5F, 1, 0}, {0.5F, -1, 1}), 0);
+    EXPECT_EQ(deviation_from_faces({x, 0.01F, 0}, {0, 0, 0}, {1, 0, 0}, {0.5F, -1, 1}, {0.5F, 1, 0}), 0);
+  }
+}
+
+TEST(Deviation, OfFlatFacesIsThatOfTheirEdges) {
+  // Both triangles have no area: what is left of them are segments.
+  EXPECT_DOUBLE_EQ(deviation_from_faces({0.5F, 2, 0}, {0, 0, 0}, {1, 0, 0}, {0.5F, 0, 0}, {2, 0, 0}), 2);
+  EXPECT_DOUBLE_EQ(deviation_from_faces({4, 4, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}), 5);
+}
+
+}  // namespace
+}  // namespace papilio
