@@ -247,6 +247,7 @@ class HttpServerTest : public ::testing::Test {
   std::thread thread_;
   int port_ = 0;
   std::atomic<int> counted_ = 0;        ///< calls of /count
+  std::atomic<int> inside_ = 0;         ///< handlers of /hold and /watch that run (a request counts before it has one)
   std::atomic<bool> released_ = false;  ///< lets /hold end
   std::atomic<bool> saw_gone_ = false;  ///< /watch or /pour has seen its client go
 
@@ -314,12 +315,16 @@ class HttpServerTest : public ::testing::Test {
       return response;
     });
     server_->add("GET", "/hold", [this](Request&) {
+      ++inside_;
       EXPECT_TRUE(eventually([this] { return released_.load(); }));
+      --inside_;
       return text("held");
     });
     server_->add("GET", "/watch", [this](Request& r) {
       EXPECT_FALSE(r.client_gone());
+      ++inside_;
       saw_gone_ = eventually([&r] { return r.client_gone(); });
+      --inside_;
       return text("watched");
     });
     server_->add("GET", "/pour", [this](Request&) {

@@ -72,7 +72,7 @@ TEST_F(HttpServerTest, HandlerSeesThatTheClientIsGone) {
     saw_gone_ = false;
     Client client(port_);
     client.send(get("/watch"));
-    ASSERT_TRUE(eventually([&] { return server_->running() == 1; }));
+    ASSERT_TRUE(eventually([&] { return inside_ == 1; }));
     reset ? client.reset() : client.close();
     EXPECT_TRUE(eventually([&] { return saw_gone_.load(); }));
     EXPECT_TRUE(eventually([&] { return server_->running() == 0; }));
@@ -197,7 +197,7 @@ TEST_F(HttpServerTest, DrainWaitsForTheRunningAndRefusesTheRest) {
   running.send(get("/hold"));
   Client kept(port_);
   EXPECT_EQ(kept.ask(get("/hello")).status, 200);
-  ASSERT_TRUE(eventually([&] { return server_->running() == 1; }));
+  ASSERT_TRUE(eventually([&] { return inside_ == 1; }));
   auto drained = std::async(std::launch::async, [&] { return server_->drain(60); });
   Reply refused;
   ASSERT_TRUE(eventually([&] {
@@ -221,7 +221,7 @@ TEST_F(HttpServerTest, DrainCutsWhatTakesTooLongAndSigpipeKillsNobody) {
   start();
   Client client(port_);
   client.send(get("/watch"));
-  ASSERT_TRUE(eventually([&] { return server_->running() == 1; }));
+  ASSERT_TRUE(eventually([&] { return inside_ == 1; }));
   EXPECT_FALSE(server_->drain(0));
   thread_.join();
   EXPECT_TRUE(saw_gone_);
