@@ -41,6 +41,8 @@ class ErrorMeasure {
   [[nodiscard]] float most_error(double distance, double scale) const;
   /// A deviation below this has an error below `error`, on the same condition.
   [[nodiscard]] double least_deviation(float error, double scale) const;
+  /// Whether of two deviations at an edge the larger never has the lesser error: what lights make of one is not known.
+  [[nodiscard]] bool grows_with_distance() const { return view_ == nullptr || view_->lights.empty(); }
   /// Whether errors are deviations in pixels, and nothing else.
   [[nodiscard]] bool is_in_pixels() const { return camera_ != nullptr && tolerated_ == 0 && view_->lights.empty(); }
   /// The deviation in pixels of the view; 0 without one.

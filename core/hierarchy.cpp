@@ -165,10 +165,10 @@ uint64_t HierarchyLevel::bytes() const {
   const Topology& t = mesh.topology;
   uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
                    size(complete, from, parent, child, red, shared, longest) +
-                   size(trial.normals, trial.tried.before, trial.made) + size(mesh.attributes.point);
+                   size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
-  bytes += trial.deviations.bytes() + trial.bounds.bytes() + transitions.bytes() + trial.planes.bytes() +
-           trial.products.bytes();
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + transitions.bytes() +
+           trial.planes.bytes() + trial.products.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
 }

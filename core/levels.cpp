@@ -27,8 +27,9 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
-  level->trial = try_split(level->mesh, options, complete_edges(*level),
-                           {.features = &level->features, .threads = progress.threads()});
+  const TrialContext context{.features = &level->features, .threads = progress.threads()};
+  level->trial = try_split(level->mesh, options, complete_edges(*level), context);
+  level->trial.prepare_ranges(level->mesh, options, context);
   levels_.push_back(std::move(level));
 }
 
@@ -128,11 +129,13 @@ void Levels::make(const List<uint8_t>& red) {
   }
   level->trial =
       try_split(level->mesh, options_, asked_of.empty() ? complete_edges(*level) : edges_below_red(*level), context);
-  if (is_kept) level->trial.keep_more(level->mesh.topology);
-  if (is_kept)
+  if (is_kept) {
+    level->trial.keep_more(level->mesh.topology);
     add_kept(level);
-  else
+  } else {
+    level->trial.prepare_ranges(level->mesh, options_, context);
     levels_.push_back(level);
+  }
 }
 
 void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {

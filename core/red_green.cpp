@@ -63,9 +63,14 @@ class RedGreen {
       choice.candidates = std::move(wanted);
       return;
     }
-    choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least);
+    choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least, reaching());
     std::ranges::copy_if(wanted, std::back_inserter(choice.candidates),
                          [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
+  }
+
+  /// With a budget errors are compared with each other, too; and where nothing is split, they are what is left.
+  [[nodiscard]] Selection::Reaching reaching() const {
+    return options_.max_faces > 0 || options_.levels == 0 ? Selection::Reaching::exact : Selection::Reaching::no_more;
   }
 
   /// Decides what is split. True when the lowest level changes anything.

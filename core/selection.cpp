@@ -1,6 +1,7 @@
 #include "selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -70,6 +71,25 @@ Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_e
 void Trial::forget() {
   deviations = Memo<double>(made.size(), unknown);
   bounds = Memo<float>(made.size(), infinity);
+}
+
+void Trial::prepare_ranges(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  if (options.tolerance == 0 && (!options.view || options.view->error_pixels == 0)) return;
+  rooms = rooms_at_sides(mesh, context.asked_of, context.threads);
+  least = Memo<float>(made.size(), 0);
+}
+
+void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const {
+  const DeviationBounds finder{mesh, normals, rooms, tried, made};
+  std::array<DeviationRange, DeviationBounds::most_at_once + 3> ranges;
+  for (size_t first = 0; first < edges.size(); first += DeviationBounds::most_at_once) {
+    const auto some = edges.subspan(first, std::min(DeviationBounds::most_at_once, edges.size() - first));
+    finder.find(some, ranges.data());
+    for (size_t i = 0; i < some.size(); ++i) {
+      bounds.put(tried.before[some[i]], ranges[i].most);
+      least.put(tried.before[some[i]], ranges[i].least);
+    }
+  }
 }
 
 void Trial::keep_more(const Topology& mesh) {
@@ -154,6 +174,7 @@ List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level
   List<uint32_t> edges = curved(mesh, trial, level, region);
   const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
   if (needed > 0) {
+    if (trial.has_ranges()) trial.find_ranges(mesh, edges);
     keep_if(edges, [&](uint32_t e) { return trial.no_less_than_deviation_at(e) >= needed; });
     keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
     // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
@@ -165,16 +186,22 @@ List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level
 }
 
 List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
-                              float exact_from) const {
+                              float threshold, Reaching reaching) const {
   List<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
+  const bool least_will_do = reaching == Reaching::no_more && trial.has_ranges() && measure_.grows_with_distance();
   const auto error = [&](uint32_t e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };
   for (uint32_t e : wanted) {
-    errors[e] = measure_.most_error(trial.most_deviation_at(mesh, e), scale);
-    if (errors[e] < exact_from) continue;
     const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
+    errors[e] = measure_.most_error(distance, scale);
+    if (errors[e] < threshold) continue;
     errors[e] = error(e, distance);
-    if (errors[e] >= exact_from && !is_exact) errors[e] = error(e, trial.deviation_at(mesh, e));
+    if (errors[e] < threshold || is_exact) continue;
+    if (least_will_do) {
+      errors[e] = error(e, trial.no_more_than_deviation_at(e));
+      if (errors[e] >= threshold) continue;
+    }
+    errors[e] = error(e, trial.deviation_at(mesh, e));
   }
   return errors;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deviation.h"
+#include "deviation_range.h"
 #include "features.h"
 #include "memo.h"
 #include "options.h"
@@ -14,6 +15,16 @@
 
 namespace papilio {
 
+/// What is known of a mesh that is tried: all of it may be left out.
+struct TrialContext {
+  const Features* features = nullptr;  ///< its
+  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h); not one with cuts, unless:
+  /// [F of the parents]: normals are asked of the children of those marked, and edges to be tried lie between these
+  /// only; null: of all.
+  const List<uint8_t>* asked_of = nullptr;
+  int threads = 1;  ///< at most so many work on it
+};
+
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
 /// in `tried` would have.
 struct Trial {
@@ -22,6 +33,8 @@ struct Trial {
   Array<Vec3f> made;          ///< [tried.count()]
   Memo<double> deviations{};  ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
   Memo<float> bounds{};       ///< [tried.count()] no less than these; infinity where nothing is known
+  Memo<float> least{};        ///< [tried.count()] no more than these; 0 where nothing is known; empty without rooms
+  Array<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
 
   FacePlanes planes{};        ///< (view.h)
   NormalProducts products{};  ///< (flatness.h)
@@ -47,16 +60,14 @@ struct Trial {
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, of what is known already; infinity where nothing is.
   [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
-};
-
-/// What is known of a mesh that is tried: all of it may be left out.
-struct TrialContext {
-  const Features* features = nullptr;  ///< its
-  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h); not one with cuts, unless:
-  /// [F of the parents]: normals are asked of the children of those marked, and edges to be tried lie between these
-  /// only; null: of all.
-  const List<uint8_t>* asked_of = nullptr;
-  int threads = 1;  ///< at most so many work on it
+  /// Never more than that, of what is known already.
+  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(tried.before[edge]); }
+  /// Has ranges found (deviation_range.h) where the options hold deviations against a tolerance. Not for what is kept:
+  /// where more views are to come the deviations themselves serve all of them.
+  void prepare_ranges(const Mesh& mesh, const Options& options, const TrialContext& context);
+  [[nodiscard]] bool has_ranges() const { return !rooms.empty(); }
+  /// Of these edges, which were tried.
+  void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
@@ -103,10 +114,13 @@ class Selection {
   [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                       const EdgesShown& shown, const Box& box, float least) const;
 
-  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Errors below `exact_from` may
-  /// come out larger, but stay below it: they cost less. `box` of the vertices. [E]
+  /// What errors that reach a threshold are to be: where more is done with them than to compare them with it, exact.
+  enum class Reaching { exact, no_more };
+  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Those below `threshold` may
+  /// come out larger, those that reach it smaller if they may be `no_more`, but on their side of it: they cost less.
+  /// `box` of the vertices. [E]
   [[nodiscard]] List<float> errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
-                                   float exact_from) const;
+                                   float threshold, Reaching reaching = Reaching::exact) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;

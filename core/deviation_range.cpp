@@ -1,0 +1,158 @@
+#include "deviation_range.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "lanes.h"
+#include "parallel.h"
+
+namespace papilio {
+namespace {
+
+/// Four computations at once: of edges, of faces.
+using Four = Lanes::Register;
+using FourNumbers = std::array<uint32_t, 4>;
+
+[[nodiscard]] Four lesser(Four a, Four b) { return a < b ? a : b; }
+[[nodiscard]] Four larger(Four a, Four b) { return a > b ? a : b; }
+[[nodiscard]] Four magnitude(Four a) { return larger(a, -a); }
+[[nodiscard]] Four root(Four a) { return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+
+struct FourVectors {
+  Four x, y, z;
+
+  friend FourVectors operator-(const FourVectors& a, const FourVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend FourVectors operator*(float s, const FourVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+[[nodiscard]] Four dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] FourVectors cross(const FourVectors& a, const FourVectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// No less than the length.
+[[nodiscard]] Four sum_of_magnitudes(const FourVectors& a) { return magnitude(a.x) + magnitude(a.y) + magnitude(a.z); }
+
+[[nodiscard]] FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
+  const Four a = widen(points[numbers[0]]).v;
+  const Four b = widen(points[numbers[1]]).v;
+  const Four c = widen(points[numbers[2]]).v;
+  const Four d = widen(points[numbers[3]]).v;
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Four cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Four ab_behind = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Four cd_behind = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+          __builtin_shufflevector(ab_behind, cd_behind, 0, 1, 4, 5)};
+}
+
+/// True where the fourth power of a length, given squared, is surely a number that has all its digits.
+[[nodiscard]] auto is_usual(Four length_squared) { return (length_squared > 1e-14F) & (length_squared < 1e16F); }
+
+[[nodiscard]] Four rooms_of_four(const Mesh& mesh, const FourNumbers& faces) {
+  constexpr float least_sine = 1e-4F;  // of narrower ones too little is certain
+  constexpr float rounding = 0.99F;
+  const auto corners = [&](uint32_t i) {
+    const auto& origin = mesh.topology.origin;
+    return at(mesh.positions,
+              {origin[3 * faces[0] + i], origin[3 * faces[1] + i], origin[3 * faces[2] + i], origin[3 * faces[3] + i]});
+  };
+  const FourVectors a = corners(0);
+  const FourVectors ab = corners(1) - a;
+  const FourVectors ac = corners(2) - a;
+  const FourVectors bc = ac - ab;
+  const FourVectors normal = cross(ab, ac);
+  const Four area_squared = dot(normal, normal);  // of the parallelogram
+  const Four longest_squared = larger(dot(ab, ab), larger(dot(ac, ac), dot(bc, bc)));
+  const auto is_wide =
+      is_usual(longest_squared) & (area_squared > least_sine * least_sine * longest_squared * longest_squared);
+  // A side's middle is half as far from another side as the corner where it ends.
+  const Four squared = is_wide ? area_squared / longest_squared : Four{};
+  return 0.5F * rounding * root(squared);
+}
+
+/// Where what an edge's range is made of lies in its arrays.
+struct Place {
+  Place() = default;
+  Place(const DeviationBounds& of, uint32_t edge) : made(of.tried.before[edge]) {
+    const Topology& mesh = of.mesh.topology;
+    const uint32_t h = mesh.half_edge[edge];
+    a = mesh.origin[h];
+    b = mesh.tip(h);
+    face = Topology::face(h);
+    is_smooth = mesh.kind[edge] == EdgeKind::smooth;
+    twin_face = is_smooth ? Topology::face(mesh.twin[h]) : face;
+  }
+  uint32_t made, a, b, face, twin_face;
+  bool is_smooth;
+};
+
+/// The room on both sides; none on a curve, where the deviation is another.
+[[nodiscard]] float room(const DeviationBounds& of, const Place& place) {
+  return place.is_smooth ? std::min(of.rooms[place.face], of.rooms[place.twin_face]) : 0;
+}
+
+void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
+  constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
+  const auto points = [place](const Array<Vec3f>& from, uint32_t Place::*which) {
+    return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
+  };
+  const FourVectors a = points(of.mesh.positions, &Place::a);
+  const FourVectors along = points(of.mesh.positions, &Place::b) - a;
+  const FourVectors off = points(of.made, &Place::made) - a - 0.5F * along;
+  const Four along_squared = dot(along, along);
+  const Four off_squared = dot(off, off);
+  const Four rooms{room(of, place[0]), room(of, place[1]), room(of, place[2]), room(of, place[3])};
+  const auto are_usual = is_usual(along_squared);
+  const auto has_room = are_usual & (off_squared < rooms * rooms);
+
+  // The foot of the vertex on a face's plane is in the face, or beyond the edge and no other side; then the edge is
+  // nearest.
+  const FourVectors inward = cross(along, off);
+  const Four to_edge = dot(inward, inward) / along_squared;
+  const FourVectors normal = points(of.normals, &Place::face);
+  const FourVectors twin_normal = points(of.normals, &Place::twin_face);
+  const Four height = dot(off, normal);
+  const Four twin_height = dot(off, twin_normal);
+  const Four to_face = dot(inward, normal) >= Four{} ? height * height : to_edge;
+  const Four to_twin_face = dot(inward, twin_normal) <= Four{} ? twin_height * twin_height : to_edge;
+
+  constexpr float smallest = std::numeric_limits<float>::min();
+  const Four distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
+  const Four most_off = sum_of_magnitudes(off);
+  const Four unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
+  const Four least = has_room ? larger(distance - unsure, Four{}) : Four{};
+  const Four most = (are_usual ? distance : most_off) + unsure;
+  for (int i = 0; i < 4; ++i) ranges[i] = {least[i], most[i]};
+}
+
+}  // namespace
+
+Array<float> rooms_at_sides(const Mesh& mesh, const List<uint8_t>* asked_of, int threads) {
+  const uint32_t count = mesh.topology.face_count();
+  const uint32_t fours = (count + 3) / 4;
+  Array<float> rooms(count);
+  for_each_part(parts_of(count, threads), fours, [&](uint32_t, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; ++i) {
+      if (asked_of != nullptr && (*asked_of)[i] == 0) {
+        std::fill_n(&rooms[size_t{4} * i], 4, 0.0F);
+        continue;
+      }
+      const uint32_t most = count - 1;
+      const uint32_t f = 4 * i;
+      const Four four = rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
+      for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
+    }
+  });
+  return rooms;
+}
+
+void DeviationBounds::find(std::span<const uint32_t> edges, DeviationRange* ranges) const {
+  std::array<Place, most_at_once + 3> places;
+  for (size_t i = 0; i < edges.size(); ++i) places[i] = Place(*this, edges[i]);
+  for (size_t i = 0; i < 3; ++i) places[edges.size() + i] = places[0];
+  for (size_t i = 0; i < edges.size(); i += 4) find_four(*this, &places[i], ranges + i);
+}
+
+}  // namespace papilio
