@@ -46,6 +46,15 @@ void add_adaptive() {
   options = adaptive_options();
   options.tolerance = 2e-5;
   add_row("tolerance", triangles, options);
+  // What a viewer close to the model sees, and nothing else: one piece of the surface, where the others are scattered.
+  options = adaptive_options();
+  const Box box = bounding_box(triangles.positions);
+  View view;
+  view.target = 0.5 * (to_double(box.min) + to_double(box.max));
+  view.eye = view.target + Vec3d{0, 0, 0.5 * box.diagonal()};
+  view.edge_pixels = 0;
+  options.view = view;
+  add_row("view", triangles, options);
 }
 
 }  // namespace papilio::bench
