@@ -1,5 +1,7 @@
 #include "uniform.h"
 
+#include <utility>
+
 #include "attributes.h"
 #include "features.h"
 #include "normals.h"

@@ -1,6 +1,8 @@
 #include "uniform_butterfly.h"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 

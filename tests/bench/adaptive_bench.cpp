@@ -4,8 +4,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// Adaptive refinement, red-green, three levels, a result of a fifth or a quarter of the uniform one: a triangle of it
-// beside one of our own uniform refinement in two levels, which has as many. One thread, without tension.
+// Adaptive refinement, red-green, three levels, a result of a fifth to three tenths of the uniform one: a triangle of
+// it beside one of our own uniform refinement in two levels, which has as many. One thread, without tension.
 
 namespace papilio::bench {
 namespace {

@@ -116,6 +116,19 @@ TEST(PreparedMesh, GivesWhatAColdRequestGivesOfAttributesAndOfWhatIsNotManifold)
   }
 }
 
+TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereNothingIsSplit) {
+  // Edges near each other are much alike: which of them looks worst is decided by the last digits.
+  const Mesh coarse = build_mesh(torus(100, 60));
+  const PreparedMesh prepared(coarse, {}, plenty);
+  for (int i = 0; i < 100; ++i) {
+    Options options{.levels = 0, .view = view_from(coarse, 3.6 * i, 0.7)};
+    options.view->error_pixels = 1e-6;
+    const Result cold = refine(coarse, options);
+    EXPECT_GT(cold.error_pixels, 1e-3);
+    ASSERT_TRUE(is_equal(refine(prepared, options), cold)) << i;
+  }
+}
+
 TEST(PreparedMesh, ServesSeveralThreadsAtOnce) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   for (uint64_t budget : {plenty, uint64_t{1'500'000}}) {
