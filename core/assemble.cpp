@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "attributes.h"
+#include "four_children.h"
 #include "transition.h"
 
 namespace papilio {
@@ -13,8 +14,9 @@ namespace {
 
 /// A level, and what becomes of its faces. Levels lie in an array: the one above is before, the one below behind.
 struct AssembledLevel {
-  static constexpr uint8_t hidden = 255;   ///< not in the result, nor its children
-  static constexpr uint8_t divided = 254;  ///< its children are
+  static constexpr uint8_t hidden = 255;         ///< not in the result, nor its children
+  static constexpr uint8_t divided = 254;        ///< its children are
+  static constexpr uint8_t cut_in_four = 2 * 7;  ///< a pattern's number, as below
 
   const LevelChoice* choice;
   const HierarchyLevel* level;
@@ -106,7 +108,7 @@ class Assembler {
   }
 
   /// What becomes of a face and of what lies below it, and where that lies in the result. `corner`: its corners there.
-  void place(AssembledLevel& level, uint32_t f, const std::array<uint32_t, 3>& corner) {
+  void place(AssembledLevel& level, uint32_t f, const OfSides& corner) {
     if (!coarse_.attributes.empty()) level.shown.push_back(f);
     const unsigned mask = level.choice->split_mask(f);
     if (mask == 0) {
@@ -115,23 +117,26 @@ class Assembler {
       return;
     }
     const uint32_t* edge = &level.edge[size_t{3} * f];
-    const std::array<uint32_t, 6> vertex = {corner[0],
-                                            corner[1],
-                                            corner[2],
-                                            level.new_vertex[edge[0]],  // there or not: the pattern knows
-                                            level.new_vertex[edge[1]],
-                                            level.new_vertex[edge[2]]};
-    // What has children as support only is cut into the same four.
-    const bool is_divided = mask == 7 && level.has_below && level.choice->red[f] != 0;
-    level.fate[f] = is_divided ? AssembledLevel::divided : choose_transition(*level.level, f, mask, most_cosine_);
-    const SplitPattern& cut = is_divided ? split_pattern(7, false) : transition_pattern(level.fate[f]);
-    if (is_divided) {
-      for (uint32_t c = 0; c < 4; ++c) {
-        const auto& of_child = cut.corner[c];
-        place((&level)[1], level.child(f) + c, {vertex[of_child[0]], vertex[of_child[1]], vertex[of_child[2]]});
+    const OfSides middle{level.new_vertex[edge[0]], level.new_vertex[edge[1]], level.new_vertex[edge[2]]};
+    if (mask == 7) {
+      // What has children as support only is cut into the same four.
+      if (level.has_below && level.choice->red[f] != 0) {
+        level.fate[f] = AssembledLevel::divided;
+        const uint32_t child = level.child(f);
+        place((&level)[1], child, {corner[0], middle[0], middle[2]});
+        place((&level)[1], child + 1, {middle[0], corner[1], middle[1]});
+        place((&level)[1], child + 2, {middle[2], middle[1], corner[2]});
+        place((&level)[1], child + 3, middle);
+      } else {
+        level.fate[f] = AssembledLevel::cut_in_four;
+        put_corners_of_four(corner, middle, begin_faces(level, f, 4));
       }
       return;
     }
+    level.fate[f] = choose_transition(*level.level, f, mask, most_cosine_);
+    const SplitPattern& cut = transition_pattern(level.fate[f]);
+    // Middles are there or not: the pattern knows.
+    const std::array<uint32_t, 6> vertex{corner[0], corner[1], corner[2], middle[0], middle[1], middle[2]};
     uint32_t* out = begin_faces(level, f, cut.children);
     for (const auto& child : cut.corner)
       for (uint8_t local : child) *out++ = vertex[local];
@@ -158,7 +163,10 @@ class Assembler {
     const uint32_t base = level.first[f];
     const std::array<uint32_t, 7> against = find_twins(level, f);
     uint32_t* twin = &out_.topology.twin[base];
-    for (uint32_t c = 0; c < 12; ++c) twin[c] = against[cut.twin_from[c]] + cut.twin_step[c];  // four faces, as above
+    if (level.fate[f] == AssembledLevel::cut_in_four)
+      put_twins_of_four(base, {against[0], against[2], against[4]}, {against[1], against[3], against[5]}, twin);
+    else
+      for (uint32_t c = 0; c < 12; ++c) twin[c] = against[cut.twin_from[c]] + cut.twin_step[c];  // as many as above
     if (!with_edges_) return;
     for (uint32_t c = 0; c < 3U * cut.children; ++c)
       number_edge(base + c,

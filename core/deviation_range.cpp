@@ -2,53 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
-#include "lanes.h"
+#include "four.h"
 #include "parallel.h"
 
 namespace papilio {
 namespace {
-
-/// Four computations at once: of edges, of faces.
-using Four = Lanes::Register;
-using FourNumbers = std::array<uint32_t, 4>;
-
-[[nodiscard]] Four lesser(Four a, Four b) { return a < b ? a : b; }
-[[nodiscard]] Four larger(Four a, Four b) { return a > b ? a : b; }
-[[nodiscard]] Four magnitude(Four a) { return larger(a, -a); }
-[[nodiscard]] Four root(Four a) { return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
-
-struct FourVectors {
-  Four x, y, z;
-
-  friend FourVectors operator-(const FourVectors& a, const FourVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend FourVectors operator*(float s, const FourVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
-};
-
-[[nodiscard]] Four dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-[[nodiscard]] FourVectors cross(const FourVectors& a, const FourVectors& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-/// No less than the length.
-[[nodiscard]] Four sum_of_magnitudes(const FourVectors& a) { return magnitude(a.x) + magnitude(a.y) + magnitude(a.z); }
-
-[[nodiscard]] FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
-  const Four a = widen(points[numbers[0]]).v;
-  const Four b = widen(points[numbers[1]]).v;
-  const Four c = widen(points[numbers[2]]).v;
-  const Four d = widen(points[numbers[3]]).v;
-  const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-  const Four cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Four ab_behind = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const Four cd_behind = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-          __builtin_shufflevector(ab_behind, cd_behind, 0, 1, 4, 5)};
-}
-
-/// True where the fourth power of a length, given squared, is surely a number that has all its digits.
-[[nodiscard]] auto is_usual(Four length_squared) { return (length_squared > 1e-14F) & (length_squared < 1e16F); }
 
 [[nodiscard]] Four rooms_of_four(const Mesh& mesh, const FourNumbers& faces) {
   constexpr float least_sine = 1e-4F;  // of narrower ones too little is certain
@@ -75,7 +35,7 @@ struct FourVectors {
 /// Where what an edge's range is made of lies in its arrays.
 struct Place {
   Place() = default;
-  Place(const DeviationBounds& of, uint32_t edge) : made(of.tried.before[edge]) {
+  Place(const DeviationBounds& of, uint32_t edge) : made(of.tried.before.empty() ? edge : of.tried.before[edge]) {
     const Topology& mesh = of.mesh.topology;
     const uint32_t h = mesh.half_edge[edge];
     a = mesh.origin[h];

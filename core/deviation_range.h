@@ -24,8 +24,8 @@ struct DeviationBounds {
   const Mesh& mesh;
   const Array<Vec3f>& normals;  ///< [F], of faces that have room
   const Array<float>& rooms;    ///< [F] as above
-  const SplitPlan& tried;
-  const Array<Vec3f>& made;  ///< [tried.count()]
+  const SplitPlan& tried;       ///< of none: all edges
+  const Array<Vec3f>& made;     ///< [tried.count()]
 
   /// Writes the ranges of the edges, which were tried; of one to `most_at_once`, and there must be room for three more.
   /// Mostly both ends are within a few millionths of how far the vertex is from the midpoint. Where the deviation is

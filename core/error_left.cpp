@@ -1,10 +1,14 @@
 #include "error_left.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "lanes.h"
 #include "split_pattern.h"
+#include "too_near.h"
 
 namespace papilio {
 namespace {
@@ -70,19 +74,19 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
     const Trial& trial = choice.level->trial;
-    float too_little = surely_too_little(k);
-    // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
-    List<uint32_t> edges;
-    if (trial.planes.empty()) keep_if(edges = choice.region.edges, [&](uint32_t e) { return choice.split[e] == 0; });
-    for (uint32_t e : trial.planes.empty() ? edges : choice.region.edges) {
-      if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
-      if (!may_matter(choice, e, scales_[k]) || is_near(k, e, 1)) continue;
-      const uint32_t h = mesh.half_edge[e];
-      const uint32_t t = mesh.twin[h];
-      if (reached_[Topology::face(h)] == 0 && (t == none || reached_[Topology::face(t)] == 0)) continue;
-      if (!choice.shown[e]) continue;
-      add(k, e);
-      too_little = surely_too_little(k);
+    if (trial.bounds.empty()) {
+      add_far(k);
+    } else {
+      float too_little = surely_too_little(k);
+      // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
+      List<uint32_t> edges;
+      if (trial.planes.empty()) keep_if(edges = choice.region.edges, [&](uint32_t e) { return choice.split[e] == 0; });
+      for (uint32_t e : trial.planes.empty() ? edges : choice.region.edges) {
+        if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
+        if (!may_matter(choice, e, scales_[k]) || is_near(k, e, 1)) continue;
+        add_whole(k, e);
+        too_little = surely_too_little(k);
+      }
     }
     for (uint32_t h : choice.level->shared) {
       const uint32_t e = mesh.edge[h];
@@ -91,14 +95,98 @@ class ErrorFinder {
     }
   }
 
+  /// An edge of the region that stays.
+  void add_whole(size_t k, uint32_t e) {
+    const Topology& mesh = mesh_of(k);
+    const uint32_t h = mesh.half_edge[e];
+    const uint32_t t = mesh.twin[h];
+    if (reached_[Topology::face(h)] == 0 && (t == none || reached_[Topology::face(t)] == 0)) return;
+    if (levels_[k].shown[e]) add(k, e);
+  }
+
+  /// The same for all of the region's edges, and those of the last level that are split, where nothing is known of
+  /// deviations: those are looked at whose vertex is far enough from the middle.
+  void add_far(size_t k) {
+    const Topology& mesh = mesh_of(k);
+    if (k == 0) {
+      FarFinder far(*this, 0);
+      for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+        const uint32_t h = mesh.half_edge[e];
+        far.look_at(e, far.position(mesh.origin[h]), far.position(mesh.tip(h)));
+      }
+      return;
+    }
+    // Faces come by fours, whose nine edges have six ends in all: 0 to 2 the parent's corners, 3 to 5 the middles of
+    // its sides.
+    constexpr std::array<uint8_t, 6> corner{0, 4, 8, 9, 10, 11};
+    struct Side {
+      uint8_t half_edge, from, to;
+    };
+    constexpr std::array<Side, 9> sides{
+        {{0, 0, 3}, {3, 3, 1}, {4, 1, 4}, {7, 4, 2}, {8, 2, 5}, {2, 5, 0}, {9, 3, 4}, {10, 4, 5}, {11, 5, 3}}};
+    FarFinder far(*this, k);
+    const List<uint32_t>& faces = levels_[k].region.faces;
+    for (size_t i = 0; i < faces.size(); i += 4) {
+      if (reached_[faces[i]] == 0) continue;
+      const uint32_t h = 3 * faces[i];
+      std::array<Lanes, 6> end;
+      for (uint32_t c = 0; c < 6; ++c) end[c] = far.position(mesh.origin[h + corner[c]]);
+      for (const Side& side : sides) far.look_at(mesh.edge[h + side.half_edge], end[side.from], end[side.to]);
+    }
+  }
+
+  /// Looks at the edges of one level, as above.
+  class FarFinder {
+   public:
+    FarFinder(ErrorFinder& of, size_t k)
+        : of_(of),
+          k_(k),
+          choice_(of.levels_[k]),
+          may_be_split_(choice_.may_be_split.data()),
+          is_split_(choice_.split.data()),
+          positions_(choice_.level->mesh.positions.data()),
+          share_squared_{1, k + 1 == of.levels_.size() ? static_cast<float>(split_leaves * split_leaves) : no_share},
+          too_near_(choice_.level->box.largest_coordinate()) {
+      too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
+    }
+    [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
+    void look_at(uint32_t e, Lanes from, Lanes to) {
+      if (may_be_split_[e] == 0) return;
+      const Trial& trial = choice_.level->trial;
+      const float off_squared = squared_length(widen(trial.made[trial.number(e)]) - 0.5F * (from + to));
+      if (share_squared_[is_split_[e]] * off_squared > too_near_.squared()) [[unlikely]]
+        add(e);
+    }
+
+   private:
+    static constexpr float no_share = -std::numeric_limits<float>::infinity();
+
+    void add(uint32_t e) {
+      if (choice_.split[e] != 0)
+        of_.add_last_split(k_, e);
+      else
+        of_.add_whole(k_, e);
+      too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
+    }
+
+    ErrorFinder& of_;
+    size_t k_;
+    const LevelChoice& choice_;
+    const uint8_t *may_be_split_, *is_split_;
+    const Vec3f* positions_;
+    std::array<float, 2> share_squared_;  ///< by whether the edge is split
+    TooNear too_near_;
+  };
+
   /// Of the last level nothing below was judged.
   void add_last_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    for (uint32_t e : choice.split_edges) {
-      if (!may_be_largest(k, e, split_leaves)) continue;
-      if (is_near(k, e, split_leaves) || !choice.shown[e]) continue;
-      add(k, e, split_leaves);
-    }
+    if (choice.level->trial.bounds.empty()) return;  // add_far did it
+    for (uint32_t e : choice.split_edges)
+      if (may_be_largest(k, e, split_leaves) && !is_near(k, e, split_leaves)) add_last_split(k, e);
+  }
+  void add_last_split(size_t k, uint32_t e) {
+    if (levels_[k].shown[e]) add(k, e, split_leaves);
   }
 
   void add_split(size_t k) {

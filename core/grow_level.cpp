@@ -44,14 +44,13 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
   const List<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
   EdgeMarks marks = complete_edges(level);
   Trial& trial = level.trial;
-  trial = {.normals = grown_normals(level.mesh, known.trial.normals, moved), .tried = SplitPlan(marks), .made = {}};
+  trial = {.normals = grown_normals(level.mesh, known.trial.normals, moved), .tried = SplitPlan(marks)};
   for (uint32_t e = 0; e < marks.size(); ++e)
     if (rank[e] != none) marks[e] = 0;
   const SplitPlan rest(marks);
   const Array<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
 
   trial.made.resize(trial.tried.count());
-  trial.forget();
   trial.keep_more(level.mesh.topology);
   keep_known(level.mesh.topology, known, moved, trial);
   for (uint32_t e = 0; e < marks.size(); ++e) {

@@ -74,21 +74,17 @@ class LevelMaker {
     part.origin.resize(half_edges);
     part.twin.resize(half_edges);
     part.edge.resize(half_edges);
-    part.half_edge.assign(edges_.count(), none);
+    part.half_edge.resize(edges_.count());
     part.kind.resize(edges_.count());
-    for (uint32_t e = 0; e < edges_.count(); ++e) part.kind[e] = mesh_.kind[edges_.numbers()[e]];
     uint32_t at = 0;
     for (uint32_t f : faces_.numbers())
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h, ++at) {
-        const uint32_t t = mesh_.twin[h];
-        const uint32_t e = edges_[mesh_.edge[h]];
+      for (uint32_t i = 0; i < 3; ++i, ++at) {
+        const uint32_t h = 3 * f + i;
         part.origin[at] = vertices_[mesh_.origin[h]];
-        part.edge[at] = e;
-        part.twin[at] = t == none || !faces_.has(Topology::face(t)) ? none : in_part(t);
-        if (t != none && part.twin[at] == none) part.kind[e] = EdgeKind::cut;
-        // Edges name the half-edges that they name where everything is held.
-        if (part.half_edge[e] == none || mesh_.half_edge[mesh_.edge[h]] == h) part.half_edge[e] = at;
+        part.edge[at] = edges_[mesh_.edge[h]];
+        part.twin[at] = in_part_or_none(mesh_.twin[h]);
       }
+    name_half_edges(part);
     const auto carry = [&](const std::vector<uint32_t>& list, std::vector<uint32_t>& out) {
       for (uint32_t v : list)
         if (vertices_.has(v)) out.push_back(vertices_[v]);
@@ -98,11 +94,26 @@ class LevelMaker {
     return part;
   }
 
+  /// Edges name the half-edges that they name where everything is held, if those are; else another one.
+  void name_half_edges(Topology& part) const {
+    for (uint32_t e = 0; e < edges_.count(); ++e) {
+      const uint32_t h = mesh_.half_edge[edges_.numbers()[e]];
+      const uint32_t t = mesh_.twin[h];
+      const uint32_t one = in_part_or_none(h);
+      const uint32_t other = in_part_or_none(t);
+      part.half_edge[e] = one != none ? one : other;
+      part.kind[e] = t != none && (one == none || other == none) ? EdgeKind::cut : mesh_.kind[edges_.numbers()[e]];
+    }
+    for (uint32_t h : above_.shared)
+      if (faces_.has(Topology::face(h)) && part.half_edge[edges_[mesh_.edge[h]]] == none)
+        part.half_edge[edges_[mesh_.edge[h]]] = in_part(h);
+  }
+
   void make_vertices() {
     const uint32_t count = below_.mesh.topology.vertex_count;
     below_.mesh.positions.resize(count);
     below_.from.resize(count);
-    below_.complete.assign(count, 1);
+    below_.complete.assign(size_t{count} + 1, 1);  // one more, for what is not held
     uint32_t at = 0;
     for (uint32_t v : vertices_.numbers()) {
       below_.mesh.positions[at] = above_.mesh.positions[v];
@@ -115,11 +126,12 @@ class LevelMaker {
     }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (faces_.has(f)) continue;
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        if (vertices_.has(mesh_.origin[h])) below_.complete[vertices_[mesh_.origin[h]]] = 0;
-        if (edges_.has(mesh_.edge[h])) below_.complete[new_vertex(mesh_.edge[h])] = 0;
+      for (uint32_t i = 0; i < 3; ++i) {
+        below_.complete[std::min(vertices_[mesh_.origin[3 * f + i]], count)] = 0;
+        below_.complete[vertices_.count() + std::min(edges_[mesh_.edge[3 * f + i]], edges_.count())] = 0;
       }
     }
+    below_.complete.pop_back();
   }
 
   /// What descend() makes of the features, of what is held.
@@ -145,6 +157,9 @@ class LevelMaker {
 
   /// Numbers in the part that is held.
   [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
+  [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
+    return h == none || !faces_.has(Topology::face(h)) ? none : in_part(h);
+  }
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 
   const HierarchyLevel& above_;

@@ -31,7 +31,7 @@ struct HierarchyLevel {
   List<uint32_t> child;                ///< [F of the level above] first of the face's four children here; `none`
   List<uint8_t> red;                   ///< [F of the level above] whose children are held with the rings round them
   List<uint32_t> shared;               ///< the half-edges at shared edges
-  Trial trial{{}, SplitPlan({}), {}};  ///< what splitting its edges would give, where tried
+  Trial trial;                         ///< what splitting its edges would give, where tried
   List<double> longest;                ///< [V] edges (view.h); empty where no view asked
   Box box{};                           ///< of the vertices
   Memo<uint32_t> transitions;          ///< [F] what is known of its transition faces (transition.h)

@@ -22,6 +22,7 @@ struct Lanes {
 
 /// Lane by lane.
 inline Lanes larger(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
+inline Lanes lesser(Lanes a, Lanes b) { return {a.v < b.v ? a.v : b.v}; }
 /// Of the first three lanes.
 inline float squared_length(Lanes a) { return a.v[0] * a.v[0] + a.v[1] * a.v[1] + a.v[2] * a.v[2]; }
 

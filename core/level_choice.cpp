@@ -1,19 +1,30 @@
 #include "level_choice.h"
 
+#include <algorithm>
+#include <array>
+
 namespace papilio {
 namespace {
 
 /// The edges all of whose faces are in the region, which lies below level 0. [E]
 EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   const Topology& mesh = level.mesh.topology;
-  List<uint8_t> is_in(mesh.face_count() / 4, 0);  // children come by four
-  for (uint32_t f : faces) is_in[f / 4] = 1;
+  List<uint8_t> is_in(mesh.face_count() / 4 + 1, 0);  // children come by four; the last stands for no face at all
+  for (size_t i = 0; i < faces.size(); i += 4) is_in[faces[i] / 4] = 1;
+  is_in.back() = 1;
   EdgeMarks marks(mesh.edge_count(), 0);
-  for (uint32_t f : faces)
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-      const uint32_t t = mesh.twin[h];
-      if (t == none || is_in[t / 12] != 0) marks[mesh.edge[h]] = 1;
+  // Of the four: two halves of each side, with one neighbour, and the edges between them.
+  constexpr std::array<std::array<uint8_t, 2>, 3> halves{{{0, 3}, {4, 7}, {8, 2}}};
+  for (size_t i = 0; i < faces.size(); i += 4) {
+    const uint32_t* twin = &mesh.twin[size_t{3} * faces[i]];
+    const uint32_t* edge = &mesh.edge[size_t{3} * faces[i]];
+    for (const auto& [first, second] : halves) {
+      const uint32_t neighbour = std::min(twin[first] / 12, mesh.face_count() / 4);
+      marks[edge[first]] |= is_in[neighbour];
+      marks[edge[second]] |= is_in[neighbour];
     }
+    for (uint32_t inner = 9; inner < 12; ++inner) marks[edge[inner]] = 1;
+  }
   for (uint32_t h : level.shared)
     if (is_in[h / 12] == 0) marks[mesh.edge[h]] = 0;
   return marks;
@@ -23,6 +34,7 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
 
 uint64_t LevelChoice::count_faces_of_split() const {
   const Topology& mesh = level->mesh.topology;
+  if (level->features.curve_half_edges.empty()) return 2 * split_edges.size();
   uint64_t count = 0;
   for (uint32_t e : split_edges) {
     const EdgeKind kind = mesh.kind[e];
@@ -32,9 +44,19 @@ uint64_t LevelChoice::count_faces_of_split() const {
   return count;
 }
 
-List<uint32_t> LevelChoice::faces_at_split() const {
+bool LevelChoice::has_many_split() const {
   constexpr size_t few = 8;  // fewer than one edge for so many faces: then these are looked up
-  if (split_edges.size() * few > region.faces.size()) {
+  return split_edges.size() * few > region.faces.size();
+}
+
+List<uint32_t> LevelChoice::faces_split_in_part() const {
+  List<uint32_t> faces = has_many_split() ? region.faces : faces_at_split();
+  keep_if(faces, [this](uint32_t f) { return (split_mask(f) + 1) % 8 > 1; });
+  return faces;
+}
+
+List<uint32_t> LevelChoice::faces_at_split() const {
+  if (has_many_split()) {
     List<uint32_t> faces = region.faces;
     keep_if(faces, [this](uint32_t f) { return split_mask(f) != 0; });
     return faces;

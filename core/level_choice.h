@@ -43,6 +43,8 @@ struct LevelChoice {
   [[nodiscard]] uint64_t count_faces_of_split() const;
   /// The faces at edges that are split, in ascending order.
   [[nodiscard]] List<uint32_t> faces_at_split() const;
+  /// Those of them of which not all edges are.
+  [[nodiscard]] List<uint32_t> faces_split_in_part() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>
@@ -63,6 +65,9 @@ struct LevelChoice {
     const uint32_t* corner = &level->mesh.topology.origin[size_t{3} * face];
     return (at_a_red[corner[0]] | at_a_red[corner[1]] | at_a_red[corner[2]]) != 0;
   }
+
+ private:
+  [[nodiscard]] bool has_many_split() const;
 };
 
 /// Choice of all of level 0; of the level below `above`, of the children of the faces that `above` has marked red. Only

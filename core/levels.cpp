@@ -28,8 +28,9 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
   const TrialContext context{.features = &level->features, .threads = progress.threads()};
-  level->trial = try_split(level->mesh, options, complete_edges(*level), context);
-  level->trial.prepare_ranges(level->mesh, options, context);
+  level->trial = options.w == 0 ? try_everything(level->mesh, options, context)
+                                : try_split(level->mesh, options, complete_edges(*level), context);
+  level->trial.prepare_errors(level->mesh, options, context);
   levels_.push_back(std::move(level));
 }
 
@@ -118,24 +119,34 @@ void Levels::make(const List<uint8_t>& red) {
   progress_.poll();
   if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
   TrialContext context{.features = &level->features, .threads = progress_.threads()};
-  List<uint8_t> asked_of;
-  const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
-  if (level->is_whole) {
-    context.parents = &levels_.back()->mesh.topology;
-  } else if (is_last && !is_kept) {
-    for (uint32_t parent : level->parent) asked_of.push_back(level->red[parent]);
-    context.parents = &below.parents;
-    context.asked_of = &asked_of;
-  }
-  level->trial =
-      try_split(level->mesh, options_, asked_of.empty() ? complete_edges(*level) : edges_below_red(*level), context);
+  if (level->is_whole) context.parents = &levels_.back()->mesh.topology;
   if (is_kept) {
+    level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
     level->trial.keep_more(level->mesh.topology);
     add_kept(level);
   } else {
-    level->trial.prepare_ranges(level->mesh, options_, context);
+    try_for_once(*level, below.parents, context);
     levels_.push_back(level);
   }
+}
+
+void Levels::try_for_once(HierarchyLevel& level, const Topology& parents, TrialContext context) const {
+  constexpr size_t one_as_dear_as = 4;  // of all, family by family
+  const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
+  List<uint8_t> asked_of;
+  bool are_few = false;
+  if (is_last && !level.is_whole) {
+    for (uint32_t parent : level.parent) asked_of.push_back(level.red[parent]);
+    are_few = one_as_dear_as * static_cast<size_t>(std::ranges::count(asked_of, 1)) < asked_of.size();
+    context.parents = &parents;
+    context.asked_of = &asked_of;
+  }
+  if (are_few || options_.w != 0)
+    level.trial =
+        try_split(level.mesh, options_, asked_of.empty() ? complete_edges(level) : edges_below_red(level), context);
+  else
+    level.trial = try_everything(level.mesh, options_, context);
+  level.trial.prepare_errors(level.mesh, options_, context);
 }
 
 void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {

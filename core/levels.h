@@ -41,6 +41,8 @@ class Levels {
   /// those marked.
   [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
   void make(const List<uint8_t>& red);
+  /// Tries the edges of a level that is not kept, as far as this request may ask for them; `parents` as in LevelBelow.
+  void try_for_once(HierarchyLevel& level, const Topology& parents, TrialContext context) const;
   void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
   const Options& options_;

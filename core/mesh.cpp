@@ -9,6 +9,7 @@
 
 #include "attributes.h"
 #include "error.h"
+#include "lanes.h"
 #include "weld.h"
 
 namespace papilio {
@@ -431,13 +432,26 @@ Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count) {
 Box bounding_box(std::span<const Vec3f> positions) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (const Vec3f& p : positions) {
-    box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
-    box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
+  if (positions.empty()) return box;
+  Lanes least{Lanes::Register{} + infinity};
+  Lanes most{Lanes::Register{} - infinity};
+  for (const Vec3f& p : positions.first(positions.size() - 1)) {  // four floats are read
+    least = lesser(widen(p), least);
+    most = larger(widen(p), most);
   }
+  store(least, box.min);
+  store(most, box.max);
+  const Vec3f& p = positions.back();
+  box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
+  box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
   return box;
 }
 
 double Box::diagonal() const { return min.x <= max.x ? length(to_double(max) - to_double(min)) : 0; }
+
+float Box::largest_coordinate() const {
+  const auto largest = [](float from, float to) { return std::max({0.0F, -from, to}); };
+  return std::max({largest(min.x, max.x), largest(min.y, max.y), largest(min.z, max.z)});
+}
 
 }  // namespace papilio

@@ -127,6 +127,8 @@ void forget_edges(Topology& mesh);
 struct Box {
   Vec3f min, max;
   [[nodiscard]] double diagonal() const;
+  /// The largest magnitude of any; 0 of no points.
+  [[nodiscard]] float largest_coordinate() const;
 };
 [[nodiscard]] Box bounding_box(std::span<const Vec3f> positions);
 

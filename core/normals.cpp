@@ -29,6 +29,16 @@ Array<Vec3f> face_normals(const Mesh& mesh, int threads) {
   return normals;
 }
 
+Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint8_t>& asked_of, int threads) {
+  const uint32_t count = mesh.topology.face_count() / 4;
+  Array<Vec3f> normals(size_t{4} * count);
+  for_each_part(parts_of(count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; ++i)
+      for (uint32_t f = 4 * i; f < 4 * i + 4; ++f) normals[f] = asked_of[i] != 0 ? face_normal(mesh, f) : Vec3f{};
+  });
+  return normals;
+}
+
 Array<Vec3f> vertex_normals(const Mesh& mesh) {
   Array<Vec3d> sums(mesh.topology.vertex_count, Vec3d{});
   for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {

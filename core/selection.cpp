@@ -18,18 +18,9 @@ constexpr float never = -infinity;
 /// No less than the number, which is not negative.
 float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
-}  // namespace
-
-Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
-                           const TrialContext& context) {
+/// Those of all edges for which that can be done; what is made of the others means nothing. [E]
+Array<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
   const Topology& topology = mesh.topology;
-  std::optional<TensionField> field;
-  if (options.tension != Tension::off) field = tension_field(topology, normals, options.tension);
-  const TensionField* tension = field ? &*field : nullptr;
-  constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
-  if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
-    return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
-
   Array<Vec3f> made(topology.edge_count());
   std::optional<Features> found;
   if (context.features == nullptr) found = find_features(topology);
@@ -39,6 +30,30 @@ Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const 
                             context.asked_of);
   else
     uniform_butterfly(topology, features, mesh.positions.data(), made.data(), tension, context.threads);
+  return made;
+}
+
+std::optional<TensionField> find_tension(const Topology& mesh, const Array<Vec3f>& normals, const Options& options) {
+  if (options.tension == Tension::off) return std::nullopt;
+  return tension_field(mesh, normals, options.tension);
+}
+
+Array<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  if (context.asked_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
+  return normals_of_fours(mesh, *context.asked_of, context.threads);
+}
+
+}  // namespace
+
+Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
+                           const TrialContext& context) {
+  const Topology& topology = mesh.topology;
+  const std::optional<TensionField> field = find_tension(topology, normals, options);
+  const TensionField* tension = field ? &*field : nullptr;
+  constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
+  if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
+    return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
+  Array<Vec3f> made = make_all_vertices(mesh, tension, context);
   if (plan.count() == made.size()) return made;
   Array<Vec3f> planned(plan.count());
   for (uint32_t e = 0; e < made.size(); ++e)
@@ -46,25 +61,16 @@ Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const 
   return planned;
 }
 
-namespace {
-
-/// What is not asked for has none.
-Array<Vec3f> normals_of_children(const Mesh& mesh, const List<uint8_t>& asked_of) {
-  Array<Vec3f> normals(mesh.topology.face_count());
-  for (uint32_t f = 0; f < normals.size(); ++f) normals[f] = asked_of[f / 4] != 0 ? face_normal(mesh, f) : Vec3f{};
-  return normals;
+Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const TrialContext& context) {
+  Trial trial{.normals = normals_asked_of(mesh, options, context), .tried = SplitPlan(try_edges)};
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, context);
+  return trial;
 }
 
-}  // namespace
-
-Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const TrialContext& context) {
-  const bool are_all_asked = context.asked_of == nullptr || options.tension != Tension::off;
-  Trial trial{
-      .normals = are_all_asked ? face_normals(mesh, context.threads) : normals_of_children(mesh, *context.asked_of),
-      .tried = SplitPlan(try_edges),
-      .made = {}};
-  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, context);
-  trial.forget();
+Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  Trial trial{.normals = normals_asked_of(mesh, options, context)};
+  const std::optional<TensionField> tension = find_tension(mesh.topology, trial.normals, options);
+  trial.made = make_all_vertices(mesh, tension ? &*tension : nullptr, context);
   return trial;
 }
 
@@ -73,8 +79,11 @@ void Trial::forget() {
   bounds = Memo<float>(made.size(), infinity);
 }
 
-void Trial::prepare_ranges(const Mesh& mesh, const Options& options, const TrialContext& context) {
-  if (options.tolerance == 0 && (!options.view || options.view->error_pixels == 0)) return;
+void Trial::prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  const bool has_tolerance = options.tolerance > 0 || (options.view && options.view->error_pixels > 0);
+  if (!has_tolerance && options.max_faces == 0) return;
+  forget();
+  if (!has_tolerance) return;
   rooms = rooms_at_sides(mesh, context.asked_of, context.threads);
   least = Memo<float>(made.size(), 0);
 }
@@ -86,30 +95,33 @@ void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const
     const auto some = edges.subspan(first, std::min(DeviationBounds::most_at_once, edges.size() - first));
     finder.find(some, ranges.data());
     for (size_t i = 0; i < some.size(); ++i) {
-      bounds.put(tried.before[some[i]], ranges[i].most);
-      least.put(tried.before[some[i]], ranges[i].least);
+      bounds.put(number(some[i]), ranges[i].most);
+      least.put(number(some[i]), ranges[i].least);
     }
   }
 }
 
 void Trial::keep_more(const Topology& mesh) {
+  forget();
   planes = FacePlanes(mesh.face_count(), infinity);
   products = NormalProducts(mesh.edge_count(), infinity);
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
-  const uint32_t rank = tried.before[edge];
-  float known = bounds.get(rank);
-  if (known == infinity) bounds.put(rank, known = rounded_up(length(to_double(made[rank]) - midpoint(mesh, edge))));
+  float known = no_less_than_deviation_at(edge);
+  if (known != infinity) return known;
+  known = rounded_up(length(to_double(at(edge)) - midpoint(mesh, edge)));
+  if (!bounds.empty()) bounds.put(number(edge), known);
   return known;
 }
 
 double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
-  const uint32_t rank = tried.before[edge];
-  double known = deviations.get(rank);
+  if (deviations.empty()) return deviation(mesh, edge, at(edge));
+  const uint32_t i = number(edge);
+  double known = deviations.get(i);
   if (known == unknown) {
-    deviations.put(rank, known = deviation(mesh, edge, made[rank]));
-    bounds.put(rank, rounded_up(known));
+    deviations.put(i, known = deviation(mesh, edge, made[i]));
+    bounds.put(i, rounded_up(known));
   }
   return known;
 }

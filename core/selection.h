@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,25 +27,27 @@ struct TrialContext {
 };
 
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
-/// in `tried` would have.
+/// in `tried` would have: T of them.
 struct Trial {
-  Array<Vec3f> normals;       ///< [F]
-  SplitPlan tried;            ///< the edges whose new vertices were computed
-  Array<Vec3f> made;          ///< [tried.count()]
-  Memo<double> deviations{};  ///< [tried.count()] the deviations of these edges (deviation.h); or unknown
-  Memo<float> bounds{};       ///< [tried.count()] no less than these; infinity where nothing is known
-  Memo<float> least{};        ///< [tried.count()] no more than these; 0 where nothing is known; empty without rooms
+  Array<Vec3f> normals{};     ///< [F]
+  SplitPlan tried{};          ///< the edges whose new vertices were computed; of none: see `made`
+  Array<Vec3f> made{};        ///< [T]; where `tried` is of none [E], of which only what could be computed counts
+  Memo<double> deviations{};  ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
+  Memo<float> bounds{};       ///< [T] no less than these; infinity where nothing is known; empty as above
+  Memo<float> least{};        ///< [T] no more than these; 0 where nothing is known; empty without rooms
   Array<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
 
   FacePlanes planes{};        ///< (view.h)
   NormalProducts products{};  ///< (flatness.h)
 
   static constexpr int unknown = -1;
-  /// Nothing is known yet of what was made.
+  /// Makes room for what is found out about what was made; nothing is known yet.
   void forget();
-  /// Makes room for what only later requests gain by: planes and products.
+  /// Makes room for what is found out, and for what only later requests gain by: planes and products.
   void keep_more(const Topology& mesh);
-  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[tried.before[edge]]; }
+  /// The number of a tried edge's vertex in `made`.
+  [[nodiscard]] uint32_t number(uint32_t edge) const { return tried.before.empty() ? edge : tried.before[edge]; }
+  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[number(edge)]; }
   /// That of a tried edge. `mesh` is the one tried.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, and cheap: the deviation itself where somebody has asked for it.
@@ -53,18 +56,21 @@ struct Trial {
     bool is_exact;
   };
   [[nodiscard]] KnownDeviation known_deviation_at(const Mesh& mesh, uint32_t edge) const {
-    const double known = deviations.get(tried.before[edge]);
+    const double known = deviations.get(number(edge));
     return known != unknown ? KnownDeviation{known, true} : KnownDeviation{most_deviation_at(mesh, edge), false};
   }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, of what is known already; infinity where nothing is.
-  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const { return bounds.get(tried.before[edge]); }
+  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const {
+    return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(number(edge));
+  }
   /// Never more than that, of what is known already.
-  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(tried.before[edge]); }
-  /// Has ranges found (deviation_range.h) where the options hold deviations against a tolerance. Not for what is kept:
-  /// where more views are to come the deviations themselves serve all of them.
-  void prepare_ranges(const Mesh& mesh, const Options& options, const TrialContext& context);
+  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(number(edge)); }
+  /// Makes room for what the options ask of deviations: none where they hold them against nothing. Where against a
+  /// tolerance, has ranges found (deviation_range.h). Not for what is kept: where more views are to come the deviations
+  /// themselves serve all of them.
+  void prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context);
   [[nodiscard]] bool has_ranges() const { return !rooms.empty(); }
   /// Of these edges, which were tried.
   void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
@@ -76,6 +82,9 @@ struct Trial {
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
                               const TrialContext& context = {});
+/// Computes those of all edges for which that can be done, without telling which they are, and makes no room for what
+/// is found out about them: for one request alone. Not with w.
+[[nodiscard]] Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context);
 
 class Selection {
  public:

@@ -2,17 +2,11 @@
 
 #include <algorithm>
 
+#include "four_children.h"
 #include "parallel.h"
 
 namespace papilio {
 namespace {
-
-/// One after the other: built in an array first and then copied, they are waited for.
-template <class... Numbers>
-void put(uint32_t* at, Numbers... numbers) {
-  static_assert(sizeof...(numbers) == 12);
-  ((*at++ = numbers), ...);
-}
 
 /// The rule: one face and its four children.
 class FourRule {
@@ -23,16 +17,10 @@ class FourRule {
   /// Corners and twins of the children of face f.
   void split(uint32_t f, const uint32_t* corner, const uint32_t* twin, const uint32_t* edge, uint32_t* child_origin,
              uint32_t* child_twin) const {
-    const uint32_t base = 12 * f;
-    const uint32_t middle[3] = {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]};
-    put(child_origin, corner[0], middle[0], middle[2],  //
-        middle[0], corner[1], middle[1],                //
-        middle[2], middle[1], corner[2],                //
-        middle[0], middle[1], middle[2]);
-    put(child_twin, against_first(twin[0]), base + 11, against_second(twin[2]),  //
-        against_second(twin[0]), against_first(twin[1]), base + 9,               //
-        base + 10, against_second(twin[1]), against_first(twin[2]),              //
-        base + 5, base + 6, base + 1);
+    put_corners_of_four({corner[0], corner[1], corner[2]},
+                        {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]}, child_origin);
+    put_twins_of_four(12 * f, {against_first(twin[0]), against_first(twin[1]), against_first(twin[2])},
+                      {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
   /// Edges of the children of face f.
@@ -40,13 +28,8 @@ class FourRule {
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
                               corner[2] > corner[0] ? 1U : 0U};
-    const uint32_t first[3] = {2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
-    const uint32_t second[3] = {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1};
-    const uint32_t inner = inner_edge(f);
-    put(child_edge, first[0], inner, second[2],  //
-        second[0], first[1], inner + 1,          //
-        inner + 2, second[1], first[2],          //
-        inner + 1, inner + 2, inner);
+    const OfSides first{2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
+    put_edges_of_four(first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}, inner_edge(f), child_edge);
   }
 
   /// The first of the three edges inside face f.
@@ -114,10 +97,9 @@ class FourSplitter {
     if (!numbers_edges) return;
     rule_.number_edges(f, corner, edge, &child_.edge[base]);
     const uint32_t inner = rule_.inner_edge(f);
-    put_three(&child_.half_edge[inner], base + 11, base + 9, base + 10);
+    put(&child_.half_edge[inner], base + 11, base + 9, base + 10);
     std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
   }
-  static void put_three(uint32_t* at, uint32_t a, uint32_t b, uint32_t c) { at[0] = a, at[1] = b, at[2] = c; }
 
   const Topology& mesh_;
   const FourRule rule_;

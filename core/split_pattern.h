@@ -42,6 +42,7 @@ const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
   return split_patterns[2 * mask + (second_diagonal ? 1 : 0)];
 }
 
+[[nodiscard]] constexpr bool has_two_targets(unsigned mask) { return (0b01101000U >> mask & 1U) != 0; }
 /// For a mask with two targets: edge i as above.
 [[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) { return mask == 3 ? 0 : mask == 6 ? 1 : 2; }
 
@@ -55,7 +56,7 @@ struct CornerPoint {
 /// `corner(i)` gives corner i, `middle(i)` the position of edge i's new vertex. False for other masks.
 template <class Corner, class Middle>
 [[nodiscard]] bool prefers_second_diagonal(unsigned mask, const Corner& corner, const Middle& middle) {
-  if (mask != 3 && mask != 5 && mask != 6) return false;
+  if (!has_two_targets(mask)) return false;
   const uint32_t i = first_of_two_targets(mask);
   const uint32_t j = (i + 1) % 3;
   const CornerPoint first_end = corner(i);

@@ -15,6 +15,7 @@ using EdgeMarks = List<uint8_t>;
 struct SplitPlan {
   List<uint32_t> before;  ///< [E + 1] how many target edges come before each edge
 
+  SplitPlan() = default;  ///< of no edges
   explicit SplitPlan(const EdgeMarks& marks) : before(marks.size() + 1) {
     uint32_t count = 0;
     for (size_t e = 0; e < marks.size(); ++e) {
@@ -24,7 +25,7 @@ struct SplitPlan {
     before.back() = count;
   }
 
-  [[nodiscard]] uint32_t count() const { return before.back(); }
+  [[nodiscard]] uint32_t count() const { return before.empty() ? 0 : before.back(); }
   [[nodiscard]] bool is_split(uint32_t e) const { return before[e + 1] != before[e]; }
 };
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+
+#include "four.h"
 
 namespace papilio {
 namespace {
@@ -29,7 +30,7 @@ double squared_cosine_of_smallest_angle(double a, double b, double c) {
 /// are split the next is the second.
 struct SplitFace {
   SplitFace(const HierarchyLevel& level, uint32_t face, unsigned mask)
-      : has_two(std::popcount(mask) == 2), first(first_target[mask]) {
+      : has_two(has_two_targets(mask)), first(first_target[mask]) {
     const Topology& mesh = level.mesh.topology;
     const auto corner = [&](uint32_t i) {
       return to_double(level.mesh.positions[mesh.origin[3 * face + (first + i) % 3]]);
@@ -84,6 +85,8 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
 
 // What is known of a face's transitions: three bits a mask, of which the lowest says whether the others are known.
 enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
+/// Where those of a mask are, from 1 to 6.
+constexpr unsigned shift_of(unsigned mask) { return 3 * (mask - 1); }
 
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const SplitFace split(level, face, mask);
@@ -103,7 +106,7 @@ uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double
 
 /// For masks 1 to 6.
 uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
-  const unsigned shift = 3 * (mask - 1);
+  const unsigned shift = shift_of(mask);
   const uint32_t known = level.transitions.get(face);
   if ((known >> shift & is_known) != 0) return known >> shift;
   const uint32_t found = judge(level, face, mask, most_cosine);
@@ -111,13 +114,125 @@ uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, d
   return found;
 }
 
-/// Judges the faces of a level of which nothing is known, first those with one split edge and then those with two:
-/// alike ones in turn, so that the processor can foresee what comes.
-void judge_alike(const LevelChoice& choice, const List<uint32_t>& faces, double most_cosine) {
+/// Judges faces with alike masks four at a time, in floats: as far as that is certain, as judge() does.
+class FourJudge {
+ public:
+  FourJudge(const HierarchyLevel& level, double most_cosine)
+      : level_(level), mesh_(level.mesh.topology), most_(static_cast<float>(most_cosine * most_cosine)) {}
+
+  struct Split {
+    uint32_t face;
+    unsigned mask;
+  };
+  /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
+  [[nodiscard]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits, bool has_two) const {
+    const FourVectors a = corners(splits, 0);
+    const FourVectors b = corners(splits, 1);
+    const FourVectors c = corners(splits, 2);
+    const FourVectors on_ab = middles(splits, 0);
+    const Four first_half = squared_length(on_ab - a);
+    const Four second_half = squared_length(b - on_ab);
+    const Four across = squared_length(c - on_ab);
+    const Four ab = squared_length(b - a);
+    const Four bc = squared_length(c - b);
+    const Four ca = squared_length(a - c);
+    const Four beside_a = squared_cosine(first_half, across, ca);
+    auto are_usual =
+        is_usual(ab) & is_usual(bc) & is_usual(ca) & is_usual(first_half) & is_usual(second_half) & is_usual(across);
+    Four first{}, second{};
+    if (has_two) {
+      const FourVectors on_bc = middles(splits, 1);
+      const Four from_b = squared_length(on_bc - b);
+      const Four to_c = squared_length(c - on_bc);
+      const Four between = squared_length(on_bc - on_ab);
+      const Four other_across = squared_length(on_bc - a);
+      const Four tip = squared_cosine(second_half, from_b, between);
+      are_usual &= is_usual(from_b) & is_usual(to_c) & is_usual(between) & is_usual(other_across);
+      first = larger(tip,
+                     larger(squared_cosine(first_half, between, other_across), squared_cosine(other_across, to_c, ca)));
+      second = larger(tip, larger(beside_a, squared_cosine(between, to_c, across)));
+    } else {
+      first = second = larger(beside_a, squared_cosine(second_half, bc, across));
+    }
+    const Four cosine = lesser(first, second);
+    const Four own = squared_cosine(ab, bc, ca);
+    const Four most = Four{} + most_;
+    const auto prefers_first = is_surely_less(first, second);
+    const auto prefers_second = is_surely_less(second, first);
+    const auto is_sliver = is_surely_less(most, cosine) & is_surely_less(own, most);
+    const auto is_none = is_surely_less(cosine, most) | is_surely_less(most, own);
+    std::array<uint32_t, 4> found{};
+    for (int i = 0; i < 4; ++i) {
+      const bool is_certain = are_usual[i] != 0 && (is_sliver[i] | is_none[i]) != 0 &&
+                              (!has_two || (prefers_first[i] | prefers_second[i]) != 0);
+      if (is_certain)
+        found[i] = is_known | (has_two && prefers_second[i] != 0 ? second_diagonal : 0U) |
+                   (is_sliver[i] != 0 ? has_sliver : 0U);
+    }
+    return found;
+  }
+
+ private:
+  /// Of two numbers as squared_cosine() gives them, with more room than rounding takes.
+  [[nodiscard]] static FourBits is_surely_less(Four a, Four b) { return a < (1 - 2e-5F) * b; }
+  [[nodiscard]] static Four squared_length(const FourVectors& a) { return dot(a, a); }
+  /// squared_cosine_of_smallest_angle(), of usual numbers.
+  [[nodiscard]] static Four squared_cosine(Four a, Four b, Four c) {
+    const Four shorter = lesser(a, b);
+    const Four shortest = lesser(shorter, c);
+    const Four one = larger(a, b);
+    const Four other = larger(shorter, c);
+    const Four twice_product = one + other - shortest;
+    return 0.25F * twice_product * twice_product / (one * other);
+  }
+
+  /// Half-edge i of each face, counted from the first that is split.
+  [[nodiscard]] static FourNumbers half_edges(const std::array<Split, 4>& splits, uint32_t i) {
+    const auto half_edge = [i](const Split& split) {
+      return 3 * split.face + (SplitFace::first_target[split.mask] + i) % 3;
+    };
+    return {half_edge(splits[0]), half_edge(splits[1]), half_edge(splits[2]), half_edge(splits[3])};
+  }
+  [[nodiscard]] FourVectors corners(const std::array<Split, 4>& splits, uint32_t i) const {
+    const FourNumbers h = half_edges(splits, i);
+    const auto& origin = mesh_.origin;
+    return at(level_.mesh.positions, {origin[h[0]], origin[h[1]], origin[h[2]], origin[h[3]]});
+  }
+  [[nodiscard]] FourVectors middles(const std::array<Split, 4>& splits, uint32_t i) const {
+    const FourNumbers h = half_edges(splits, i);
+    const auto number = [&](uint32_t half_edge) { return level_.trial.number(mesh_.edge[half_edge]); };
+    return at(level_.trial.made, {number(h[0]), number(h[1]), number(h[2]), number(h[3])});
+  }
+
+  const HierarchyLevel& level_;
+  const Topology& mesh_;
+  float most_;
+};
+
+/// Judges the faces of which nothing is known, first those with one split edge and then those with two.
+void judge_all(const LevelChoice& choice, const List<uint32_t>& faces, double most_cosine) {
+  const HierarchyLevel& level = *choice.level;
+  const FourJudge judge_four(level, most_cosine);
   for (const bool has_two : {false, true}) {
     List<uint32_t> alike = faces;
-    keep_if(alike, [&](uint32_t f) { return (std::popcount(choice.split_mask(f)) == 2) == has_two; });
-    for (uint32_t f : alike) (void)transition(*choice.level, f, choice.split_mask(f), most_cosine);
+    keep_if(alike, [&](uint32_t f) {
+      const unsigned mask = choice.split_mask(f);
+      return has_two_targets(mask) == has_two && (level.transitions.get(f) >> shift_of(mask) & is_known) == 0;
+    });
+    for (size_t i = 0; i < alike.size(); i += 4) {
+      std::array<FourJudge::Split, 4> splits;
+      for (size_t k = 0; k < 4; ++k) {
+        const uint32_t f = alike[std::min(i + k, alike.size() - 1)];
+        splits[k] = {f, choice.split_mask(f)};
+      }
+      const std::array<uint32_t, 4> found = judge_four.find(splits, has_two);
+      for (size_t k = 0; k < 4; ++k) {
+        const auto& [f, mask] = splits[k];
+        const uint32_t known = level.transitions.get(f);
+        level.transitions.put(f, known | found[k] << shift_of(mask));
+        if (found[k] == 0) (void)transition(level, f, mask, most_cosine);
+      }
+    }
   }
 }
 
@@ -148,9 +263,9 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && choice.may_divide(f) &&
            (transition(level, f, mask, most_cosine) & has_sliver) != 0;
   };
-  List<uint32_t> faces = choice.faces_at_split();  // the order decides where dividing one makes a sliver of another
-  keep_if(faces, [&](uint32_t f) { return choice.split_mask(f) != 7; });
-  if (level.trial.planes.empty()) judge_alike(choice, faces, most_cosine);
+  // The order decides where dividing one makes a sliver of another.
+  List<uint32_t> faces = choice.faces_split_in_part();
+  if (level.trial.planes.empty()) judge_all(choice, faces, most_cosine);
   std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();

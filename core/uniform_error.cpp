@@ -7,6 +7,7 @@
 #include "family.h"
 #include "lanes.h"
 #include "parallel.h"
+#include "too_near.h"
 
 namespace papilio {
 namespace {
@@ -20,32 +21,26 @@ float largest_coordinate(const Array<Vec3f>& positions) {
 /// Collects deviations, each of which is asked for only where the edge's vertex is far enough from the midpoint.
 class Largest {
  public:
-  /// `rounding`: more than floats make of the distance between two points of the mesh.
-  explicit Largest(double rounding) : rounding_(rounding) {}
+  explicit Largest(TooNear too_near) : too_near_(too_near) {}
 
   /// Of the edge from a to b.
   template <class Deviation>
   void add(const Vec3f& made, const Vec3f& a, const Vec3f& b, const Deviation& deviation) {
-    if (squared_length(widen(made) - 0.5F * (widen(a) + widen(b))) <= most_skipped_) return;
+    if (squared_length(widen(made) - 0.5F * (widen(a) + widen(b))) <= too_near_.squared()) return;
     distance_ = std::max(distance_, deviation());
-    const double sure = distance_ - rounding_;
-    if (sure > least_squared) most_skipped_ = static_cast<float>(sure * sure);
+    too_near_.raise(distance_);
   }
   [[nodiscard]] double distance() const { return distance_; }
 
  private:
-  static constexpr double least_squared = 1e-15;  ///< squares of smaller floats lose digits
-
-  double rounding_;
+  TooNear too_near_;
   double distance_ = 0;
-  float most_skipped_ = -1;  ///< its square
 };
 
 /// The largest of what add(first, last, largest) adds, for `count` things in all.
 template <class Add>
 double find_largest(const Array<Vec3f>& positions, uint32_t count, int threads, const Add& add) {
-  constexpr double share_that_rounds = 2e-6;
-  const Largest none_yet(share_that_rounds * largest_coordinate(positions));
+  const Largest none_yet(TooNear(largest_coordinate(positions)));
   const uint32_t parts = parts_of(count, threads);
   std::vector<Largest> found(parts, none_yet);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {

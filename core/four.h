@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "array.h"
+#include "lanes.h"
+#include "vec3.h"
+
+namespace papilio {
+
+/// Four computations at once in floats: of edges, of faces. For what is to be told from a bound with a margin for
+/// rounding; results proper are not made of it.
+using Four = Lanes::Register;
+using FourBits = int32_t __attribute__((vector_size(16)));  ///< of comparisons: all set where true, else none
+using FourNumbers = std::array<uint32_t, 4>;
+
+[[nodiscard]] inline Four lesser(Four a, Four b) { return a < b ? a : b; }
+[[nodiscard]] inline Four larger(Four a, Four b) { return a > b ? a : b; }
+[[nodiscard]] inline Four magnitude(Four a) { return larger(a, -a); }
+[[nodiscard]] inline Four root(Four a) {
+  return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+
+struct FourVectors {
+  Four x, y, z;
+
+  friend FourVectors operator-(const FourVectors& a, const FourVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend FourVectors operator*(float s, const FourVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+[[nodiscard]] inline Four dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline FourVectors cross(const FourVectors& a, const FourVectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// No less than the length.
+[[nodiscard]] inline Four sum_of_magnitudes(const FourVectors& a) {
+  return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
+}
+
+[[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
+  const Four a = widen(points[numbers[0]]).v;
+  const Four b = widen(points[numbers[1]]).v;
+  const Four c = widen(points[numbers[2]]).v;
+  const Four d = widen(points[numbers[3]]).v;
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Four cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Four ab_behind = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Four cd_behind = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+          __builtin_shufflevector(ab_behind, cd_behind, 0, 1, 4, 5)};
+}
+
+/// True where the fourth power of a length, given squared, is surely a number that has all its digits.
+[[nodiscard]] inline FourBits is_usual(Four length_squared) {
+  return (length_squared > 1e-14F) & (length_squared < 1e16F);
+}
+
+}  // namespace papilio

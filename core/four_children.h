@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+// The four children of a face all of whose edges are split (split_in_four.h): their twelve half-edges, three a child.
+
+namespace papilio {
+
+using OfSides = std::array<uint32_t, 3>;  ///< one number a side of the parent, side i running from its corner i
+
+/// One after the other: built in an array first and then copied, they are waited for.
+template <class... Numbers>
+void put(uint32_t* at, Numbers... numbers) {
+  ((*at++ = numbers), ...);
+}
+
+/// Their corners, from the parent's and the middles of its sides.
+inline void put_corners_of_four(const OfSides& corner, const OfSides& middle, uint32_t* to) {
+  put(to, corner[0], middle[0], middle[2],  //
+      middle[0], corner[1], middle[1],      //
+      middle[2], middle[1], corner[2],      //
+      middle[0], middle[1], middle[2]);
+}
+
+/// Their twins, from what runs against the first and second halves of the sides; `base` is their first half-edge.
+inline void put_twins_of_four(uint32_t base, const OfSides& against_first, const OfSides& against_second,
+                              uint32_t* to) {
+  put(to, against_first[0], base + 11, against_second[2],  //
+      against_second[0], against_first[1], base + 9,       //
+      base + 10, against_second[1], against_first[2],      //
+      base + 5, base + 6, base + 1);
+}
+
+/// Their edges, from the halves of the sides; the inner ones begin at `inner`.
+inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint32_t inner, uint32_t* to) {
+  put(to, first[0], inner, second[2],  //
+      second[0], first[1], inner + 1,  //
+      inner + 2, second[1], first[2],  //
+      inner + 1, inner + 2, inner);
+}
+
+}  // namespace papilio
