@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "four_children.h"
 #include "lanes.h"
 #include "split_pattern.h"
 #include "too_near.h"
@@ -116,22 +117,15 @@ class ErrorFinder {
       }
       return;
     }
-    // Faces come by fours, whose nine edges have six ends in all: 0 to 2 the parent's corners, 3 to 5 the middles of
-    // its sides.
-    constexpr std::array<uint8_t, 6> corner{0, 4, 8, 9, 10, 11};
-    struct Side {
-      uint8_t half_edge, from, to;
-    };
-    constexpr std::array<Side, 9> sides{
-        {{0, 0, 3}, {3, 3, 1}, {4, 1, 4}, {7, 4, 2}, {8, 2, 5}, {2, 5, 0}, {9, 3, 4}, {10, 4, 5}, {11, 5, 3}}};
     FarFinder far(*this, k);
     const List<uint32_t>& faces = levels_[k].region.faces;
     for (size_t i = 0; i < faces.size(); i += 4) {
       if (reached_[faces[i]] == 0) continue;
       const uint32_t h = 3 * faces[i];
-      std::array<Lanes, 6> end;
-      for (uint32_t c = 0; c < 6; ++c) end[c] = far.position(mesh.origin[h + corner[c]]);
-      for (const Side& side : sides) far.look_at(mesh.edge[h + side.half_edge], end[side.from], end[side.to]);
+      const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
+      std::array<Lanes, 6> at;
+      for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
+      for (const auto& [half_edge, from, to] : edges_of_four) far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
     }
   }
 

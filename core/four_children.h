@@ -40,4 +40,16 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
       inner + 1, inner + 2, inner);
 }
 
+/// The six vertices of the four, from their corners [12]: the parent's, and then the middles of its sides.
+[[nodiscard]] inline std::array<uint32_t, 6> vertices_of_four(const uint32_t* corner) {
+  return {corner[0], corner[4], corner[8], corner[9], corner[10], corner[11]};
+}
+
+/// Their nine edges: which of the twelve half-edges runs there, and between which of the six vertices.
+struct EdgeOfFour {
+  uint8_t half_edge, from, to;
+};
+inline constexpr std::array<EdgeOfFour, 9> edges_of_four{
+    {{0, 0, 3}, {3, 3, 1}, {4, 1, 4}, {7, 4, 2}, {8, 2, 5}, {2, 5, 0}, {9, 3, 4}, {10, 4, 5}, {11, 5, 3}}};
+
 }  // namespace papilio

@@ -158,7 +158,8 @@ class LevelMaker {
   /// Numbers in the part that is held.
   [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
   [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
-    return h == none || !faces_.has(Topology::face(h)) ? none : in_part(h);
+    const uint32_t face = faces_[h == none ? 0 : Topology::face(h)];  // no branch: what is held nobody can guess
+    return (h == none) | (face == none) ? none : 3 * face + h % 3;
   }
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 
@@ -222,8 +223,7 @@ EdgeMarks complete_edges(const HierarchyLevel& level) {
 List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
   List<uint8_t> touched(mesh.vertex_count, 0);
   for (uint32_t f = 0; f < faces.size(); ++f)
-    if (faces[f] != 0)
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+    for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] |= faces[f];
   List<uint8_t> marks(faces.size());
   for (uint32_t f = 0; f < faces.size(); ++f) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];

@@ -71,7 +71,7 @@ bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
   }
   moved_ = std::move(moved);
   progress_.poll();
-  level->longest = longest_edges(level->mesh);
+  level->longest = longest_edges_of_fours(level->mesh);
   try_grown_level(*level, options_, known, moved_);
   add_kept(level);
   return true;
@@ -117,7 +117,7 @@ void Levels::make(const List<uint8_t>& red) {
   LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
-  if (is_kept || options_.view) level->longest = longest_edges(level->mesh);
+  if (is_kept || options_.view) level->longest = longest_edges_of_fours(level->mesh);
   TrialContext context{.features = &level->features, .threads = progress_.threads()};
   if (level->is_whole) context.parents = &levels_.back()->mesh.topology;
   if (is_kept) {

@@ -192,7 +192,7 @@ List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level
     // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
     if (!trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
   }
-  shown.keep_shown(edges);
+  shown.keep_shown(region, edges);
   if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
   return edges;
 }

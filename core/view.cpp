@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "error.h"
+#include "four_children.h"
+#include "lanes.h"
 #include "normals.h"
 
 namespace papilio {
@@ -61,9 +63,13 @@ class Sight {
   [[nodiscard]] uint8_t of_face(uint32_t f) {
     uint8_t sight = is_face_away(f) ? 0 : is_towards;
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
-    if (through_ == 0 || is_vertex_inside(corner[0]) || is_vertex_inside(corner[1]) || is_vertex_inside(corner[2]))
-      sight |= is_inside;
-    return sight;
+    if (through_ == 0) return sight | is_inside;
+    const bool are_inside[3] = {is_vertex_inside(corner[0]), is_vertex_inside(corner[1]), is_vertex_inside(corner[2])};
+    return sight | (are_inside[0] | are_inside[1] | are_inside[2] ? is_inside : 0);
+  }
+  /// Finds what will be asked of vertices at once, where most of them will be: in their order that costs less.
+  void look_at_vertices() {
+    for (uint32_t v = 0; v < inside_.size(); ++v) (void)is_vertex_inside(v);
   }
 
  private:
@@ -76,7 +82,7 @@ class Sight {
   }
   [[nodiscard]] bool is_face_away(uint32_t f) const {
     constexpr float not_known = std::numeric_limits<float>::infinity();
-    const float plane = planes_.empty() ? not_known : planes_.get(f);
+    const float plane = planes_.empty() ? rounded_plane(f) : planes_.get(f);
     if (plane != not_known) {
       const Camera::QuickAway::Answer answer = quick_(normals_[f], plane);
       if (answer != Camera::QuickAway::unsure) return answer == Camera::QuickAway::away;
@@ -86,6 +92,15 @@ class Sight {
     const Vec3d normal = to_double(normals_[f]);
     if (!planes_.empty()) planes_.put(f, static_cast<float>(dot(normal, centroid)));
     return has_normal(normals_[f]) && camera_.is_away(centroid, normal);
+  }
+
+  /// What is kept of a face's plane, computed in floats: good enough for what is quickly decided.
+  [[nodiscard]] float rounded_plane(uint32_t f) const {
+    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
+    const auto at = [&](uint32_t i) { return widen(mesh_.positions[corner[i]]); };
+    const Lanes centroid = (1.0F / 3) * (at(0) + at(1) + at(2));
+    const Vec3f normal = normals_[f];
+    return normal.x * centroid.v[0] + normal.y * centroid.v[1] + normal.z * centroid.v[2];
   }
 
   const Mesh& mesh_;
@@ -254,6 +269,26 @@ List<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
+List<double> longest_edges_of_fours(const Mesh& mesh) {
+  const Topology& topology = mesh.topology;
+  List<double> longest(topology.vertex_count, 0);
+  for (uint32_t f = 0; f < topology.face_count(); f += 4) {
+    const std::array<uint32_t, 6> vertex = vertices_of_four(&topology.origin[size_t{3} * f]);
+    std::array<Vec3d, 6> p;
+    for (uint32_t i = 0; i < 6; ++i) p[i] = to_double(mesh.positions[vertex[i]]);
+    std::array<double, 6> squared{};
+    for (const auto& [half_edge, from, to] : edges_of_four) {
+      const Vec3d along = p[to] - p[from];
+      const double squared_length = dot(along, along);
+      squared[from] = std::max(squared[from], squared_length);
+      squared[to] = std::max(squared[to], squared_length);
+    }
+    for (uint32_t i = 0; i < 6; ++i) longest[vertex[i]] = std::max(longest[vertex[i]], squared[i]);
+  }
+  for (double& l : longest) l = std::sqrt(l);
+  return longest;
+}
+
 EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
                       const List<double>& longest, const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
@@ -282,8 +317,12 @@ class EdgesShown::Memory {
     if (!of_shared_.empty() && mesh_.kind[e] == EdgeKind::shared) return of_shared_[e] == seen;
     const uint32_t h = mesh_.half_edge[e];
     const uint32_t t = mesh_.twin[h];
-    const uint8_t one = of_face(Topology::face(h));
-    return one == seen || (t != none && (one | of_face(Topology::face(t))) == seen);
+    return (of_face(Topology::face(h)) | of_face(Topology::face(t != none ? t : h))) == seen;
+  }
+
+  void look_at(const List<uint32_t>& faces) {
+    sight_.look_at_vertices();
+    for (uint32_t f : faces) (void)of_face(f);
   }
 
  private:
@@ -309,9 +348,11 @@ EdgesShown::~EdgesShown() = default;
 
 bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || memory_->is_shown(edge); }
 
-void EdgesShown::keep_shown(List<uint32_t>& edges) const {
+void EdgesShown::keep_shown(const Region& region, List<uint32_t>& edges) const {
   if (memory_ == nullptr) return;
   Memory& memory = *memory_;
+  constexpr size_t many = 2;  // one in so many
+  if (edges.size() * many > region.edges.size()) memory.look_at(region.faces);
   keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
 }
 

@@ -112,6 +112,8 @@ using FacePlanes = Memo<float>;
 
 /// The length of each vertex's longest edge. [V]
 [[nodiscard]] List<double> longest_edges(const Mesh& mesh);
+/// The same where faces come by fours, the children of one face (split_in_four.h).
+[[nodiscard]] List<double> longest_edges_of_fours(const Mesh& mesh);
 
 /// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
@@ -136,8 +138,8 @@ class EdgesShown {
   ~EdgesShown();
 
   [[nodiscard]] bool operator[](uint32_t edge) const;
-  /// Keeps those edges of the list that are.
-  void keep_shown(List<uint32_t>& edges) const;
+  /// Keeps those edges of the list that are; they are the region's.
+  void keep_shown(const Region& region, List<uint32_t>& edges) const;
 
  private:
   class Memory;
