@@ -176,16 +176,16 @@ class Assembler {
   /// The same for a face that is not cut.
   void connect_whole(const AssembledLevel& level, uint32_t f) {
     const uint32_t base = level.first[f];
-    for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t h = 3 * f + i;
-      const uint32_t t = level.twin[h];
-      if (t != none && level.fate[Topology::face(t)] == 0)
-        out_.topology.twin[base + i] = level.first[Topology::face(t)] + t % 3;
-      else
-        out_.topology.twin[base + i] = twin_in_result(level, h, 0);
-    }
+    for (uint32_t i = 0; i < 3; ++i) out_.topology.twin[base + i] = find_twin(level, 3 * f + i);
     if (!with_edges_) return;
     for (uint32_t i = 0; i < 3; ++i) number_edge(base + i, level.mesh->kind[level.edge[3 * f + i]]);
+  }
+
+  /// What runs in the result against a half-edge that is not split.
+  [[nodiscard]] static uint32_t find_twin(const AssembledLevel& level, uint32_t h) {
+    const uint32_t t = level.twin[h];
+    if (t == none || level.fate[Topology::face(t)] >= AssembledLevel::divided) return twin_in_result(level, h, 0);
+    return level.first[Topology::face(t)] + transition_pattern(level.fate[Topology::face(t)]).outer[2 * (t % 3)];
   }
 
   /// What runs in the result against the halves of a face's split sides, against the whole of the others:

@@ -83,9 +83,11 @@ LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
 
 LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const HierarchyLevel> level) {
   LevelChoice choice;
-  for (uint32_t f : above.region.faces)
-    if (above.red[f] != 0)
-      for (uint32_t c = 0; c < 4; ++c) choice.region.faces.push_back(level->child[f] + c);
+  List<uint32_t> red = above.region.faces;
+  keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
+  choice.region.faces.resize(4 * red.size());
+  for (size_t i = 0; i < red.size(); ++i)
+    for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->child[red[i]] + c;
   choice.may_be_split = edges_of(*level, choice.region.faces);
   choice.region.edges = marked(choice.may_be_split);
   choice.split.assign(level->mesh.topology.edge_count(), 0);

@@ -35,6 +35,11 @@ struct LevelChoice {
     split[edge] = 1;
     split_edges.push_back(edge);
   }
+  /// Where nothing is split yet: these, no edge twice.
+  void split_first(List<uint32_t> edges) {
+    for (uint32_t e : edges) split[e] = 1;
+    split_edges = std::move(edges);
+  }
   void split_nothing() {
     for (uint32_t e : split_edges) split[e] = 0;
     split_edges.clear();

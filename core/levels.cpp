@@ -135,10 +135,10 @@ void Levels::try_for_once(HierarchyLevel& level, const Topology& parents, TrialC
   const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
   List<uint8_t> asked_of;
   bool are_few = false;
+  if (!level.is_whole) context.parents = &parents;
   if (is_last && !level.is_whole) {
     for (uint32_t parent : level.parent) asked_of.push_back(level.red[parent]);
     are_few = one_as_dear_as * static_cast<size_t>(std::ranges::count(asked_of, 1)) < asked_of.size();
-    context.parents = &parents;
     context.asked_of = &asked_of;
   }
   if (are_few || options_.w != 0)

@@ -64,8 +64,8 @@ class RedGreen {
       return;
     }
     choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least, reaching());
-    std::ranges::copy_if(wanted, std::back_inserter(choice.candidates),
-                         [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
+    choice.candidates = std::move(wanted);
+    keep_if(choice.candidates, [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
   }
 
   /// With a budget errors are compared with each other, too; and where nothing is split, they are what is left.
@@ -102,9 +102,9 @@ class RedGreen {
   void split_from(float threshold) {
     for (LevelChoice& choice : choices_) {
       choice.split_nothing();
-      choice.split_edges.reserve(choice.candidates.size());
-      for (uint32_t e : choice.candidates)
-        if (choice.error.empty() || choice.error[e] >= threshold) choice.split_edge(e);
+      List<uint32_t> edges = choice.candidates;
+      if (!choice.error.empty()) keep_if(edges, [&](uint32_t e) { return choice.error[e] >= threshold; });
+      choice.split_first(std::move(edges));
     }
     for (size_t k = choices_.size(); k-- > 0;) {
       avoid_slivers(choices_[k], most_cosine_);
@@ -147,14 +147,16 @@ class RedGreen {
     return edges;
   }
 
-  /// Remembers what the result is made of. With a budget further levels can make it worse without changing anything
+  /// With a budget remembers what the result is made of: further levels can make it worse without changing anything
   /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
   void keep() {
+    if (options_.max_faces == 0) return;
     kept_.clear();
     for (const LevelChoice& choice : choices_) kept_.push_back(choice.split_edges);
   }
 
   void bring_back_what_was_kept() {
+    if (options_.max_faces == 0) return;
     for (size_t k = 0; k < choices_.size(); ++k) {
       choices_[k].split_nothing();
       if (k < kept_.size())
@@ -188,9 +190,8 @@ class RedGreen {
 
   [[nodiscard]] List<uint32_t> faces_to_divide() const {
     const LevelChoice& choice = choices_.back();
-    List<uint32_t> red;
-    std::ranges::copy_if(choice.region.faces, std::back_inserter(red),
-                         [&](uint32_t f) { return choice.split_mask(f) == 7; });
+    List<uint32_t> red = choice.region.faces;
+    keep_if(red, [&](uint32_t f) { return choice.split_mask(f) == 7; });
     return red;
   }
 
@@ -205,12 +206,11 @@ class RedGreen {
       if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
         for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
     }
-    List<uint32_t> faces;
-    for (uint32_t f : choice.region.faces) {
+    List<uint32_t> faces = choice.region.faces;
+    keep_if(faces, [&](uint32_t f) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
-      if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0 && choice.may_divide(f))
-        faces.push_back(f);
-    }
+      return ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0) & choice.may_divide(f);
+    });
     return faces;
   }
 

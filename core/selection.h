@@ -19,7 +19,7 @@ namespace papilio {
 /// What is known of a mesh that is tried: all of it may be left out.
 struct TrialContext {
   const Features* features = nullptr;  ///< its
-  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h); not one with cuts, unless:
+  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
   /// [F of the parents]: normals are asked of the children of those marked, and edges to be tried lie between these
   /// only; null: of all.
   const List<uint8_t>* asked_of = nullptr;

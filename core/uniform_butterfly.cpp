@@ -18,7 +18,7 @@ bool has_all_twins(const Topology& mesh, uint32_t f) {
   return twin[0] != none && twin[1] != none && twin[2] != none;
 }
 
-/// Calls add_shares(face, shares) for each face that has a twin at each side: of a level, or of the level above.
+/// Calls add_shares(face, shares) for each face, of a level or of the level above.
 template <class AddShares>
 void add_all_shares(const Topology& mesh, Vec3f* made, int threads, const AddShares& add_shares) {
   const FaceShares<float> shares{made};
@@ -28,7 +28,6 @@ void add_all_shares(const Topology& mesh, Vec3f* made, int threads, const AddSha
     LateFaceShares<float> late(shares, first);
     const AddShares add = add_shares;  // this thread's own, and so in registers
     for (uint32_t f = first; f < last; ++f) {
-      if (!has_all_twins(mesh, f)) continue;
       const uint32_t* twin = &mesh.twin[size_t{3} * f];
       if (late.is_early(std::min({twin[0], twin[1], twin[2]}))) [[unlikely]]
         add(f, late);
@@ -39,6 +38,25 @@ void add_all_shares(const Topology& mesh, Vec3f* made, int threads, const AddSha
   });
   for (const LateFaceShares<float>& late : late_of) late.end();
 }
+
+/// What the children of a face know, where `shares` are by the faces of the level above.
+template <class Shares>
+class ChildShares {
+ public:
+  ChildShares(uint32_t parent, Vec3f* made, Shares& shares) : parent_(parent), inside_{made}, shares_(shares) {}
+  void add(uint32_t face, uint32_t twin, uint32_t edge, Lanes share) {
+    const uint32_t neighbour = Topology::face(twin) / 4;
+    if (neighbour == parent_)
+      inside_.add(face, twin, edge, share);
+    else
+      shares_.add(parent_, 3 * neighbour, edge, share);
+  }
+
+ private:
+  uint32_t parent_;
+  FaceShares<float> inside_;
+  Shares& shares_;
+};
 
 /// Whether the edge's two faces are held, and those across their other sides.
 bool is_known(const Topology& mesh, uint32_t h) {
@@ -58,16 +76,6 @@ void split_near_curves(const Topology& mesh, const Features& features, const But
     for (uint32_t side : {Topology::next(h), Topology::previous(h)})
       if (!mesh.is_curve(side) && is_known(mesh, side))
         made[mesh.edge[side]] = rules.regular(mesh.half_edge[mesh.edge[side]]);
-  }
-}
-
-/// The edges of families that have no twin somewhere, as far as they are known: add_all_shares leaves them out.
-void split_families_at_borders(const Topology& parents, const Topology& mesh, const ButterflyRules<float>& rules,
-                               Vec3f* made) {
-  for (uint32_t f = 0; f < parents.face_count(); ++f) {
-    if (has_all_twins(parents, f)) continue;
-    for (uint32_t h = 12 * f; h < 12 * f + 12; ++h)
-      if (!mesh.is_curve(h) && is_known(mesh, h)) made[mesh.edge[h]] = rules.regular(mesh.half_edge[mesh.edge[h]]);
   }
 }
 
@@ -101,7 +109,9 @@ void split_at_irregular_vertices(const Features& features, const Vec3f* position
 void uniform_butterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
                        const TensionField* tension, int threads) {
   const ButterflyRules<float> rules(topology, positions, 0, tension);
-  add_all_shares(topology, made, threads, [rules](uint32_t f, auto& shares) { rules.add_face_shares(f, shares); });
+  add_all_shares(topology, made, threads, [rules, &topology](uint32_t f, auto& shares) {
+    if (has_all_twins(topology, f)) rules.add_face_shares(f, shares);
+  });
   split_near_curves(topology, features, rules, made);
 
   Array<uint8_t> has_opinion;  // [E] of an irregular end
@@ -124,9 +134,17 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
 
 void uniform_butterfly_below(const Topology& parents, const Topology* topology, const Features& features,
                              const Vec3f* positions, Vec3f* made, int threads, const List<uint8_t>* asked_of) {
+  std::optional<ButterflyRules<float>> rules;
+  if (topology != nullptr) rules.emplace(*topology, positions, 0, nullptr);
   const FamilyRule<float> family_rule(positions);
-  const auto add_shares = [&parents, family_rule](uint32_t f, auto& shares) {
-    family_rule.add_shares(f, Family(parents, f), shares);
+  const auto add_shares = [&parents, topology, &rules, family_rule, made](uint32_t f, auto& shares) {
+    if (has_all_twins(parents, f)) {
+      family_rule.add_shares(f, Family(parents, f), shares);
+      return;
+    }
+    ChildShares of_children(f, made, shares);
+    for (uint32_t child = 4 * f; child < 4 * f + 4; ++child)  // at a border, one by one
+      if (has_all_twins(*topology, child)) rules->add_face_shares(child, of_children);
   };
   if (asked_of == nullptr)
     add_all_shares(parents, made, threads, add_shares);
@@ -134,12 +152,7 @@ void uniform_butterfly_below(const Topology& parents, const Topology* topology, 
     add_all_shares(parents, made, threads, [asked_of, add_shares](uint32_t f, auto& shares) {
       if ((*asked_of)[f] != 0) add_shares(f, shares);
     });
-  std::optional<ButterflyRules<float>> rules;
-  if (topology != nullptr) rules.emplace(*topology, positions, 0, nullptr);
-  if (!features.curve_half_edges.empty()) {
-    split_families_at_borders(parents, *topology, *rules, made);
-    split_near_curves(*topology, features, *rules, made);
-  }
+  if (!features.curve_half_edges.empty()) split_near_curves(*topology, features, *rules, made);
   split_at_irregular_vertices(features, positions, topology, rules ? &*rules : nullptr,
                               [&](uint32_t e, Vec3f q) { made[e] = q; });
 }
