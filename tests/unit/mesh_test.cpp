@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "core/error.h"
 #include "tests/support/invariants.h"
@@ -140,6 +143,23 @@ TEST(Mesh, BoundingBox) {
   EXPECT_EQ(box.max, (Vec3f{1, 1, 1}));
   EXPECT_DOUBLE_EQ(box.diagonal(), std::sqrt(3.0));
   EXPECT_EQ(bounding_box({}).diagonal(), 0);
+  EXPECT_EQ(bounding_box({}).largest_coordinate(), 0);
+}
+
+TEST(Mesh, BoundingBoxOfEachPoint) {
+  const std::vector<Vec3f> points{{1, -2, 3}, {-4, 5, -6}, {7, -8, 9}, {-7, 2, -10}};
+  for (size_t count = 1; count <= points.size(); ++count)
+    for (size_t first = 0; first + count <= points.size(); ++first) {
+      const std::vector<Vec3f> some(points.begin() + static_cast<ptrdiff_t>(first),
+                                    points.begin() + static_cast<ptrdiff_t>(first + count));  // nothing behind its end
+      const auto least = [&](float Vec3f::*c) { return (*std::ranges::min_element(some, {}, c)).*c; };
+      const auto most = [&](float Vec3f::*c) { return (*std::ranges::max_element(some, {}, c)).*c; };
+      const Box box = bounding_box(some);
+      EXPECT_EQ(box.min, (Vec3f{least(&Vec3f::x), least(&Vec3f::y), least(&Vec3f::z)}));
+      EXPECT_EQ(box.max, (Vec3f{most(&Vec3f::x), most(&Vec3f::y), most(&Vec3f::z)}));
+    }
+  EXPECT_EQ(bounding_box(points).largest_coordinate(), 10);
+  EXPECT_EQ(bounding_box(std::span(points).first(1)).largest_coordinate(), 3);
 }
 
 /// Twelve faces between eight points: edges of three faces, pinched vertices, faces wound against each other.

@@ -8,6 +8,7 @@
 #include "core/crease.h"
 #include "core/deviation.h"
 #include "core/features.h"
+#include "core/hierarchy.h"
 #include "core/normals.h"
 #include "core/refine.h"
 #include "core/selection.h"
@@ -153,15 +154,15 @@ TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
 }
 
 /// A level of a mesh, and the connectivity of the level above.
-struct LevelBelow {
+struct WholeLevel {
   Topology parents;
   Mesh mesh;
   Features features{};
 };
 
 /// Makes it of a mesh or of such a level; its positions are those of the plain scheme.
-LevelBelow next_level(const Mesh& mesh, Features features) {
-  LevelBelow below{.parents = mesh.topology, .mesh = {split_in_four(mesh.topology), mesh.positions}};
+WholeLevel next_level(const Mesh& mesh, Features features) {
+  WholeLevel below{.parents = mesh.topology, .mesh = {split_in_four(mesh.topology), mesh.positions}};
   below.mesh.positions.resize(below.mesh.topology.vertex_count);
   uniform_butterfly(mesh.topology, features, mesh.positions.data(), &below.mesh.positions[mesh.topology.vertex_count]);
   descend(features, mesh.topology.vertex_count);
@@ -172,7 +173,7 @@ LevelBelow next_level(const Mesh& mesh, Features features) {
 TEST(UniformButterfly, IsTheSameFromTheLevelAbove) {
   int without_the_level = 0;
   for (const Mesh& mesh : shaken_meshes()) {
-    LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    WholeLevel level = next_level(mesh, find_features(mesh.topology));
     for (int k = 1; k < 3; ++k) {
       const Topology& topology = level.mesh.topology;
       const Vec3f* positions = level.mesh.positions.data();
@@ -197,7 +198,7 @@ TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
   std::mt19937 random(3);
   size_t known = 0;
   for (const Mesh& mesh : shaken_meshes()) {
-    const LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    const WholeLevel level = next_level(mesh, find_features(mesh.topology));
     const Topology& topology = level.mesh.topology;
     const Vec3f* positions = level.mesh.positions.data();
     Array<Vec3f> expected(topology.edge_count());
@@ -216,6 +217,37 @@ TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
     }
   }
   EXPECT_GT(known, 1000U);
+}
+
+TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
+  std::mt19937 random(5);
+  size_t known = 0;
+  for (const Mesh& mesh : shaken_meshes()) {
+    const Options options{.tension = Tension::off};
+    HierarchyLevel level = coarsest_level(mesh);
+    for (int k = 1; k < 4; ++k) {
+      level.trial = try_split(level.mesh, options, complete_edges(level));
+      List<uint8_t> red(level.mesh.topology.face_count());
+      for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent[f / 4]] != 0;
+      for (uint8_t& is_red : red) is_red &= random() % 16 == 0 ? 1 : 0;
+      LevelBelow below = refine_level(level, red);
+      if (below.level.is_whole || below.level.mesh.topology.face_count() == 0) break;
+      level = std::move(below.level);
+      const Topology& topology = level.mesh.topology;
+      const Vec3f* positions = level.mesh.positions.data();
+      Array<Vec3f> expected(topology.edge_count());
+      uniform_butterfly(topology, level.features, positions, expected.data());
+      Array<Vec3f> made(topology.edge_count(), Vec3f{});
+      uniform_butterfly_below(below.parents, &topology, level.features, positions, made.data());
+      const EdgeMarks are_complete = complete_edges(level);
+      for (uint32_t e = 0; e < made.size(); ++e) {
+        if (are_complete[e] == 0) continue;
+        ASSERT_EQ(made[e], expected[e]);
+        ++known;
+      }
+    }
+  }
+  EXPECT_GT(known, 10000U);
 }
 
 TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
@@ -240,7 +272,7 @@ TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
 
 TEST(UniformError, IsTheLargestDeviation) {
   for (const Mesh& mesh : shaken_meshes()) {
-    const LevelBelow level = next_level(mesh, find_features(mesh.topology));
+    const WholeLevel level = next_level(mesh, find_features(mesh.topology));
     Array<Vec3f> made(level.mesh.topology.edge_count());
     uniform_butterfly(level.mesh.topology, level.features, level.mesh.positions.data(), made.data());
     double largest = 0;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/error.h"
 #include "core/normals.h"
+#include "core/split_in_four.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {
@@ -152,6 +154,18 @@ TEST(CullByView, DropsEdgesThatLookShort) {
   EXPECT_EQ(count(seen(mesh, view, 24)), mesh.topology.edge_count());
   EXPECT_EQ(count(seen(mesh, view, 30)), 16U);
   EXPECT_EQ(count(seen(mesh, view, 36)), 0U);
+}
+
+TEST(LongestEdges, AreTheSameByFours) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 20; ++i) {
+    Mesh mesh = build_mesh(random_manifold(random));
+    mesh.topology = split_in_four(mesh.topology);
+    mesh.positions.resize(mesh.topology.vertex_count);
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    for (Vec3f& p : mesh.positions) p = {coordinate(random), coordinate(random), coordinate(random)};
+    EXPECT_EQ(longest_edges_of_fours(mesh), longest_edges(mesh));
+  }
 }
 
 TEST(Camera, FacingIsTheCosineToTheViewer) {

@@ -1,0 +1,59 @@
+#include "core/normals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+/// Shapes of all sizes, some faces of which have no area, or none that is a number.
+std::vector<Mesh> meshes() {
+  std::mt19937 random(5);
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 60; ++i) {
+    TriangleMesh triangles = random_manifold(random);
+    const float size = std::pow(10.0F, std::uniform_real_distribution<float>(-42, 17)(random));
+    for (Vec3f& p : triangles.positions) {
+      p = {size * p.x, size * p.y, size * p.z};
+      if (random() % 4 == 0) p.z = p.y = 0;
+    }
+    meshes.push_back(build_mesh(triangles));
+  }
+  return meshes;
+}
+
+bool are_same_bits(Vec3f a, Vec3f b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+
+TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
+  size_t without = 0;
+  for (const Mesh& mesh : meshes())
+    for (const int threads : {1, 2}) {
+      const Array<Vec3f> normals = face_normals(mesh, threads);
+      ASSERT_EQ(normals.size(), mesh.topology.face_count());
+      for (uint32_t f = 0; f < normals.size(); ++f) {
+        ASSERT_TRUE(are_same_bits(normals[f], face_normal(mesh, f))) << f;
+        without += has_normal(normals[f]) ? 0 : 1;
+      }
+    }
+  EXPECT_GT(without, 10U);
+}
+
+TEST(FaceNormals, OfFoursAreThoseAskedOf) {
+  std::mt19937 random(6);
+  const Mesh mesh = build_mesh(torus(16, 8));
+  List<uint8_t> asked_of(mesh.topology.face_count() / 4);
+  for (uint8_t& is_asked : asked_of) is_asked = random() % 2;
+  const Array<Vec3f> normals = normals_of_fours(mesh, asked_of, 2);
+  for (uint32_t f = 0; f < normals.size(); ++f)
+    EXPECT_TRUE(are_same_bits(normals[f], asked_of[f / 4] != 0 ? face_normal(mesh, f) : Vec3f{})) << f;
+}
+
+}  // namespace
+}  // namespace papilio

@@ -1,0 +1,108 @@
+#include "core/transition.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "core/selection.h"
+#include "tests/support/shapes.h"
+
+// Of a level that is made for one request transition faces are judged four at a time in floats, of one that is kept
+// each by itself in double: what is decided must be the same.
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+/// A level whose new vertices are `made` [E]; kept or made for once.
+std::shared_ptr<HierarchyLevel> level_of(const Mesh& mesh, const Array<Vec3f>& made, bool is_kept) {
+  auto level = std::make_shared<HierarchyLevel>(coarsest_level(mesh));
+  level->trial.made = made;
+  if (is_kept) level->trial.keep_more(level->mesh.topology);
+  return level;
+}
+
+LevelChoice choice_of(std::shared_ptr<HierarchyLevel> level, const std::vector<uint32_t>& edges) {
+  LevelChoice choice = choose_coarsest(std::move(level));
+  for (uint32_t e : edges) choice.split_edge(e);
+  return choice;
+}
+
+struct Count {
+  size_t faces = 0, second_diagonals = 0, divided = 0;
+};
+
+/// Splits random edges, and compares what becomes of the faces in part split.
+void compare(const Mesh& mesh, const Array<Vec3f>& made, double most_cosine, std::mt19937& random, Count& count) {
+  std::vector<uint32_t> edges;
+  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e)
+    if (random() % 2 == 0) edges.push_back(e);
+  const auto for_once = level_of(mesh, made, false);
+  LevelChoice choice = choice_of(for_once, edges);
+  const List<uint32_t> faces = choice.faces_split_in_part();
+  List<unsigned> masks;
+  for (uint32_t f : faces) masks.push_back(choice.split_mask(f));
+  avoid_slivers(choice, most_cosine);
+
+  const auto kept = level_of(mesh, made, true);
+  LevelChoice expected = choice_of(kept, edges);
+  avoid_slivers(expected, most_cosine);
+  ASSERT_EQ(choice.split_edges, expected.split_edges);
+  for (size_t i = 0; i < faces.size(); ++i) {
+    const uint8_t one_by_one = choose_transition(*kept, faces[i], masks[i], most_cosine);
+    ASSERT_EQ(choose_transition(*for_once, faces[i], masks[i], most_cosine), one_by_one);
+    count.second_diagonals += one_by_one % 2;
+  }
+  count.faces += faces.size();
+  count.divided += choice.split_edges.size() - edges.size();
+}
+
+Array<Vec3f> middles(const Mesh& mesh) {
+  Array<Vec3f> made(mesh.topology.edge_count());
+  for (uint32_t e = 0; e < made.size(); ++e) made[e] = to_float(midpoint(mesh, e));
+  return made;
+}
+
+TEST(Transitions, AreTheSameJudgedFourAtATime) {
+  std::mt19937 random(11);
+  Count count;
+  for (int i = 0; i < 400; ++i) {
+    // Of any size, wherever; at times stretched until faces are needles.
+    const float size = std::pow(10.0F, std::uniform_real_distribution<float>(-14, 14)(random));
+    const float far = random() % 3 == 0 ? 100 * size : 0;
+    const float stretch = random() % 3 == 0 ? 1e-3F : 1;
+    TriangleMesh triangles = random_manifold(random);
+    for (Vec3f& p : triangles.positions) p = {size * p.x + far, size * stretch * p.y, size * stretch * p.z};
+    const Mesh mesh = build_mesh(triangles);
+    std::normal_distribution<float> shift(0, 0.1F * size);
+    Array<Vec3f> made = middles(mesh);
+    for (Vec3f& p : made) p += Vec3f{shift(random), stretch * shift(random), stretch * shift(random)};
+    const double smallest = std::uniform_real_distribution<double>(0.001, 0.6)(random);
+    compare(mesh, made, most_cosine_beside(smallest), random, count);
+  }
+  EXPECT_GT(count.faces, 5000U);
+  EXPECT_GT(count.second_diagonals, count.faces / 8);
+  EXPECT_GT(count.divided, 500U);
+}
+
+TEST(Transitions, AreTheSameWhereDiagonalsAreEqualAndAnglesJustTheSmallest) {
+  std::mt19937 random(12);
+  Count count;
+  for (int i = 0; i < 40; ++i)
+    for (const TriangleMesh& triangles : {grid(9, 7), torus(12, 9), icosahedron(), box({3, 3, 3}, {1, 1, 1})}) {
+      const Mesh mesh = build_mesh(triangles);
+      // A half square's pieces have angles of 45 degrees and of atan(1/2), and the like.
+      for (const double angle : {std::numbers::pi / 4, std::atan(0.5), std::atan(1.0 / 3), std::numbers::pi / 6})
+        compare(mesh, middles(mesh), std::cos(angle), random, count);
+    }
+  EXPECT_GT(count.faces, 10000U);
+  EXPECT_GT(count.divided, 500U);
+}
+
+}  // namespace
+}  // namespace papilio
