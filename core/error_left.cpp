@@ -139,6 +139,8 @@ class ErrorFinder {
           may_be_split_(choice_.may_be_split.data()),
           is_split_(choice_.split.data()),
           positions_(choice_.level->mesh.positions.data()),
+          made_(choice_.level->trial.made.data()),
+          number_(choice_.level->trial.tried.before.empty() ? nullptr : choice_.level->trial.tried.before.data()),
           share_squared_{1, k + 1 == of.levels_.size() ? static_cast<float>(split_leaves * split_leaves) : no_share},
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
@@ -146,8 +148,7 @@ class ErrorFinder {
     [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
     void look_at(uint32_t e, Lanes from, Lanes to) {
       if (may_be_split_[e] == 0) return;
-      const Trial& trial = choice_.level->trial;
-      const float off_squared = squared_length(widen(trial.made[trial.number(e)]) - 0.5F * (from + to));
+      const float off_squared = squared_length(widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to));
       if (share_squared_[is_split_[e]] * off_squared > too_near_.squared()) [[unlikely]]
         add(e);
     }
@@ -167,7 +168,8 @@ class ErrorFinder {
     size_t k_;
     const LevelChoice& choice_;
     const uint8_t *may_be_split_, *is_split_;
-    const Vec3f* positions_;
+    const Vec3f *positions_, *made_;
+    const uint32_t* number_;              ///< of an edge's vertex; null: its own
     std::array<float, 2> share_squared_;  ///< by whether the edge is split
     TooNear too_near_;
   };

@@ -113,7 +113,7 @@ class LevelMaker {
     const uint32_t count = below_.mesh.topology.vertex_count;
     below_.mesh.positions.resize(count);
     below_.from.resize(count);
-    below_.complete.assign(size_t{count} + 1, 1);  // one more, for what is not held
+    below_.complete.assign(count, 1);
     uint32_t at = 0;
     for (uint32_t v : vertices_.numbers()) {
       below_.mesh.positions[at] = above_.mesh.positions[v];
@@ -126,12 +126,11 @@ class LevelMaker {
     }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (faces_.has(f)) continue;
-      for (uint32_t i = 0; i < 3; ++i) {
-        below_.complete[std::min(vertices_[mesh_.origin[3 * f + i]], count)] = 0;
-        below_.complete[vertices_.count() + std::min(edges_[mesh_.edge[3 * f + i]], edges_.count())] = 0;
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        if (vertices_.has(mesh_.origin[h])) below_.complete[vertices_[mesh_.origin[h]]] = 0;
+        if (edges_.has(mesh_.edge[h])) below_.complete[new_vertex(mesh_.edge[h])] = 0;
       }
     }
-    below_.complete.pop_back();
   }
 
   /// What descend() makes of the features, of what is held.
@@ -222,8 +221,8 @@ EdgeMarks complete_edges(const HierarchyLevel& level) {
 
 List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
   List<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t f = 0; f < faces.size(); ++f)
-    for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] |= faces[f];
+  for (uint32_t f : marked(faces))
+    for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] = 1;
   List<uint8_t> marks(faces.size());
   for (uint32_t f = 0; f < faces.size(); ++f) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];

@@ -321,7 +321,7 @@ class EdgesShown::Memory {
   }
 
   void look_at(const List<uint32_t>& faces) {
-    sight_.look_at_vertices();
+    if (faces.size() > mesh_.vertex_count) sight_.look_at_vertices();
     for (uint32_t f : faces) (void)of_face(f);
   }
 
