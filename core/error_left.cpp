@@ -210,7 +210,7 @@ class ErrorFinder {
         return;
       }
     }
-    if (may_be_largest(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
+    if (may_be_largest(k, e, split_leaves) && !is_near(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
   }
 
   /// By what is known of the deviation.

@@ -39,12 +39,13 @@ List<uint32_t> find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const 
   const auto product_at = [&](uint32_t h, uint32_t t) {
     const Vec3f n1 = normals[Topology::face(h)];
     const Vec3f n2 = normals[Topology::face(t)];
-    return has_normal(n1) && has_normal(n2) ? dot(n1, n2) : flat;
+    const float product = dot(n1, n2);
+    return product != 0 || (has_normal(n1) && has_normal(n2)) ? product : flat;  // without a normal it is 0
   };
   const auto is_curved = [&](uint32_t e) {
     const uint32_t h = topology.half_edge[e];
-    if (topology.kind[e] == EdgeKind::cut) return false;  // no curve: what lies beyond its ends is not known
     if (topology.kind[e] != EdgeKind::smooth) {
+      if (topology.kind[e] == EdgeKind::cut) return false;  // no curve: what lies beyond its ends is not known
       if (!curves) curves.emplace(topology);
       return turns(mesh, *curves, h, threshold);
     }
