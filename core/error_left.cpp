@@ -125,7 +125,9 @@ class ErrorFinder {
       const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
       std::array<Lanes, 6> at;
       for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
-      for (const auto& [half_edge, from, to] : edges_of_four) far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
+      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) {
+        far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
+      });
     }
   }
 

@@ -45,11 +45,19 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
   return {corner[0], corner[4], corner[8], corner[9], corner[10], corner[11]};
 }
 
-/// Their nine edges: which of the twelve half-edges runs there, and between which of the six vertices.
-struct EdgeOfFour {
-  uint8_t half_edge, from, to;
-};
-inline constexpr std::array<EdgeOfFour, 9> edges_of_four{
-    {{0, 0, 3}, {3, 3, 1}, {4, 1, 4}, {7, 4, 2}, {8, 2, 5}, {2, 5, 0}, {9, 3, 4}, {10, 4, 5}, {11, 5, 3}}};
+/// Calls visit(half-edge, from, to) for each of their nine edges: which of the twelve half-edges runs there, and
+/// between which of the six vertices. Written out, so that all of it is known when this is compiled.
+template <class Visit>
+void visit_edges_of_four(const Visit& visit) {
+  visit(0, 0, 3);
+  visit(3, 3, 1);
+  visit(4, 1, 4);
+  visit(7, 4, 2);
+  visit(8, 2, 5);
+  visit(2, 5, 0);
+  visit(9, 3, 4);
+  visit(10, 4, 5);
+  visit(11, 5, 3);
+}
 
 }  // namespace papilio

@@ -277,12 +277,12 @@ List<double> longest_edges_of_fours(const Mesh& mesh) {
     std::array<Vec3d, 6> p;
     for (uint32_t i = 0; i < 6; ++i) p[i] = to_double(mesh.positions[vertex[i]]);
     std::array<double, 6> squared{};
-    for (const auto& [half_edge, from, to] : edges_of_four) {
+    visit_edges_of_four([&](uint32_t /*half_edge*/, uint32_t from, uint32_t to) {
       const Vec3d along = p[to] - p[from];
       const double squared_length = dot(along, along);
       squared[from] = std::max(squared[from], squared_length);
       squared[to] = std::max(squared[to], squared_length);
-    }
+    });
     for (uint32_t i = 0; i < 6; ++i) longest[vertex[i]] = std::max(longest[vertex[i]], squared[i]);
   }
   for (double& l : longest) l = std::sqrt(l);
