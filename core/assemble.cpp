@@ -7,6 +7,7 @@
 
 #include "attributes.h"
 #include "four_children.h"
+#include "split_in_four.h"
 #include "transition.h"
 
 namespace papilio {
@@ -74,7 +75,11 @@ class Assembler {
       topology.half_edge.reserve(half_edge_count_ / 2 + topology.vertex_count / 2);
       topology.kind.reserve(topology.half_edge.capacity());
     }
-    for (const Place& place : places_) connect(levels_[place.level], place.face);
+    for (const Place& place : places_)
+      if (place.are_all_in_four)
+        connect_sixteen(levels_[place.level], place.face);
+      else
+        connect(levels_[place.level], place.face);
     topology.twin.resize(half_edge_count_);
     if (!coarse_.attributes.empty()) make_points();
     return std::move(out_);
@@ -83,7 +88,8 @@ class Assembler {
  private:
   /// A face of a level that is in the result, whole or cut.
   struct Place {
-    uint32_t level;
+    uint16_t level;
+    bool are_all_in_four;  ///< it is the first of the four children of one face, and each of them is cut in four
     uint32_t face;
   };
 
@@ -122,11 +128,16 @@ class Assembler {
       // What has children as support only is cut into the same four.
       if (level.has_below && level.choice->red[f] != 0) {
         level.fate[f] = AssembledLevel::divided;
+        AssembledLevel& below = (&level)[1];
         const uint32_t child = level.child(f);
-        place((&level)[1], child, {corner[0], middle[0], middle[2]});
-        place((&level)[1], child + 1, {middle[0], corner[1], middle[1]});
-        place((&level)[1], child + 2, {middle[2], middle[1], corner[2]});
-        place((&level)[1], child + 3, middle);
+        if (are_all_in_four(below, child)) {
+          place_sixteen(below, child, corner, middle);
+          return;
+        }
+        place(below, child, {corner[0], middle[0], middle[2]});
+        place(below, child + 1, {middle[0], corner[1], middle[1]});
+        place(below, child + 2, {middle[2], middle[1], corner[2]});
+        place(below, child + 3, middle);
       } else {
         level.fate[f] = AssembledLevel::cut_in_four;
         put_corners_of_four(corner, middle, begin_faces(level, f, 4));
@@ -142,13 +153,40 @@ class Assembler {
       for (uint8_t local : child) *out++ = vertex[local];
   }
 
+  /// Whether each of the four children of a face is cut in four: most are where much is refined, and all at once costs
+  /// less. (Not where edges are numbered.)
+  [[nodiscard]] bool are_all_in_four(const AssembledLevel& level, uint32_t child) const {
+    if (level.has_below || with_edges_) return false;
+    const uint32_t* edge = &level.edge[size_t{3} * child];
+    uint8_t all = 1;
+    for (uint32_t i = 0; i < 12; ++i) all &= level.is_split[edge[i]];
+    return all != 0;
+  }
+
+  /// `corner` and `middle` of their parent.
+  void place_sixteen(AssembledLevel& level, uint32_t child, const OfSides& corner, const OfSides& middle) {
+    std::array<uint32_t, 12> corners;
+    put_corners_of_four(corner, middle, corners.data());
+    const uint32_t* edge = &level.edge[size_t{3} * child];
+    places_.push_back({static_cast<uint16_t>(level.number), true, child});
+    for (uint32_t c = 0; c < 4; ++c, edge += 3) {
+      if (!coarse_.attributes.empty()) level.shown.push_back(child + c);
+      level.fate[child + c] = AssembledLevel::cut_in_four;
+      level.first[child + c] = half_edge_count_;
+      put_corners_of_four({corners[3 * c], corners[3 * c + 1], corners[3 * c + 2]},
+                          {level.new_vertex[edge[0]], level.new_vertex[edge[1]], level.new_vertex[edge[2]]},
+                          &out_.topology.origin[half_edge_count_]);
+      half_edge_count_ += 12;
+    }
+  }
+
   /// What a face is, or is cut into, comes next in the result. Returns where the corners of these so many faces go;
   /// there is always room for four faces: how many there are nobody can guess, so that many are written, and what was
   /// too much is written over by the next.
   uint32_t* begin_faces(AssembledLevel& level, uint32_t f, uint32_t count) {
     uint32_t* out = &out_.topology.origin[half_edge_count_];
     level.first[f] = half_edge_count_;
-    places_.push_back({level.number, f});
+    places_.push_back({static_cast<uint16_t>(level.number), false, f});
     half_edge_count_ += 3 * count;
     return out;
   }
@@ -171,6 +209,24 @@ class Assembler {
     for (uint32_t c = 0; c < 3U * cut.children; ++c)
       number_edge(base + c,
                   cut.is_outside(c) ? level.mesh->kind[level.edge[3 * f + cut.edge[c] / 2]] : EdgeKind::smooth);
+  }
+
+  /// The same for the four children of a face that place_sixteen() has placed.
+  void connect_sixteen(const AssembledLevel& level, uint32_t child) {
+    const uint32_t base = level.first[child];
+    // Against the halves of the twelve half-edges of the four; between the four it is known.
+    std::array<Halves, 12> against{};
+    for (const auto& [h, twin] : {std::array<uint32_t, 2>{1, 11}, {5, 9}, {6, 10}}) {
+      against[h] = {base + second_half(twin), base + first_half(twin)};
+      against[twin] = {base + second_half(h), base + first_half(h)};
+    }
+    for (const uint32_t h : {0, 2, 3, 4, 7, 8}) against[h] = find_twins_of_halves(level, 3 * child + h);
+    for (uint32_t c = 0; c < 4; ++c) {
+      const Halves* of_child = &against[size_t{3} * c];
+      put_twins_of_four(base + 12 * c, {of_child[0].first, of_child[1].first, of_child[2].first},
+                        {of_child[0].second, of_child[1].second, of_child[2].second},
+                        &out_.topology.twin[base + 12 * c]);
+    }
   }
 
   /// The same for a face that is not cut.
@@ -208,6 +264,19 @@ class Assembler {
     }
     twins[6] = level.first[f];
     return twins;
+  }
+
+  /// What runs in the result against the two halves of a half-edge that is split.
+  struct Halves {
+    uint32_t first, second;
+  };
+  [[nodiscard]] static Halves find_twins_of_halves(const AssembledLevel& level, uint32_t h) {
+    const uint32_t t = level.twin[h];
+    if (t == none || level.fate[Topology::face(t)] >= AssembledLevel::divided)
+      return {twin_in_result(level, h, 0), twin_in_result(level, h, 1)};
+    const uint8_t* outer = &transition_pattern(level.fate[Topology::face(t)]).outer[2 * (t % 3)];
+    const uint32_t base = level.first[Topology::face(t)];
+    return {base + outer[1], base + outer[0]};
   }
 
   /// In the order of the result: a half-edge whose twin was there before has its edge from it.
