@@ -56,8 +56,9 @@ class Assembler {
     const uint64_t faces = count_assembled(levels);
     out_.topology.origin.resize(3 * faces + 12);
     places_.reserve(faces);
-    out_.positions.reserve(vertices);
-    out_.positions = coarse_.positions;
+    out_.positions.resize(vertices);
+    std::ranges::copy(coarse_.positions, out_.positions.begin());
+    vertex_count_ = coarse.vertex_count;
     levels_.reserve(levels.size());
     for (const LevelChoice& choice : levels) add_level(choice, levels_.size() + 1 < levels.size());
     for (uint32_t f = 0; f < coarse.face_count(); ++f)
@@ -108,8 +109,8 @@ class Assembler {
     level.first.resize(mesh.face_count());
     level.new_vertex.resize(mesh.edge_count());
     for (uint32_t e : in_order(choice.split_edges)) {
-      level.new_vertex[e] = static_cast<uint32_t>(out_.positions.size());
-      out_.positions.push_back(level.level->trial.at(e));
+      out_.positions[vertex_count_] = level.level->trial.at(e);
+      level.new_vertex[e] = vertex_count_++;
     }
   }
 
@@ -348,8 +349,8 @@ class Assembler {
   bool with_edges_;
   const Mesh& coarse_;
   std::vector<AssembledLevel> levels_;
-  List<Place> places_;  ///< in the order of the result
-  uint32_t half_edge_count_ = 0;
+  List<Place> places_;                               ///< in the order of the result
+  uint32_t half_edge_count_ = 0, vertex_count_ = 0;  ///< so far
   Mesh out_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;  ///< edge of the result between two vertices
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -23,9 +24,16 @@ using FourNumbers = std::array<uint32_t, 4>;
   return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
 
+[[nodiscard]] inline bool is_any(FourBits truths) {
+  const auto words = std::bit_cast<std::array<uint64_t, 2>>(truths);
+  return (words[0] | words[1]) != 0;
+}
+[[nodiscard]] inline bool is_all(FourBits truths) { return !is_any(~truths); }
+
 struct FourVectors {
   Four x, y, z;
 
+  friend FourVectors operator+(const FourVectors& a, const FourVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend FourVectors operator-(const FourVectors& a, const FourVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend FourVectors operator*(float s, const FourVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
 };

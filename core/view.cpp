@@ -1,6 +1,7 @@
 #include "view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,7 +9,6 @@
 
 #include "error.h"
 #include "four_children.h"
-#include "lanes.h"
 #include "normals.h"
 
 namespace papilio {
@@ -57,19 +57,42 @@ class Sight {
         camera_(camera),
         quick_(camera, box),
         through_(camera.planes_through(box)),
+        quick_outside_(camera, box, through_),
         inside_(through_ == 0 ? 0 : mesh.topology.vertex_count, unknown) {}
 
   /// What of the above holds for a face.
   [[nodiscard]] uint8_t of_face(uint32_t f) {
     uint8_t sight = is_face_away(f) ? 0 : is_towards;
-    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
-    if (through_ == 0) return sight | is_inside;
-    const bool are_inside[3] = {is_vertex_inside(corner[0]), is_vertex_inside(corner[1]), is_vertex_inside(corner[2])};
-    return sight | (are_inside[0] | are_inside[1] | are_inside[2] ? is_inside : 0);
+    return sight | (is_inside_somewhere(f) ? is_inside : 0);
   }
+  /// The same of four faces. Not where planes are kept.
+  [[nodiscard]] std::array<uint8_t, 4> of_four(const FourNumbers& f) {
+    const auto& origin = mesh_.topology.origin;
+    const auto corners = [&](uint32_t i) {
+      return at(mesh_.positions,
+                {origin[3 * f[0] + i], origin[3 * f[1] + i], origin[3 * f[2] + i], origin[3 * f[3] + i]});
+    };
+    const FourVectors normals = at(normals_, f);
+    const FourVectors centroids = (1.0F / 3) * (corners(0) + corners(1) + corners(2));
+    const auto [are_towards, are_away] = quick_(normals, dot(normals, centroids));
+    auto is_away = std::bit_cast<std::array<int32_t, 4>>(are_away);
+    if (!is_all(are_towards | are_away)) [[unlikely]]
+      for (size_t i = 0; i < 4; ++i) is_away[i] = is_face_away(f[i]) ? 1 : 0;
+    std::array<uint8_t, 4> sights{};
+    for (size_t i = 0; i < 4; ++i)
+      sights[i] = (is_away[i] != 0 ? 0 : is_towards) | (is_inside_somewhere(f[i]) ? is_inside : 0);
+    return sights;
+  }
+  [[nodiscard]] bool forgets_planes() const { return planes_.empty(); }
   /// Finds what will be asked of vertices at once, where most of them will be: in their order that costs less.
   void look_at_vertices() {
-    for (uint32_t v = 0; v < inside_.size(); ++v) (void)is_vertex_inside(v);
+    for (uint32_t v = 0; v < inside_.size(); ++v) {
+      const Camera::Answer is_outside = quick_outside_(mesh_.positions[v], static_cast<float>(longest_[v]));
+      if (is_outside == Camera::Answer::unsure)
+        (void)is_vertex_inside(v);
+      else
+        inside_[v] = is_outside == Camera::Answer::no ? 1 : 0;
+    }
   }
 
  private:
@@ -80,27 +103,24 @@ class Sight {
     if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v], through_) ? 0 : 1;
     return inside_[v] != 0;
   }
+  [[nodiscard]] bool is_inside_somewhere(uint32_t f) {
+    if (through_ == 0) return true;
+    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
+    const bool are_inside[3] = {is_vertex_inside(corner[0]), is_vertex_inside(corner[1]), is_vertex_inside(corner[2])};
+    return are_inside[0] | are_inside[1] | are_inside[2];
+  }
   [[nodiscard]] bool is_face_away(uint32_t f) const {
     constexpr float not_known = std::numeric_limits<float>::infinity();
-    const float plane = planes_.empty() ? rounded_plane(f) : planes_.get(f);
+    const float plane = planes_.empty() ? not_known : planes_.get(f);
     if (plane != not_known) {
-      const Camera::QuickAway::Answer answer = quick_(normals_[f], plane);
-      if (answer != Camera::QuickAway::unsure) return answer == Camera::QuickAway::away;
+      const Camera::Answer is_away = quick_(normals_[f], plane);
+      if (is_away != Camera::Answer::unsure) return is_away == Camera::Answer::yes;
     }
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
     const Vec3d normal = to_double(normals_[f]);
     if (!planes_.empty()) planes_.put(f, static_cast<float>(dot(normal, centroid)));
     return has_normal(normals_[f]) && camera_.is_away(centroid, normal);
-  }
-
-  /// What is kept of a face's plane, computed in floats: good enough for what is quickly decided.
-  [[nodiscard]] float rounded_plane(uint32_t f) const {
-    const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
-    const auto at = [&](uint32_t i) { return widen(mesh_.positions[corner[i]]); };
-    const Lanes centroid = (1.0F / 3) * (at(0) + at(1) + at(2));
-    const Vec3f normal = normals_[f];
-    return normal.x * centroid.v[0] + normal.y * centroid.v[1] + normal.z * centroid.v[2];
   }
 
   const Mesh& mesh_;
@@ -110,7 +130,8 @@ class Sight {
   const Camera& camera_;
   const Camera::QuickAway quick_;
   const unsigned through_;  ///< the planes that some of the mesh may be outside of
-  List<uint8_t> inside_;    ///< [V] or unknown
+  const Camera::QuickOutside quick_outside_;
+  List<uint8_t> inside_;  ///< [V] or unknown
 };
 
 }  // namespace
@@ -185,10 +206,32 @@ bool Camera::is_away(Vec3d point, Vec3d normal) const {
   return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
 }
 
+namespace {
+
+/// As far from the origin as anything in the box.
+Vec3d farthest_corner(const Box& box) {
+  return {std::max(std::abs(box.min.x), std::abs(box.max.x)), std::max(std::abs(box.min.y), std::abs(box.max.y)),
+          std::max(std::abs(box.min.z), std::abs(box.max.z))};
+}
+
+}  // namespace
+
+Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigned planes)
+    : is_certain_((planes >> near_plane & 1U) == 0) {
+  constexpr float nowhere = std::numeric_limits<float>::max();
+  const double size = length(farthest_corner(box)) + length(camera.eye_);
+  margin_ = static_cast<float>(2e-6 * size);
+  for (size_t i = 0; i < 4; ++i) {
+    const Plane plane = (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
+    normals_.x[i] = static_cast<float>(plane.normal.x);
+    normals_.y[i] = static_cast<float>(plane.normal.y);
+    normals_.z[i] = static_cast<float>(plane.normal.z);
+    offsets_[i] = static_cast<float>(plane.offset);
+  }
+}
+
 Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1 : 0) {
-  const Vec3d high{std::max(std::abs(box.min.x), std::abs(box.max.x)),
-                   std::max(std::abs(box.min.y), std::abs(box.max.y)),
-                   std::max(std::abs(box.min.z), std::abs(box.max.z))};
+  const Vec3d high = farthest_corner(box);
   from_ = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
   // No less than the distance of anything in the box, and than the products above.
   const double size = length(high) + length(from_);
@@ -322,7 +365,16 @@ class EdgesShown::Memory {
 
   void look_at(const List<uint32_t>& faces) {
     if (faces.size() > mesh_.vertex_count) sight_.look_at_vertices();
-    for (uint32_t f : faces) (void)of_face(f);
+    if (!sight_.forgets_planes()) {
+      for (uint32_t f : faces) (void)of_face(f);
+      return;
+    }
+    for (size_t i = 0; i < faces.size(); i += 4) {
+      const auto face = [&](size_t k) { return faces[std::min(i + k, faces.size() - 1)]; };
+      const FourNumbers four{face(0), face(1), face(2), face(3)};
+      const std::array<uint8_t, 4> sights = sight_.of_four(four);
+      for (size_t k = 0; k < 4; ++k) of_face_[four[k]] = sights[k];
+    }
   }
 
  private:

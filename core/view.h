@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "four.h"
 #include "memo.h"
 #include "mesh.h"
 #include "region.h"
@@ -61,8 +62,11 @@ class Camera {
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const;
   /// The set (bits) of those of the five planes inside of which not all of the box is certain to be.
   [[nodiscard]] unsigned planes_through(const Box& box) const;
+  enum class Answer : uint8_t { no, yes, unsure };
   /// Decides most of `is_away`, from less, for faces in the box.
   class QuickAway;
+  /// Decides most of `is_outside`, of four planes at once, for points in the box.
+  class QuickOutside;
 
  private:
   struct Plane {
@@ -77,7 +81,7 @@ class Camera {
 
   /// However near the near plane is: what it is multiplied by stays a number.
   static constexpr double most_pixels_per_unit = 1e200;
-  static constexpr unsigned all_planes = 31;
+  static constexpr unsigned all_planes = 31, near_plane = 4;
 
   bool perspective_;
   Vec3d eye_, right_, up_, forward_;
@@ -88,18 +92,45 @@ class Camera {
 
 class Camera::QuickAway {
  public:
-  enum Answer : uint8_t { towards, away, unsure };
   QuickAway(const Camera& camera, const Box& box);
   /// `plane`: the product of the unit normal with a point of the face, rounded to float.
   [[nodiscard]] Answer operator()(Vec3f normal, float plane) const {
     const double along = perspective_ * plane - dot(to_double(normal), from_);
-    return along < -rounding_ ? towards : along > surely_away_ ? away : unsure;
+    return along < -rounding_ ? Answer::no : along > surely_away_ ? Answer::yes : Answer::unsure;
+  }
+  struct FourAnswers {
+    FourBits no, yes;
+  };
+  /// The same of four, in floats.
+  [[nodiscard]] FourAnswers operator()(const FourVectors& normals, Four planes) const {
+    const auto from = [this](double Vec3d::*c) { return static_cast<float>(from_.*c); };
+    const Four along = static_cast<float>(perspective_) * planes -
+                       (from(&Vec3d::x) * normals.x + from(&Vec3d::y) * normals.y + from(&Vec3d::z) * normals.z);
+    return {along<static_cast<float>(-rounding_), along> static_cast<float>(surely_away_)};
   }
 
  private:
   double perspective_;  ///< 1 or 0
   Vec3d from_;
   double rounding_, surely_away_;
+};
+
+class Camera::QuickOutside {
+ public:
+  /// Of the planes in the set; with the near plane among them nothing is decided.
+  QuickOutside(const Camera& camera, const Box& box, unsigned planes);
+  [[nodiscard]] Answer operator()(Vec3f centre, float radius) const {
+    if (!is_certain_) return Answer::unsure;
+    const Four distance = centre.x * normals_.x + centre.y * normals_.y + centre.z * normals_.z - offsets_;
+    if (is_any(distance < -margin_ - radius)) return Answer::yes;
+    return is_any(distance < margin_ - radius) ? Answer::unsure : Answer::no;
+  }
+
+ private:
+  FourVectors normals_;  ///< of the sides; zero where a plane is not in the set, and the offset is far below
+  Four offsets_;
+  float margin_;  ///< more than rounding makes of a distance
+  bool is_certain_;
 };
 
 /// Of each face [F] the product of its unit normal with its centroid, infinity where it was not asked for yet. May be
