@@ -22,19 +22,19 @@
 namespace papilio {
 
 struct HierarchyLevel {
-  Mesh mesh;                           ///< faces held; where others of the level are missing, edges are EdgeKind::cut
-  bool is_whole = false;               ///< all the level's faces are held, with the numbers of the uniform mesh
-  Features features;                   ///< of the vertices that are complete
-  List<uint8_t> complete;              ///< [V] whether all the level's faces at the vertex are held
-  List<uint32_t> from;                 ///< [V] a vertex of the level above, or its vertex count plus the edge split
-  List<uint32_t> parent;               ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
-  List<uint32_t> child;                ///< [F of the level above] first of the face's four children here; `none`
-  List<uint8_t> red;                   ///< [F of the level above] whose children are held with the rings round them
-  List<uint32_t> shared;               ///< the half-edges at shared edges
-  Trial trial;                         ///< what splitting its edges would give, where tried
-  List<double> longest;                ///< [V] edges (view.h); empty where no view asked
-  Box box{};                           ///< of the vertices
-  Memo<uint32_t> transitions;          ///< [F] what is known of its transition faces (transition.h)
+  Mesh mesh;                   ///< faces held; where others of the level are missing, edges are EdgeKind::cut
+  bool is_whole = false;       ///< all the level's faces are held, with the numbers of the uniform mesh
+  Features features;           ///< of the vertices that are complete
+  List<uint8_t> complete;      ///< [V] whether all the level's faces at the vertex are held
+  List<uint32_t> from;         ///< [V] a vertex of the level above, or its vertex count plus the edge split
+  List<uint32_t> parent;       ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
+  List<uint32_t> child;        ///< [F of the level above] first of the face's four children here; `none`
+  List<uint8_t> red;           ///< [F of the level above] whose children are held with the rings round them
+  List<uint32_t> shared;       ///< the half-edges at shared edges
+  Trial trial;                 ///< what splitting its edges would give, where tried
+  List<double> longest;        ///< [V] edges (view.h); empty where no view asked
+  Box box{};                   ///< of the vertices
+  Memo<uint32_t> transitions;  ///< [F] what is known of its transition faces (transition.h)
 
   /// Whether every face at the edge is held, and so are the rings round its ends.
   [[nodiscard]] bool is_complete(uint32_t edge) const;

@@ -219,15 +219,16 @@ Vec3d farthest_corner(const Box& box) {
 Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigned planes)
     : is_certain_((planes >> near_plane & 1U) == 0) {
   constexpr float nowhere = std::numeric_limits<float>::max();
-  const double size = length(farthest_corner(box)) + length(camera.eye_);
-  margin_ = static_cast<float>(2e-6 * size);
+  double farthest = 0;  // plane from the origin
   for (size_t i = 0; i < 4; ++i) {
     const Plane plane = (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
     normals_.x[i] = static_cast<float>(plane.normal.x);
     normals_.y[i] = static_cast<float>(plane.normal.y);
     normals_.z[i] = static_cast<float>(plane.normal.z);
     offsets_[i] = static_cast<float>(plane.offset);
+    if ((planes >> i & 1U) != 0) farthest = std::max(farthest, std::abs(plane.offset));
   }
+  margin_ = static_cast<float>(2e-6 * (length(farthest_corner(box)) + farthest));
 }
 
 Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1 : 0) {
@@ -363,6 +364,19 @@ class EdgesShown::Memory {
     return (of_face(Topology::face(h)) | of_face(Topology::face(t != none ? t : h))) == seen;
   }
 
+  /// The faces are all those at the edges.
+  void keep_shown_once_all_are_looked_at(const List<uint32_t>& faces, List<uint32_t>& edges) {
+    look_at(faces);
+    keep_if(edges, [this, has_shared = !of_shared_.empty()](uint32_t e) {
+      const uint32_t h = mesh_.half_edge[e];
+      const uint32_t t = mesh_.twin[h];
+      const int sight = of_face_[Topology::face(h)] | of_face_[Topology::face(t != none ? t : h)];
+      return has_shared ? is_shown(e) : sight == seen;
+    });
+  }
+
+ private:
+  static constexpr uint8_t unknown = 255;
   void look_at(const List<uint32_t>& faces) {
     if (faces.size() > mesh_.vertex_count) sight_.look_at_vertices();
     if (!sight_.forgets_planes()) {
@@ -376,9 +390,6 @@ class EdgesShown::Memory {
       for (size_t k = 0; k < 4; ++k) of_face_[four[k]] = sights[k];
     }
   }
-
- private:
-  static constexpr uint8_t unknown = 255;
   [[nodiscard]] uint8_t of_face(uint32_t f) {
     if (of_face_[f] == unknown) of_face_[f] = sight_.of_face(f);
     return of_face_[f];
@@ -404,8 +415,10 @@ void EdgesShown::keep_shown(const Region& region, List<uint32_t>& edges) const {
   if (memory_ == nullptr) return;
   Memory& memory = *memory_;
   constexpr size_t many = 2;  // one in so many
-  if (edges.size() * many > region.edges.size()) memory.look_at(region.faces);
-  keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
+  if (edges.size() * many > region.edges.size())
+    memory.keep_shown_once_all_are_looked_at(region.faces, edges);
+  else
+    keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
 }
 
 bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
