@@ -106,9 +106,9 @@ class Camera::QuickAway {
     const auto from = [this](double Vec3d::*c) { return static_cast<float>(from_.*c); };
     const Four along = static_cast<float>(perspective_) * planes -
                        (from(&Vec3d::x) * normals.x + from(&Vec3d::y) * normals.y + from(&Vec3d::z) * normals.z);
-    const auto least = static_cast<float>(-rounding_);
-    const auto most = static_cast<float>(surely_away_);
-    return {along < least, along > most};
+    const FourBits no = along < static_cast<float>(-rounding_);
+    const FourBits yes = along > static_cast<float>(surely_away_);
+    return {no, yes};
   }
 
  private:

@@ -136,7 +136,16 @@ TEST(Camera, WhatIsDecidedInFloatsIsSo) {
     const View view = random_view(random, size, place);
     const Camera camera(view);
     const auto point = [&] { return to_float(place + size * Vec3d{within(random), within(random), within(random)}); };
-    const std::array<Vec3f, 4> points{point(), point(), point(), point()};
+    std::array<Vec3f, 4> points{point(), point(), point(), point()};
+    // Two of them as near to the border of what is outside as floats are.
+    Vec3d one = to_double(points[0]);
+    Vec3d other = to_double(points[1]);
+    for (int step = 0; step < 60 && camera.is_outside(one, 0) != camera.is_outside(other, 0); ++step) {
+      const Vec3d middle = 0.5 * (one + other);
+      (camera.is_outside(middle, 0) == camera.is_outside(one, 0) ? one : other) = middle;
+      points[2] = to_float(one);
+      points[3] = to_float(other);
+    }
     const Box box = bounding_box(points);
     const unsigned through = camera.planes_through(box);
     if ((through >> 4 & 1U) != 0) continue;  // the near plane
