@@ -173,8 +173,8 @@ TEST(Camera, WhatIsDecidedInFloatsIsSo) {
       const bool is_so = camera.is_away(to_double(points[k]), to_double(normals[k]));
       ASSERT_FALSE(no[k] != 0 && is_so) << i;
       ASSERT_FALSE(yes[k] != 0 && !is_so) << i;
-      const Camera::Answer one = is_away(normals[k], planes[k]);
-      ASSERT_FALSE((one == Camera::Answer::no && is_so) || (one == Camera::Answer::yes && !is_so)) << i;
+      const Camera::Answer answer = is_away(normals[k], planes[k]);
+      ASSERT_FALSE((answer == Camera::Answer::no && is_so) || (answer == Camera::Answer::yes && !is_so)) << i;
       away += yes[k] != 0 ? 1 : 0;
       unsure += (no[k] | yes[k]) == 0 ? 1 : 0;
     }
