@@ -208,6 +208,9 @@ bool Camera::is_away(Vec3d point, Vec3d normal) const {
 
 namespace {
 
+/// What is farther is not looked at in floats.
+constexpr double most_in_floats = 1e18;
+
 /// As far from the origin as anything in the box.
 Vec3d farthest_corner(const Box& box) {
   return {std::max(std::abs(box.min.x), std::abs(box.max.x)), std::max(std::abs(box.min.y), std::abs(box.max.y)),
@@ -221,12 +224,13 @@ Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigne
   constexpr float nowhere = std::numeric_limits<float>::max();
   double farthest = 0;  // plane from the origin
   for (size_t i = 0; i < 4; ++i) {
-    const Plane plane = (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
+    if (std::abs(camera.planes_[i].offset) > most_in_floats) is_certain_ = false;
+    const Plane plane = is_certain_ && (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
     normals_.x[i] = static_cast<float>(plane.normal.x);
     normals_.y[i] = static_cast<float>(plane.normal.y);
     normals_.z[i] = static_cast<float>(plane.normal.z);
     offsets_[i] = static_cast<float>(plane.offset);
-    if ((planes >> i & 1U) != 0) farthest = std::max(farthest, std::abs(plane.offset));
+    if (plane.offset != -nowhere) farthest = std::max(farthest, std::abs(plane.offset));
   }
   margin_ = static_cast<float>(2e-6 * (length(farthest_corner(box)) + farthest));
 }
@@ -238,6 +242,11 @@ Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective
   const double size = length(high) + length(from_);
   rounding_ = 1e-6 * size;
   surely_away_ = rounding_ + 1.001 * away_epsilon * size;
+  const bool fits = size < most_in_floats;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  from_in_floats_ = fits ? to_float(from_) : Vec3f{};
+  surely_towards_in_floats_ = fits ? static_cast<float>(-rounding_) : -infinity;
+  surely_away_in_floats_ = fits ? static_cast<float>(surely_away_) : infinity;
 }
 
 double Camera::facing(Vec3d point, Vec3d normal) const {

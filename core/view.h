@@ -101,13 +101,12 @@ class Camera::QuickAway {
   struct FourAnswers {
     FourBits no, yes;
   };
-  /// The same of four, in floats.
+  /// The same of four, in floats. Nothing is decided where a float could not hold what the eye is away.
   [[nodiscard]] FourAnswers operator()(const FourVectors& normals, Four planes) const {
-    const auto from = [this](double Vec3d::*c) { return static_cast<float>(from_.*c); };
     const Four along = static_cast<float>(perspective_) * planes -
-                       (from(&Vec3d::x) * normals.x + from(&Vec3d::y) * normals.y + from(&Vec3d::z) * normals.z);
-    const FourBits no = along < static_cast<float>(-rounding_);
-    const FourBits yes = along > static_cast<float>(surely_away_);
+                       (from_in_floats_.x * normals.x + from_in_floats_.y * normals.y + from_in_floats_.z * normals.z);
+    const FourBits no = along < surely_towards_in_floats_;
+    const FourBits yes = along > surely_away_in_floats_;
     return {no, yes};
   }
 
@@ -115,11 +114,13 @@ class Camera::QuickAway {
   double perspective_;  ///< 1 or 0
   Vec3d from_;
   double rounding_, surely_away_;
+  Vec3f from_in_floats_;
+  float surely_towards_in_floats_, surely_away_in_floats_;
 };
 
 class Camera::QuickOutside {
  public:
-  /// Of the planes in the set; with the near plane among them nothing is decided.
+  /// Of the planes in the set; with the near plane among them nothing is decided, nor where floats could not hold it.
   QuickOutside(const Camera& camera, const Box& box, unsigned planes);
   [[nodiscard]] Answer operator()(Vec3f centre, float radius) const {
     if (!is_certain_) return Answer::unsure;

@@ -116,7 +116,7 @@ View random_view(std::mt19937& random, double size, Vec3d place) {
   std::uniform_real_distribution<double> within(-1, 1);
   const auto anywhere = [&](double far) { return far * Vec3d{within(random), within(random), within(random)}; };
   View view;
-  view.eye = place + anywhere(3 * size);
+  view.eye = place + anywhere(random() % 16 == 0 ? 1e60 : 3 * size);
   view.target = place + anywhere(size);
   view.up = anywhere(1);
   view.fov_y = 30 + 20 * within(random);
