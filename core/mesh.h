@@ -52,9 +52,8 @@ struct Topology {
   [[nodiscard]] uint32_t half_edge_count() const { return static_cast<uint32_t>(origin.size()); }
 
   static uint32_t face(uint32_t h) { return h / 3; }
-  // Without branches, which compilers make of comparisons: nobody can guess where in its face a half-edge is.
-  static uint32_t next(uint32_t h) { return h + 1 - 3 * (h % 3 / 2); }
-  static uint32_t previous(uint32_t h) { return h - 1 + 3 * ((2 - h % 3) / 2); }
+  static uint32_t next(uint32_t h) { return h + 1 - (h % 3 == 2 ? 3U : 0U); }
+  static uint32_t previous(uint32_t h) { return h - 1 + (h % 3 == 0 ? 3U : 0U); }
   [[nodiscard]] uint32_t tip(uint32_t h) const { return origin[next(h)]; }
   /// The vertex of h's face that h does not touch.
   [[nodiscard]] uint32_t apex(uint32_t h) const { return origin[previous(h)]; }
