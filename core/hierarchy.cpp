@@ -146,9 +146,12 @@ class LevelMaker {
       out.centre.push_back(vertices_[centre]);
       out.is_closed.push_back(above.is_closed[i]);
     }
-    for (uint32_t h : above.curve_half_edges)
-      if (faces_.has(Topology::face(h)))
-        for (uint32_t half : {first_half(in_part(h)), second_half(in_part(h))}) out.curve_half_edges.push_back(half);
+    const Topology& below = below_.mesh.topology;
+    for (uint32_t h : above.curve_half_edges) {
+      if (!faces_.has(Topology::face(h))) continue;
+      if (below.kind[below.edge[first_half(in_part(h))]] == EdgeKind::cut) continue;  // a crease: its other face is not
+      for (uint32_t half : {first_half(in_part(h)), second_half(in_part(h))}) out.curve_half_edges.push_back(half);
+    }
   }
 
   /// Numbers in the part that is held.

@@ -234,6 +234,8 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
       if (below.level.is_whole || below.level.mesh.topology.face_count() == 0) break;
       level = std::move(below.level);
       const Topology& topology = level.mesh.topology;
+      for (uint32_t h : level.features.curve_half_edges)
+        ASSERT_NE(topology.kind[topology.edge[h]], EdgeKind::cut);  // a crease of which one face is held
       const Vec3f* positions = level.mesh.positions.data();
       Array<Vec3f> expected(topology.edge_count());
       uniform_butterfly(topology, level.features, positions, expected.data());
