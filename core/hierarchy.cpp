@@ -158,7 +158,8 @@ class LevelMaker {
   [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
   [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
     const uint32_t face = faces_[h == none ? 0 : Topology::face(h)];  // no branch: what is held nobody can guess
-    return (h == none) | (face == none) ? none : 3 * face + h % 3;
+    const bool is_held = (h != none) & (face != none);
+    return is_held ? 3 * face + h % 3 : none;
   }
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 

@@ -209,7 +209,9 @@ class RedGreen {
     List<uint32_t> faces = choice.region.faces;
     keep_if(faces, [&](uint32_t f) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
-      return ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0) & choice.may_divide(f);
+      const bool is_touched = (touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0;
+      const bool may_divide = choice.may_divide(f);
+      return is_touched & may_divide;
     });
     return faces;
   }

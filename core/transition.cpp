@@ -217,7 +217,9 @@ void judge_all(const LevelChoice& choice, const List<uint32_t>& faces, double mo
     List<uint32_t> alike = faces;
     keep_if(alike, [&](uint32_t f) {
       const unsigned mask = choice.split_mask(f);
-      return ((level.transitions.get(f) >> shift_of(mask) & is_known) == 0) & (has_two_targets(mask) == has_two);
+      const bool is_new = (level.transitions.get(f) >> shift_of(mask) & is_known) == 0;
+      const bool is_alike = has_two_targets(mask) == has_two;
+      return is_new & is_alike;
     });
     for (size_t i = 0; i < alike.size(); i += 4) {
       std::array<FourJudge::Split, 4> splits;
