@@ -32,7 +32,7 @@ struct AssembledLevel {
 
   [[nodiscard]] bool is_divided(uint32_t f) const { return has_below && choice->red[f] != 0; }
   /// The first child of a divided face.
-  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].choice->level->child[f]; }
+  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].choice->level->first_child_of(f); }
 };
 
 /// Most are already: what was wanted, and behind it what that needs.

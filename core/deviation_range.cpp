@@ -6,6 +6,7 @@
 
 #include "four.h"
 #include "parallel.h"
+#include "subset.h"
 
 namespace papilio {
 namespace {
@@ -89,18 +90,14 @@ void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ra
 
 }  // namespace
 
-Array<float> rooms_at_sides(const Mesh& mesh, const List<uint8_t>* asked_of, int threads) {
+Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads) {
   const uint32_t count = mesh.topology.face_count();
-  const uint32_t fours = (count + 3) / 4;
+  const Subset of((count + 3) / 4, fours);
   Array<float> rooms(count);
-  for_each_part(parts_of(count, threads), fours, [&](uint32_t, uint32_t first, uint32_t last) {
+  for_each_part(parts_of(4 * of.size(), threads), of.size(), [&](uint32_t, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; ++i) {
-      if (asked_of != nullptr && (*asked_of)[i] == 0) {
-        std::fill_n(&rooms[size_t{4} * i], 4, 0.0F);
-        continue;
-      }
       const uint32_t most = count - 1;
-      const uint32_t f = 4 * i;
+      const uint32_t f = 4 * of[i];
       const Four four = rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
       for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
     }

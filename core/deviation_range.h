@@ -11,9 +11,9 @@
 namespace papilio {
 
 /// For each face [F] how far the other two sides are at least from the middle of each side; 0 where the face is too
-/// narrow for that to be certain, or is not `asked_of` ([F / 4], for all four; null: all are). In the mesh's unit. Up
-/// to so many threads work on it.
-[[nodiscard]] Array<float> rooms_at_sides(const Mesh& mesh, const List<uint8_t>* asked_of, int threads);
+/// narrow for that to be certain. In the mesh's unit. Where faces come by fours (split_in_four.h), only some may be asked
+/// about, by number; the others mean nothing then. Up to so many threads work on it.
+[[nodiscard]] Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads);
 
 struct DeviationRange {
   float least, most;

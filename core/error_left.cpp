@@ -48,7 +48,7 @@ class ErrorFinder {
     List<uint8_t> below(mesh_of(k).face_count(), 0);
     for (size_t i = 0; i < choice.region.faces.size(); i += 4) {
       const uint32_t f = choice.region.faces[i];
-      const uint32_t parent = choice.level->parent[f / 4];
+      const uint32_t parent = choice.level->parent_of(f);
       const uint8_t is_reached = levels_[k - 1].split_mask(parent) == 7 ? reached_[parent] : 0;
       std::fill_n(below.begin() + f, 4, is_reached);
     }
@@ -223,6 +223,8 @@ class ErrorFinder {
   /// The two edges of the level below that side i of a face is split into.
   [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t i) const {
     const HierarchyLevel& below = *levels_[k + 1].level;
+    const uint32_t e = mesh_of(k).edge[3 * f + i];
+    if (below.child.empty()) return {2 * e, 2 * e + 1};
     const auto half = [&](uint32_t which) {
       return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * i + which]];
     };

@@ -1,9 +1,11 @@
 #include "flatness.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "curve.h"
+#include "four.h"
 #include "normals.h"
 
 namespace papilio {
@@ -11,6 +13,12 @@ namespace {
 
 constexpr float unknown = std::numeric_limits<float>::infinity();
 constexpr float flat = 2;
+
+/// The least float that is.
+float no_less_than(double number) {
+  const auto rounded = static_cast<float>(number);
+  return rounded < number ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
 
 /// Cosine of the turn from a to b to c; 1 where a piece has no length.
 double cosine_of_turn(Vec3f a, Vec3f b, Vec3f c) {
@@ -29,86 +37,120 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
   return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - product_rounding;
 }
 
-}  // namespace
+/// Which of a region's edges are not flat.
+class CurvedFinder {
+ public:
+  CurvedFinder(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold)
+      : mesh_(mesh),
+        topology_(mesh.topology),
+        normals_(normals),
+        products_(products),
+        threshold_(threshold),
+        least_(threshold - product_rounding) {}
 
-List<uint32_t> find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
-                           double threshold, const Region& region) {
-  const Topology& topology = mesh.topology;
-  std::optional<CurveNeighbours> curves;  // made when the first curve is met: there may be none
-  const double least = threshold - product_rounding;
-  const auto product_at = [&](uint32_t h, uint32_t t) {
-    const Vec3f n1 = normals[Topology::face(h)];
-    const Vec3f n2 = normals[Topology::face(t)];
+  /// Edge by edge: what is known already need not be computed. [E]
+  [[nodiscard]] EdgeMarks by_edges(const Region& region) {
+    EdgeMarks marks(topology_.edge_count(), 0);
+    for (uint32_t e : region.edges) {
+      const float known = products_.get(e);
+      const bool curved = known != unknown ? known < least_ : is_curved(e);
+      marks[e] = curved ? 1 : 0;
+    }
+    return marks;
+  }
+
+  /// Face by face, as they lie in memory: each asks about all its edges, which costs less than finding out which it has
+  /// asked about before. [E]
+  [[nodiscard]] EdgeMarks by_faces(const Region& region) {
+    Array<uint8_t> found(topology_.edge_count());
+    for (uint32_t f : region.faces) look_at(f, found.data());
+    EdgeMarks marks(found.size(), 0);
+    for (uint32_t e : region.edges) marks[e] = found[e];
+    return marks;
+  }
+
+ private:
+  void look_at(uint32_t f, uint8_t* found) {
+    const uint32_t* twin = &topology_.twin[size_t{3} * f];
+    const uint32_t* edge = &topology_.edge[size_t{3} * f];
+    const auto is_smooth = [&](uint32_t i) { return topology_.kind[edge[i]] == EdgeKind::smooth; };
+    if (!is_smooth(0) || !is_smooth(1) || !is_smooth(2)) [[unlikely]] {
+      for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = is_curved(edge[i]) ? 1 : 0;
+      return;
+    }
+    const Four own = widen(normals_[f]).v;
+    const FourVectors others =
+        at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
+    const Four products = own[0] * others.x + own[1] * others.y + own[2] * others.z;
+    const auto have_normals = (others.x != 0) | (others.y != 0) | (others.z != 0);  // the last: the face itself
+    const auto are_curved =
+        (products < least_in_floats_) & have_normals & __builtin_shufflevector(have_normals, have_normals, 3, 3, 3, 3);
+    for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = are_curved[i] != 0 ? 1 : 0;
+  }
+
+  [[nodiscard]] bool is_curved(uint32_t e) {
+    const uint32_t h = topology_.half_edge[e];
+    if (topology_.kind[e] != EdgeKind::smooth) {
+      if (topology_.kind[e] == EdgeKind::cut) return false;  // no curve: what lies beyond its ends is not known
+      if (!curves_) curves_.emplace(topology_);
+      return turns(mesh_, *curves_, h, threshold_);
+    }
+    const float found = product(h);
+    if (!products_.empty()) products_.put(e, found);
+    return found < least_;
+  }
+
+  /// Of the unit normals at a smooth edge.
+  [[nodiscard]] float product(uint32_t h) const {
+    const Vec3f n1 = normals_[Topology::face(h)];
+    const Vec3f n2 = normals_[Topology::face(topology_.twin[h])];
     const float product = dot(n1, n2);
     return product != 0 || (has_normal(n1) && has_normal(n2)) ? product : flat;  // without a normal it is 0
-  };
-  const auto is_curved = [&](uint32_t e) {
-    const uint32_t h = topology.half_edge[e];
-    if (topology.kind[e] != EdgeKind::smooth) {
-      if (topology.kind[e] == EdgeKind::cut) return false;  // no curve: what lies beyond its ends is not known
-      if (!curves) curves.emplace(topology);
-      return turns(mesh, *curves, h, threshold);
-    }
-    const float product = product_at(h, topology.twin[h]);
-    if (!products.empty()) products.put(e, product);
-    return product < least;
-  };
-  List<uint32_t> found = region.edges;
-  keep_if(found, [&](uint32_t e) {
-    const float known = products.empty() ? unknown : products.get(e);
-    return known != unknown ? known < least : is_curved(e);
-  });
-  return found;
-}
+  }
 
-void mark_by_flatness(const Mesh& mesh, const Array<Vec3f>& normals, double threshold, EdgeMarks& marks) {
-  for (uint32_t e : find_curved(mesh, normals, {}, threshold, whole_region(mesh.topology))) marks[e] = 1;
+  const Mesh& mesh_;
+  const Topology& topology_;
+  const Array<Vec3f>& normals_;
+  const NormalProducts& products_;
+  double threshold_, least_;
+  float least_in_floats_ = no_less_than(least_);  ///< a float is below both or none
+  std::optional<CurveNeighbours> curves_;         ///< made when the first curve is met: there may be none
+};
+
+}  // namespace
+
+EdgeMarks find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
+                      const Region& region) {
+  CurvedFinder finder(mesh, normals, products, threshold);
+  return products.empty() ? finder.by_faces(region) : finder.by_edges(region);
 }
 
 namespace {
 
-void grow_over_faces(const Topology& mesh, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
-  const auto mark_others = [&](uint32_t h) {
-    marks[mesh.edge[Topology::next(h)]] = 1;
-    marks[mesh.edge[Topology::previous(h)]] = 1;
-  };
-  EdgeMarks shared;  // of the seeds: one edge does not name all of its faces
-  for (uint32_t e : seeds) {
-    if (mesh.kind[e] == EdgeKind::shared) {
-      if (shared.empty()) shared.assign(mesh.edge_count(), 0);
-      shared[e] = 1;
-      continue;
-    }
-    const uint32_t h = mesh.half_edge[e];
-    mark_others(h);
-    if (const uint32_t t = mesh.twin[h]; t != none) mark_others(t);
+void grow_over_faces(const Topology& mesh, const Region& region, EdgeMarks& marks) {
+  const EdgeMarks seeds = marks;
+  for (uint32_t f : region.faces) {
+    const uint32_t* edge = &mesh.edge[size_t{3} * f];
+    const uint8_t any = seeds[edge[0]] | seeds[edge[1]] | seeds[edge[2]];
+    for (uint32_t i = 0; i < 3; ++i) marks[edge[i]] |= any;
   }
-  if (shared.empty()) return;
-  for (uint32_t f : region.faces)
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
-      if (shared[mesh.edge[h]] != 0) mark_others(h);
 }
 
-void grow_over_vertices(const Topology& mesh, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
+void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& marks) {
   List<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t e : seeds) {
-    touched[mesh.origin[mesh.half_edge[e]]] = 1;
-    touched[mesh.tip(mesh.half_edge[e])] = 1;
+  for (uint32_t e : region.edges) {
+    touched[mesh.origin[mesh.half_edge[e]]] |= marks[e];
+    touched[mesh.tip(mesh.half_edge[e])] |= marks[e];
   }
   for (uint32_t e : region.edges)
-    if (touched[mesh.origin[mesh.half_edge[e]]] != 0 || touched[mesh.tip(mesh.half_edge[e])] != 0) marks[e] = 1;
+    marks[e] |= touched[mesh.origin[mesh.half_edge[e]]] | touched[mesh.tip(mesh.half_edge[e])];
 }
 
 }  // namespace
 
-void grow(const Topology& mesh, Growth growth, const List<uint32_t>& seeds, const Region& region, EdgeMarks& marks) {
-  for (uint32_t e : seeds) marks[e] = 1;
-  if (growth == Growth::faces) grow_over_faces(mesh, seeds, region, marks);
-  if (growth == Growth::vertices) grow_over_vertices(mesh, seeds, region, marks);
-}
-
-void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
-  grow(mesh, growth, marked(marks), whole_region(mesh), marks);
+void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {
+  if (growth == Growth::faces) grow_over_faces(mesh, region, marks);
+  if (growth == Growth::vertices) grow_over_vertices(mesh, region, marks);
 }
 
 }  // namespace papilio

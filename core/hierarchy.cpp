@@ -1,7 +1,6 @@
 #include "hierarchy.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "region.h"
 #include "split_in_four.h"
@@ -40,6 +39,7 @@ class LevelMaker {
     Topology part = held_part();
     below_.mesh.topology = split_in_four(part, threads);
     make_vertices();
+    below_.transitions = Memo<uint32_t>(below_.mesh.topology.face_count(), 0);
     below_.parent = faces_.numbers();
     below_.child.assign(mesh_.face_count(), none);
     for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
@@ -109,18 +109,13 @@ class LevelMaker {
   void make_vertices() {
     const uint32_t count = below_.mesh.topology.vertex_count;
     below_.mesh.positions.resize(count);
-    below_.from.resize(count);
     below_.complete.assign(count, 1);
     uint32_t at = 0;
     for (uint32_t v : vertices_.numbers()) {
       below_.mesh.positions[at] = above_.mesh.positions[v];
-      below_.complete[at] = above_.complete[v];
-      below_.from[at++] = v;
+      below_.complete[at++] = above_.complete[v];
     }
-    for (uint32_t e : edges_.numbers()) {
-      below_.mesh.positions[at] = above_.trial.at(e);
-      below_.from[at++] = mesh_.vertex_count + e;
-    }
+    for (uint32_t e : edges_.numbers()) below_.mesh.positions[at++] = above_.trial.at(e);
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (faces_.has(f)) continue;
       for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
@@ -180,7 +175,7 @@ uint64_t HierarchyLevel::bytes() const {
   const auto size = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
   const Topology& t = mesh.topology;
   uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
-                   size(complete, from, parent, child, red, shared, longest) +
+                   size(complete, parent, child, red, shared, longest) +
                    size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
   bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + transitions.bytes() +
@@ -207,8 +202,8 @@ EdgeMarks edges_below_red(const HierarchyLevel& level) {
   const Topology& mesh = level.mesh.topology;
   EdgeMarks marks(mesh.edge_count(), 0);
   for (const uint8_t is_red : {1, 0})  // first those of red faces, then without those of the others
-    for (uint32_t i = 0; i < level.parent.size(); ++i)
-      if (level.red[level.parent[i]] == is_red)
+    for (uint32_t i = 0; i < mesh.face_count() / 4; ++i)
+      if (level.red[level.parent_of(4 * i)] == is_red)
         for (uint32_t h = 12 * i; h < 12 * i + 12; ++h) marks[mesh.edge[h]] = is_red;
   return marks;
 }
@@ -234,28 +229,25 @@ List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) 
 
 namespace {
 
-List<uint32_t> numbers(size_t count) {
-  List<uint32_t> all(count);
-  std::iota(all.begin(), all.end(), 0U);
-  return all;
-}
-
-/// What LevelMaker makes where everything is held, by formula.
-HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
-  const Topology& mesh = level.mesh.topology;
+/// The level below a mesh all of whose edges were tried, where everything has the number that split_in_four() gives it.
+/// `topology`: its.
+HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) {
   HierarchyLevel below;
-  below.is_whole = true;
   below.features = level.features;
-  descend(below.features, mesh.vertex_count);
-  below.mesh.topology = split_in_four(mesh, threads);
-  below.mesh.positions.reserve(below.mesh.topology.vertex_count);
+  descend(below.features, level.mesh.topology.vertex_count);
+  below.mesh.positions.reserve(topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
+  below.transitions = Memo<uint32_t>(topology.face_count(), 0);
+  below.mesh.topology = std::move(topology);
+  return below;
+}
+
+/// What LevelMaker makes where everything is held.
+HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
+  HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
+  below.is_whole = true;
   below.complete.assign(below.mesh.topology.vertex_count, 1);
-  below.from = numbers(below.mesh.topology.vertex_count);
-  below.parent = numbers(mesh.face_count());
-  below.child.resize(mesh.face_count());
-  for (uint32_t f = 0; f < mesh.face_count(); ++f) below.child[f] = 4 * f;
   for (uint32_t parent : level.shared)
     for (uint32_t half : {first_half(parent), second_half(parent)}) below.shared.push_back(half);
   return below;
@@ -269,8 +261,30 @@ LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int thre
   LevelBelow below = all ? LevelBelow{refine_whole_level(level, threads), {}} : LevelMaker(level, red).run(threads);
   HierarchyLevel& made = below.level;
   made.red = std::move(red);
-  made.transitions = Memo<uint32_t>(made.mesh.topology.face_count(), 0);
   made.box = bounding_box(made.mesh.positions);
+  return below;
+}
+
+namespace {
+
+/// The box of the level above and the new vertices of these of its faces.
+Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& faces) {
+  Array<Vec3f> points;
+  points.reserve(3 * faces.size() + 2);
+  for (uint32_t f : faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) points.push_back(above.trial.at(above.mesh.topology.edge[h]));
+  points.push_back(above.box.min);
+  points.push_back(above.box.max);
+  return bounding_box(points);
+}
+
+}  // namespace
+
+HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const List<uint32_t>& red_faces,
+                                 int threads) {
+  HierarchyLevel below = level_by_formula(level, split_some_in_four(level.mesh.topology, red_faces, threads));
+  below.red = std::move(red);
+  below.box = box_with_new_vertices(level, red_faces);
   return below;
 }
 

@@ -26,9 +26,8 @@ struct HierarchyLevel {
   bool is_whole = false;       ///< all the level's faces are held, with the numbers of the uniform mesh
   Features features;           ///< of the vertices that are complete
   List<uint8_t> complete;      ///< [V] whether all the level's faces at the vertex are held
-  List<uint32_t> from;         ///< [V] a vertex of the level above, or its vertex count plus the edge split
-  List<uint32_t> parent;       ///< [F / 4] the face above of children 4i to 4i + 3; empty at level 0
-  List<uint32_t> child;        ///< [F of the level above] first of the face's four children here; `none`
+  List<uint32_t> parent;       ///< [F / 4] the face above of children 4i to 4i + 3; empty where it is i
+  List<uint32_t> child;        ///< [F of the level above] first of the face's four children here; `none`; empty as above
   List<uint8_t> red;           ///< [F of the level above] whose children are held with the rings round them
   List<uint32_t> shared;       ///< the half-edges at shared edges
   Trial trial;                 ///< what splitting its edges would give, where tried
@@ -36,6 +35,10 @@ struct HierarchyLevel {
   Box box{};                   ///< of the vertices
   Memo<uint32_t> transitions;  ///< [F] what is known of its transition faces (transition.h)
 
+  /// The face above, not of level 0.
+  [[nodiscard]] uint32_t parent_of(uint32_t face) const { return parent.empty() ? face / 4 : parent[face / 4]; }
+  /// The first child of a face of the level above that has children here.
+  [[nodiscard]] uint32_t first_child_of(uint32_t above) const { return child.empty() ? 4 * above : child[above]; }
   /// Whether every face at the edge is held, and so are the rings round its ends.
   [[nodiscard]] bool is_complete(uint32_t edge) const;
   /// What it takes in memory.
@@ -63,5 +66,11 @@ struct LevelBelow {
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// must have been tried. Up to so many threads work on it.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
+
+/// Makes the next level where no other comes below it: the children of the red faces alone, which cost less. Everything
+/// has the number that it has below all of the level, and what belongs to no red face's children means nothing: neither
+/// its place in the arrays nor `complete`, which is left out. For levels whose features are rings.
+[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red,
+                                               const List<uint32_t>& red_faces, int threads = 1);
 
 }  // namespace papilio

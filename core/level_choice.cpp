@@ -87,7 +87,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
   choice.region.faces.resize(4 * red.size());
   for (size_t i = 0; i < red.size(); ++i)
-    for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->child[red[i]] + c;
+    for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->first_child_of(red[i]) + c;
   choice.may_be_split = edges_of(*level, choice.region.faces);
   choice.region.edges = marked(choice.may_be_split);
   choice.split.assign(level->mesh.topology.edge_count(), 0);

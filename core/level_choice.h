@@ -56,7 +56,7 @@ struct LevelChoice {
   void visit_parents(const Visit& visit) const {
     for (size_t i = 0; i < region.faces.size(); i += 4) {
       const uint32_t f = region.faces[i];
-      visit(level->parent[f / 4], &level->mesh.topology.edge[size_t{3} * f]);
+      visit(level->parent_of(f), &level->mesh.topology.edge[size_t{3} * f]);
     }
   }
   /// Whether all the face's edges may be split.

@@ -62,16 +62,16 @@ bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
-  const auto level =
-      std::make_shared<HierarchyLevel>(refine_level(*levels_.back(), std::move(red), progress_.threads()).level);
+  LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
+  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   List<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
-    const uint32_t parent = known.parent[f / 4];
-    moved[f] = level->child[moved_.empty() ? parent : moved_[parent]] + f % 4;
+    const uint32_t parent = known.parent_of(f);
+    moved[f] = level->first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
   }
   moved_ = std::move(moved);
   progress_.poll();
-  level->longest = longest_edges_of_fours(level->mesh);
+  level->longest = longest_edges_below(parents_of(*level, below.parents), level->mesh.positions);
   try_grown_level(*level, options_, known, moved_);
   add_kept(level);
   return true;
@@ -81,7 +81,7 @@ List<uint8_t> Levels::with_margin(const List<uint8_t>& red) const {
   const HierarchyLevel& level = *levels_.back();
   const Topology& mesh = level.mesh.topology;
   List<uint8_t> wide = with_neighbours(mesh, red);
-  if (level.parent.empty()) return wide;
+  if (levels_.size() == 1) return wide;
   const EdgeMarks may_split = edges_below_red(level);
   for (uint32_t f = 0; f < wide.size(); ++f) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
@@ -110,40 +110,75 @@ List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
 }
 
 void Levels::make(const List<uint8_t>& red) {
+  if (prepared_ == nullptr && make_last(red)) return;
   List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
                                             : or_everything(with_margin(red), part_as_dear_as_all_kept);
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
   const bool is_kept = may_keep(more);
+  if (!is_kept && make_last(red)) return;
   LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
-  if (is_kept || options_.view) level->longest = longest_edges_of_fours(level->mesh);
-  TrialContext context{.features = &level->features, .threads = progress_.threads()};
-  if (level->is_whole) context.parents = &levels_.back()->mesh.topology;
+  const Topology& parents = parents_of(*level, below.parents);
+  if (is_kept || options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
   if (is_kept) {
+    TrialContext context{.features = &level->features, .threads = progress_.threads()};
+    if (level->is_whole) context.parents = &parents;
     level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
     level->trial.keep_more(level->mesh.topology);
     add_kept(level);
   } else {
-    try_for_once(*level, below.parents, context);
+    try_for_once(*level, parents);
     levels_.push_back(level);
   }
 }
 
-void Levels::try_for_once(HierarchyLevel& level, const Topology& parents, TrialContext context) const {
+bool Levels::make_last(const List<uint8_t>& red) {
+  constexpr size_t few = 8;  // one face in so many, with all of the arrays, costs as much as it and those round it
+  const HierarchyLevel& above = *levels_.back();
+  const Topology& parents = above.mesh.topology;
+  if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
+      above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes_per_face))
+    return false;
+  const List<uint32_t> red_faces = marked(red);
+  if (few * red_faces.size() < red.size()) return false;
+  const auto level =
+      std::make_shared<HierarchyLevel>(refine_last_level(above, red, red_faces, progress_.threads()));
+  progress_.poll();
+  if (options_.view) {
+    const List<uint32_t> round_them = marked(with_neighbours(parents, red));
+    level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
+  }
+  const TrialContext context{.features = &level->features,
+                             .parents = &parents,
+                             .asked_of = &red_faces,
+                             .threads = progress_.threads()};
+  level->trial = try_everything(level->mesh, options_, context);
+  level->trial.prepare_errors(level->mesh, options_, context);
+  levels_.push_back(level);
+  return true;
+}
+
+bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }
+
+const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& held) const {
+  return level.is_whole ? levels_.back()->mesh.topology : held;
+}
+
+void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
   constexpr size_t one_as_dear_as = 4;  // of all, family by family
-  const bool is_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
-  List<uint8_t> asked_of;
+  TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
+  List<uint32_t> asked_of;
   bool are_few = false;
-  if (!level.is_whole) context.parents = &parents;
-  if (is_last && !level.is_whole) {
-    for (uint32_t parent : level.parent) asked_of.push_back(level.red[parent]);
-    are_few = one_as_dear_as * static_cast<size_t>(std::ranges::count(asked_of, 1)) < asked_of.size();
+  if (is_next_last() && !level.is_whole) {
+    for (uint32_t i = 0; i < level.parent.size(); ++i)
+      if (level.red[level.parent[i]] != 0) asked_of.push_back(i);
+    are_few = one_as_dear_as * asked_of.size() < level.parent.size();
     context.asked_of = &asked_of;
   }
   if (are_few || options_.w != 0)
     level.trial =
-        try_split(level.mesh, options_, asked_of.empty() ? complete_edges(level) : edges_below_red(level), context);
+        try_split(level.mesh, options_, context.asked_of == nullptr ? complete_edges(level) : edges_below_red(level), context);
   else
     level.trial = try_everything(level.mesh, options_, context);
   level.trial.prepare_errors(level.mesh, options_, context);

@@ -41,8 +41,15 @@ class Levels {
   /// those marked.
   [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
   void make(const List<uint8_t>& red);
-  /// Tries the edges of a level that is not kept, as far as this request may ask for them; `parents` as in LevelBelow.
-  void try_for_once(HierarchyLevel& level, const Topology& parents, TrialContext context) const;
+  /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
+  /// done, where that is not so, or would cost more.
+  bool make_last(const List<uint8_t>& red);
+  /// Whether no level will lie below the one below the deepest.
+  [[nodiscard]] bool is_next_last() const;
+  /// What a level below the deepest was split from; `held` as in LevelBelow.
+  [[nodiscard]] const Topology& parents_of(const HierarchyLevel& level, const Topology& held) const;
+  /// Tries the edges of a level that is not kept, as far as this request may ask for them; `parents`: as above.
+  void try_for_once(HierarchyLevel& level, const Topology& parents) const;
   void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
   const Options& options_;

@@ -62,18 +62,14 @@ Array<Vec3f> face_normals(const Mesh& mesh, int threads) {
   return normals;
 }
 
-Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint8_t>& asked_of, int threads) {
-  const uint32_t count = mesh.topology.face_count() / 4;
-  Array<Vec3f> normals(size_t{4} * count);
-  for_each_part(parts_of(count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
+Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint32_t>& fours, int threads) {
+  const auto count = static_cast<uint32_t>(fours.size());
+  Array<Vec3f> normals(mesh.topology.face_count());
+  for_each_part(parts_of(4 * count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; ++i) {
-      Vec3f* four = &normals[size_t{4} * i];
-      if (asked_of[i] == 0) {
-        std::fill_n(four, 4, Vec3f{});
-        continue;
-      }
-      write_two_normals(mesh, 4 * i, four);
-      write_two_normals(mesh, 4 * i + 2, four + 2);
+      const uint32_t f = 4 * fours[i];
+      write_two_normals(mesh, f, &normals[f]);
+      write_two_normals(mesh, f + 2, &normals[f + 2]);
     }
   });
   return normals;

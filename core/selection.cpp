@@ -165,9 +165,8 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<dou
 
 List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
   if (options_.flatness.empty()) return region.edges;
-  EdgeMarks marks(mesh.topology.edge_count(), 0);
-  const List<uint32_t> seeds = find_curved(mesh, trial.normals, trial.products, flatness_of(level), region);
-  grow(mesh.topology, options_.growth, seeds, region, marks);
+  EdgeMarks marks = find_curved(mesh, trial.normals, trial.products, flatness_of(level), region);
+  grow(mesh.topology, options_.growth, region, marks);
   List<uint32_t> edges = region.edges;
   keep_if(edges, [&](uint32_t e) { return marks[e] != 0; });
   return edges;

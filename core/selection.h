@@ -20,9 +20,8 @@ namespace papilio {
 struct TrialContext {
   const Features* features = nullptr;  ///< its
   const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
-  /// [F of the parents]: normals are asked of the children of those marked, and edges to be tried lie between these
-  /// only; null: of all.
-  const List<uint8_t>* asked_of = nullptr;
+  /// Those of the parents of whose children normals are asked, and between which the edges to be tried lie; null: all.
+  const List<uint32_t>* asked_of = nullptr;
   int threads = 1;  ///< at most so many work on it
 };
 

@@ -4,6 +4,7 @@
 
 #include "four_children.h"
 #include "parallel.h"
+#include "subset.h"
 
 namespace papilio {
 namespace {
@@ -58,7 +59,8 @@ Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, si
 template <bool numbers_edges>
 class FourSplitter {
  public:
-  explicit FourSplitter(const Topology& mesh) : mesh_(mesh), rule_(mesh.vertex_count, mesh.edge_count()) {}
+  FourSplitter(const Topology& mesh, const Subset& faces)
+      : mesh_(mesh), faces_(faces), rule_(mesh.vertex_count, mesh.edge_count()) {}
 
   Topology run(int threads) {
     const size_t half_edges = size_t{4} * mesh_.half_edge_count();
@@ -68,9 +70,9 @@ class FourSplitter {
       child_.half_edge.resize(rule_.inner_edge(mesh_.face_count()));
       child_.kind.resize(child_.half_edge.size());
     }
-    const uint32_t parts = parts_of(mesh_.face_count(), threads);
-    for_each_part(parts, mesh_.face_count(), [this](uint32_t, uint32_t first, uint32_t last) {
-      for (uint32_t f = first; f < last; ++f) split_face(f);
+    const uint32_t parts = parts_of(faces_.size(), threads);
+    for_each_part(parts, faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
+      for (uint32_t i = first; i < last; ++i) split_face(faces_[i]);
     });
     if (numbers_edges)
       for_each_part(parts, mesh_.edge_count(), [this](uint32_t, uint32_t first, uint32_t last) {
@@ -102,15 +104,24 @@ class FourSplitter {
   }
 
   const Topology& mesh_;
+  const Subset faces_;
   const FourRule rule_;
   Topology child_;
 };
 
 }  // namespace
 
-Topology split_in_four(const Topology& mesh, int threads) { return FourSplitter<true>(mesh).run(threads); }
+Topology split_in_four(const Topology& mesh, int threads) {
+  return FourSplitter<true>(mesh, Subset(mesh.face_count())).run(threads);
+}
 
-Topology split_last_in_four(const Topology& mesh, int threads) { return FourSplitter<false>(mesh).run(threads); }
+Topology split_some_in_four(const Topology& mesh, const List<uint32_t>& faces, int threads) {
+  return FourSplitter<true>(mesh, Subset(faces)).run(threads);
+}
+
+Topology split_last_in_four(const Topology& mesh, int threads) {
+  return FourSplitter<false>(mesh, Subset(mesh.face_count())).run(threads);
+}
 
 Topology split_last_in_sixteen(const Topology& mesh, int threads) {
   const uint32_t vertices = mesh.vertex_count + mesh.edge_count();

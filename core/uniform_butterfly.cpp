@@ -9,6 +9,7 @@
 #include "butterfly_rules.h"
 #include "family.h"
 #include "parallel.h"
+#include "subset.h"
 
 namespace papilio {
 namespace {
@@ -18,16 +19,18 @@ bool has_all_twins(const Topology& mesh, uint32_t f) {
   return twin[0] != none && twin[1] != none && twin[2] != none;
 }
 
-/// Calls add_shares(face, shares) for each face, of a level or of the level above.
+/// Calls add_shares(face, shares) for these faces, of a level or of the level above.
 template <class AddShares>
-void add_all_shares(const Topology& mesh, Vec3f* made, int threads, const AddShares& add_shares) {
+void add_all_shares(const Topology& mesh, const Subset& faces, Vec3f* made, int threads, const AddShares& add_shares) {
+  if (faces.size() == 0) return;
   const FaceShares<float> shares{made};
-  const uint32_t parts = parts_of(mesh.face_count(), threads);
+  const uint32_t parts = parts_of(faces.size(), threads);
   std::vector<LateFaceShares<float>> late_of(parts, {shares, 0});
-  for_each_part(parts, mesh.face_count(), [&](uint32_t part, uint32_t first, uint32_t last) {
-    LateFaceShares<float> late(shares, first);
+  for_each_part(parts, faces.size(), [&](uint32_t part, uint32_t first, uint32_t last) {
+    LateFaceShares<float> late(shares, faces[first]);
     const AddShares add = add_shares;  // this thread's own, and so in registers
-    for (uint32_t f = first; f < last; ++f) {
+    for (uint32_t i = first; i < last; ++i) {
+      const uint32_t f = faces[i];
       const uint32_t* twin = &mesh.twin[size_t{3} * f];
       if (late.is_early(std::min({twin[0], twin[1], twin[2]}))) [[unlikely]]
         add(f, late);
@@ -109,7 +112,7 @@ void split_at_irregular_vertices(const Features& features, const Vec3f* position
 void uniform_butterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
                        const TensionField* tension, int threads) {
   const ButterflyRules<float> rules(topology, positions, 0, tension);
-  add_all_shares(topology, made, threads, [rules, &topology](uint32_t f, auto& shares) {
+  add_all_shares(topology, Subset(topology.face_count()), made, threads, [rules, &topology](uint32_t f, auto& shares) {
     if (has_all_twins(topology, f)) rules.add_face_shares(f, shares);
   });
   split_near_curves(topology, features, rules, made);
@@ -133,7 +136,7 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
 }
 
 void uniform_butterfly_below(const Topology& parents, const Topology* topology, const Features& features,
-                             const Vec3f* positions, Vec3f* made, int threads, const List<uint8_t>* asked_of) {
+                             const Vec3f* positions, Vec3f* made, int threads, const List<uint32_t>* asked_of) {
   std::optional<ButterflyRules<float>> rules;
   if (topology != nullptr) rules.emplace(*topology, positions, 0, nullptr);
   const FamilyRule<float> family_rule(positions);
@@ -146,12 +149,7 @@ void uniform_butterfly_below(const Topology& parents, const Topology* topology, 
     for (uint32_t child = 4 * f; child < 4 * f + 4; ++child)  // at a border, one by one
       if (has_all_twins(*topology, child)) rules->add_face_shares(child, of_children);
   };
-  if (asked_of == nullptr)
-    add_all_shares(parents, made, threads, add_shares);
-  else
-    add_all_shares(parents, made, threads, [asked_of, add_shares](uint32_t f, auto& shares) {
-      if ((*asked_of)[f] != 0) add_shares(f, shares);
-    });
+  add_all_shares(parents, Subset(parents.face_count(), asked_of), made, threads, add_shares);
   if (!features.curve_half_edges.empty()) split_near_curves(*topology, features, *rules, made);
   split_at_irregular_vertices(features, positions, topology, rules ? &*rules : nullptr,
                               [&](uint32_t e, Vec3f q) { made[e] = q; });

@@ -14,11 +14,10 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
                        const TensionField* tension = nullptr, int threads = 1);
 
 /// The same, without tension, for the level below `parents` (split_in_four.h), four faces at once (family.h).
-/// `topology` of that level may be null where `features.are_rings()`: then nothing of it is needed. `asked_of` [F of
-/// the parents], if not null, marks the faces whose children are asked about: of edges that have other faces, too,
-/// nothing is known.
+/// `topology` of that level may be null where `features.are_rings()`: then nothing of it is needed. `asked_of`, if not
+/// null, are the parents whose children are asked about: of edges that have other faces, too, nothing is known.
 void uniform_butterfly_below(const Topology& parents, const Topology* topology, const Features& features,
                              const Vec3f* positions, Vec3f* made, int threads = 1,
-                             const List<uint8_t>* asked_of = nullptr);
+                             const List<uint32_t>* asked_of = nullptr);
 
 }  // namespace papilio

@@ -10,6 +10,7 @@
 #include "error.h"
 #include "four_children.h"
 #include "normals.h"
+#include "subset.h"
 
 namespace papilio {
 namespace {
@@ -322,13 +323,18 @@ List<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
-List<double> longest_edges_of_fours(const Mesh& mesh) {
-  const Topology& topology = mesh.topology;
-  List<double> longest(topology.vertex_count, 0);
-  for (uint32_t f = 0; f < topology.face_count(); f += 4) {
-    const std::array<uint32_t, 6> vertex = vertices_of_four(&topology.origin[size_t{3} * f]);
+List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions,
+                                 const List<uint32_t>* faces) {
+  const Subset of(parents.face_count(), faces);
+  List<double> longest(positions.size(), 0);
+  for (uint32_t k = 0; k < of.size(); ++k) {
+    const uint32_t* corner = &parents.origin[size_t{3} * of[k]];
+    const uint32_t* edge = &parents.edge[size_t{3} * of[k]];
+    const uint32_t first_new = parents.vertex_count;
+    const std::array<uint32_t, 6> vertex{corner[0],           corner[1],           corner[2],
+                                         first_new + edge[0], first_new + edge[1], first_new + edge[2]};
     std::array<Vec3d, 6> p;
-    for (uint32_t i = 0; i < 6; ++i) p[i] = to_double(mesh.positions[vertex[i]]);
+    for (uint32_t i = 0; i < 6; ++i) p[i] = to_double(positions[vertex[i]]);
     std::array<double, 6> squared{};
     visit_edges_of_four([&](uint32_t /*half_edge*/, uint32_t from, uint32_t to) {
       const Vec3d along = p[to] - p[from];

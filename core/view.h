@@ -146,8 +146,10 @@ using FacePlanes = Memo<float>;
 
 /// The length of each vertex's longest edge. [V]
 [[nodiscard]] List<double> longest_edges(const Mesh& mesh);
-/// The same where faces come by fours, the children of one face (split_in_four.h).
-[[nodiscard]] List<double> longest_edges_of_fours(const Mesh& mesh);
+/// The same of the level below `parents` (split_in_four.h), from its positions; of the edges of some faces' children
+/// alone, if `faces` is not null.
+[[nodiscard]] List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions,
+                                               const List<uint32_t>* faces = nullptr);
 
 /// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so

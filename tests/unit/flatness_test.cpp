@@ -18,10 +18,10 @@ uint32_t count(const EdgeMarks& marks) {
 }
 
 EdgeMarks flatness_marks(const Mesh& mesh, double threshold) {
-  EdgeMarks marks(mesh.topology.edge_count(), 0);
-  mark_by_flatness(mesh, face_normals(mesh), threshold, marks);
-  return marks;
+  return find_curved(mesh, face_normals(mesh), {}, threshold, whole_region(mesh.topology));
 }
+
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) { papilio::grow(mesh, growth, whole_region(mesh), marks); }
 
 TEST(Flatness, CubeMarksItsTwelveEdgesAndNoDiagonal) {
   const Mesh mesh = build_mesh(cube());

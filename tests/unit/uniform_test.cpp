@@ -228,7 +228,7 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
     for (int k = 1; k < 4; ++k) {
       level.trial = try_split(level.mesh, options, complete_edges(level));
       List<uint8_t> red(level.mesh.topology.face_count());
-      for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent[f / 4]] != 0;
+      for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent_of(f)] != 0;
       for (uint8_t& is_red : red) is_red &= random() % 16 == 0 ? 1 : 0;
       LevelBelow below = refine_level(level, red);
       if (below.level.is_whole || below.level.mesh.topology.face_count() == 0) break;

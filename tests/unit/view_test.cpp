@@ -235,11 +235,22 @@ TEST(LongestEdges, AreTheSameByFours) {
   std::mt19937 random(8);
   for (int i = 0; i < 20; ++i) {
     Mesh mesh = build_mesh(random_manifold(random));
-    mesh.topology = split_in_four(mesh.topology);
+    const Topology parents = std::exchange(mesh.topology, split_in_four(mesh.topology));
     mesh.positions.resize(mesh.topology.vertex_count);
     std::uniform_real_distribution<float> coordinate(-1, 1);
     for (Vec3f& p : mesh.positions) p = {coordinate(random), coordinate(random), coordinate(random)};
-    EXPECT_EQ(longest_edges_of_fours(mesh), longest_edges(mesh));
+    const List<double> longest = longest_edges(mesh);
+    EXPECT_EQ(longest_edges_below(parents, mesh.positions), longest);
+    const List<uint32_t> some{1, 2};
+    const List<double> of_some = longest_edges_below(parents, mesh.positions, &some);
+    List<uint8_t> faces(parents.face_count(), 1);  // all at a vertex of which all faces are asked about
+    faces[1] = faces[2] = 0;
+    for (uint32_t h = 0; h < parents.half_edge_count(); ++h)
+      if (faces[h / 3] == 0) EXPECT_LE(of_some[parents.origin[h]], longest[parents.origin[h]]);
+    for (uint32_t h = 3; h < 9; ++h) {
+      const uint32_t inside = mesh.topology.origin[4 * 3 * (h / 3) + 9 + h % 3];
+      EXPECT_GT(of_some[inside], 0);
+    }
   }
 }
 
