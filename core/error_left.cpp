@@ -125,6 +125,11 @@ class ErrorFinder {
       const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
       std::array<Lanes, 6> at;
       for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
+      Lanes farthest{};
+      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) {
+        farthest = larger(far.weighed(mesh.edge[h + half_edge], at[from], at[to]), farthest);
+      });
+      if (far.is_too_near(farthest)) continue;
       visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) {
         far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
       });
@@ -143,15 +148,25 @@ class ErrorFinder {
           positions_(choice_.level->mesh.positions.data()),
           made_(choice_.level->trial.made.data()),
           number_(choice_.level->trial.tried.before.empty() ? nullptr : choice_.level->trial.tried.before.data()),
-          share_squared_{1, k + 1 == of.levels_.size() ? static_cast<float>(split_leaves * split_leaves) : no_share},
+          share_squared_{no_share, no_share, 1,
+                         k + 1 == of.levels_.size() ? static_cast<float>(split_leaves * split_leaves) : no_share},
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
     [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
+    /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all where
+    /// the edge does not. (For that edges may mean nothing, and numbers be none.)
+    [[nodiscard]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
+      const Lanes off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
+      return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
+    }
+    /// Of the largest of each direction of some edges: whether all of these are too little to matter.
+    [[nodiscard]] bool is_too_near(Lanes farthest) const {
+      return farthest.v[0] + farthest.v[1] + farthest.v[2] <= too_near_.squared();
+    }
     void look_at(uint32_t e, Lanes from, Lanes to) {
-      if (may_be_split_[e] == 0) return;
-      const float off_squared = squared_length(widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to));
-      if (share_squared_[is_split_[e]] * off_squared > too_near_.squared()) [[unlikely]]
+      const Lanes parts = weighed(e, from, to);
+      if (parts.v[0] + parts.v[1] + parts.v[2] > too_near_.squared()) [[unlikely]]
         add(e);
     }
 
@@ -172,7 +187,7 @@ class ErrorFinder {
     const uint8_t *may_be_split_, *is_split_;
     const Vec3f *positions_, *made_;
     const uint32_t* number_;              ///< of an edge's vertex; null: its own
-    std::array<float, 2> share_squared_;  ///< by whether the edge is split
+    std::array<float, 4> share_squared_;  ///< by whether the edge may be split (2), and whether it is (1)
     TooNear too_near_;
   };
 

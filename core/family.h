@@ -22,12 +22,13 @@ class Family {
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * parent + i;
       const uint32_t t = parents.twin[h];
+      const uint32_t first = 3 * Topology::face(t);
       corner[i] = parents.origin[h];
       twin[i] = t;
       edge_[i] = parents.edge[h];
       middle[i] = parents.vertex_count + edge_[i];
-      across_first[i] = parents.vertex_count + parents.edge[Topology::next(t)];
-      across_second[i] = parents.vertex_count + parents.edge[Topology::previous(t)];
+      across_first[i] = parents.vertex_count + parents.edge[first + next_side[t - first]];
+      across_second[i] = parents.vertex_count + parents.edge[first + previous_side[t - first]];
     }
   }
 
@@ -41,6 +42,9 @@ class Family {
   std::array<uint32_t, 3> twin;  ///< of each side, in the parent's level
 
  private:
+  // Without a branch: which side it is that two faces share nobody can guess.
+  static constexpr std::array<uint8_t, 3> next_side{1, 2, 0}, previous_side{2, 0, 1};
+
   /// The half at the lower vertex has the lower number.
   [[nodiscard]] uint32_t is_downward(uint32_t i) const { return corner[i] > corner[(i + 1) % 3] ? 1 : 0; }
 

@@ -269,12 +269,15 @@ namespace {
 
 /// The box of the level above and the new vertices of these of its faces.
 Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& faces) {
-  Array<Vec3f> points;
-  points.reserve(3 * faces.size() + 2);
-  for (uint32_t f : faces)
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) points.push_back(above.trial.at(above.mesh.topology.edge[h]));
-  points.push_back(above.box.min);
-  points.push_back(above.box.max);
+  Array<Vec3f> points(3 * faces.size() + 2);
+  size_t at = 0;
+  for (uint32_t f : faces) {
+    const uint32_t* edge = &above.mesh.topology.edge[size_t{3} * f];
+    for (uint32_t i = 0; i < 3; ++i) points[at + i] = above.trial.at(edge[i]);
+    at += 3;
+  }
+  points[at] = above.box.min;
+  points[at + 1] = above.box.max;
   return bounding_box(points);
 }
 

@@ -262,8 +262,8 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
   const Topology& mesh = level.mesh.topology;
   const auto must_be_divided = [&](uint32_t f) {
     const unsigned mask = choice.split_mask(f);
-    return mask != 0 && mask != 7 && choice.may_divide(f) &&
-           (transition(level, f, mask, most_cosine) & has_sliver) != 0;
+    return mask != 0 && mask != 7 && (transition(level, f, mask, most_cosine) & has_sliver) != 0 &&
+           choice.may_divide(f);
   };
   // The order decides where dividing one makes a sliver of another.
   List<uint32_t> faces = choice.faces_split_in_part();

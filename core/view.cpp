@@ -66,7 +66,7 @@ class Sight {
     uint8_t sight = is_face_away(f) ? 0 : is_towards;
     return sight | (is_inside_somewhere(f) ? is_inside : 0);
   }
-  /// The same of four faces. Not where planes are kept.
+  /// The same of four faces. Not where planes are kept, nor before all vertices were looked at.
   [[nodiscard]] std::array<uint8_t, 4> of_four(const FourNumbers& f) {
     const auto& origin = mesh_.topology.origin;
     const auto corners = [&](uint32_t i) {
@@ -76,23 +76,27 @@ class Sight {
     const FourVectors normals = at(normals_, f);
     const FourVectors centroids = (1.0F / 3) * (corners(0) + corners(1) + corners(2));
     const auto [are_towards, are_away] = quick_(normals, dot(normals, centroids));
-    auto is_away = std::bit_cast<std::array<int32_t, 4>>(are_away);
+    auto is_away = std::bit_cast<std::array<uint32_t, 4>>(are_away);
     if (!is_all(are_towards | are_away)) [[unlikely]]
-      for (size_t i = 0; i < 4; ++i) is_away[i] = is_face_away(f[i]) ? 1 : 0;
+      for (size_t i = 0; i < 4; ++i) is_away[i] = is_face_away(f[i]) ? ~0U : 0;
     std::array<uint8_t, 4> sights{};
-    for (size_t i = 0; i < 4; ++i)
-      sights[i] = (is_away[i] != 0 ? 0 : is_towards) | (is_inside_somewhere(f[i]) ? is_inside : 0);
+    for (size_t i = 0; i < 4; ++i) {
+      const uint32_t* corner = &origin[size_t{3} * f[i]];
+      const uint32_t towards = ~is_away[i] & is_towards;
+      sights[i] = static_cast<uint8_t>(towards | inside_[corner[0]] | inside_[corner[1]] | inside_[corner[2]]);
+    }
     return sights;
   }
   [[nodiscard]] bool forgets_planes() const { return planes_.empty(); }
   /// Finds what will be asked of vertices at once, where most of them will be: in their order that costs less.
   void look_at_vertices() {
+    if (through_ == 0) inside_.assign(mesh_.topology.vertex_count, is_inside);
     for (uint32_t v = 0; v < inside_.size(); ++v) {
       const Camera::Answer is_outside = quick_outside_(mesh_.positions[v], static_cast<float>(longest_[v]));
       if (is_outside == Camera::Answer::unsure)
         (void)is_vertex_inside(v);
       else
-        inside_[v] = is_outside == Camera::Answer::no ? 1 : 0;
+        inside_[v] = is_outside == Camera::Answer::no ? is_inside : 0;
     }
   }
 
@@ -101,7 +105,7 @@ class Sight {
 
   [[nodiscard]] Vec3d position(uint32_t v) const { return to_double(mesh_.positions[v]); }
   [[nodiscard]] bool is_vertex_inside(uint32_t v) {
-    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v], through_) ? 0 : 1;
+    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v], through_) ? 0 : is_inside;
     return inside_[v] != 0;
   }
   [[nodiscard]] bool is_inside_somewhere(uint32_t f) {
@@ -132,7 +136,7 @@ class Sight {
   const Camera::QuickAway quick_;
   const unsigned through_;  ///< the planes that some of the mesh may be outside of
   const Camera::QuickOutside quick_outside_;
-  List<uint8_t> inside_;  ///< [V] or unknown
+  List<uint8_t> inside_;  ///< [V] is_inside, or 0, or unknown; empty where all are and nobody has looked
 };
 
 }  // namespace
@@ -393,8 +397,9 @@ class EdgesShown::Memory {
  private:
   static constexpr uint8_t unknown = 255;
   void look_at(const List<uint32_t>& faces) {
-    if (faces.size() > mesh_.vertex_count) sight_.look_at_vertices();
-    if (!sight_.forgets_planes()) {
+    const bool are_many = faces.size() > mesh_.vertex_count;
+    if (are_many) sight_.look_at_vertices();
+    if (!are_many || !sight_.forgets_planes()) {
       for (uint32_t f : faces) (void)of_face(f);
       return;
     }
