@@ -47,17 +47,20 @@ struct FourVectors {
   return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
 }
 
-[[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
-  const Four a = widen(points[numbers[0]]).v;
-  const Four b = widen(points[numbers[1]]).v;
-  const Four c = widen(points[numbers[2]]).v;
-  const Four d = widen(points[numbers[3]]).v;
+/// Four vectors, one beside the other.
+[[nodiscard]] inline FourVectors transposed(Lanes one, Lanes two, Lanes three, Lanes four) {
+  const auto [a, b, c, d] = std::array<Four, 4>{one.v, two.v, three.v, four.v};
   const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
   const Four cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
   const Four ab_behind = __builtin_shufflevector(a, b, 2, 6, 3, 7);
   const Four cd_behind = __builtin_shufflevector(c, d, 2, 6, 3, 7);
   return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
           __builtin_shufflevector(ab_behind, cd_behind, 0, 1, 4, 5)};
+}
+
+[[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
+  return transposed(widen(points[numbers[0]]), widen(points[numbers[1]]), widen(points[numbers[2]]),
+                    widen(points[numbers[3]]));
 }
 
 /// True where the fourth power of a length, given squared, is surely a number that has all its digits.

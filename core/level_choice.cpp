@@ -50,8 +50,25 @@ bool LevelChoice::has_many_split() const {
 }
 
 List<uint32_t> LevelChoice::faces_split_in_part() const {
-  List<uint32_t> faces = has_many_split() ? region.faces : faces_at_split();
+  List<uint32_t> faces = !has_many_split() ? faces_at_split() : region.is_in_fours ? faces_of_mixed_fours() : region.faces;
   keep_if(faces, [this](uint32_t f) { return (split_mask(f) + 1) % 8 > 1; });
+  return faces;
+}
+
+/// Those of the region's fours of whose edges some are split and some are not.
+List<uint32_t> LevelChoice::faces_of_mixed_fours() const {
+  List<uint32_t> faces(region.faces.size());
+  const uint32_t* edges = level->mesh.topology.edge.data();
+  size_t kept = 0;
+  for (size_t i = 0; i < region.faces.size(); i += 4) {
+    const uint32_t first = region.faces[i];
+    const uint32_t* edge = edges + size_t{3} * first;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < 12; ++k) count += split[edge[k]];
+    for (uint32_t k = 0; k < 4; ++k) faces[kept + k] = first + k;
+    kept += count % 12 != 0 ? 4 : 0;
+  }
+  faces.resize(kept);
   return faces;
 }
 
@@ -85,6 +102,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   LevelChoice choice;
   List<uint32_t> red = above.region.faces;
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
+  choice.region.is_in_fours = true;
   choice.region.faces.resize(4 * red.size());
   for (size_t i = 0; i < red.size(); ++i)
     for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->first_child_of(red[i]) + c;

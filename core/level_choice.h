@@ -73,6 +73,7 @@ struct LevelChoice {
 
  private:
   [[nodiscard]] bool has_many_split() const;
+  [[nodiscard]] List<uint32_t> faces_of_mixed_fours() const;
 };
 
 /// Choice of all of level 0; of the level below `above`, of the children of the faces that `above` has marked red. Only

@@ -75,12 +75,22 @@ class RedGreen {
 
   /// Decides what is split. True when the lowest level changes anything.
   bool choose() {
-    if (selection_.is_by_error())
+    if (!selection_.is_by_error()) {
+      split_deepest();
+    } else {
       for (size_t k = choices_.size() - 1; k > 0; --k) carry_up(choices_[k], choices_[k - 1]);
-    threshold_ = selection_.threshold();
-    split_from(threshold_);
-    if (options_.max_faces > 0) keep_within_budget();
+      threshold_ = selection_.threshold();
+      split_from(threshold_);
+      if (options_.max_faces > 0) keep_within_budget();
+    }
     return !choices_.back().split_edges.empty();
+  }
+
+  /// Where errors do not decide: below faces that are divided everything is as wanted, and above nothing changes.
+  void split_deepest() {
+    LevelChoice& choice = choices_.back();
+    choice.split_first(choice.candidates);
+    avoid_slivers(choice, most_cosine_);
   }
 
   /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.

@@ -10,6 +10,8 @@ namespace papilio {
 struct Region {
   List<uint32_t> faces;  ///< in ascending order
   List<uint32_t> edges;  ///< in ascending order; all faces at each of them are among `faces`
+  /// Faces come by four, the children of one face (four_children.h): 4i to 4i + 3.
+  bool is_in_fours = false;
 };
 
 /// All of the mesh.

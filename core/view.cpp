@@ -66,26 +66,27 @@ class Sight {
     uint8_t sight = is_face_away(f) ? 0 : is_towards;
     return sight | (is_inside_somewhere(f) ? is_inside : 0);
   }
-  /// The same of four faces. Not where planes are kept, nor before all vertices were looked at.
-  [[nodiscard]] std::array<uint8_t, 4> of_four(const FourNumbers& f) {
-    const auto& origin = mesh_.topology.origin;
-    const auto corners = [&](uint32_t i) {
-      return at(mesh_.positions,
-                {origin[3 * f[0] + i], origin[3 * f[1] + i], origin[3 * f[2] + i], origin[3 * f[3] + i]});
-    };
-    const FourVectors normals = at(normals_, f);
-    const FourVectors centroids = (1.0F / 3) * (corners(0) + corners(1) + corners(2));
+  /// The same of four faces, the children of one (four_children.h), from their first. Not where planes are kept, nor
+  /// before all vertices were looked at.
+  void of_four(uint32_t first, uint8_t* sights) const {
+    const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh_.topology.origin[size_t{3} * first]);
+    std::array<Lanes, 6> p;
+    std::array<uint8_t, 6> in;
+    for (uint32_t i = 0; i < 6; ++i) {
+      p[i] = widen(mesh_.positions[vertex[i]]);
+      in[i] = inside_[vertex[i]];
+    }
+    const FourVectors normals = at(normals_, {first, first + 1, first + 2, first + 3});
+    const FourVectors centroids =
+        (1.0F / 3) * transposed(p[0] + p[3] + p[5], p[3] + p[1] + p[4], p[5] + p[4] + p[2], p[3] + p[4] + p[5]);
     const auto [are_towards, are_away] = quick_(normals, dot(normals, centroids));
     auto is_away = std::bit_cast<std::array<uint32_t, 4>>(are_away);
     if (!is_all(are_towards | are_away)) [[unlikely]]
-      for (size_t i = 0; i < 4; ++i) is_away[i] = is_face_away(f[i]) ? ~0U : 0;
-    std::array<uint8_t, 4> sights{};
-    for (size_t i = 0; i < 4; ++i) {
-      const uint32_t* corner = &origin[size_t{3} * f[i]];
-      const uint32_t towards = ~is_away[i] & is_towards;
-      sights[i] = static_cast<uint8_t>(towards | inside_[corner[0]] | inside_[corner[1]] | inside_[corner[2]]);
-    }
-    return sights;
+      for (uint32_t i = 0; i < 4; ++i) is_away[i] = is_face_away(first + i) ? ~0U : 0;
+    put_sight(is_away[0], in[0] | in[3] | in[5], sights);
+    put_sight(is_away[1], in[3] | in[1] | in[4], sights + 1);
+    put_sight(is_away[2], in[5] | in[4] | in[2], sights + 2);
+    put_sight(is_away[3], in[3] | in[4] | in[5], sights + 3);
   }
   [[nodiscard]] bool forgets_planes() const { return planes_.empty(); }
   /// Finds what will be asked of vertices at once, where most of them will be: in their order that costs less.
@@ -103,6 +104,10 @@ class Sight {
  private:
   static constexpr uint8_t unknown = 2;
 
+  /// `away`: all bits, or none.
+  static void put_sight(uint32_t away, int inside, uint8_t* sight) {
+    *sight = static_cast<uint8_t>((~away & is_towards) | static_cast<uint32_t>(inside));
+  }
   [[nodiscard]] Vec3d position(uint32_t v) const { return to_double(mesh_.positions[v]); }
   [[nodiscard]] bool is_vertex_inside(uint32_t v) {
     if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v], through_) ? 0 : is_inside;
@@ -384,8 +389,8 @@ class EdgesShown::Memory {
   }
 
   /// The faces are all those at the edges.
-  void keep_shown_once_all_are_looked_at(const List<uint32_t>& faces, List<uint32_t>& edges) {
-    look_at(faces);
+  void keep_shown_once_all_are_looked_at(const Region& region, List<uint32_t>& edges) {
+    look_at(region);
     keep_if(edges, [this, has_shared = !of_shared_.empty()](uint32_t e) {
       const uint32_t h = mesh_.half_edge[e];
       const uint32_t t = mesh_.twin[h];
@@ -396,19 +401,14 @@ class EdgesShown::Memory {
 
  private:
   static constexpr uint8_t unknown = 255;
-  void look_at(const List<uint32_t>& faces) {
+  void look_at(const Region& region) {
+    const List<uint32_t>& faces = region.faces;
     const bool are_many = faces.size() > mesh_.vertex_count;
     if (are_many) sight_.look_at_vertices();
-    if (!are_many || !sight_.forgets_planes()) {
+    if (are_many && region.is_in_fours && sight_.forgets_planes())
+      for (size_t i = 0; i < faces.size(); i += 4) sight_.of_four(faces[i], &of_face_[faces[i]]);
+    else
       for (uint32_t f : faces) (void)of_face(f);
-      return;
-    }
-    for (size_t i = 0; i < faces.size(); i += 4) {
-      const auto face = [&](size_t k) { return faces[std::min(i + k, faces.size() - 1)]; };
-      const FourNumbers four{face(0), face(1), face(2), face(3)};
-      const std::array<uint8_t, 4> sights = sight_.of_four(four);
-      for (size_t k = 0; k < 4; ++k) of_face_[four[k]] = sights[k];
-    }
   }
   [[nodiscard]] uint8_t of_face(uint32_t f) {
     if (of_face_[f] == unknown) of_face_[f] = sight_.of_face(f);
@@ -436,7 +436,7 @@ void EdgesShown::keep_shown(const Region& region, List<uint32_t>& edges) const {
   Memory& memory = *memory_;
   constexpr size_t many = 2;  // one in so many
   if (edges.size() * many > region.edges.size())
-    memory.keep_shown_once_all_are_looked_at(region.faces, edges);
+    memory.keep_shown_once_all_are_looked_at(region, edges);
   else
     keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
 }

@@ -125,8 +125,8 @@ class Camera::QuickOutside {
   [[nodiscard]] Answer operator()(Vec3f centre, float radius) const {
     if (!is_certain_) return Answer::unsure;
     const Four distance = centre.x * normals_.x + centre.y * normals_.y + centre.z * normals_.z - offsets_;
-    if (is_any(distance < -margin_ - radius)) return Answer::yes;
-    return is_any(distance < margin_ - radius) ? Answer::unsure : Answer::no;
+    if (!is_any(distance < margin_ - radius)) return Answer::no;
+    return is_any(distance < -margin_ - radius) ? Answer::yes : Answer::unsure;
   }
 
  private:
