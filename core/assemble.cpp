@@ -188,8 +188,8 @@ class Assembler {
     end_face(level, f, split_pattern(7, false));
   }
 
-  /// With one or two sides split. How many faces it becomes nobody can guess: so four are written, and what was too much
-  /// is written over by the next.
+  /// With one or two sides split. Whether it becomes two faces or three nobody can guess: so three are written, and what
+  /// was too much is written over by the next.
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
     const SplitPattern& cut = transition_pattern(choose_transition(*level.choice->level, f, mask, most_cosine_));
     const uint32_t made = half_edge_count_;
@@ -209,7 +209,7 @@ class Assembler {
           meet(choose(half.second[i], slot_of_none_), choose(made + cut.outer[2 * i + 1], nobody_));
     }
     against[6] = made;
-    for (uint32_t c = 0; c < most_corners; ++c) {
+    for (uint32_t c = 0; c < 9; ++c) {
       origin_[made + c] = vertex[cut.corner[c / 3][c % 3]];
       twin_[made + c] = against[cut.twin_from[c]] + cut.twin_step[c];
     }

@@ -6,6 +6,7 @@
 
 #include "curve.h"
 #include "four.h"
+#include "four_children.h"
 #include "normals.h"
 
 namespace papilio {
@@ -63,13 +64,45 @@ class CurvedFinder {
   /// asked about before. [E]
   [[nodiscard]] EdgeMarks by_faces(const Region& region) {
     Array<uint8_t> found(topology_.edge_count());
-    for (uint32_t f : region.faces) look_at(f, found.data());
+    if (region.is_in_fours)
+      for (size_t i = 0; i < region.faces.size(); i += 4) look_at_four(region.faces[i], found.data());
+    else
+      for (uint32_t f : region.faces) look_at(f, found.data());
     EdgeMarks marks(found.size(), 0);
     for (uint32_t e : region.edges) marks[e] = found[e];
     return marks;
   }
 
  private:
+  /// The same as look_at() of each of the four children of a face.
+  void look_at_four(uint32_t first, uint8_t* found) {
+    const uint32_t* twin = &topology_.twin[size_t{3} * first];
+    const uint32_t* edge = &topology_.edge[size_t{3} * first];
+    bool are_smooth = true;
+    visit_edges_of_four([&](uint32_t h, uint32_t /*from*/, uint32_t /*to*/) {
+      are_smooth &= topology_.kind[edge[h]] == EdgeKind::smooth;
+    });
+    if (!are_smooth) [[unlikely]] {
+      for (uint32_t c = 0; c < 4; ++c) look_at(first + c, found);
+      return;
+    }
+    const FourVectors own = at(normals_, {first, first + 1, first + 2, first + 3});
+    // What is across two sides of each of the first three children, and what is beside them: the fourth.
+    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) {
+      const uint32_t last = Topology::face(twin[h2]);
+      return at(normals_, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
+    };
+    const FourBits one_side = are_curved(own, across(0, 3, 7));
+    const FourBits other_side = are_curved(own, across(2, 4, 8));
+    const FourBits inside = are_curved(own, splat(own, 3));
+    constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
+    for (uint32_t c = 0; c < 3; ++c) {
+      found[edge[half_edges[0][c]]] = one_side[c] & 1;
+      found[edge[half_edges[1][c]]] = other_side[c] & 1;
+      found[edge[half_edges[2][c]]] = inside[c] & 1;
+    }
+  }
+
   void look_at(uint32_t f, uint8_t* found) {
     const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const uint32_t* edge = &topology_.edge[size_t{3} * f];
@@ -78,14 +111,17 @@ class CurvedFinder {
       for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = is_curved(edge[i]) ? 1 : 0;
       return;
     }
-    const Four own = widen(normals_[f]).v;
     const FourVectors others =
         at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
-    const Four products = own[0] * others.x + own[1] * others.y + own[2] * others.z;
-    const auto have_normals = (others.x != 0) | (others.y != 0) | (others.z != 0);  // the last: the face itself
-    const auto are_curved =
-        (products < least_in_floats_) & have_normals & __builtin_shufflevector(have_normals, have_normals, 3, 3, 3, 3);
-    for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = are_curved[i] != 0 ? 1 : 0;
+    const FourBits curved = are_curved(splat(others, 3), others);
+    for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = curved[i] & 1;
+  }
+
+  /// Between four faces and four others, by their normals.
+  [[nodiscard]] FourBits are_curved(const FourVectors& one, const FourVectors& other) const {
+    const auto have_normals = ((one.x != 0) | (one.y != 0) | (one.z != 0)) &
+                              ((other.x != 0) | (other.y != 0) | (other.z != 0));
+    return (dot(one, other) < least_in_floats_) & have_normals;
   }
 
   [[nodiscard]] bool is_curved(uint32_t e) {

@@ -42,6 +42,10 @@ struct FourVectors {
 [[nodiscard]] inline FourVectors cross(const FourVectors& a, const FourVectors& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// One of the four vectors, four times.
+[[nodiscard]] inline FourVectors splat(const FourVectors& a, int which) {
+  return {Four{} + a.x[which], Four{} + a.y[which], Four{} + a.z[which]};
+}
 /// No less than the length.
 [[nodiscard]] inline Four sum_of_magnitudes(const FourVectors& a) {
   return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
