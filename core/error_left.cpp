@@ -204,22 +204,25 @@ class ErrorFinder {
 
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    for (uint32_t f : choice.faces_at_split()) {
-      if (reached_[f] == 0) continue;
-      const unsigned mask = choice.split_mask(f);
-      const bool has_children = choice.has_children(f);
-      if (has_children && mask == 7) continue;
-      for (uint32_t i = 0; i < 3; ++i)
-        if ((mask >> i & 1U) != 0) add_side(k, f, i, has_children);
-    }
+    List<uint32_t> faces = choice.faces_at_split();
+    keep_if(faces, [&](uint32_t f) {
+      const bool is_divided = choice.has_children(f) & (choice.split_mask(f) == 7);
+      return (reached_[f] != 0) & !is_divided;
+    });
+    List<uint32_t> sides(3 * faces.size());
+    for (size_t i = 0; i < faces.size(); ++i)
+      for (uint32_t c = 0; c < 3; ++c) sides[3 * i + c] = 3 * faces[i] + c;
+    const Topology& mesh = mesh_of(k);
+    keep_if(sides, [&](uint32_t h) { return choice.split[mesh.edge[h]] != 0; });
+    for (uint32_t h : sides) add_side(k, h);
   }
 
-  /// Side i of a face, which is split: its halves may have been judged, though nothing below was wanted.
-  void add_side(size_t k, uint32_t f, uint32_t i, bool has_children) {
+  /// A side of a face, which is split: its halves may have been judged, though nothing below was wanted.
+  void add_side(size_t k, uint32_t h) {
     const LevelChoice& choice = levels_[k];
-    const uint32_t e = mesh_of(k).edge[3 * f + i];
-    if (has_children) {
-      const auto [first, second] = halves(k, f, i);
+    const uint32_t e = mesh_of(k).edge[h];
+    if (choice.has_children(Topology::face(h))) {
+      const auto [first, second] = halves(k, Topology::face(h), h % 3);
       const LevelChoice& below = levels_[k + 1];
       if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
         for (uint32_t half : {first, second})
