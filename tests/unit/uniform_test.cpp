@@ -203,13 +203,14 @@ TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
     const Vec3f* positions = level.mesh.positions.data();
     Array<Vec3f> expected(topology.edge_count());
     uniform_butterfly(topology, level.features, positions, expected.data());
-    List<uint8_t> asked_of(mesh.topology.face_count());
-    for (uint8_t& is_asked : asked_of) is_asked = random() % 4 != 0 ? 1 : 0;
+    List<uint8_t> is_asked_of(mesh.topology.face_count());
+    for (uint8_t& is_asked : is_asked_of) is_asked = random() % 4 != 0 ? 1 : 0;
+    const List<uint32_t> asked_of = marked(is_asked_of);
     Array<Vec3f> made(topology.edge_count(), Vec3f{});
     uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data(), 1, &asked_of);
     EdgeMarks is_asked(topology.edge_count(), 1);
     for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
-      if (asked_of[h / 12] == 0) is_asked[topology.edge[h]] = 0;
+      if (is_asked_of[h / 12] == 0) is_asked[topology.edge[h]] = 0;
     for (uint32_t e = 0; e < topology.edge_count(); ++e) {
       if (is_asked[e] == 0) continue;
       ASSERT_EQ(made[e], expected[e]);
