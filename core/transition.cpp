@@ -126,10 +126,11 @@ class FourJudge {
   };
   /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
   [[nodiscard]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits, bool has_two) const {
-    const FourVectors a = corners(splits, 0);
-    const FourVectors b = corners(splits, 1);
-    const FourVectors c = corners(splits, 2);
-    const FourVectors on_ab = middles(splits, 0);
+    const std::array<FourNumbers, 3> side = sides(splits);
+    const FourVectors a = corners(side[0]);
+    const FourVectors b = corners(side[1]);
+    const FourVectors c = corners(side[2]);
+    const FourVectors on_ab = middles(side[0]);
     const Four first_half = squared_length(on_ab - a);
     const Four second_half = squared_length(b - on_ab);
     const Four across = squared_length(c - on_ab);
@@ -141,7 +142,7 @@ class FourJudge {
         is_usual(ab) & is_usual(bc) & is_usual(ca) & is_usual(first_half) & is_usual(second_half) & is_usual(across);
     Four first{}, second{};
     if (has_two) {
-      const FourVectors on_bc = middles(splits, 1);
+      const FourVectors on_bc = middles(side[1]);
       const Four from_b = squared_length(on_bc - b);
       const Four to_c = squared_length(c - on_bc);
       const Four between = squared_length(on_bc - on_ab);
@@ -186,20 +187,23 @@ class FourJudge {
     return 0.25F * twice_product * twice_product / (one * other);
   }
 
-  /// Half-edge i of each face, counted from the first that is split.
-  [[nodiscard]] static FourNumbers half_edges(const std::array<Split, 4>& splits, uint32_t i) {
-    const auto half_edge = [i](const Split& split) {
-      return 3 * split.face + (SplitFace::first_target[split.mask] + i) % 3;
-    };
-    return {half_edge(splits[0]), half_edge(splits[1]), half_edge(splits[2]), half_edge(splits[3])};
+  /// The half-edges of the faces, [i] of each the i-th from the first that is split.
+  [[nodiscard]] static std::array<FourNumbers, 3> sides(const std::array<Split, 4>& splits) {
+    constexpr std::array<uint8_t, 5> turned{0, 1, 2, 0, 1};
+    std::array<FourNumbers, 3> side;
+    for (size_t k = 0; k < 4; ++k) {
+      const uint8_t* first = &turned[SplitFace::first_target[splits[k].mask]];
+      for (size_t i = 0; i < 3; ++i) side[i][k] = 3 * splits[k].face + first[i];
+    }
+    return side;
   }
-  [[nodiscard]] FourVectors corners(const std::array<Split, 4>& splits, uint32_t i) const {
-    const FourNumbers h = half_edges(splits, i);
+  /// Where these half-edges of the four faces begin.
+  [[nodiscard]] FourVectors corners(const FourNumbers& h) const {
     const auto& origin = mesh_.origin;
     return at(level_.mesh.positions, {origin[h[0]], origin[h[1]], origin[h[2]], origin[h[3]]});
   }
-  [[nodiscard]] FourVectors middles(const std::array<Split, 4>& splits, uint32_t i) const {
-    const FourNumbers h = half_edges(splits, i);
+  /// The new vertices on them.
+  [[nodiscard]] FourVectors middles(const FourNumbers& h) const {
     const auto number = [&](uint32_t half_edge) { return level_.trial.number(mesh_.edge[half_edge]); };
     return at(level_.trial.made, {number(h[0]), number(h[1]), number(h[2]), number(h[3])});
   }
