@@ -17,15 +17,15 @@ struct AssembledLevel {
   const LevelChoice* choice;
   const Topology* mesh;
   bool has_below;
-  const uint32_t* edge;       ///< [H] of the mesh
-  const uint8_t* is_split;    ///< [E]
+  const uint32_t* edge;        ///< [H] of the mesh
+  const uint8_t* is_split;     ///< [E]
   Array<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
 
-  /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each what
-  /// becomes of it.
+  /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
+  /// what becomes of it.
   struct Fate {
-    uint32_t first;             ///< the first half-edge in the result of the faces that it is cut into,
-    const SplitPattern* cut;    ///< in this way; null: its children are in the result
+    uint32_t first;           ///< the first half-edge in the result of the faces that it is cut into,
+    const SplitPattern* cut;  ///< in this way; null: its children are in the result
   };
   List<uint32_t> shown;
   List<Fate> fates;
@@ -124,9 +124,9 @@ class Assembler {
     }
   }
 
-  /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side` [3]:
-  /// the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what becomes of
-  /// it is then foreseen better.)
+  /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side`
+  /// [3]: the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what
+  /// becomes of it is then foreseen better.)
   [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
     const uint32_t* edge = &level.edge[size_t{3} * f];
     const unsigned mask = level.is_split[edge[0]] | level.is_split[edge[1]] << 1U | level.is_split[edge[2]] << 2U;
@@ -182,15 +182,16 @@ class Assembler {
     const OfSides middle = middles(level, f);
     const Halves half = halves(corner, middle);
     put_corners_of_four({corner[0], corner[1], corner[2]}, middle, origin_ + made);
-    const OfSides against_first{meet(half.first[0], made), meet(half.first[1], made + 4), meet(half.first[2], made + 8)};
+    const OfSides against_first{meet(half.first[0], made), meet(half.first[1], made + 4),
+                                meet(half.first[2], made + 8)};
     const OfSides against_second{meet(half.second[0], made + 3), meet(half.second[1], made + 7),
                                  meet(half.second[2], made + 2)};
     put_twins_of_four(made, against_first, against_second, twin_ + made);
     end_face(level, f, split_pattern(7, false));
   }
 
-  /// With one or two sides split. Whether it becomes two faces or three nobody can guess: so three are written, and what
-  /// was too much is written over by the next.
+  /// With one or two sides split. Whether it becomes two faces or three nobody can guess: so three are written, and
+  /// what was too much is written over by the next.
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
     const SplitPattern& cut = transition_pattern(choose_transition(*level.choice->level, f, mask, most_cosine_));
     const uint32_t made = half_edge_count_;
@@ -206,8 +207,7 @@ class Assembler {
         return (if_split & split) | (if_whole & ~split);
       };
       against[2 * i] = meet(choose(half.first[i], side[i]), made + cut.outer[2 * i]);
-      against[2 * i + 1] =
-          meet(choose(half.second[i], slot_of_none_), choose(made + cut.outer[2 * i + 1], nobody_));
+      against[2 * i + 1] = meet(choose(half.second[i], slot_of_none_), choose(made + cut.outer[2 * i + 1], nobody_));
     }
     against[6] = made;
     for (uint32_t c = 0; c < 9; ++c) {
@@ -229,7 +229,8 @@ class Assembler {
   };
   /// The half at the lower vertex comes first: so both faces at a side agree.
   [[nodiscard]] static Halves halves(const uint32_t* corner, const OfSides& middle) {
-    const OfSides first{2 * middle[0] + (corner[0] > corner[1] ? 1 : 0), 2 * middle[1] + (corner[1] > corner[2] ? 1 : 0),
+    const OfSides first{2 * middle[0] + (corner[0] > corner[1] ? 1 : 0),
+                        2 * middle[1] + (corner[1] > corner[2] ? 1 : 0),
                         2 * middle[2] + (corner[2] > corner[0] ? 1 : 0)};
     return {first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}};
   }

@@ -11,8 +11,8 @@
 namespace papilio {
 
 /// For each face [F] how far the other two sides are at least from the middle of each side; 0 where the face is too
-/// narrow for that to be certain. In the mesh's unit. Where faces come by fours (split_in_four.h), only some may be asked
-/// about, by number; the others mean nothing then. Up to so many threads work on it.
+/// narrow for that to be certain. In the mesh's unit. Where faces come by fours (split_in_four.h), only some may be
+/// asked about, by number; the others mean nothing then. Up to so many threads work on it.
 [[nodiscard]] Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads);
 
 struct DeviationRange {

@@ -154,8 +154,8 @@ class ErrorFinder {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
     [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
-    /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all where
-    /// the edge does not. (For that edges may mean nothing, and numbers be none.)
+    /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
+    /// where the edge does not. (For that edges may mean nothing, and numbers be none.)
     [[nodiscard]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
       const Lanes off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
       return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
@@ -206,8 +206,10 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     List<uint32_t> faces = choice.faces_at_split();
     keep_if(faces, [&](uint32_t f) {
-      const bool is_divided = choice.has_children(f) & (choice.split_mask(f) == 7);
-      return (reached_[f] != 0) & !is_divided;
+      const bool has_children = choice.has_children(f);
+      const bool is_whole_or_cut = choice.split_mask(f) != 7;
+      const bool is_reached = reached_[f] != 0;
+      return is_reached & (!has_children | is_whole_or_cut);
     });
     List<uint32_t> sides(3 * faces.size());
     for (size_t i = 0; i < faces.size(); ++i)

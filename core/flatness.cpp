@@ -119,8 +119,8 @@ class CurvedFinder {
 
   /// Between four faces and four others, by their normals.
   [[nodiscard]] FourBits are_curved(const FourVectors& one, const FourVectors& other) const {
-    const auto have_normals = ((one.x != 0) | (one.y != 0) | (one.z != 0)) &
-                              ((other.x != 0) | (other.y != 0) | (other.z != 0));
+    const auto have_normals =
+        ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
     return (dot(one, other) < least_in_floats_) & have_normals;
   }
 

@@ -22,17 +22,17 @@
 namespace papilio {
 
 struct HierarchyLevel {
-  Mesh mesh;                   ///< faces held; where others of the level are missing, edges are EdgeKind::cut
-  bool is_whole = false;       ///< all the level's faces are held, with the numbers of the uniform mesh
-  Features features;           ///< of the vertices that are complete
-  List<uint8_t> complete;      ///< [V] whether all the level's faces at the vertex are held
-  List<uint32_t> parent;       ///< [F / 4] the face above of children 4i to 4i + 3; empty where it is i
-  List<uint32_t> child;        ///< [F of the level above] first of the face's four children here; `none`; empty as above
-  List<uint8_t> red;           ///< [F of the level above] whose children are held with the rings round them
-  List<uint32_t> shared;       ///< the half-edges at shared edges
-  Trial trial;                 ///< what splitting its edges would give, where tried
-  List<double> longest;        ///< [V] edges (view.h); empty where no view asked
-  Box box{};                   ///< of the vertices
+  Mesh mesh;               ///< faces held; where others of the level are missing, edges are EdgeKind::cut
+  bool is_whole = false;   ///< all the level's faces are held, with the numbers of the uniform mesh
+  Features features;       ///< of the vertices that are complete
+  List<uint8_t> complete;  ///< [V] whether all the level's faces at the vertex are held
+  List<uint32_t> parent;   ///< [F / 4] the face above of children 4i to 4i + 3; empty where it is i
+  List<uint32_t> child;    ///< [F of the level above] first of the face's four children here; `none`; empty as above
+  List<uint8_t> red;       ///< [F of the level above] whose children are held with the rings round them
+  List<uint32_t> shared;   ///< the half-edges at shared edges
+  Trial trial;             ///< what splitting its edges would give, where tried
+  List<double> longest;    ///< [V] edges (view.h); empty where no view asked
+  Box box{};               ///< of the vertices
   Memo<uint32_t> transitions;  ///< [F] what is known of its transition faces (transition.h)
 
   /// The face above, not of level 0.
@@ -67,9 +67,10 @@ struct LevelBelow {
 /// must have been tried. Up to so many threads work on it.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
-/// Makes the next level where no other comes below it: the children of the red faces alone, which cost less. Everything
-/// has the number that it has below all of the level, and what belongs to no red face's children means nothing: neither
-/// its place in the arrays nor `complete`, which is left out. For levels whose features are rings.
+/// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else, each
+/// with the number that it would have if all the level's faces had children. What lies between in the arrays means
+/// nothing. So there is nothing to be numbered anew, and nothing for what only a further level would need (`complete`
+/// is left out). Of a level whose features are rings; `red_faces`: those marked.
 [[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red,
                                                const List<uint32_t>& red_faces, int threads = 1);
 

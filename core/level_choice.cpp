@@ -30,8 +30,8 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   return marks;
 }
 
-/// The region's edges from their marks, where `faces` are the region's, by fours: both halves of an edge above are in it
-/// or none (the halves come first), and all that lie inside a face (which come behind, face by face).
+/// The region's edges from their marks, where `faces` are the region's, by fours: both halves of an edge above are in
+/// it or none (the halves come first), and all that lie inside a face (which come behind, face by face).
 List<uint32_t> in_order(const Topology& mesh, const List<uint32_t>& faces, const EdgeMarks& marks) {
   const uint32_t halves = mesh.edge_count() - 3 * (mesh.face_count() / 4);
   List<uint32_t> edges(halves + 2 + 3 * (faces.size() / 4));
@@ -67,7 +67,9 @@ bool LevelChoice::has_many_split() const {
 }
 
 List<uint32_t> LevelChoice::faces_split_in_part() const {
-  List<uint32_t> faces = !has_many_split() ? faces_at_split() : region.is_in_fours ? faces_of_mixed_fours() : region.faces;
+  List<uint32_t> faces = !has_many_split()    ? faces_at_split()
+                         : region.is_in_fours ? faces_of_mixed_fours()
+                                              : region.faces;
   keep_if(faces, [this](uint32_t f) { return (split_mask(f) + 1) % 8 > 1; });
   return faces;
 }

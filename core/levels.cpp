@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "attributes.h"
 #include "grow_level.h"
 #include "transition.h"
 
@@ -137,22 +138,20 @@ bool Levels::make_last(const List<uint8_t>& red) {
   constexpr size_t few = 8;  // one face in so many, with all of the arrays, costs as much as it and those round it
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
+  const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes_per_face))
+      above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes))
     return false;
   const List<uint32_t> red_faces = marked(red);
   if (few * red_faces.size() < red.size()) return false;
-  const auto level =
-      std::make_shared<HierarchyLevel>(refine_last_level(above, red, red_faces, progress_.threads()));
+  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, red_faces, progress_.threads()));
   progress_.poll();
   if (options_.view) {
     const List<uint32_t> round_them = marked(with_neighbours(parents, red));
     level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
   }
-  const TrialContext context{.features = &level->features,
-                             .parents = &parents,
-                             .asked_of = &red_faces,
-                             .threads = progress_.threads()};
+  const TrialContext context{
+      .features = &level->features, .parents = &parents, .asked_of = &red_faces, .threads = progress_.threads()};
   level->trial = try_everything(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);
@@ -177,8 +176,8 @@ void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const 
     context.asked_of = &asked_of;
   }
   if (are_few || options_.w != 0)
-    level.trial =
-        try_split(level.mesh, options_, context.asked_of == nullptr ? complete_edges(level) : edges_below_red(level), context);
+    level.trial = try_split(level.mesh, options_,
+                            context.asked_of == nullptr ? complete_edges(level) : edges_below_red(level), context);
   else
     level.trial = try_everything(level.mesh, options_, context);
   level.trial.prepare_errors(level.mesh, options_, context);

@@ -10,7 +10,8 @@ namespace papilio {
 /// neither tiny nor large meshes lose theirs. Up to so many threads work on it.
 [[nodiscard]] Array<Vec3f> face_normals(const Mesh& mesh, int threads = 1);
 
-/// The same where faces come by fours (split_in_four.h): of some fours, by number. [F], of which the others mean nothing.
+/// The same where faces come by fours (split_in_four.h): of some fours, by number. [F], of which the others mean
+/// nothing.
 [[nodiscard]] Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint32_t>& fours, int threads = 1);
 
 /// That of one face.

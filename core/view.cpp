@@ -332,8 +332,7 @@ List<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
-List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions,
-                                 const List<uint32_t>* faces) {
+List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions, const List<uint32_t>* faces) {
   const Subset of(parents.face_count(), faces);
   List<double> longest(positions.size(), 0);
   for (uint32_t k = 0; k < of.size(); ++k) {

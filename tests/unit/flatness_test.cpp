@@ -21,7 +21,9 @@ EdgeMarks flatness_marks(const Mesh& mesh, double threshold) {
   return find_curved(mesh, face_normals(mesh), {}, threshold, whole_region(mesh.topology));
 }
 
-void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) { papilio::grow(mesh, growth, whole_region(mesh), marks); }
+void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
+  papilio::grow(mesh, growth, whole_region(mesh), marks);
+}
 
 TEST(Flatness, CubeMarksItsTwelveEdgesAndNoDiagonal) {
   const Mesh mesh = build_mesh(cube());

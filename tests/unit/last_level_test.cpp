@@ -24,7 +24,11 @@ using namespace test;
 
 /// Closed meshes without creases whose vertices are shaken, tried.
 std::vector<std::shared_ptr<HierarchyLevel>> ring_levels(std::mt19937& random) {
-  std::vector<TriangleMesh> shapes{tetrahedron(), icosahedron(), torus(9, 6), bipyramid(20), box({3, 2, 2}, {3, 2, 1}),
+  std::vector<TriangleMesh> shapes{tetrahedron(),
+                                   icosahedron(),
+                                   torus(9, 6),
+                                   bipyramid(20),
+                                   box({3, 2, 2}, {3, 2, 1}),
                                    join(icosahedron(), torus(5, 4), 4)};
   std::uniform_real_distribution<float> shake(-0.1F, 0.1F);
   std::vector<std::shared_ptr<HierarchyLevel>> levels;
@@ -100,7 +104,8 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
       mark_red(choice, marked(red));
       const LevelChoice in_last =
           choose_below(choice, std::make_shared<HierarchyLevel>(refine_last_level(*above, red, marked(red))));
-      const LevelChoice in_part = choose_below(choice, std::make_shared<HierarchyLevel>(refine_level(*above, red).level));
+      const LevelChoice in_part =
+          choose_below(choice, std::make_shared<HierarchyLevel>(refine_level(*above, red).level));
       for (const LevelChoice* below : {&in_last, &in_part}) {
         EXPECT_TRUE(below->region.is_in_fours);
         EXPECT_EQ(below->region.faces.size(), 4 * marked(red).size());
