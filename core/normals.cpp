@@ -1,7 +1,5 @@
 #include "normals.h"
 
-#include <algorithm>
-
 #include "parallel.h"
 
 namespace papilio {

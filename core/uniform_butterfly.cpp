@@ -91,7 +91,7 @@ void split_at_irregular_vertices(const Features& features, const Vec3f* position
   for (size_t i = 0; i < features.fan_count(); ++i) {
     const std::span<const Features::Spoke> spokes = features.spokes_of(i);
     const auto are_whole = [&] { return rules->are_whole(spokes, [](const auto& spoke) { return spoke.edge; }); };
-    if (features.is_ring(i) && (rules == nullptr || are_whole())) {
+    if (mesh == nullptr || rules == nullptr || (features.is_ring(i) && are_whole())) {
       split_ring(
           positions, features.centre[i], static_cast<uint32_t>(spokes.size()),
           [&](uint32_t j) { return spokes[j].tip; }, [&](uint32_t j, Vec3f q) { add(spokes[j].edge, q); });
@@ -150,7 +150,7 @@ void uniform_butterfly_below(const Topology& parents, const Topology* topology, 
       if (has_all_twins(*topology, child)) rules->add_face_shares(child, of_children);
   };
   add_all_shares(parents, Subset(parents.face_count(), asked_of), made, threads, add_shares);
-  if (!features.curve_half_edges.empty()) split_near_curves(*topology, features, *rules, made);
+  if (topology != nullptr) split_near_curves(*topology, features, *rules, made);
   split_at_irregular_vertices(features, positions, topology, rules ? &*rules : nullptr,
                               [&](uint32_t e, Vec3f q) { made[e] = q; });
 }
