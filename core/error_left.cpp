@@ -155,7 +155,7 @@ class ErrorFinder {
     }
     [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
     /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
-    /// where the edge does not. (For that edges may mean nothing, and numbers be none.)
+    /// where the edge does not. (What is read of such an edge may not even be a number.)
     [[nodiscard]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
       const Lanes off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
       return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};

@@ -13,7 +13,8 @@
 // Level k holds some of the faces that k uniform levels would make, with the very numbers that the uniform mesh would
 // give them but for the gaps. A face that may be split needs exact positions in the two rings of faces round it. So
 // not only what is split gets children, but every face that shares a vertex with it ("support"): the two rings round a
-// child of T lie inside the children of T's one ring, and the next level has what it needs in turn.
+// child of T lie inside the children of T's one ring, and the next level has what it needs in turn. A last level, below
+// which no other comes, may leave the support out (refine_last_level).
 //
 // Nothing here depends on a view or on what is chosen: a level once made is read by any number of requests, each of
 // which may use less of it than is held (level_choice.h). Numbers keep their order however much is held, and so does
@@ -69,8 +70,9 @@ struct LevelBelow {
 
 /// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else, each
 /// with the number that it would have if all the level's faces had children. What lies between in the arrays means
-/// nothing. So there is nothing to be numbered anew, and nothing for what only a further level would need (`complete`
-/// is left out). Of a level whose features are rings; `red_faces`: those marked.
+/// nothing: edges at the border are not cut, their twins lie there. So nothing is numbered anew, and there is nothing
+/// for what only a further level would need (`complete` is left out; `features` are those of all that was complete
+/// above). Of a level whose features are rings; `red_faces`: those marked.
 [[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red,
                                                const List<uint32_t>& red_faces, int threads = 1);
 

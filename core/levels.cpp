@@ -116,7 +116,7 @@ void Levels::make(const List<uint8_t>& red) {
                                             : or_everything(with_margin(red), part_as_dear_as_all_kept);
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
   const bool is_kept = may_keep(more);
-  if (!is_kept && make_last(red)) return;
+  if (prepared_ != nullptr && !is_kept && make_last(red)) return;
   LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
@@ -135,7 +135,7 @@ void Levels::make(const List<uint8_t>& red) {
 }
 
 bool Levels::make_last(const List<uint8_t>& red) {
-  constexpr size_t few = 8;  // one face in so many, with all of the arrays, costs as much as it and those round it
+  constexpr size_t few = 8;  // one face in so many: arrays as long as for all of them are not worth their memory
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
