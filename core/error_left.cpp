@@ -105,8 +105,8 @@ class ErrorFinder {
     if (levels_[k].shown[e]) add(k, e);
   }
 
-  /// The same for all of the region's edges, and those of the last level that are split, where nothing is known of
-  /// deviations: those are looked at whose vertex is far enough from the middle.
+  /// The same for all of the region's edges, and for those that are split, where nothing is known of deviations: those
+  /// are looked at whose vertex is far enough from the middle.
   void add_far(size_t k) {
     const Topology& mesh = mesh_of(k);
     if (k == 0) {
@@ -148,8 +148,7 @@ class ErrorFinder {
           positions_(choice_.level->mesh.positions.data()),
           made_(choice_.level->trial.made.data()),
           number_(choice_.level->trial.tried.before.empty() ? nullptr : choice_.level->trial.tried.before.data()),
-          share_squared_{no_share, no_share, 1,
-                         k + 1 == of.levels_.size() ? static_cast<float>(split_leaves * split_leaves) : no_share},
+          share_squared_{no_share, no_share, 1, static_cast<float>(split_leaves * split_leaves)},
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
@@ -174,10 +173,12 @@ class ErrorFinder {
     static constexpr float no_share = -std::numeric_limits<float>::infinity();
 
     void add(uint32_t e) {
-      if (choice_.split[e] != 0)
+      if (choice_.split[e] == 0)
+        of_.add_whole(k_, e);
+      else if (k_ + 1 == of_.levels_.size())
         of_.add_last_split(k_, e);
       else
-        of_.add_whole(k_, e);
+        of_.add_split_far(k_, e);
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
 
@@ -204,6 +205,7 @@ class ErrorFinder {
 
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
+    if (choice.level->trial.bounds.empty()) return;  // add_far did it
     List<uint32_t> faces = choice.faces_at_split();
     keep_if(faces, [&](uint32_t f) {
       const bool has_children = choice.has_children(f);
@@ -233,6 +235,20 @@ class ErrorFinder {
       }
     }
     if (may_be_largest(k, e, split_leaves) && !is_near(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
+  }
+
+  /// An edge that is split where errors do not decide, so that what is below it is not judged unless all of a face is
+  /// divided.
+  void add_split_far(size_t k, uint32_t e) {
+    const LevelChoice& choice = levels_[k];
+    const Topology& mesh = mesh_of(k);
+    const auto is_cut = [&](uint32_t h) {
+      return h != none && reached_[Topology::face(h)] != 0 && choice.split_mask(Topology::face(h)) != 7;
+    };
+    bool is_any_cut = is_cut(mesh.half_edge[e]) || is_cut(mesh.twin[mesh.half_edge[e]]);
+    if (mesh.kind[e] == EdgeKind::shared)
+      for (uint32_t h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
+    if (is_any_cut && choice.shown[e]) add(k, e, split_leaves);
   }
 
   /// By what is known of the deviation.

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "mesh.h"
+#include "part.h"
 
 namespace papilio {
 
@@ -11,22 +11,26 @@ namespace papilio {
 ///
 ///            corner 2              Sides are the parent's: side i runs from corner i to corner i + 1. Child i < 3 has
 ///             /    \               corner i, child 3 lies in the middle. The parent must have a twin at each side.
-///            /  2   \              Vertices and edges are those of the children's level.
+///            /  2   \              Vertices and edges are those of the children's level, which has these `numbers`.
 ///     middle 2 --- middle 1
 ///       /    \  3  /   \           across_first[i]: the vertex across the first half of side i, at corner i;
 ///      /  0   \   /  1  \          across_second[i]: the one across its second half.
 /// corner 0 -- middle 0 -- corner 1
 class Family {
  public:
-  Family(const Topology& parents, uint32_t parent) : first_inner_(2 * parents.edge_count() + 3 * parent) {
+  Family(const Topology& parents, uint32_t parent) : Family(parents, parent, OwnNumbers(parents.edge_count())) {}
+  template <class Numbers>
+  Family(const Topology& parents, uint32_t parent, const Numbers& numbers)
+      : first_inner_(2 * numbers.edge_count() + 3 * numbers.face(parent)) {
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * parent + i;
       const uint32_t t = parents.twin[h];
       const uint32_t first = 3 * Topology::face(t);
       corner[i] = parents.origin[h];
       twin[i] = t;
-      edge_[i] = parents.edge[h];
-      middle[i] = parents.vertex_count + edge_[i];
+      const uint32_t e = parents.edge[h];
+      edge_[i] = numbers.edge(e);
+      middle[i] = parents.vertex_count + e;
       across_first[i] = parents.vertex_count + parents.edge[first + next_side[t - first]];
       across_second[i] = parents.vertex_count + parents.edge[first + previous_side[t - first]];
     }
@@ -48,7 +52,7 @@ class Family {
   /// The half at the lower vertex has the lower number.
   [[nodiscard]] uint32_t is_downward(uint32_t i) const { return corner[i] > corner[(i + 1) % 3] ? 1 : 0; }
 
-  std::array<uint32_t, 3> edge_;
+  std::array<uint32_t, 3> edge_;  ///< number of each side's
   uint32_t first_inner_;
 };
 

@@ -129,14 +129,28 @@ class FeatureFinder {
 
 Features find_features(const Topology& mesh) { return FeatureFinder(mesh).run(); }
 
-void descend(Features& features, uint32_t vertex_count) {
+namespace {
+
+template <class Numbers>
+void descend_spokes(Features& features, uint32_t vertex_count, const Numbers& numbers) {
   ++features.level;
   for (size_t i = 0; i < features.fan_count(); ++i)
     for (uint32_t k = features.first_spoke[i]; k < features.first_spoke[i + 1]; ++k) {
       Features::Spoke& spoke = features.spokes[k];
       const uint32_t at_higher_end = features.centre[i] > spoke.tip ? 1 : 0;
-      spoke = {first_half(spoke.half_edge), 2 * spoke.edge + at_higher_end, vertex_count + spoke.edge};
+      spoke = {first_half(numbers.half_edge(spoke.half_edge)), 2 * numbers.edge(spoke.edge) + at_higher_end,
+               vertex_count + spoke.edge};
     }
+}
+
+}  // namespace
+
+void descend(Features& features, uint32_t vertex_count, const Part& part) {
+  descend_spokes(features, vertex_count, PartNumbers(part));
+}
+
+void descend(Features& features, uint32_t vertex_count) {
+  descend_spokes(features, vertex_count, OwnNumbers(0));
   Array<uint32_t> halves;
   halves.reserve(2 * features.curve_half_edges.size());
   for (uint32_t h : features.curve_half_edges)

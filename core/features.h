@@ -6,6 +6,7 @@
 #include "array.h"
 #include "fan.h"
 #include "mesh.h"
+#include "part.h"
 #include "stencil.h"
 
 namespace papilio {
@@ -54,5 +55,8 @@ struct Features {
 
 /// Those of the level below one with so many vertices (split_in_four.h). O(features).
 void descend(Features& features, uint32_t vertex_count);
+/// The same where only a part of that level was split (split_part_in_four): of what is not in it, spokes have the half
+/// edges and edges that stand for all others. Of features that are rings.
+void descend(Features& features, uint32_t vertex_count, const Part& part);
 
 }  // namespace papilio

@@ -2,28 +2,12 @@
 
 #include <algorithm>
 
+#include "ranks.h"
 #include "region.h"
 #include "split_in_four.h"
 
 namespace papilio {
 namespace {
-
-/// Numbers the marked things in their order; `none` for the others.
-class Ranks {
- public:
-  explicit Ranks(const List<uint8_t>& marks) : numbers_(marked(marks)), rank_(marks.size(), none) {
-    for (uint32_t i = 0; i < numbers_.size(); ++i) rank_[numbers_[i]] = i;
-  }
-  [[nodiscard]] uint32_t operator[](uint32_t i) const { return rank_[i]; }
-  [[nodiscard]] bool has(uint32_t i) const { return rank_[i] != none; }
-  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(numbers_.size()); }
-  /// What is marked.
-  [[nodiscard]] const List<uint32_t>& numbers() const { return numbers_; }
-
- private:
-  List<uint32_t> numbers_;
-  List<uint32_t> rank_;
-};
 
 /// Splits faces in four, leaving the other faces out.
 class LevelMaker {
@@ -229,12 +213,10 @@ List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) 
 
 namespace {
 
-/// The level below a mesh all of whose edges were tried, where everything has the number that split_in_four() gives it.
-/// `topology`: its.
+/// The level below a mesh all of whose edges were tried, its vertices numbered as split_in_four() does it.
 HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) {
   HierarchyLevel below;
   below.features = level.features;
-  descend(below.features, level.mesh.topology.vertex_count);
   below.mesh.positions.reserve(topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
@@ -246,6 +228,7 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
 /// What LevelMaker makes where everything is held.
 HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
   HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
+  descend(below.features, level.mesh.topology.vertex_count);
   below.is_whole = true;
   below.complete.assign(below.mesh.topology.vertex_count, 1);
   for (uint32_t parent : level.shared)
@@ -283,11 +266,15 @@ Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& fac
 
 }  // namespace
 
-HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const List<uint32_t>& red_faces,
-                                 int threads) {
-  HierarchyLevel below = level_by_formula(level, split_some_in_four(level.mesh.topology, red_faces, threads));
+HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
+  HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
+  descend(below.features, level.mesh.topology.vertex_count, part);
+  below.parent = part.faces.numbers();
+  below.parent.push_back(none);
+  below.child.resize(red.size());
+  for (uint32_t f = 0; f < red.size(); ++f) below.child[f] = 4 * part.faces[f];
   below.red = std::move(red);
-  below.box = box_with_new_vertices(level, red_faces);
+  below.box = box_with_new_vertices(level, part.faces.numbers());
   return below;
 }
 

@@ -5,6 +5,7 @@
 #include "features.h"
 #include "memo.h"
 #include "mesh.h"
+#include "part.h"
 #include "selection.h"
 #include "split_plan.h"
 
@@ -68,12 +69,11 @@ struct LevelBelow {
 /// must have been tried. Up to so many threads work on it.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
-/// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else, each
-/// with the number that it would have if all the level's faces had children. What lies between in the arrays means
-/// nothing: edges at the border are not cut, their twins lie there. So nothing is numbered anew, and there is nothing
-/// for what only a further level would need (`complete` is left out; `features` are those of all that was complete
-/// above). Of a level whose features are rings; `red_faces`: those marked.
-[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red,
-                                               const List<uint32_t>& red_faces, int threads = 1);
+/// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else but four
+/// faces that stand for all the others of the level (split_part_in_four). Its vertices are those of the whole level. So
+/// nothing has to be cut, and there is nothing for what only a further level would need (`complete` is left out;
+/// `features` are those of all that was complete above). Of a level whose features are rings; `part`: what is red.
+[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part,
+                                               int threads = 1);
 
 }  // namespace papilio

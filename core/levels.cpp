@@ -135,23 +135,21 @@ void Levels::make(const List<uint8_t>& red) {
 }
 
 bool Levels::make_last(const List<uint8_t>& red) {
-  constexpr size_t few = 8;  // one face in so many: arrays as long as for all of them are not worth their memory
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
       above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes))
     return false;
-  const List<uint32_t> red_faces = marked(red);
-  if (few * red_faces.size() < red.size()) return false;
-  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, red_faces, progress_.threads()));
+  const Part part(parents, red);
+  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
   progress_.poll();
   if (options_.view) {
     const List<uint32_t> round_them = marked(with_neighbours(parents, red));
     level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
   }
   const TrialContext context{
-      .features = &level->features, .parents = &parents, .asked_of = &red_faces, .threads = progress_.threads()};
+      .features = &level->features, .parents = &parents, .part = &part, .threads = progress_.threads()};
   level->trial = try_everything(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);

@@ -25,7 +25,10 @@ Array<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, co
   std::optional<Features> found;
   if (context.features == nullptr) found = find_features(topology);
   const Features& features = found ? *found : *context.features;
-  if (tension == nullptr && context.parents != nullptr)
+  if (tension == nullptr && context.part != nullptr)
+    uniform_butterfly_below(*context.parents, *context.part, features, mesh.positions.data(), made.data(),
+                            context.threads);
+  else if (tension == nullptr && context.parents != nullptr)
     uniform_butterfly_below(*context.parents, &topology, features, mesh.positions.data(), made.data(), context.threads,
                             context.asked_of);
   else

@@ -22,6 +22,7 @@ struct TrialContext {
   const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
   /// Those of the parents of whose children normals are asked, and between which the edges to be tried lie; null: all.
   const List<uint32_t>* asked_of = nullptr;
+  const Part* part = nullptr;  ///< of the parents that it was split from (split_part_in_four); null: all
   int threads = 1;  ///< at most so many work on it
 };
 

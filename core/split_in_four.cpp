@@ -56,71 +56,107 @@ Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, si
   return below;
 }
 
-template <bool numbers_edges>
+template <bool numbers_edges, class Numbers>
 class FourSplitter {
  public:
-  FourSplitter(const Topology& mesh, const Subset& faces)
-      : mesh_(mesh), faces_(faces), rule_(mesh.vertex_count, mesh.edge_count()) {}
+  FourSplitter(const Topology& mesh, const Subset& faces, const Subset& edges, const Numbers& numbers)
+      : mesh_(mesh),
+        faces_(faces),
+        edges_(edges),
+        numbers_(numbers),
+        rule_(mesh.vertex_count, numbers.edge_count()) {}
 
-  Topology run(int threads) {
-    const size_t half_edges = size_t{4} * mesh_.half_edge_count();
-    child_ = level_below(mesh_, mesh_.vertex_count, mesh_.edge_count(), half_edges);
+  /// `room`: for so many faces' children.
+  Topology run(uint32_t room, int threads) {
+    child_ = level_below(mesh_, mesh_.vertex_count, mesh_.edge_count(), size_t{12} * room);
     if (numbers_edges) {
-      child_.edge.resize(half_edges);
-      child_.half_edge.resize(rule_.inner_edge(mesh_.face_count()));
+      child_.edge.resize(size_t{12} * room);
+      child_.half_edge.resize(rule_.inner_edge(room));
       child_.kind.resize(child_.half_edge.size());
     }
-    const uint32_t parts = parts_of(faces_.size(), threads);
-    for_each_part(parts, faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
-      for (uint32_t i = first; i < last; ++i) split_face(faces_[i]);
+    for_each_part(parts_of(faces_.size(), threads), faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
+      for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
     });
     if (numbers_edges)
-      for_each_part(parts, mesh_.edge_count(), [this](uint32_t, uint32_t first, uint32_t last) {
-        for (uint32_t e = first; e < last; ++e) split_edge(e);
+      for_each_part(parts_of(edges_.size(), threads), edges_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
+        for (uint32_t i = first; i < last; ++i) split_edge(i, edges_[i]);
       });
     return std::move(child_);
   }
 
  private:
-  void split_edge(uint32_t e) {
-    const uint32_t h = mesh_.half_edge[e];
+  void split_edge(uint32_t number, uint32_t e) {
+    const uint32_t h = half_edge_of(e);
     const uint32_t down = mesh_.origin[h] > mesh_.tip(h) ? 1 : 0;
-    child_.half_edge[2 * e + down] = first_half(h);
-    child_.half_edge[2 * e + 1 - down] = second_half(h);
-    child_.kind[2 * e] = child_.kind[2 * e + 1] = mesh_.kind[e];
+    child_.half_edge[2 * number + down] = first_half(numbers_.half_edge(h));
+    child_.half_edge[2 * number + 1 - down] = second_half(numbers_.half_edge(h));
+    child_.kind[2 * number] = child_.kind[2 * number + 1] = mesh_.kind[e];
+  }
+  /// Of a face that is split.
+  [[nodiscard]] uint32_t half_edge_of(uint32_t e) const {
+    const uint32_t h = mesh_.half_edge[e];
+    return numbers_.has(Topology::face(h)) ? h : mesh_.twin[h];
   }
 
-  void split_face(uint32_t f) {
+  void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
-    const uint32_t base = 12 * f;
+    const uint32_t base = 12 * number;
     const uint32_t* corner = &mesh_.origin[h];
     const uint32_t* edge = &mesh_.edge[h];
-    rule_.split(f, corner, &mesh_.twin[h], edge, &child_.origin[base], &child_.twin[base]);
+    const OfSides twin{numbers_.half_edge(mesh_.twin[h]), numbers_.half_edge(mesh_.twin[h + 1]),
+                       numbers_.half_edge(mesh_.twin[h + 2])};
+    rule_.split(number, corner, twin.data(), edge, &child_.origin[base], &child_.twin[base]);
     if (!numbers_edges) return;
-    rule_.number_edges(f, corner, edge, &child_.edge[base]);
-    const uint32_t inner = rule_.inner_edge(f);
+    const OfSides numbered{numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])};
+    rule_.number_edges(number, corner, numbered.data(), &child_.edge[base]);
+    const uint32_t inner = rule_.inner_edge(number);
     put(&child_.half_edge[inner], base + 11, base + 9, base + 10);
     std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
   }
 
   const Topology& mesh_;
-  const Subset faces_;
+  const Subset faces_, edges_;
+  const Numbers numbers_;
   const FourRule rule_;
   Topology child_;
 };
 
+template <bool numbers_edges>
+Topology split_all(const Topology& mesh, int threads) {
+  return FourSplitter<numbers_edges, OwnNumbers>(mesh, Subset(mesh.face_count()), Subset(mesh.edge_count()),
+                                                 OwnNumbers(mesh.edge_count()))
+      .run(mesh.face_count(), threads);
+}
+
+/// The children of what stands for all faces that are not in the part.
+void write_others(const Part& part, Topology& children) {
+  const uint32_t base = 12 * part.other_face();
+  const uint32_t edge = 2 * part.other_edge();
+  const uint32_t inner = children.edge_count() - 3;
+  std::fill_n(&children.origin[base], 12, 0U);
+  put_twins_of_four(base, {base, base + 4, base + 8}, {base + 3, base + 7, base + 2}, &children.twin[base]);
+  put_edges_of_four({edge, edge, edge}, {edge + 1, edge + 1, edge + 1}, inner, &children.edge[base]);
+  put(&children.half_edge[edge], base, base + 3);
+  put(&children.half_edge[inner], base + 11, base + 9, base + 10);
+  for (uint32_t e : {edge, edge + 1, inner, inner + 1, inner + 2}) children.kind[e] = EdgeKind::smooth;
+}
+
 }  // namespace
 
 Topology split_in_four(const Topology& mesh, int threads) {
-  return FourSplitter<true>(mesh, Subset(mesh.face_count())).run(threads);
+  return split_all<true>(mesh, threads);
 }
 
-Topology split_some_in_four(const Topology& mesh, const List<uint32_t>& faces, int threads) {
-  return FourSplitter<true>(mesh, Subset(faces)).run(threads);
+Topology split_part_in_four(const Topology& mesh, const Part& part, int threads) {
+  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()),
+                                                      Subset(part.edges.numbers()), PartNumbers(part))
+                          .run(part.other_face() + 1, threads);
+  write_others(part, children);
+  return children;
 }
 
 Topology split_last_in_four(const Topology& mesh, int threads) {
-  return FourSplitter<false>(mesh, Subset(mesh.face_count())).run(threads);
+  return split_all<false>(mesh, threads);
 }
 
 Topology split_last_in_sixteen(const Topology& mesh, int threads) {

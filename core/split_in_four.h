@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh.h"
+#include "part.h"
 
 // One uniform level, by formula: every edge is split, every face becomes four.
 //
@@ -23,9 +24,9 @@ namespace papilio {
 /// The next level's connectivity, made by up to so many threads. Kinds of edges are inherited; new edges inside a face
 /// are smooth. O(F + E).
 [[nodiscard]] Topology split_in_four(const Topology& mesh, int threads = 1);
-/// The same of which nothing is written but what belongs to the children of these faces, in ascending order, and the
-/// halves of all edges: the rest of the arrays means nothing.
-[[nodiscard]] Topology split_some_in_four(const Topology& mesh, const List<uint32_t>& faces, int threads = 1);
+/// The same of a part, whose faces have a twin at each side: vertices have the same numbers, faces and edges those of
+/// the part.  What stands for all other faces has four children, too, without area: their twins lie in themselves.
+[[nodiscard]] Topology split_part_in_four(const Topology& mesh, const Part& part, int threads = 1);
 /// The same without its edges (mesh.h): for a level that is not split again.
 [[nodiscard]] Topology split_last_in_four(const Topology& mesh, int threads = 1);
 /// Two levels at once: split_last_in_four of split_in_four, without the level between.

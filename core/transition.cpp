@@ -173,6 +173,16 @@ class FourJudge {
     return found;
   }
 
+  /// Has the cache load what find() will read of a face.
+  void prefetch(const Split& split) const {
+    const uint32_t first = SplitFace::first_target[split.mask];
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t h = 3 * split.face + (first + i) % 3;
+      __builtin_prefetch(&level_.mesh.positions[mesh_.origin[h]]);
+      if (i < 2) __builtin_prefetch(&level_.trial.made[level_.trial.number(mesh_.edge[h])]);
+    }
+  }
+
  private:
   /// Of two numbers as squared_cosine() gives them, with more room than rounding takes.
   [[nodiscard]] static FourBits is_surely_less(Four a, Four b) { return a < (1 - 2e-5F) * b; }
@@ -213,34 +223,70 @@ class FourJudge {
   float most_;
 };
 
-/// Judges the faces of which nothing is known, first those with one split edge and then those with two.
-void judge_all(const LevelChoice& choice, const List<uint32_t>& faces, double most_cosine) {
-  const HierarchyLevel& level = *choice.level;
-  const FourJudge judge_four(level, most_cosine);
-  for (const bool has_two : {false, true}) {
-    List<uint32_t> alike = faces;
-    keep_if(alike, [&](uint32_t f) {
-      const unsigned mask = choice.split_mask(f);
-      const bool is_new = (level.transitions.get(f) >> shift_of(mask) & is_known) == 0;
-      const bool is_alike = has_two_targets(mask) == has_two;
-      return is_new & is_alike;
-    });
-    for (size_t i = 0; i < alike.size(); i += 4) {
-      std::array<FourJudge::Split, 4> splits;
-      for (size_t k = 0; k < 4; ++k) {
-        const uint32_t f = alike[std::min(i + k, alike.size() - 1)];
-        splits[k] = {f, choice.split_mask(f)};
-      }
-      const std::array<uint32_t, 4> found = judge_four.find(splits, has_two);
-      for (size_t k = 0; k < 4; ++k) {
+/// Finds which faces of a choice would have slivers among their pieces, and notes what becomes of the others.
+class SliverFinder {
+ public:
+  SliverFinder(const LevelChoice& choice, double most_cosine)
+      : choice_(choice), level_(*choice.level), judge_four_(level_, most_cosine), most_cosine_(most_cosine) {}
+
+  /// Of these faces, in ascending order. They must be split in part.
+  List<uint32_t> run(const List<uint32_t>& faces) {
+    for (uint32_t f : faces) {
+      const unsigned mask = choice_.split_mask(f);
+      const uint32_t found = level_.transitions.get(f) >> shift_of(mask);
+      if ((found & is_known) != 0)
+        note(f, found);
+      else
+        judge_later({f, mask});
+    }
+    for (Waiting& waiting : waiting_) judge(waiting);
+    std::ranges::sort(with_sliver_);
+    return std::move(with_sliver_);
+  }
+
+ private:
+  using Split = FourJudge::Split;
+  /// Faces with alike masks. What they are judged by comes into the cache while they wait for more.
+  struct Waiting {
+    std::array<Split, 64> splits;
+    size_t count = 0;
+  };
+
+  void judge_later(const Split& split) {
+    judge_four_.prefetch(split);
+    Waiting& waiting = waiting_[has_two_targets(split.mask) ? 1 : 0];
+    waiting.splits[waiting.count++] = split;
+    if (waiting.count == waiting.splits.size()) judge(waiting);
+  }
+
+  void judge(Waiting& waiting) {
+    for (size_t i = 0; i < waiting.count; i += 4) {
+      std::array<Split, 4> splits;
+      for (size_t k = 0; k < 4; ++k) splits[k] = waiting.splits[std::min(i + k, waiting.count - 1)];
+      const std::array<uint32_t, 4> found = judge_four_.find(splits, &waiting == &waiting_[1]);
+      for (size_t k = 0; k < std::min<size_t>(4, waiting.count - i); ++k) {
         const auto& [f, mask] = splits[k];
-        const uint32_t known = level.transitions.get(f);
-        level.transitions.put(f, known | found[k] << shift_of(mask));
-        if (found[k] == 0) (void)transition(level, f, mask, most_cosine);
+        if (found[k] == 0)
+          note(f, transition(level_, f, mask, most_cosine_));
+        else
+          level_.transitions.put(f, level_.transitions.get(f) | found[k] << shift_of(mask));
+        note(f, found[k]);
       }
     }
+    waiting.count = 0;
   }
-}
+
+  void note(uint32_t face, uint32_t found) {
+    if ((found & has_sliver) != 0) with_sliver_.push_back(face);
+  }
+
+  const LevelChoice& choice_;
+  const HierarchyLevel& level_;
+  const FourJudge judge_four_;
+  double most_cosine_;
+  std::array<Waiting, 2> waiting_;  ///< those with one split edge, and those with two
+  List<uint32_t> with_sliver_;
+};
 
 }  // namespace
 
@@ -271,7 +317,7 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
   };
   // The order decides where dividing one makes a sliver of another.
   List<uint32_t> faces = choice.faces_split_in_part();
-  if (level.trial.planes.empty()) judge_all(choice, faces, most_cosine);
+  if (level.trial.planes.empty()) faces = SliverFinder(choice, most_cosine).run(faces);
   std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();

@@ -2,6 +2,7 @@
 
 #include "features.h"
 #include "mesh.h"
+#include "part.h"
 #include "tension.h"
 
 // The butterfly (butterfly.h) where every edge is split and w is 0: the same to the bit, and several times as fast.
@@ -19,5 +20,9 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
 void uniform_butterfly_below(const Topology& parents, const Topology* topology, const Features& features,
                              const Vec3f* positions, Vec3f* made, int threads = 1,
                              const List<uint32_t>* asked_of = nullptr);
+
+/// The same of what split_part_in_four() makes, whose features are rings: of the edges between its faces.
+void uniform_butterfly_below(const Topology& parents, const Part& part, const Features& features,
+                             const Vec3f* positions, Vec3f* made, int threads = 1);
 
 }  // namespace papilio
