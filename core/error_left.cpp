@@ -91,7 +91,7 @@ class ErrorFinder {
     }
     for (uint32_t h : choice.level->shared) {
       const uint32_t e = mesh.edge[h];
-      if (choice.may_be_split[e] != 0 && choice.split[e] == 0 && choice.shown[e] && reached_[Topology::face(h)] != 0)
+      if (choice.region.has_edge[e] != 0 && choice.split[e] == 0 && choice.shown[e] && reached_[Topology::face(h)] != 0)
         add(k, e);
     }
   }
@@ -143,7 +143,7 @@ class ErrorFinder {
         : of_(of),
           k_(k),
           choice_(of.levels_[k]),
-          may_be_split_(choice_.may_be_split.data()),
+          may_be_split_(choice_.region.has_edge.data()),
           is_split_(choice_.split.data()),
           positions_(choice_.level->mesh.positions.data()),
           made_(choice_.level->trial.made.data()),
@@ -228,7 +228,7 @@ class ErrorFinder {
     if (choice.has_children(Topology::face(h))) {
       const auto [first, second] = halves(k, Topology::face(h), h % 3);
       const LevelChoice& below = levels_[k + 1];
-      if (below.may_be_split[first] != 0 && below.may_be_split[second] != 0) {
+      if (below.region.has_edge[first] != 0 && below.region.has_edge[second] != 0) {
         for (uint32_t half : {first, second})
           if (may_be_largest(k + 1, half) && choice.shown[e] && below.shown[half]) add(k + 1, half);
         return;

@@ -1,5 +1,6 @@
 #include "flatness.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -64,57 +65,80 @@ class CurvedFinder {
   /// asked about before. [E]
   [[nodiscard]] EdgeMarks by_faces(const Region& region) {
     Array<uint8_t> found(topology_.edge_count());
-    if (region.is_in_fours)
-      for (size_t i = 0; i < region.faces.size(); i += 4) look_at_four(region.faces[i], found.data());
-    else
-      for (uint32_t f : region.faces) look_at(f, found.data());
+    for (uint32_t f : region.faces) look_at(f, found.data());
     EdgeMarks marks(found.size(), 0);
     for (uint32_t e : region.edges) marks[e] = found[e];
     return marks;
   }
 
+  /// The same of a region without curves; with the other edges of a face that has one of them, if that is asked. [E]
+  [[nodiscard]] EdgeMarks by_faces(const Region& region, bool with_others) {
+    EdgeMarks marks(topology_.edge_count(), 0);
+    const auto spread = static_cast<uint8_t>(with_others ? 1 : 0);
+    if (region.is_in_fours)
+      for (size_t i = 0; i < region.faces.size(); i += 4)
+        mark_four(region.faces[i], spread, region.has_edge.data(), marks.data());
+    else
+      for (uint32_t f : region.faces) mark(f, spread, region.has_edge.data(), marks.data());
+    return marks;
+  }
+
  private:
-  /// The same as look_at() of each of the four children of a face.
-  void look_at_four(uint32_t first, uint8_t* found) {
+  /// What the four children of a face mark.
+  void mark_four(uint32_t first, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
     const uint32_t* twin = &topology_.twin[size_t{3} * first];
     const uint32_t* edge = &topology_.edge[size_t{3} * first];
-    bool are_smooth = true;
-    visit_edges_of_four([&](uint32_t h, uint32_t /*from*/, uint32_t /*to*/) {
-      are_smooth &= topology_.kind[edge[h]] == EdgeKind::smooth;
-    });
-    if (!are_smooth) [[unlikely]] {
-      for (uint32_t c = 0; c < 4; ++c) look_at(first + c, found);
-      return;
-    }
     const FourVectors own = at(normals_, {first, first + 1, first + 2, first + 3});
-    // What is across two sides of each of the first three children, and what is beside them: the fourth.
+    // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
     const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) {
       const uint32_t last = Topology::face(twin[h2]);
       return at(normals_, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
     };
+    constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
     const FourBits one_side = are_curved(own, across(0, 3, 7));
     const FourBits other_side = are_curved(own, across(2, 4, 8));
     const FourBits inside = are_curved(own, splat(own, 3));
-    constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
+    const auto of_fourth = static_cast<uint8_t>((inside[0] | inside[1] | inside[2]) & spread);
     for (uint32_t c = 0; c < 3; ++c) {
-      found[edge[half_edges[0][c]]] = one_side[c] & 1;
-      found[edge[half_edges[1][c]]] = other_side[c] & 1;
-      found[edge[half_edges[2][c]]] = inside[c] & 1;
+      const uint32_t one = edge[half_edges[0][c]];
+      const uint32_t other = edge[half_edges[1][c]];
+      const auto of_one = static_cast<uint8_t>(one_side[c] & has_edge[one]);
+      const auto of_other = static_cast<uint8_t>(other_side[c] & has_edge[other]);
+      const auto of_inner = static_cast<uint8_t>(inside[c] & 1);
+      const auto of_child = static_cast<uint8_t>((of_one | of_other | of_inner) & spread);
+      marks[one] |= of_one | (of_child & has_edge[one]);
+      marks[other] |= of_other | (of_child & has_edge[other]);
+      marks[edge[half_edges[2][c]]] = of_inner | of_child | of_fourth;
     }
   }
 
+  /// What a face marks.
+  void mark(uint32_t f, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
+    const uint32_t* edge = &topology_.edge[size_t{3} * f];
+    const FourBits curved = are_curved_at(f);
+    std::array<uint8_t, 3> of_edge{};
+    for (uint32_t i = 0; i < 3; ++i) of_edge[i] = static_cast<uint8_t>(curved[i] & has_edge[edge[i]]);
+    const uint8_t of_face = (of_edge[0] | of_edge[1] | of_edge[2]) & spread;
+    for (uint32_t i = 0; i < 3; ++i) marks[edge[i]] |= of_edge[i] | (of_face & has_edge[edge[i]]);
+  }
+
   void look_at(uint32_t f, uint8_t* found) {
-    const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const uint32_t* edge = &topology_.edge[size_t{3} * f];
     const auto is_smooth = [&](uint32_t i) { return topology_.kind[edge[i]] == EdgeKind::smooth; };
     if (!is_smooth(0) || !is_smooth(1) || !is_smooth(2)) [[unlikely]] {
       for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = is_curved(edge[i]) ? 1 : 0;
       return;
     }
+    const FourBits curved = are_curved_at(f);
+    for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = curved[i] & 1;
+  }
+
+  /// Of the three smooth edges of a face; the fourth means nothing.
+  [[nodiscard]] FourBits are_curved_at(uint32_t f) const {
+    const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const FourVectors others =
         at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
-    const FourBits curved = are_curved(splat(others, 3), others);
-    for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = curved[i] & 1;
+    return are_curved(splat(others, 3), others);
   }
 
   /// Between four faces and four others, by their normals.
@@ -153,16 +177,6 @@ class CurvedFinder {
   std::optional<CurveNeighbours> curves_;         ///< made when the first curve is met: there may be none
 };
 
-}  // namespace
-
-EdgeMarks find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
-                      const Region& region) {
-  CurvedFinder finder(mesh, normals, products, threshold);
-  return products.empty() ? finder.by_faces(region) : finder.by_edges(region);
-}
-
-namespace {
-
 void grow_over_faces(const Topology& mesh, const Region& region, EdgeMarks& marks) {
   const EdgeMarks seeds = marks;
   for (uint32_t f : region.faces) {
@@ -184,9 +198,20 @@ void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& m
 
 }  // namespace
 
-void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {
-  if (growth == Growth::faces) grow_over_faces(mesh, region, marks);
-  if (growth == Growth::vertices) grow_over_vertices(mesh, region, marks);
+EdgeMarks find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
+                      Growth growth, const Region& region) {
+  const Topology& topology = mesh.topology;
+  const bool to_others = growth == Growth::faces;
+  CurvedFinder finder(mesh, normals, products, threshold);
+  EdgeMarks marks;
+  if (products.empty() && !region.has_curves) {
+    marks = finder.by_faces(region, to_others);
+  } else {
+    marks = products.empty() ? finder.by_faces(region) : finder.by_edges(region);
+    if (to_others) grow_over_faces(topology, region, marks);
+  }
+  if (growth == Growth::vertices) grow_over_vertices(topology, region, marks);
+  return marks;
 }
 
 }  // namespace papilio

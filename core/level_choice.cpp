@@ -111,7 +111,7 @@ List<uint32_t> LevelChoice::faces_at_split() const {
 LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
   LevelChoice choice;
   choice.region = whole_region(level->mesh.topology);
-  choice.may_be_split.assign(level->mesh.topology.edge_count(), 1);
+  choice.region.has_curves = !level->features.curve_half_edges.empty();
   choice.split.assign(level->mesh.topology.edge_count(), 0);
   choice.level = std::move(level);
   return choice;
@@ -122,11 +122,12 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   List<uint32_t> red = above.region.faces;
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
   choice.region.is_in_fours = true;
+  choice.region.has_curves = !level->features.curve_half_edges.empty();
   choice.region.faces.resize(4 * red.size());
   for (size_t i = 0; i < red.size(); ++i)
     for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->first_child_of(red[i]) + c;
-  choice.may_be_split = edges_of(*level, choice.region.faces);
-  choice.region.edges = in_order(level->mesh.topology, choice.region.faces, choice.may_be_split);
+  choice.region.has_edge = edges_of(*level, choice.region.faces);
+  choice.region.edges = in_order(level->mesh.topology, choice.region.faces, choice.region.has_edge);
   choice.split.assign(level->mesh.topology.edge_count(), 0);
   choice.level = std::move(level);
   return choice;

@@ -13,9 +13,8 @@ namespace papilio {
 /// only what belongs to the region is looked at.
 struct LevelChoice {
   std::shared_ptr<const HierarchyLevel> level;
-  Region region;           ///< `edges`: the only ones that may be split
-  EdgeMarks may_be_split;  ///< [E] the region's edges
-  EdgesShown shown;        ///< those of them that the view shows
+  Region region;     ///< its edges are the only ones that may be split
+  EdgesShown shown;  ///< those of them that the view shows
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
   /// infinity where nothing wants it. Empty where errors do not decide.
   List<float> error;
@@ -62,7 +61,7 @@ struct LevelChoice {
   /// Whether all the face's edges may be split.
   [[nodiscard]] bool may_divide(uint32_t face) const {
     const uint32_t* edge = &level->mesh.topology.edge[size_t{3} * face];
-    return (may_be_split[edge[0]] & may_be_split[edge[1]] & may_be_split[edge[2]]) != 0;
+    return (region.has_edge[edge[0]] & region.has_edge[edge[1]] & region.has_edge[edge[2]]) != 0;
   }
   /// Whether the next level holds the face's children for this request: a red face's, or as support.
   [[nodiscard]] bool has_children(uint32_t face) const {

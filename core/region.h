@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mesh.h"
+#include "split_plan.h"
 
 namespace papilio {
 
@@ -10,8 +11,10 @@ namespace papilio {
 struct Region {
   List<uint32_t> faces;  ///< in ascending order
   List<uint32_t> edges;  ///< in ascending order; all faces at each of them are among `faces`
+  EdgeMarks has_edge;    ///< [E] the same, marked
   /// Faces come by four, the children of one face (four_children.h): 4i to 4i + 3.
   bool is_in_fours = false;
+  bool has_curves = true;  ///< false only if none of its edges is on one
 };
 
 /// All of the mesh.

@@ -1,6 +1,7 @@
 #include "split_in_four.h"
 
 #include <algorithm>
+#include <array>
 
 #include "four_children.h"
 #include "parallel.h"
@@ -60,11 +61,7 @@ template <bool numbers_edges, class Numbers>
 class FourSplitter {
  public:
   FourSplitter(const Topology& mesh, const Subset& faces, const Subset& edges, const Numbers& numbers)
-      : mesh_(mesh),
-        faces_(faces),
-        edges_(edges),
-        numbers_(numbers),
-        rule_(mesh.vertex_count, numbers.edge_count()) {}
+      : mesh_(mesh), faces_(faces), edges_(edges), numbers_(numbers), rule_(mesh.vertex_count, numbers.edge_count()) {}
 
   /// `room`: for so many faces' children.
   Topology run(uint32_t room, int threads) {
@@ -95,7 +92,8 @@ class FourSplitter {
   /// Of a face that is split.
   [[nodiscard]] uint32_t half_edge_of(uint32_t e) const {
     const uint32_t h = mesh_.half_edge[e];
-    return numbers_.has(Topology::face(h)) ? h : mesh_.twin[h];
+    const std::array<uint32_t, 2> both{mesh_.twin[h], h};  // no branch: which it is nobody can guess
+    return both[numbers_.has(Topology::face(h)) ? 1 : 0];
   }
 
   void split_face(uint32_t number, uint32_t f) {
@@ -143,21 +141,17 @@ void write_others(const Part& part, Topology& children) {
 
 }  // namespace
 
-Topology split_in_four(const Topology& mesh, int threads) {
-  return split_all<true>(mesh, threads);
-}
+Topology split_in_four(const Topology& mesh, int threads) { return split_all<true>(mesh, threads); }
 
 Topology split_part_in_four(const Topology& mesh, const Part& part, int threads) {
-  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()),
-                                                      Subset(part.edges.numbers()), PartNumbers(part))
+  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()), Subset(part.edges.numbers()),
+                                                      PartNumbers(part))
                           .run(part.other_face() + 1, threads);
   write_others(part, children);
   return children;
 }
 
-Topology split_last_in_four(const Topology& mesh, int threads) {
-  return split_all<false>(mesh, threads);
-}
+Topology split_last_in_four(const Topology& mesh, int threads) { return split_all<false>(mesh, threads); }
 
 Topology split_last_in_sixteen(const Topology& mesh, int threads) {
   const uint32_t vertices = mesh.vertex_count + mesh.edge_count();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "four.h"
@@ -162,15 +163,13 @@ class FourJudge {
     const auto prefers_second = is_surely_less(second, first);
     const auto is_sliver = is_surely_less(most, cosine) & is_surely_less(own, most);
     const auto is_none = is_surely_less(cosine, most) | is_surely_less(most, own);
-    std::array<uint32_t, 4> found{};
-    for (int i = 0; i < 4; ++i) {
-      const bool is_certain = are_usual[i] != 0 && (is_sliver[i] | is_none[i]) != 0 &&
-                              (!has_two || (prefers_first[i] | prefers_second[i]) != 0);
-      if (is_certain)
-        found[i] = is_known | (has_two && prefers_second[i] != 0 ? second_diagonal : 0U) |
-                   (is_sliver[i] != 0 ? has_sliver : 0U);
+    auto are_certain = are_usual & (is_sliver | is_none);
+    FourBits found = (FourBits{} + int{is_known}) | (is_sliver & int{has_sliver});
+    if (has_two) {
+      are_certain &= prefers_first | prefers_second;
+      found |= prefers_second & int{second_diagonal};
     }
-    return found;
+    return std::bit_cast<std::array<uint32_t, 4>>(found & are_certain);
   }
 
   /// Has the cache load what find() will read of a face.

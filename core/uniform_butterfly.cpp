@@ -159,11 +159,10 @@ void uniform_butterfly_below(const Topology& parents, const Part& part, const Fe
                              const Vec3f* positions, Vec3f* made, int threads) {
   const FamilyRule<float> family_rule(positions);
   const PartNumbers numbers(part);
-  add_all_shares(
-      parents, Subset(part.faces.numbers()), made, threads,
-      [&parents, family_rule, numbers](uint32_t f, auto& shares) {
-        if (has_all_twins(parents, f)) family_rule.add_shares(f, Family(parents, f, numbers), shares);
-      });
+  add_all_shares(parents, Subset(part.faces.numbers()), made, threads,
+                 [&parents, family_rule, numbers](uint32_t f, auto& shares) {
+                   if (has_all_twins(parents, f)) family_rule.add_shares(f, Family(parents, f, numbers), shares);
+                 });
   split_at_irregular_vertices(features, positions, nullptr, nullptr, [&](uint32_t e, Vec3f q) { made[e] = q; });
 }
 

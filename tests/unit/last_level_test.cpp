@@ -109,7 +109,7 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
       for (const LevelChoice* below : {&in_last, &in_part}) {
         EXPECT_TRUE(below->region.is_in_fours);
         EXPECT_EQ(below->region.faces.size(), 4 * marked(red).size());
-        EXPECT_EQ(below->region.edges, marked(below->may_be_split));
+        EXPECT_EQ(below->region.edges, marked(below->region.has_edge));
       }
       // Numbers differ, but not what they stand for.
       const auto ends = [](const LevelChoice& below) {
