@@ -193,7 +193,7 @@ class Assembler {
   /// With one or two sides split. Whether it becomes two faces or three nobody can guess: so three are written, and
   /// what was too much is written over by the next.
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
-    const SplitPattern& cut = transition_pattern(choose_transition(*level.choice->level, f, mask, most_cosine_));
+    const SplitPattern& cut = transition_pattern(choose_transition(*level.choice, f, mask, most_cosine_));
     const uint32_t made = half_edge_count_;
     const OfSides middle = middles(level, f);
     const Halves half = halves(corner, middle);

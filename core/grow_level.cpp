@@ -61,7 +61,7 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
     trial.deviations.put(at, known.trial.deviations.get(rank[e]));
     trial.bounds.put(at, known.trial.bounds.get(rank[e]));
   }
-  for (uint32_t f = 0; f < moved.size(); ++f) level.transitions.put(moved[f], known.transitions.get(f));
+  for (uint32_t f = 0; f < moved.size(); ++f) trial.transitions.put(moved[f], known.trial.transitions.get(f));
 }
 
 }  // namespace papilio

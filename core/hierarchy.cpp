@@ -23,7 +23,6 @@ class LevelMaker {
     Topology part = held_part();
     below_.mesh.topology = split_in_four(part, threads);
     make_vertices();
-    below_.transitions = Memo<uint32_t>(below_.mesh.topology.face_count(), 0);
     below_.parent = faces_.numbers();
     below_.child.assign(mesh_.face_count(), none);
     for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
@@ -93,7 +92,7 @@ class LevelMaker {
   void make_vertices() {
     const uint32_t count = below_.mesh.topology.vertex_count;
     below_.mesh.positions.resize(count);
-    below_.complete.assign(count, 1);
+    below_.complete.assign(count + 1, 1);  // one more, for what is not held
     uint32_t at = 0;
     for (uint32_t v : vertices_.numbers()) {
       below_.mesh.positions[at] = above_.mesh.positions[v];
@@ -103,10 +102,11 @@ class LevelMaker {
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (faces_.has(f)) continue;
       for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        if (vertices_.has(mesh_.origin[h])) below_.complete[vertices_[mesh_.origin[h]]] = 0;
-        if (edges_.has(mesh_.edge[h])) below_.complete[new_vertex(mesh_.edge[h])] = 0;
+        below_.complete[std::min(vertices_[mesh_.origin[h]], count)] = 0;
+        below_.complete[edges_.has(mesh_.edge[h]) ? new_vertex(mesh_.edge[h]) : count] = 0;
       }
     }
+    below_.complete.pop_back();
   }
 
   /// What descend() makes of the features, of what is held.
@@ -162,7 +162,7 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, parent, child, red, shared, longest) +
                    size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
-  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + transitions.bytes() +
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.transitions.bytes() +
            trial.planes.bytes() + trial.products.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
@@ -174,7 +174,6 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   level.complete.assign(mesh.topology.vertex_count, 1);
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
     if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
-  level.transitions = Memo<uint32_t>(mesh.topology.face_count(), 0);
   level.box = bounding_box(mesh.positions);
   level.features = find_features(mesh.topology);
   level.mesh = std::move(mesh);
@@ -220,7 +219,6 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
   below.mesh.positions.reserve(topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
-  below.transitions = Memo<uint32_t>(topology.face_count(), 0);
   below.mesh.topology = std::move(topology);
   return below;
 }

@@ -35,7 +35,6 @@ struct HierarchyLevel {
   Trial trial;             ///< what splitting its edges would give, where tried
   List<double> longest;    ///< [V] edges (view.h); empty where no view asked
   Box box{};               ///< of the vertices
-  Memo<uint32_t> transitions;  ///< [F] what is known of its transition faces (transition.h)
 
   /// The face above, not of level 0.
   [[nodiscard]] uint32_t parent_of(uint32_t face) const { return parent.empty() ? face / 4 : parent[face / 4]; }

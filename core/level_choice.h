@@ -21,6 +21,7 @@ struct LevelChoice {
   List<uint32_t> candidates;   ///< the edges whose error reaches the least threshold; else all that are wanted
   EdgeMarks split;             ///< [E] what is split for the result
   List<uint32_t> split_edges;  ///< the same as a list
+  List<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
   List<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
   List<uint8_t> at_a_red;      ///< [V] whether a red face is there
 

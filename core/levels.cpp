@@ -165,13 +165,16 @@ const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& 
 void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
   constexpr size_t one_as_dear_as = 4;  // of all, family by family
   TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
-  List<uint32_t> asked_of;
+  List<uint32_t> below_red;  // fours of faces
   bool are_few = false;
-  if (is_next_last() && !level.is_whole) {
+  if (!level.is_whole) {
     for (uint32_t i = 0; i < level.parent.size(); ++i)
-      if (level.red[level.parent[i]] != 0) asked_of.push_back(i);
-    are_few = one_as_dear_as * asked_of.size() < level.parent.size();
-    context.asked_of = &asked_of;
+      if (level.red[level.parent[i]] != 0) below_red.push_back(i);
+    context.normals_of = &below_red;
+  }
+  if (is_next_last() && !level.is_whole) {
+    are_few = one_as_dear_as * below_red.size() < level.parent.size();
+    context.asked_of = &below_red;
   }
   if (are_few || options_.w != 0)
     level.trial = try_split(level.mesh, options_,

@@ -42,8 +42,8 @@ std::optional<TensionField> find_tension(const Topology& mesh, const Array<Vec3f
 }
 
 Array<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
-  if (context.asked_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
-  return normals_of_fours(mesh, *context.asked_of, context.threads);
+  if (context.normals_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
+  return normals_of_fours(mesh, *context.normals_of, context.threads);
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ void Trial::prepare_errors(const Mesh& mesh, const Options& options, const Trial
   if (!has_tolerance && options.max_faces == 0) return;
   forget();
   if (!has_tolerance) return;
-  rooms = rooms_at_sides(mesh, context.asked_of, context.threads);
+  rooms = rooms_at_sides(mesh, context.normals_of, context.threads);
   least = Memo<float>(made.size(), 0);
 }
 
@@ -108,6 +108,7 @@ void Trial::keep_more(const Topology& mesh) {
   forget();
   planes = FacePlanes(mesh.face_count(), infinity);
   products = NormalProducts(mesh.edge_count(), infinity);
+  transitions = Memo<uint32_t>(mesh.face_count(), 0);
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {

@@ -20,10 +20,11 @@ namespace papilio {
 struct TrialContext {
   const Features* features = nullptr;  ///< its
   const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
-  /// Those of the parents of whose children normals are asked, and between which the edges to be tried lie; null: all.
-  const List<uint32_t>* asked_of = nullptr;
-  const Part* part = nullptr;  ///< of the parents that it was split from (split_part_in_four); null: all
-  int threads = 1;  ///< at most so many work on it
+  /// Those of the parents of whose children normals are asked; null: all.
+  const List<uint32_t>* normals_of = nullptr;
+  const List<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
+  const Part* part = nullptr;                ///< of the parents that it was split from (split_part_in_four); null: all
+  int threads = 1;                           ///< at most so many work on it
 };
 
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
@@ -37,13 +38,14 @@ struct Trial {
   Memo<float> least{};        ///< [T] no more than these; 0 where nothing is known; empty without rooms
   Array<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
 
-  FacePlanes planes{};        ///< (view.h)
-  NormalProducts products{};  ///< (flatness.h)
+  FacePlanes planes{};           ///< (view.h)
+  NormalProducts products{};     ///< (flatness.h)
+  Memo<uint32_t> transitions{};  ///< [F] (transition.h)
 
   static constexpr int unknown = -1;
   /// Makes room for what is found out about what was made; nothing is known yet.
   void forget();
-  /// Makes room for what is found out, and for what only later requests gain by: planes and products.
+  /// Makes room for what is found out, and for what only later requests gain by: planes, products and transitions.
   void keep_more(const Topology& mesh);
   /// The number of a tried edge's vertex in `made`.
   [[nodiscard]] uint32_t number(uint32_t edge) const { return tried.before.empty() ? edge : tried.before[edge]; }

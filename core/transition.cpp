@@ -84,34 +84,35 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
   return squared_cosine_of_smallest_angle(squared_length(b - a), squared_length(c - b), squared_length(a - c));
 }
 
-// What is known of a face's transitions: three bits a mask, of which the lowest says whether the others are known.
-enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
-/// Where those of a mask are, from 1 to 6.
+/// Trial::transitions has three bits for each mask from 1 to 6.
 constexpr unsigned shift_of(unsigned mask) { return 3 * (mask - 1); }
 
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const SplitFace split(level, face, mask);
-  uint32_t found = is_known;
+  uint32_t found = Transition::is_known;
   const auto [cosine_of_first, second] = cosines_of_pieces(split);
   double cosine = cosine_of_first;
   if (split.has_two) {
     const uint32_t* corner = &level.mesh.topology.origin[size_t{3} * face];
     const bool second_is_lower = corner[(split.first + 2) % 3] < corner[split.first];
-    if (second < cosine || (second == cosine && second_is_lower)) found |= second_diagonal;
+    if (second < cosine || (second == cosine && second_is_lower)) found |= Transition::second_diagonal;
     cosine = std::min(cosine, second);
   }
   const double most = most_cosine * most_cosine;
-  if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most) found |= has_sliver;
+  if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most)
+    found |= Transition::has_sliver;
   return found;
 }
 
-/// For masks 1 to 6.
-uint32_t transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
+/// What is known of the face, or found out now.
+uint32_t find_in(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
+  const Memo<uint32_t>& transitions = level.trial.transitions;
+  if (transitions.empty()) return judge(level, face, mask, most_cosine);
   const unsigned shift = shift_of(mask);
-  const uint32_t known = level.transitions.get(face);
-  if ((known >> shift & is_known) != 0) return known >> shift;
+  const uint32_t known = transitions.get(face);
+  if ((known >> shift & Transition::is_known) != 0) return known >> shift;
   const uint32_t found = judge(level, face, mask, most_cosine);
-  level.transitions.put(face, known | found << shift);
+  transitions.put(face, known | found << shift);
   return found;
 }
 
@@ -164,10 +165,10 @@ class FourJudge {
     const auto is_sliver = is_surely_less(most, cosine) & is_surely_less(own, most);
     const auto is_none = is_surely_less(cosine, most) | is_surely_less(most, own);
     auto are_certain = are_usual & (is_sliver | is_none);
-    FourBits found = (FourBits{} + int{is_known}) | (is_sliver & int{has_sliver});
+    FourBits found = (FourBits{} + int{Transition::is_known}) | (is_sliver & int{Transition::has_sliver});
     if (has_two) {
       are_certain &= prefers_first | prefers_second;
-      found |= prefers_second & int{second_diagonal};
+      found |= prefers_second & int{Transition::second_diagonal};
     }
     return std::bit_cast<std::array<uint32_t, 4>>(found & are_certain);
   }
@@ -225,18 +226,18 @@ class FourJudge {
 /// Finds which faces of a choice would have slivers among their pieces, and notes what becomes of the others.
 class SliverFinder {
  public:
-  SliverFinder(const LevelChoice& choice, double most_cosine)
+  SliverFinder(LevelChoice& choice, double most_cosine)
       : choice_(choice), level_(*choice.level), judge_four_(level_, most_cosine), most_cosine_(most_cosine) {}
 
   /// Of these faces, in ascending order. They must be split in part.
   List<uint32_t> run(const List<uint32_t>& faces) {
     for (uint32_t f : faces) {
       const unsigned mask = choice_.split_mask(f);
-      const uint32_t found = level_.transitions.get(f) >> shift_of(mask);
-      if ((found & is_known) != 0)
-        note(f, found);
-      else
+      const uint32_t known = Transition::known(choice_, f, mask);
+      if (known == 0)
         judge_later({f, mask});
+      else if ((known & Transition::has_sliver) != 0)
+        with_sliver_.push_back(f);
     }
     for (Waiting& waiting : waiting_) judge(waiting);
     std::ranges::sort(with_sliver_);
@@ -265,21 +266,15 @@ class SliverFinder {
       const std::array<uint32_t, 4> found = judge_four_.find(splits, &waiting == &waiting_[1]);
       for (size_t k = 0; k < std::min<size_t>(4, waiting.count - i); ++k) {
         const auto& [f, mask] = splits[k];
-        if (found[k] == 0)
-          note(f, transition(level_, f, mask, most_cosine_));
-        else
-          level_.transitions.put(f, level_.transitions.get(f) | found[k] << shift_of(mask));
-        note(f, found[k]);
+        const uint32_t is = found[k] != 0 ? found[k] : find_in(level_, f, mask, most_cosine_);
+        choice_.transitions[f] = Transition::with_mask(is, mask);
+        if ((is & Transition::has_sliver) != 0) with_sliver_.push_back(f);
       }
     }
     waiting.count = 0;
   }
 
-  void note(uint32_t face, uint32_t found) {
-    if ((found & has_sliver) != 0) with_sliver_.push_back(face);
-  }
-
-  const LevelChoice& choice_;
+  LevelChoice& choice_;
   const HierarchyLevel& level_;
   const FourJudge judge_four_;
   double most_cosine_;
@@ -300,9 +295,9 @@ double smallest_angle(const Mesh& mesh) {
 
 double most_cosine_beside(double smallest_angle) { return std::cos(sliver_share * smallest_angle); }
 
-uint8_t choose_transition(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
-  if (mask == 0 || mask == 7) return static_cast<uint8_t>(2 * mask);
-  return static_cast<uint8_t>(2 * mask + ((transition(level, face, mask, most_cosine) & second_diagonal) != 0 ? 1 : 0));
+uint32_t Transition::find(const LevelChoice& choice, uint32_t face, unsigned mask, double most_cosine) {
+  const uint32_t bits = known(choice, face, mask);
+  return bits != 0 ? bits : find_in(*choice.level, face, mask, most_cosine);
 }
 
 void avoid_slivers(LevelChoice& choice, double most_cosine) {
@@ -311,12 +306,15 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
   const Topology& mesh = level.mesh.topology;
   const auto must_be_divided = [&](uint32_t f) {
     const unsigned mask = choice.split_mask(f);
-    return mask != 0 && mask != 7 && (transition(level, f, mask, most_cosine) & has_sliver) != 0 &&
+    return mask != 0 && mask != 7 && (Transition::find(choice, f, mask, most_cosine) & Transition::has_sliver) != 0 &&
            choice.may_divide(f);
   };
   // The order decides where dividing one makes a sliver of another.
   List<uint32_t> faces = choice.faces_split_in_part();
-  if (level.trial.planes.empty()) faces = SliverFinder(choice, most_cosine).run(faces);
+  if (level.trial.planes.empty()) {
+    if (choice.transitions.empty()) choice.transitions.assign(mesh.face_count(), 0);
+    faces = SliverFinder(choice, most_cosine).run(faces);
+  }
   std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();

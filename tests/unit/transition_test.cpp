@@ -54,8 +54,8 @@ void compare(const Mesh& mesh, const Array<Vec3f>& made, double most_cosine, std
   avoid_slivers(expected, most_cosine);
   ASSERT_EQ(choice.split_edges, expected.split_edges);
   for (size_t i = 0; i < faces.size(); ++i) {
-    const uint8_t one_by_one = choose_transition(*kept, faces[i], masks[i], most_cosine);
-    ASSERT_EQ(choose_transition(*for_once, faces[i], masks[i], most_cosine), one_by_one);
+    const uint8_t one_by_one = choose_transition(expected, faces[i], masks[i], most_cosine);
+    ASSERT_EQ(choose_transition(choice, faces[i], masks[i], most_cosine), one_by_one);
     count.second_diagonals += one_by_one % 2;
   }
   count.faces += faces.size();
