@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lanes.h"
 #include "ranks.h"
 #include "region.h"
 #include "split_in_four.h"
@@ -248,23 +249,25 @@ LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int thre
 
 namespace {
 
-/// The box of the level above and the new vertices of these of its faces.
-Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& faces) {
-  Array<Vec3f> points(3 * faces.size() + 2);
-  size_t at = 0;
-  for (uint32_t f : faces) {
-    const uint32_t* edge = &above.mesh.topology.edge[size_t{3} * f];
-    for (uint32_t i = 0; i < 3; ++i) points[at + i] = above.trial.at(edge[i]);
-    at += 3;
+/// The box of the level above and the new vertices of these of its edges.
+Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edges) {
+  const auto& [min, max] = above.box;
+  Lanes least{{min.x, min.y, min.z, 0}};
+  Lanes most{{max.x, max.y, max.z, 0}};
+  for (uint32_t e : edges) {
+    const Lanes p = widen(above.trial.made[above.trial.number(e)]);
+    least = lesser(p, least);
+    most = larger(p, most);
   }
-  points[at] = above.box.min;
-  points[at + 1] = above.box.max;
-  return bounding_box(points);
+  Box box;
+  store(least, box.min);
+  store(most, box.max);
+  return box;
 }
 
 }  // namespace
 
-HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
+HierarchyLevel refine_in_part(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
   HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
   descend(below.features, level.mesh.topology.vertex_count, part);
   below.parent = part.faces.numbers();
@@ -272,7 +275,7 @@ HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red,
   below.child.resize(red.size());
   for (uint32_t f = 0; f < red.size(); ++f) below.child[f] = 4 * part.faces[f];
   below.red = std::move(red);
-  below.box = box_with_new_vertices(level, part.faces.numbers());
+  below.box = box_with_new_vertices(level, part.edges.numbers());
   return below;
 }
 
