@@ -267,7 +267,7 @@ Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edg
 
 }  // namespace
 
-HierarchyLevel refine_in_part(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
+HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
   HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
   descend(below.features, level.mesh.topology.vertex_count, part);
   below.parent = part.faces.numbers();

@@ -15,7 +15,7 @@
 // give them but for the gaps. A face that may be split needs exact positions in the two rings of faces round it. So
 // not only what is split gets children, but every face that shares a vertex with it ("support"): the two rings round a
 // child of T lie inside the children of T's one ring, and the next level has what it needs in turn. A last level, below
-// which no other comes, may leave the support out (refine_in_part).
+// which no other comes, may leave the support out (refine_last_level).
 //
 // Nothing here depends on a view or on what is chosen: a level once made is read by any number of requests, each of
 // which may use less of it than is held (level_choice.h). Numbers keep their order however much is held, and so does
@@ -68,12 +68,11 @@ struct LevelBelow {
 /// must have been tried. Up to so many threads work on it.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
-/// Makes the next level for one request alone: the children of a part of the faces and four more, which stand for all
-/// others of the level (split_part_in_four). Its vertices are those of the whole level. So nothing has to be cut, and
-/// what lies at the border means nothing: `complete` is left out, `features` are those of all that was complete above.
-/// Of a level without cuts at the part, whose features are rings. The part is what is red and all its neighbours; or,
-/// where no level comes below, just what is red.
-[[nodiscard]] HierarchyLevel refine_in_part(const HierarchyLevel& level, List<uint8_t> red, const Part& part,
-                                            int threads = 1);
+/// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else but four
+/// faces that stand for all the others of the level (split_part_in_four). Its vertices are those of the whole level. So
+/// nothing has to be cut, and there is nothing for what only a further level would need (`complete` is left out;
+/// `features` are those of all that was complete above). Of a level whose features are rings; `part`: what is red.
+[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part,
+                                               int threads = 1);
 
 }  // namespace papilio

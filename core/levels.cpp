@@ -1,11 +1,9 @@
 #include "levels.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "attributes.h"
 #include "grow_level.h"
-#include "part.h"
 #include "transition.h"
 
 namespace papilio {
@@ -18,14 +16,6 @@ constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and 
 constexpr double part_as_dear_as_all = 0.75;
 /// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
 constexpr double part_as_dear_as_all_kept = 1.0 / 3;
-
-/// The fours of a level's faces whose parents are red.
-List<uint32_t> fours_below_red(const HierarchyLevel& level) {
-  List<uint32_t> fours(level.parent.size());
-  std::iota(fours.begin(), fours.end(), 0U);
-  keep_if(fours, [&](uint32_t i) { return level.parent[i] != none && level.red[level.parent[i]] != 0; });
-  return fours;
-}
 
 bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
@@ -110,88 +100,60 @@ bool Levels::may_keep(const List<uint8_t>& red) const {
 }
 
 List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
-  if (costs_as_much_as_all(with_neighbours(levels_.back()->mesh.topology, red), as_dear)) red.assign(red.size(), 1);
+  const HierarchyLevel& level = *levels_.back();
+  if (!level.is_whole || level.trial.made.size() != level.mesh.topology.edge_count() ||
+      !progress_.has_plenty(4 * red.size(), bytes_per_face))
+    return red;
+  const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
+  const auto held = static_cast<double>(std::ranges::count(support, 1));
+  if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
   return red;
 }
 
-bool Levels::costs_as_much_as_all(const List<uint8_t>& held, double as_dear) const {
-  const HierarchyLevel& level = *levels_.back();
-  return level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
-         progress_.has_plenty(4 * held.size(), bytes_per_face) &&
-         static_cast<double>(std::ranges::count(held, 1)) >= as_dear * static_cast<double>(held.size());
-}
-
 void Levels::make(const List<uint8_t>& red) {
-  if (prepared_ != nullptr && to_keep_ == levels_.size()) {
-    List<uint8_t> more = or_everything(with_margin(red), part_as_dear_as_all_kept);
-    if (!may_keep(more)) more = or_everything(red, part_as_dear_as_all);
-    if (may_keep(more)) {
-      make_to_keep(std::move(more));
-      return;
-    }
-  }
-  const bool in_part = may_be_made_in_part();
-  if (in_part && is_next_last()) {
-    make_in_part(red, Part(levels_.back()->mesh.topology, red));
-    return;
-  }
-  const List<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
-  if (costs_as_much_as_all(support, part_as_dear_as_all))
-    make_for_once(List<uint8_t>(red.size(), 1));
-  else if (in_part)
-    make_in_part(red, Part(levels_.back()->mesh.topology, support));
-  else
-    make_for_once(red);
-}
-
-void Levels::make_to_keep(List<uint8_t> red) {
-  LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
+  if (prepared_ == nullptr && make_last(red)) return;
+  List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
+                                            : or_everything(with_margin(red), part_as_dear_as_all_kept);
+  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
+  const bool is_kept = may_keep(more);
+  if (prepared_ != nullptr && !is_kept && make_last(red)) return;
+  LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
   const Topology& parents = parents_of(*level, below.parents);
-  level->longest = longest_edges_below(parents, level->mesh.positions);
-  TrialContext context{.features = &level->features, .threads = progress_.threads()};
-  if (level->is_whole) context.parents = &parents;
-  level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
-  level->trial.keep_more(level->mesh.topology);
-  add_kept(level);
+  if (is_kept || options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
+  if (is_kept) {
+    TrialContext context{.features = &level->features, .threads = progress_.threads()};
+    if (level->is_whole) context.parents = &parents;
+    level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
+    level->trial.keep_more(level->mesh.topology);
+    add_kept(level);
+  } else {
+    try_for_once(*level, parents);
+    levels_.push_back(level);
+  }
 }
 
-void Levels::make_for_once(List<uint8_t> red) {
-  LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
-  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
-  progress_.poll();
-  const Topology& parents = parents_of(*level, below.parents);
-  if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
-  try_for_once(*level, parents);
-  levels_.push_back(level);
-}
-
-bool Levels::may_be_made_in_part() const {
-  const HierarchyLevel& above = *levels_.back();
-  const bool has_no_cuts = above.is_whole || above.complete.empty() || is_next_last();  // of faces that get children
-  return has_no_cuts && options_.tension == Tension::off && options_.w == 0 && above.features.are_rings() &&
-         above.trial.made.size() == above.mesh.topology.edge_count();
-}
-
-void Levels::make_in_part(const List<uint8_t>& red, const Part& part) {
+bool Levels::make_last(const List<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
-  const auto level = std::make_shared<HierarchyLevel>(refine_in_part(above, red, part, progress_.threads()));
+  const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
+  if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
+      above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes))
+    return false;
+  const Part part(parents, red);
+  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
   progress_.poll();
   if (options_.view) {
     const List<uint32_t> round_them = marked(with_neighbours(parents, red));
     level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
   }
-  const List<uint32_t> fours = fours_below_red(*level);
-  const TrialContext context{.features = &level->features,
-                             .parents = &parents,
-                             .normals_of = &fours,
-                             .part = &part,
-                             .threads = progress_.threads()};
+  const TrialContext context{
+      .features = &level->features, .parents = &parents, .part = &part, .threads = progress_.threads()};
   level->trial = try_everything(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);
+  return true;
 }
 
 bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }
@@ -203,10 +165,11 @@ const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& 
 void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
   constexpr size_t one_as_dear_as = 4;  // of all, family by family
   TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
-  List<uint32_t> below_red;
+  List<uint32_t> below_red;  // fours of faces
   bool are_few = false;
   if (!level.is_whole) {
-    below_red = fours_below_red(level);
+    for (uint32_t i = 0; i < level.parent.size(); ++i)
+      if (level.red[level.parent[i]] != 0) below_red.push_back(i);
     context.normals_of = &below_red;
   }
   if (is_next_last() && !level.is_whole) {

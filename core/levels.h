@@ -37,17 +37,13 @@ class Levels {
   /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
   /// next view, from a little further on, finds what it needs.
   [[nodiscard]] List<uint8_t> with_margin(const List<uint8_t>& red) const;
-  /// All faces of the deepest level if those marked cost as much; else those marked.
+  /// All faces of the deepest level if it is whole and so large a part of them would be held: then all cost less. Else
+  /// those marked.
   [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
-  /// Whether the deepest level is whole, and what gets children is so large a part of it: then all costs less.
-  [[nodiscard]] bool costs_as_much_as_all(const List<uint8_t>& held, double as_dear) const;
   void make(const List<uint8_t>& red);
-  void make_to_keep(List<uint8_t> red);
-  /// For this request alone.
-  void make_for_once(List<uint8_t> red);
-  /// The same, as cheaply as that can be done: `part` has all that gets children (refine_in_part). Where that may be.
-  void make_in_part(const List<uint8_t>& red, const Part& part);
-  [[nodiscard]] bool may_be_made_in_part() const;
+  /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
+  /// done, where that cannot be, or little is red.
+  bool make_last(const List<uint8_t>& red);
   /// Whether no level will lie below the one below the deepest.
   [[nodiscard]] bool is_next_last() const;
   /// What a level below the deepest was split from; `held` as in LevelBelow.
