@@ -199,18 +199,23 @@ void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& m
 }  // namespace
 
 EdgeMarks find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
-                      Growth growth, const Region& region) {
-  const Topology& topology = mesh.topology;
-  const bool to_others = growth == Growth::faces;
+                      const Region& region) {
   CurvedFinder finder(mesh, normals, products, threshold);
-  EdgeMarks marks;
-  if (products.empty() && !region.has_curves) {
-    marks = finder.by_faces(region, to_others);
-  } else {
-    marks = products.empty() ? finder.by_faces(region) : finder.by_edges(region);
-    if (to_others) grow_over_faces(topology, region, marks);
-  }
-  if (growth == Growth::vertices) grow_over_vertices(topology, region, marks);
+  if (!products.empty()) return finder.by_edges(region);
+  return region.has_curves ? finder.by_faces(region) : finder.by_faces(region, false);
+}
+
+void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks) {
+  if (growth == Growth::faces) grow_over_faces(mesh, region, marks);
+  if (growth == Growth::vertices) grow_over_vertices(mesh, region, marks);
+}
+
+EdgeMarks find_curved_and_grow(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
+                               double threshold, Growth growth, const Region& region) {
+  if (products.empty() && !region.has_curves && growth == Growth::faces)
+    return CurvedFinder(mesh, normals, products, threshold).by_faces(region, true);
+  EdgeMarks marks = find_curved(mesh, normals, products, threshold, region);
+  grow(mesh.topology, growth, region, marks);
   return marks;
 }
 

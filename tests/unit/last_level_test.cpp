@@ -9,6 +9,7 @@
 #include "core/hierarchy.h"
 #include "core/level_choice.h"
 #include "core/normals.h"
+#include "core/part.h"
 #include "core/refine.h"
 #include "core/selection.h"
 #include "tests/support/real_mesh.h"
@@ -50,45 +51,103 @@ List<uint8_t> random_faces(const Topology& mesh, std::mt19937& random) {
   return red;
 }
 
-template <class Numbers>
-void expect_same(const Numbers& some, const Numbers& all, size_t first, size_t count) {
-  ASSERT_EQ(some.size(), all.size());
-  for (size_t i = first; i < first + count; ++i) ASSERT_EQ(some[i], all[i]) << i;
-}
+/// The last level beside all of that level, whose numbers are other ones.
+class SomeOfAll {
+ public:
+  SomeOfAll(const Topology& above, const List<uint8_t>& red, const Part& part, const HierarchyLevel& last)
+      : red_(red), part_(part), last_(last), inner_edges_of_all_(2 * above.edge_count()) {}
+
+  /// Where these are in the whole level.
+  [[nodiscard]] uint32_t half_edge(uint32_t h) const { return 12 * last_.parent_of(Topology::face(h)) + h % 12; }
+  [[nodiscard]] uint32_t edge(uint32_t e) const {
+    const uint32_t halves = 2 * part_.edges.count() + 2;
+    if (e < halves) return 2 * part_.edges.numbers()[e / 2] + e % 2;
+    return inner_edges_of_all_ + 3 * part_.faces.numbers()[(e - halves) / 3] + (e - halves) % 3;
+  }
+  /// Whether these are not in the part: one of the last level, one of the whole.
+  [[nodiscard]] bool is_other(uint32_t h) const { return h / 12 == part_.other_face(); }
+  [[nodiscard]] bool is_left_out(uint32_t h_of_all) const { return red_[h_of_all / 12] == 0; }
+
+ private:
+  const List<uint8_t>& red_;
+  const Part& part_;
+  const HierarchyLevel& last_;
+  uint32_t inner_edges_of_all_;
+};
 
 TEST(LastLevel, HasWhatTheWholeLevelHas) {
   std::mt19937 random(1);
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
-      const Topology& mesh = above->mesh.topology;
-      const List<uint8_t> red = random_faces(mesh, random);
+      const List<uint8_t> red = random_faces(above->mesh.topology, random);
       const HierarchyLevel whole = refine_level(*above, List<uint8_t>(red.size(), 1)).level;
       ASSERT_TRUE(whole.is_whole);
-      const HierarchyLevel last = refine_last_level(*above, red, marked(red));
+      const Part part(above->mesh.topology, red);
+      const HierarchyLevel last = refine_last_level(*above, red, part);
       EXPECT_FALSE(last.is_whole);
       EXPECT_EQ(last.red, red);
       EXPECT_EQ(last.mesh.positions, whole.mesh.positions);
-      EXPECT_EQ(last.features.spokes, whole.features.spokes);
       const Topology& some = last.mesh.topology;
       const Topology& all = whole.mesh.topology;
       EXPECT_EQ(some.vertex_count, all.vertex_count);
-      const uint32_t inner = 2 * mesh.edge_count();
-      expect_same(some.half_edge, all.half_edge, 0, inner);
-      expect_same(some.kind, all.kind, 0, inner);
-      Array<Vec3f> held;
-      for (uint32_t f : marked(red)) {
-        for (uint32_t c = 0; c < 4; ++c) EXPECT_EQ(last.parent_of(4 * f + c), f);
-        EXPECT_EQ(last.first_child_of(f), 4 * f);
-        expect_same(some.origin, all.origin, 12 * f, 12);
-        expect_same(some.twin, all.twin, 12 * f, 12);
-        expect_same(some.edge, all.edge, 12 * f, 12);
-        expect_same(some.half_edge, all.half_edge, inner + 3 * f, 3);
-        expect_same(some.kind, all.kind, inner + 3 * f, 3);
-        for (uint32_t h = 12 * f; h < 12 * f + 12; ++h) held.push_back(last.mesh.positions[some.origin[h]]);
+      EXPECT_EQ(some.face_count(), 4 * part.faces.count() + 4);
+      EXPECT_EQ(some.edge_count(), 2 * part.edges.count() + 2 + 3 * (part.faces.count() + 1));
+      const SomeOfAll of_all(above->mesh.topology, red, part, last);
+      size_t held = 0;
+      for (uint32_t h = 0; h < some.half_edge_count(); ++h) {
+        ASSERT_LT(some.twin[h], some.half_edge_count());
+        ASSERT_LT(some.origin[h], some.vertex_count);
+        ASSERT_LT(some.edge[h], some.edge_count());
+        if (of_all.is_other(h)) continue;
+        ++held;
+        const uint32_t same = of_all.half_edge(h);
+        ASSERT_EQ(last.first_child_of(same / 12), 4 * (h / 12));
+        ASSERT_EQ(some.origin[h], all.origin[same]);
+        ASSERT_EQ(of_all.edge(some.edge[h]), all.edge[same]);
+        ASSERT_EQ(of_all.is_other(some.twin[h]), of_all.is_left_out(all.twin[same]));
+        if (!of_all.is_other(some.twin[h])) {
+          ASSERT_EQ(of_all.half_edge(some.twin[h]), all.twin[same]);
+        }
       }
-      held.push_back(above->box.min);  // the box is that of these
-      held.push_back(above->box.max);
-      const Box box = bounding_box(held);
+      EXPECT_EQ(held, 12 * marked(red).size());
+      for (uint32_t e = 0; e < some.edge_count(); ++e) {
+        const uint32_t h = some.half_edge[e];
+        ASSERT_EQ(some.edge[h], e);
+        ASSERT_EQ(some.kind[e], EdgeKind::smooth);
+        if (of_all.is_other(h)) continue;
+        const uint32_t named = all.half_edge[of_all.edge(e)];
+        ASSERT_EQ(of_all.half_edge(h), of_all.is_left_out(named) ? all.twin[named] : named);
+      }
+    }
+}
+
+TEST(LastLevel, HasTheFeaturesAndTheBoxOfTheLevel) {
+  std::mt19937 random(5);
+  for (int round = 0; round < 10; ++round)
+    for (const auto& above : ring_levels(random)) {
+      const List<uint8_t> red = random_faces(above->mesh.topology, random);
+      const HierarchyLevel whole = refine_level(*above, List<uint8_t>(red.size(), 1)).level;
+      const Part part(above->mesh.topology, red);
+      const HierarchyLevel last = refine_last_level(*above, red, part);
+      const SomeOfAll of_all(above->mesh.topology, red, part, last);
+      EXPECT_EQ(last.features.level, whole.features.level);
+      EXPECT_EQ(last.features.centre, whole.features.centre);
+      EXPECT_EQ(last.features.first_spoke, whole.features.first_spoke);
+      ASSERT_EQ(last.features.spokes.size(), whole.features.spokes.size());
+      for (size_t i = 0; i < whole.features.spokes.size(); ++i) {
+        const Features::Spoke& spoke = last.features.spokes[i];
+        const Features::Spoke& same = whole.features.spokes[i];
+        EXPECT_EQ(spoke.tip, same.tip);
+        EXPECT_EQ(spoke.edge / 2 == part.other_edge(), !part.edges.has(same.edge / 2));
+        if (spoke.edge / 2 != part.other_edge()) {
+          EXPECT_EQ(of_all.edge(spoke.edge), same.edge);
+        }
+      }
+      Array<Vec3f> points{above->box.min, above->box.max};
+      for (uint32_t f : last.parent)
+        for (uint32_t i = 0; f != none && i < 3; ++i)
+          points.push_back(above->trial.made[above->mesh.topology.edge[3 * f + i]]);
+      const Box box = bounding_box(points);
       EXPECT_EQ(last.box.min, box.min);
       EXPECT_EQ(last.box.max, box.max);
     }
@@ -102,8 +161,8 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
       LevelChoice choice = choose_coarsest(above);
       EXPECT_FALSE(choice.region.is_in_fours);
       mark_red(choice, marked(red));
-      const LevelChoice in_last =
-          choose_below(choice, std::make_shared<HierarchyLevel>(refine_last_level(*above, red, marked(red))));
+      const LevelChoice in_last = choose_below(
+          choice, std::make_shared<HierarchyLevel>(refine_last_level(*above, red, Part(above->mesh.topology, red))));
       const LevelChoice in_part =
           choose_below(choice, std::make_shared<HierarchyLevel>(refine_level(*above, red).level));
       for (const LevelChoice* below : {&in_last, &in_part}) {
@@ -125,29 +184,46 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
     }
 }
 
-TEST(LastLevel, FlatnessOfFoursIsThatOfFaces) {
+TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
   std::mt19937 random(3);
   size_t curved = 0;
   size_t flat = 0;
-  for (int round = 0; round < 10; ++round)
+  for (int round = 0; round < 12; ++round)
     for (const auto& above : ring_levels(random)) {
-      HierarchyLevel level = refine_level(*above, List<uint8_t>(above->mesh.topology.face_count(), 1)).level;
-      Topology& topology = level.mesh.topology;
-      if (round % 2 == 1)
-        for (int i = 0; i < 5; ++i) topology.kind[random() % topology.edge_count()] = EdgeKind::crease;
-      Array<Vec3f> normals = face_normals(level.mesh);
+      const List<uint8_t> red = random_faces(above->mesh.topology, random);
+      LevelChoice choice = choose_coarsest(above);
+      mark_red(choice, marked(red));
+      const auto level = std::make_shared<HierarchyLevel>(refine_level(*above, red).level);
+      Topology& topology = level->mesh.topology;
+      choice = choose_below(choice, level);
+      Region& region = choice.region;
+      EXPECT_FALSE(region.has_curves);
+      const bool has_creases = round % 2 == 1;
+      if (has_creases)
+        for (int i = 0; i < 5; ++i) topology.kind[region.edges[random() % region.edges.size()]] = EdgeKind::crease;
+      Array<Vec3f> normals = face_normals(level->mesh);
       for (int i = 0; i < 5; ++i) normals[random() % normals.size()] = {};
-      Region region = whole_region(topology);
-      const auto find = [&](bool in_fours) {
-        region.is_in_fours = in_fours;
-        return find_curved(level.mesh, normals, {}, 0.95, region);
-      };
-      const EdgeMarks of_faces = find(false);
-      EXPECT_EQ(find(true), of_faces);
       const NormalProducts kept(topology.edge_count(), std::numeric_limits<float>::infinity());
-      EXPECT_EQ(find_curved(level.mesh, normals, kept, 0.95, region), of_faces) << "edge by edge";
-      EXPECT_EQ(find_curved(level.mesh, normals, kept, 0.95, region), of_faces) << "from what is known";
-      for (uint8_t mark : of_faces) ++(mark != 0 ? curved : flat);
+      const auto find = [&](bool in_fours, bool has_curves, Growth growth, const NormalProducts& products) {
+        region.is_in_fours = in_fours;
+        region.has_curves = has_curves;
+        return find_curved_and_grow(level->mesh, normals, products, 0.95, growth, region);
+      };
+      for (const Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
+        EdgeMarks expected(topology.edge_count(), 0);
+        for (uint32_t e : region.edges) {
+          Region alone;
+          alone.edges = {e};
+          expected[e] = find_curved(level->mesh, normals, kept, 0.95, alone)[e];
+          ++(expected[e] != 0 ? curved : flat);
+        }
+        grow(topology, growth, region, expected);
+        EXPECT_EQ(find(false, true, growth, {}), expected);
+        EXPECT_EQ(find(false, true, growth, kept), expected) << "from what is known";
+        if (has_creases) continue;
+        EXPECT_EQ(find(true, false, growth, {}), expected) << "by fours";
+        EXPECT_EQ(find(false, false, growth, {}), expected) << "by faces";
+      }
     }
   EXPECT_GT(curved, 1000U);
   EXPECT_GT(flat, 1000U);
