@@ -129,29 +129,14 @@ class FeatureFinder {
 
 Features find_features(const Topology& mesh) { return FeatureFinder(mesh).run(); }
 
-namespace {
-
-/// Calls descend(spoke, at_higher_end) for each: whether its centre is the higher end of its edge.
-template <class Descend>
-void descend_spokes(Features& features, const Descend& descend) {
+void descend(Features& features, uint32_t vertex_count) {
   ++features.level;
   for (size_t i = 0; i < features.fan_count(); ++i)
-    for (uint32_t k = features.first_spoke[i]; k < features.first_spoke[i + 1]; ++k)
-      descend(features.spokes[k], features.centre[i] > features.spokes[k].tip ? 1 : 0);
-}
-
-}  // namespace
-
-void descend(Features& features, uint32_t vertex_count, const Part& part) {
-  descend_spokes(features, [&](Features::Spoke& spoke, uint32_t at_higher_end) {
-    spoke = {0, 2 * part.edges[spoke.edge] + at_higher_end, vertex_count + spoke.edge};
-  });
-}
-
-void descend(Features& features, uint32_t vertex_count) {
-  descend_spokes(features, [&](Features::Spoke& spoke, uint32_t at_higher_end) {
-    spoke = {first_half(spoke.half_edge), 2 * spoke.edge + at_higher_end, vertex_count + spoke.edge};
-  });
+    for (uint32_t k = features.first_spoke[i]; k < features.first_spoke[i + 1]; ++k) {
+      Features::Spoke& spoke = features.spokes[k];
+      const uint32_t at_higher_end = features.centre[i] > spoke.tip ? 1 : 0;
+      spoke = {first_half(spoke.half_edge), 2 * spoke.edge + at_higher_end, vertex_count + spoke.edge};
+    }
   Array<uint32_t> halves;
   halves.reserve(2 * features.curve_half_edges.size());
   for (uint32_t h : features.curve_half_edges)

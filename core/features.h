@@ -6,7 +6,6 @@
 #include "array.h"
 #include "fan.h"
 #include "mesh.h"
-#include "part.h"
 #include "stencil.h"
 
 namespace papilio {
@@ -55,8 +54,5 @@ struct Features {
 
 /// Those of the level below one with so many vertices (split_in_four.h). O(features).
 void descend(Features& features, uint32_t vertex_count);
-/// The same where only a part of that level was split (split_part_in_four), of features that are rings: spokes that are
-/// not in it have the edge that stands for all others, and their half-edges mean nothing.
-void descend(Features& features, uint32_t vertex_count, const Part& part);
 
 }  // namespace papilio

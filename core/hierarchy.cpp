@@ -216,7 +216,6 @@ namespace {
 /// The level below a mesh all of whose edges were tried, its vertices numbered as split_in_four() does it.
 HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) {
   HierarchyLevel below;
-  below.features = level.features;
   below.mesh.positions.reserve(topology.vertex_count);
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
@@ -227,6 +226,7 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
 /// What LevelMaker makes where everything is held.
 HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
   HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
+  below.features = level.features;
   descend(below.features, level.mesh.topology.vertex_count);
   below.is_whole = true;
   below.complete.assign(below.mesh.topology.vertex_count, 1);
@@ -269,7 +269,6 @@ Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edg
 
 HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
   HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
-  descend(below.features, level.mesh.topology.vertex_count, part);
   below.parent = part.faces.numbers();
   below.parent.push_back(none);
   below.child.resize(red.size());

@@ -70,8 +70,8 @@ struct LevelBelow {
 
 /// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else but four
 /// faces that stand for all the others of the level (split_part_in_four). Its vertices are those of the whole level. So
-/// nothing has to be cut, and there is nothing for what only a further level would need (`complete` is left out;
-/// `features` are those of all that was complete above). Of a level whose features are rings; `part`: what is red.
+/// nothing has to be cut, and `features` and `complete` are left out, which only a further level would need. Of a level
+/// whose features are rings; `part`: what is red.
 [[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part,
                                                int threads = 1);
 

@@ -149,7 +149,7 @@ bool Levels::make_last(const List<uint8_t>& red) {
     level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
   }
   const TrialContext context{
-      .features = &level->features, .parents = &parents, .part = &part, .threads = progress_.threads()};
+      .features = &above.features, .parents = &parents, .part = &part, .threads = progress_.threads()};
   level->trial = try_everything(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);

@@ -169,7 +169,8 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<dou
 
 List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
   if (options_.flatness.empty()) return region.edges;
-  const EdgeMarks marks = find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region);
+  const EdgeMarks marks =
+      find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region);
   List<uint32_t> edges = region.edges;
   keep_if(edges, [&](uint32_t e) { return marks[e] != 0; });
   return edges;

@@ -10,6 +10,7 @@
 #include "features.h"
 #include "memo.h"
 #include "options.h"
+#include "part.h"
 #include "region.h"
 
 // Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
@@ -18,7 +19,7 @@ namespace papilio {
 
 /// What is known of a mesh that is tried: all of it may be left out.
 struct TrialContext {
-  const Features* features = nullptr;  ///< its
+  const Features* features = nullptr;  ///< its; with `part`, the parents'
   const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
   /// Those of the parents of whose children normals are asked; null: all.
   const List<uint32_t>* normals_of = nullptr;

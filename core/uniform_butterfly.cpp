@@ -155,7 +155,7 @@ void uniform_butterfly_below(const Topology& parents, const Topology* topology, 
                               [&](uint32_t e, Vec3f q) { made[e] = q; });
 }
 
-void uniform_butterfly_below(const Topology& parents, const Part& part, const Features& features,
+void uniform_butterfly_below(const Topology& parents, const Part& part, const Features& features_of_parents,
                              const Vec3f* positions, Vec3f* made, int threads) {
   const FamilyRule<float> family_rule(positions);
   const PartNumbers numbers(part);
@@ -163,7 +163,16 @@ void uniform_butterfly_below(const Topology& parents, const Part& part, const Fe
                  [&parents, family_rule, numbers](uint32_t f, auto& shares) {
                    if (has_all_twins(parents, f)) family_rule.add_shares(f, Family(parents, f, numbers), shares);
                  });
-  split_at_irregular_vertices(features, positions, nullptr, nullptr, [&](uint32_t e, Vec3f q) { made[e] = q; });
+  const auto is_in_part = [&](const Features::Spoke& spoke) { return part.edges.has(spoke.edge); };
+  for (size_t i = 0; i < features_of_parents.fan_count(); ++i) {
+    const std::span<const Features::Spoke> spokes = features_of_parents.spokes_of(i);
+    if (std::ranges::none_of(spokes, is_in_part)) continue;
+    const uint32_t centre = features_of_parents.centre[i];
+    split_ring(
+        positions, centre, static_cast<uint32_t>(spokes.size()),
+        [&](uint32_t j) { return parents.vertex_count + spokes[j].edge; },
+        [&](uint32_t j, Vec3f q) { made[2 * part.edges[spokes[j].edge] + (centre > spokes[j].tip ? 1 : 0)] = q; });
+  }
 }
 
 }  // namespace papilio

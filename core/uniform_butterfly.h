@@ -21,8 +21,9 @@ void uniform_butterfly_below(const Topology& parents, const Topology* topology, 
                              const Vec3f* positions, Vec3f* made, int threads = 1,
                              const List<uint32_t>* asked_of = nullptr);
 
-/// The same of what split_part_in_four() makes, whose features are rings: of the edges between its faces.
-void uniform_butterfly_below(const Topology& parents, const Part& part, const Features& features,
+/// The same of what split_part_in_four() makes of the parents, whose features are rings: of the edges between its
+/// faces.
+void uniform_butterfly_below(const Topology& parents, const Part& part, const Features& features_of_parents,
                              const Vec3f* positions, Vec3f* made, int threads = 1);
 
 }  // namespace papilio

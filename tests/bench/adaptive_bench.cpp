@@ -4,7 +4,7 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// Adaptive refinement, red-green, three levels, a result of a fifth to three tenths of the uniform one: a triangle of
+// Adaptive refinement, red-green, three levels, a result of a fifth to two fifths of the uniform one: a triangle of
 // it beside one of our own uniform refinement in two levels, which has as many. One thread, without tension.
 
 namespace papilio::bench {
@@ -42,6 +42,8 @@ void add_adaptive() {
   const TriangleMesh triangles = test::real_mesh("elephant20k.drc");
   Options options = adaptive_options();
   options.flatness = {0.98, 0.99, 0.995};
+  add_row("flatness", triangles, options);
+  options.flatness = {0.99, 0.995, 0.9975};
   add_row("flatness", triangles, options);
   options = adaptive_options();
   options.tolerance = 2e-5;
