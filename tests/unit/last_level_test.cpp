@@ -149,7 +149,7 @@ TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
       EXPECT_EQ(last.box.min, box.min);
       EXPECT_EQ(last.box.max, box.max);
     }
-  EXPECT_GT(between, 10'000U);
+  EXPECT_GT(between, 5000U);
 }
 
 TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
