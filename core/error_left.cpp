@@ -206,9 +206,10 @@ class ErrorFinder {
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
     if (choice.level->trial.bounds.empty()) return;  // add_far did it
+    has_children_ = choice.with_children();
     List<uint32_t> faces = choice.faces_at_split();
     keep_if(faces, [&](uint32_t f) {
-      const bool has_children = choice.has_children(f);
+      const bool has_children = has_children_[f] != 0;
       const bool is_whole_or_cut = choice.split_mask(f) != 7;
       const bool is_reached = reached_[f] != 0;
       return is_reached & (!has_children | is_whole_or_cut);
@@ -225,7 +226,7 @@ class ErrorFinder {
   void add_side(size_t k, uint32_t h) {
     const LevelChoice& choice = levels_[k];
     const uint32_t e = mesh_of(k).edge[h];
-    if (choice.has_children(Topology::face(h))) {
+    if (has_children_[Topology::face(h)] != 0) {
       const auto [first, second] = halves(k, Topology::face(h), h % 3);
       const LevelChoice& below = levels_[k + 1];
       if (below.region.has_edge[first] != 0 && below.region.has_edge[second] != 0) {
@@ -287,8 +288,9 @@ class ErrorFinder {
 
   std::span<const LevelChoice> levels_;
   bool errors_are_pixels_;
-  List<double> scales_;    ///< [level] the highest pixels per unit
-  List<uint8_t> reached_;  ///< [F] of the level at hand: whether all faces above are divided
+  List<double> scales_;         ///< [level] the highest pixels per unit
+  List<uint8_t> has_children_;  ///< [F] of a level of which splits are looked at
+  List<uint8_t> reached_;       ///< [F] of the level at hand: whether all faces above are divided
   ErrorLeft left_;
 };
 

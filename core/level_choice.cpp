@@ -66,29 +66,19 @@ bool LevelChoice::has_many_split() const {
   return split_edges.size() * few > region.faces.size();
 }
 
-List<uint32_t> LevelChoice::faces_split_in_part() const {
-  List<uint32_t> faces = !has_many_split()    ? faces_at_split()
-                         : region.is_in_fours ? faces_of_mixed_fours()
-                                              : region.faces;
-  keep_if(faces, [this](uint32_t f) { return (split_mask(f) + 1) % 8 > 1; });
-  return faces;
-}
-
-/// Those of the region's fours of whose edges some are split and some are not.
-List<uint32_t> LevelChoice::faces_of_mixed_fours() const {
-  List<uint32_t> faces(region.faces.size());
-  const uint32_t* edges = level->mesh.topology.edge.data();
-  size_t kept = 0;
-  for (size_t i = 0; i < region.faces.size(); i += 4) {
-    const uint32_t first = region.faces[i];
-    const uint32_t* edge = edges + size_t{3} * first;
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < 12; ++k) count += split[edge[k]];
-    for (uint32_t k = 0; k < 4; ++k) faces[kept + k] = first + k;
-    kept += count % 12 != 0 ? 4 : 0;
-  }
-  faces.resize(kept);
-  return faces;
+List<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
+  const auto is_in_part = [](unsigned mask) { return (mask + 1) % 8 > 1; };
+  const auto find = [&](const List<uint32_t>& faces) {
+    List<PartlySplit> found(faces.size() + 1);  // what is not wanted is written, and then replaced
+    size_t known = 0;
+    for (uint32_t f : faces) {
+      found[known] = {f, split_mask(f)};
+      known += is_in_part(found[known].mask) ? 1 : 0;
+    }
+    found.resize(known);
+    return found;
+  };
+  return has_many_split() ? find(region.faces) : find(faces_at_split());
 }
 
 List<uint32_t> LevelChoice::faces_at_split() const {
@@ -106,6 +96,11 @@ List<uint32_t> LevelChoice::faces_at_split() const {
   }
   for (uint32_t h : level->shared) marks[Topology::face(h)] |= split[mesh.edge[h]];
   return marked(marks);
+}
+
+List<uint8_t> LevelChoice::with_children() const {
+  const Topology& mesh = level->mesh.topology;
+  return red.empty() ? List<uint8_t>(mesh.face_count(), 0) : with_neighbours(mesh, red);
 }
 
 LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
@@ -136,11 +131,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
 void mark_red(LevelChoice& choice, const List<uint32_t>& faces) {
   const Topology& mesh = choice.level->mesh.topology;
   choice.red.assign(mesh.face_count(), 0);
-  choice.at_a_red.assign(mesh.vertex_count, 0);
-  for (uint32_t f : faces) {
-    choice.red[f] = 1;
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) choice.at_a_red[mesh.origin[h]] = 1;
-  }
+  for (uint32_t f : faces) choice.red[f] = 1;
 }
 
 }  // namespace papilio

@@ -23,7 +23,6 @@ struct LevelChoice {
   List<uint32_t> split_edges;  ///< the same as a list
   List<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
   List<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
-  List<uint8_t> at_a_red;      ///< [V] whether a red face is there
 
   /// Bit i is set where edge i of the face is split.
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
@@ -49,7 +48,11 @@ struct LevelChoice {
   /// The faces at edges that are split, in ascending order.
   [[nodiscard]] List<uint32_t> faces_at_split() const;
   /// Those of them of which not all edges are.
-  [[nodiscard]] List<uint32_t> faces_split_in_part() const;
+  struct PartlySplit {
+    uint32_t face;
+    unsigned mask;
+  };
+  [[nodiscard]] List<PartlySplit> faces_split_in_part() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>
@@ -64,16 +67,12 @@ struct LevelChoice {
     const uint32_t* edge = &level->mesh.topology.edge[size_t{3} * face];
     return (region.has_edge[edge[0]] & region.has_edge[edge[1]] & region.has_edge[edge[2]]) != 0;
   }
-  /// Whether the next level holds the face's children for this request: a red face's, or as support.
-  [[nodiscard]] bool has_children(uint32_t face) const {
-    if (at_a_red.empty()) return false;
-    const uint32_t* corner = &level->mesh.topology.origin[size_t{3} * face];
-    return (at_a_red[corner[0]] | at_a_red[corner[1]] | at_a_red[corner[2]]) != 0;
-  }
+  /// The faces whose children the next level holds for this request: red ones, and their neighbours as support. None
+  /// where there is no next level. [F]
+  [[nodiscard]] List<uint8_t> with_children() const;
 
  private:
   [[nodiscard]] bool has_many_split() const;
-  [[nodiscard]] List<uint32_t> faces_of_mixed_fours() const;
 };
 
 /// Choice of all of level 0; of the level below `above`, of the children of the faces that `above` has marked red. Only

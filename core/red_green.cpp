@@ -191,8 +191,7 @@ class RedGreen {
     const Topology& mesh = choice.level->mesh.topology;
     const uint64_t bytes = bytes_per_face + bytes_per_face_of(choices_[0].level->mesh.attributes);
     if (progress_.has_plenty(4ULL * mesh.face_count(), bytes)) return;
-    uint64_t faces = 0;
-    for (uint32_t f = 0; f < mesh.face_count(); ++f) faces += choice.has_children(f) ? 4 : 0;
+    const uint64_t faces = 4 * static_cast<uint64_t>(std::ranges::count(choice.with_children(), 1));
     progress_.require_room(faces / 4, level);
     progress_.require_memory(faces, bytes, level);
     if (faces > face_count_limit) progress_.require_room(faces, level);

@@ -122,10 +122,7 @@ class FourJudge {
   FourJudge(const HierarchyLevel& level, double most_cosine)
       : level_(level), mesh_(level.mesh.topology), most_(static_cast<float>(most_cosine * most_cosine)) {}
 
-  struct Split {
-    uint32_t face;
-    unsigned mask;
-  };
+  using Split = LevelChoice::PartlySplit;
   /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
   [[nodiscard]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits, bool has_two) const {
     const std::array<FourNumbers, 3> side = sides(splits);
@@ -229,10 +226,9 @@ class SliverFinder {
   SliverFinder(LevelChoice& choice, double most_cosine)
       : choice_(choice), level_(*choice.level), judge_four_(level_, most_cosine), most_cosine_(most_cosine) {}
 
-  /// Of these faces, in ascending order. They must be split in part.
-  List<uint32_t> run(const List<uint32_t>& faces) {
-    for (uint32_t f : faces) {
-      const unsigned mask = choice_.split_mask(f);
+  /// In ascending order.
+  List<uint32_t> run() {
+    for (const auto& [f, mask] : choice_.faces_split_in_part()) {
       const uint32_t known = Transition::known(choice_, f, mask);
       if (known == 0)
         judge_later({f, mask});
@@ -310,10 +306,12 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
            choice.may_divide(f);
   };
   // The order decides where dividing one makes a sliver of another.
-  List<uint32_t> faces = choice.faces_split_in_part();
+  List<uint32_t> faces;
   if (level.trial.planes.empty()) {
     if (choice.transitions.empty()) choice.transitions.assign(mesh.face_count(), 0);
-    faces = SliverFinder(choice, most_cosine).run(faces);
+    faces = SliverFinder(choice, most_cosine).run();
+  } else {
+    for (const auto& split : choice.faces_split_in_part()) faces.push_back(split.face);
   }
   std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {

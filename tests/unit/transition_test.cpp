@@ -44,18 +44,16 @@ void compare(const Mesh& mesh, const Array<Vec3f>& made, double most_cosine, std
     if (random() % 2 == 0) edges.push_back(e);
   const auto for_once = level_of(mesh, made, false);
   LevelChoice choice = choice_of(for_once, edges);
-  const List<uint32_t> faces = choice.faces_split_in_part();
-  List<unsigned> masks;
-  for (uint32_t f : faces) masks.push_back(choice.split_mask(f));
+  const auto faces = choice.faces_split_in_part();
   avoid_slivers(choice, most_cosine);
 
   const auto kept = level_of(mesh, made, true);
   LevelChoice expected = choice_of(kept, edges);
   avoid_slivers(expected, most_cosine);
   ASSERT_EQ(choice.split_edges, expected.split_edges);
-  for (size_t i = 0; i < faces.size(); ++i) {
-    const uint8_t one_by_one = choose_transition(expected, faces[i], masks[i], most_cosine);
-    ASSERT_EQ(choose_transition(choice, faces[i], masks[i], most_cosine), one_by_one);
+  for (const auto& [face, mask] : faces) {
+    const uint8_t one_by_one = choose_transition(expected, face, mask, most_cosine);
+    ASSERT_EQ(choose_transition(choice, face, mask, most_cosine), one_by_one);
     count.second_diagonals += one_by_one % 2;
   }
   count.faces += faces.size();
