@@ -66,10 +66,10 @@ bool LevelChoice::has_many_split() const {
   return split_edges.size() * few > region.faces.size();
 }
 
-List<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
+Array<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
   const auto is_in_part = [](unsigned mask) { return (mask + 1) % 8 > 1; };
   const auto find = [&](const List<uint32_t>& faces) {
-    List<PartlySplit> found(faces.size() + 1);  // what is not wanted is written, and then replaced
+    Array<PartlySplit> found(faces.size() + 1);  // what is not wanted is written, and then replaced
     size_t known = 0;
     for (uint32_t f : faces) {
       found[known] = {f, split_mask(f)};

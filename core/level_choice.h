@@ -52,7 +52,7 @@ struct LevelChoice {
     uint32_t face;
     unsigned mask;
   };
-  [[nodiscard]] List<PartlySplit> faces_split_in_part() const;
+  [[nodiscard]] Array<PartlySplit> faces_split_in_part() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>
