@@ -139,7 +139,8 @@ class LevelMaker {
   [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
     const uint32_t face = faces_[h == none ? 0 : Topology::face(h)];  // no branch: what is held nobody can guess
     const bool is_held = (h != none) & (face != none);
-    return is_held ? 3 * face + h % 3 : none;
+    static_assert(none == ~0U);
+    return (3 * face + h % 3) | (is_held ? 0U : none);
   }
   [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
 

@@ -1,6 +1,7 @@
 #include "levels.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "attributes.h"
 #include "grow_level.h"
@@ -168,8 +169,9 @@ void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const 
   List<uint32_t> below_red;  // fours of faces
   bool are_few = false;
   if (!level.is_whole) {
-    for (uint32_t i = 0; i < level.parent.size(); ++i)
-      if (level.red[level.parent[i]] != 0) below_red.push_back(i);
+    below_red.resize(level.parent.size());
+    std::iota(below_red.begin(), below_red.end(), 0U);
+    keep_if(below_red, [&](uint32_t i) { return level.red[level.parent[i]] != 0; });
     context.normals_of = &below_red;
   }
   if (is_next_last() && !level.is_whole) {

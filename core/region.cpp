@@ -47,8 +47,10 @@ List<uint32_t> marked(const List<uint8_t>& marks) {
       known += marks[i] != 0 ? 1 : 0;
     }
   };
+  // One in so many: then most words have none. Else nobody can guess which have.
+  constexpr size_t few = 16;
   size_t first = 0;
-  for (; first + block <= marks.size() && known < count; first += block) {
+  for (; few * count < marks.size() && first + block <= marks.size() && known < count; first += block) {
     std::array<Word, words_a_block> words;
     std::memcpy(words.data(), &marks[first], block);
     if (std::accumulate(words.begin(), words.end(), Word{0}, std::bit_or<>()) == 0) continue;
