@@ -47,11 +47,11 @@ struct LevelChoice {
   [[nodiscard]] uint64_t count_faces_of_split() const;
   /// The faces at edges that are split, in ascending order.
   [[nodiscard]] List<uint32_t> faces_at_split() const;
-  /// Those of them of which not all edges are.
   struct PartlySplit {
     uint32_t face;
-    unsigned mask;
+    unsigned mask;  ///< of its edges, as above
   };
+  /// Those of them of which not all edges are.
   [[nodiscard]] Array<PartlySplit> faces_split_in_part() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.

@@ -42,7 +42,7 @@ class Levels {
   [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
   void make(const List<uint8_t>& red);
   /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
-  /// done, where that cannot be, or little is red.
+  /// done, where that cannot be.
   bool make_last(const List<uint8_t>& red);
   /// Whether no level will lie below the one below the deepest.
   [[nodiscard]] bool is_next_last() const;

@@ -175,8 +175,8 @@ class FourJudge {
     const uint32_t first = SplitFace::first_target[split.mask];
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * split.face + (first + i) % 3;
-      __builtin_prefetch(&level_.mesh.positions[mesh_.origin[h]]);
-      if (i < 2) __builtin_prefetch(&level_.trial.made[level_.trial.number(mesh_.edge[h])]);
+      __builtin_prefetch(level_.mesh.positions.data() + mesh_.origin[h]);
+      if (i < 2) __builtin_prefetch(level_.trial.made.data() + level_.trial.number(mesh_.edge[h]));
     }
   }
 
