@@ -29,7 +29,8 @@ struct HierarchyLevel {
   Features features;       ///< of the vertices that are complete
   List<uint8_t> complete;  ///< [V] whether all the level's faces at the vertex are held
   List<uint32_t> parent;   ///< [F / 4] the face above of children 4i to 4i + 3, `none` of others; empty where it is i
-  List<uint32_t> child;    ///< [F of the level above] first of the face's four children here; `none`; empty as above
+  List<uint32_t> child;    ///< [F of the level above] first of the face's four children here; empty as above. Of others
+                           ///< `none`, or in a last level the four that stand for them
   List<uint8_t> red;       ///< [F of the level above] whose children are held with the rings round them
   List<uint32_t> shared;   ///< the half-edges at shared edges
   Trial trial;             ///< what splitting its edges would give, where tried

@@ -173,10 +173,10 @@ void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const 
     std::iota(below_red.begin(), below_red.end(), 0U);
     keep_if(below_red, [&](uint32_t i) { return level.red[level.parent[i]] != 0; });
     context.normals_of = &below_red;
-  }
-  if (is_next_last() && !level.is_whole) {
-    are_few = one_as_dear_as * below_red.size() < level.parent.size();
-    context.asked_of = &below_red;
+    if (is_next_last()) {
+      are_few = one_as_dear_as * below_red.size() < level.parent.size();
+      context.asked_of = &below_red;
+    }
   }
   if (are_few || options_.w != 0)
     level.trial = try_split(level.mesh, options_,

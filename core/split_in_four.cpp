@@ -10,21 +10,6 @@
 namespace papilio {
 namespace {
 
-/// The two child half-edges along a half-edge.
-struct Halves {
-  uint32_t first, second;
-};
-/// `none` where that is not there.
-Halves halves_of(uint32_t h) { return h == none ? Halves{none, none} : Halves{first_half(h), second_half(h)}; }
-Halves halves_of(uint32_t h, const OwnNumbers& /*numbers*/) { return halves_of(h); }
-/// Of one that is there.
-Halves halves_of(uint32_t h, const PartNumbers& numbers) {
-  constexpr std::array<uint8_t, 3> first{0, 4, 8}, second{3, 7, 2};  // first_half() and second_half(), of face 0
-  const uint32_t f = Topology::face(h);
-  const uint32_t base = 12 * numbers.face(f);
-  return {base + first[h - 3 * f], base + second[h - 3 * f]};
-}
-
 /// The rule: one face and its four children.
 class FourRule {
  public:
@@ -34,15 +19,10 @@ class FourRule {
   /// Corners and twins of the children of face f.
   void split(uint32_t f, const uint32_t* corner, const uint32_t* twin, const uint32_t* edge, uint32_t* child_origin,
              uint32_t* child_twin) const {
-    split(f, corner, {halves_of(twin[0]), halves_of(twin[1]), halves_of(twin[2])}, edge, child_origin, child_twin);
-  }
-  /// The same, from the halves of the twins.
-  void split(uint32_t f, const uint32_t* corner, const std::array<Halves, 3>& twin, const uint32_t* edge,
-             uint32_t* child_origin, uint32_t* child_twin) const {
     put_corners_of_four({corner[0], corner[1], corner[2]},
                         {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]}, child_origin);
-    put_twins_of_four(12 * f, {twin[0].second, twin[1].second, twin[2].second},
-                      {twin[0].first, twin[1].first, twin[2].first}, child_twin);
+    put_twins_of_four(12 * f, {against_first(twin[0]), against_first(twin[1]), against_first(twin[2])},
+                      {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
   /// Edges of the children of face f.
@@ -58,6 +38,10 @@ class FourRule {
   [[nodiscard]] uint32_t inner_edge(uint32_t f) const { return inner_edges_ + 3 * f; }
 
  private:
+  /// The child half-edges that run against the halves of a half-edge with this twin.
+  static uint32_t against_first(uint32_t twin) { return twin == none ? none : second_half(twin); }
+  static uint32_t against_second(uint32_t twin) { return twin == none ? none : first_half(twin); }
+
   uint32_t vertices_;
   uint32_t inner_edges_;
 };
@@ -112,16 +96,14 @@ class FourSplitter {
     return both[numbers_.has(Topology::face(h)) ? 1 : 0];
   }
 
-  [[nodiscard]] Halves halves_in(uint32_t h) const { return halves_of(h, numbers_); }
-
   void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
     const uint32_t base = 12 * number;
     const uint32_t* corner = &mesh_.origin[h];
     const uint32_t* edge = &mesh_.edge[h];
-    const uint32_t* twin = &mesh_.twin[h];
-    rule_.split(number, corner, {halves_in(twin[0]), halves_in(twin[1]), halves_in(twin[2])}, edge,
-                &child_.origin[base], &child_.twin[base]);
+    const OfSides twin{numbers_.half_edge(mesh_.twin[h]), numbers_.half_edge(mesh_.twin[h + 1]),
+                       numbers_.half_edge(mesh_.twin[h + 2])};
+    rule_.split(number, corner, twin.data(), edge, &child_.origin[base], &child_.twin[base]);
     if (!numbers_edges) return;
     const OfSides numbered{numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])};
     rule_.number_edges(number, corner, numbered.data(), &child_.edge[base]);

@@ -161,7 +161,7 @@ void uniform_butterfly_below(const Topology& parents, const Part& part, const Fe
   const PartNumbers numbers(part);
   add_all_shares(parents, Subset(part.faces.numbers()), made, threads,
                  [&parents, family_rule, numbers](uint32_t f, auto& shares) {
-                   if (has_all_twins(parents, f)) family_rule.add_shares(f, Family(parents, f, numbers), shares);
+                   family_rule.add_shares(f, Family(parents, f, numbers), shares);
                  });
   const auto is_in_part = [&](const Features::Spoke& spoke) { return part.edges.has(spoke.edge); };
   for (size_t i = 0; i < features_of_parents.fan_count(); ++i) {
