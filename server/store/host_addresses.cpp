@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <variant>
 
 namespace papilio::server {
 
@@ -31,13 +32,22 @@ std::vector<std::string> host_addresses(const std::string& host, std::chrono::mi
   std::array<unsigned char, sizeof(in6_addr)> binary{};
   if (inet_pton(AF_INET, host.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, host.c_str(), binary.data()) == 1)
     return {host};
-  std::packaged_task<std::vector<std::string>()> task(
-      [host, resolver = std::move(resolver)] { return resolver(host); });
-  std::future<std::vector<std::string>> answer = task.get_future();
+  // The reason crosses as text: an exception that two threads hold is freed by whichever lets it go last.
+  using Answer = std::variant<std::vector<std::string>, std::string>;
+  std::packaged_task<Answer()> task([host, resolver = std::move(resolver)]() -> Answer {
+    try {
+      return resolver(host);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  });
+  std::future<Answer> answer = task.get_future();
   std::thread(std::move(task)).detach();
   if (answer.wait_for(limit) != std::future_status::ready)
     throw std::runtime_error("the name " + host + " is not looked up in " + std::to_string(limit.count()) + " ms");
-  return answer.get();
+  Answer found = answer.get();
+  if (const std::string* reason = std::get_if<std::string>(&found)) throw std::runtime_error(*reason);
+  return std::get<std::vector<std::string>>(std::move(found));
 }
 
 }  // namespace papilio::server
