@@ -35,9 +35,12 @@ struct AssembledLevel {
   [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].choice->level->first_child_of(f); }
 };
 
-/// Most are already: what was wanted, and behind it what that needs.
-List<uint32_t> in_order(List<uint32_t> numbers) {
+/// The edges that are split. In order are already those that were wanted; behind them lie those that these need.
+List<uint32_t> split_in_order(const LevelChoice& choice) {
+  constexpr ptrdiff_t few = 64;  // one of so many edges: more cost less to find than to sort
+  List<uint32_t> numbers = choice.split_edges;
   const auto behind = std::ranges::is_sorted_until(numbers);
+  if (few * (numbers.end() - behind) > static_cast<ptrdiff_t>(choice.split.size())) return marked(choice.split);
   std::sort(behind, numbers.end());
   std::inplace_merge(numbers.begin(), behind, numbers.end());
   return numbers;
@@ -117,7 +120,7 @@ class Assembler {
       level.edge = mesh.edge.data();
       level.is_split = choice.split.data();
       level.new_vertex.resize(mesh.edge_count());
-      for (uint32_t e : in_order(choice.split_edges)) {
+      for (uint32_t e : split_in_order(choice)) {
         out_.positions[vertex] = choice.level->trial.at(e);
         level.new_vertex[e] = vertex++;
       }
@@ -190,31 +193,57 @@ class Assembler {
     end_face(level, f, split_pattern(7, false));
   }
 
-  /// With one or two sides split. Whether it becomes two faces or three nobody can guess: so three are written, and
-  /// what was too much is written over by the next.
+  /// A face with one or two sides split, seen from the first of these: from `corner` a to b, its `middle` on it.
+  struct SplitFace {
+    SplitFace(const AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
+      const uint8_t* turned = &turns[first_split[mask]];
+      a = corners[turned[0]];
+      b = corners[turned[1]];
+      c = corners[turned[2]];
+      side_bc = sides[turned[1]];
+      side_ca = sides[turned[2]];
+      on_ab = level.new_vertex[level.edge[3 * f + turned[0]]];
+      edge_bc = level.edge[3 * f + turned[1]];
+    }
+    static constexpr std::array<uint8_t, 5> turns{0, 1, 2, 0, 1};
+    static constexpr std::array<uint8_t, 8> first_split{0, 0, 1, 0, 2, 2, 1, 0};
+
+    uint32_t a, b, c, side_bc, side_ca, on_ab, edge_bc;
+  };
+
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
-    const SplitPattern& cut = transition_pattern(choose_transition(*level.choice, f, mask, most_cosine_));
+    const uint8_t pattern = choose_transition(*level.choice, f, mask, most_cosine_);
+    const SplitFace face(level, f, mask, corner, side);
+    if (has_two_targets(mask))
+      cut_in_three(level, face, pattern % 2 != 0);
+    else
+      cut_in_two(face);
+    end_face(level, f, split_patterns[pattern]);
+  }
+
+  void cut_in_two(const SplitFace& face) {
+    const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
     const uint32_t made = half_edge_count_;
-    const OfSides middle = middles(level, f);
-    const Halves half = halves(corner, middle);
-    // Middles are there or not: the pattern knows.
-    const std::array<uint32_t, 6> vertex{corner[0], corner[1], corner[2], middle[0], middle[1], middle[2]};
-    std::array<uint32_t, 7> against;  // [2 * side + half] what runs against it; and the first half-edge
-    for (uint32_t i = 0; i < 3; ++i) {
-      // Without branches: which sides are split nobody can guess, either.
-      const uint32_t split = 0U - (mask >> i & 1U);  // all bits
-      const auto choose = [split](uint32_t if_split, uint32_t if_whole) {
-        return (if_split & split) | (if_whole & ~split);
-      };
-      against[2 * i] = meet(choose(half.first[i], side[i]), made + cut.outer[2 * i]);
-      against[2 * i + 1] = meet(choose(half.second[i], slot_of_none_), choose(made + cut.outer[2 * i + 1], nobody_));
-    }
-    against[6] = made;
-    for (uint32_t c = 0; c < 9; ++c) {
-      origin_[made + c] = vertex[cut.corner[c / 3][c % 3]];
-      twin_[made + c] = against[cut.twin_from[c]] + cut.twin_step[c];
-    }
-    end_face(level, f, cut);
+    const uint32_t first = first_half(on_ab, a, b);
+    put(origin_ + made, a, on_ab, c, on_ab, b, c);
+    put(twin_ + made, meet(first, made), made + 5, meet(side_ca, made + 2),  //
+        meet(first ^ 1, made + 3), meet(side_bc, made + 4), made + 1);
+  }
+
+  /// Which of the two diagonals it is nobody can guess: so without branches.
+  void cut_in_three(const AssembledLevel& level, const SplitFace& face, bool second_diagonal) {
+    const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
+    const uint32_t made = half_edge_count_;
+    const uint32_t on_bc = level.new_vertex[edge_bc];
+    const uint32_t first_of_ab = first_half(on_ab, a, b);
+    const uint32_t first_of_bc = first_half(on_bc, b, c);
+    const uint32_t all = second_diagonal ? ~0U : 0U;
+    const auto choose = [all](uint32_t first, uint32_t second) { return (second & all) | (first & ~all); };
+    put(origin_ + made, on_ab, b, on_bc, a, on_ab, choose(on_bc, c), choose(a, on_ab), on_bc, c);
+    const uint32_t against_ca = meet(side_ca, made + choose(8, 5));
+    put(twin_ + made, meet(first_of_ab ^ 1, made), meet(first_of_bc, made + 1), made + choose(4, 6),  //
+        meet(first_of_ab, made + 3), made + choose(2, 8), choose(made + 6, against_ca),               //
+        made + choose(5, 2), meet(first_of_bc ^ 1, made + 7), choose(against_ca, made + 4));
   }
 
   /// The vertices in the middles of a face's sides; of those that are split.
@@ -227,11 +256,14 @@ class Assembler {
   struct Halves {
     OfSides first, second;
   };
-  /// The half at the lower vertex comes first: so both faces at a side agree.
+  /// The one at `from` of a side with this middle; the other is beside it. The half at the lower vertex comes first: so
+  /// both faces at a side agree.
+  [[nodiscard]] static uint32_t first_half(uint32_t middle, uint32_t from, uint32_t to) {
+    return 2 * middle + (from > to ? 1 : 0);
+  }
   [[nodiscard]] static Halves halves(const uint32_t* corner, const OfSides& middle) {
-    const OfSides first{2 * middle[0] + (corner[0] > corner[1] ? 1 : 0),
-                        2 * middle[1] + (corner[1] > corner[2] ? 1 : 0),
-                        2 * middle[2] + (corner[2] > corner[0] ? 1 : 0)};
+    const OfSides first{first_half(middle[0], corner[0], corner[1]), first_half(middle[1], corner[1], corner[2]),
+                        first_half(middle[2], corner[2], corner[0])};
     return {first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}};
   }
 
