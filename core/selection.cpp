@@ -191,7 +191,7 @@ List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level
   if (needed > 0) {
     if (trial.has_ranges()) trial.find_ranges(mesh, edges);
     keep_if(edges, [&](uint32_t e) { return trial.no_less_than_deviation_at(e) >= needed; });
-    keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
+    if (!trial.has_ranges()) keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
     // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
     if (!trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
   }
