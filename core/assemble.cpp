@@ -65,18 +65,17 @@ class Assembler {
     topology.pinched = coarse.pinched;
     topology.darts = coarse.darts;
     const uint32_t half_edges = 3 * static_cast<uint32_t>(count_assembled(levels));
-    topology.origin.resize(size_t{half_edges} + most_corners);
-    topology.twin.resize(size_t{half_edges} + most_corners + 1);
-    nobody_ = half_edges + most_corners;
+    topology.origin.resize(half_edges);
+    topology.twin.resize(size_t{half_edges} + 1);
+    nobody_ = half_edges;
     origin_ = topology.origin.data();
     twin_ = topology.twin.data();
     add_vertices(levels);
-    // Two for each vertex, as if each were of an edge that is split; behind these those of the coarse edges, three for
-    // each face that is divided, and one of none.
+    // Two for each vertex, as if each were of an edge that is split; behind these those of the coarse edges, and three
+    // for each face that is divided.
     first_coarse_ = 2 * vertices;
     next_inner_ = first_coarse_ + coarse.edge_count();
-    slots_.assign(next_inner_ + 3 * divided + 1, nobody_);
-    slot_of_none_ = static_cast<uint32_t>(slots_.size() - 1);
+    slots_.assign(next_inner_ + 3 * divided, nobody_);
   }
 
   Mesh run(bool with_edges) {
@@ -96,9 +95,6 @@ class Assembler {
   }
 
  private:
-  /// Corners of the four faces that one is cut into: most.
-  static constexpr uint32_t most_corners = 12;
-
   /// A half-edge of the result that lies on a curve.
   struct OnCurve {
     uint32_t half_edge;
@@ -193,35 +189,36 @@ class Assembler {
     end_face(level, f, split_pattern(7, false));
   }
 
-  /// A face with one or two sides split, seen from the first of these: from `corner` a to b, its `middle` on it.
-  struct SplitFace {
-    SplitFace(const AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
-      const uint8_t* turned = &turns[first_split[mask]];
-      a = corners[turned[0]];
-      b = corners[turned[1]];
-      c = corners[turned[2]];
-      side_bc = sides[turned[1]];
-      side_ca = sides[turned[2]];
-      on_ab = level.new_vertex[level.edge[3 * f + turned[0]]];
-      edge_bc = level.edge[3 * f + turned[1]];
+  /// A face with one or two sides split, seen from the first of these, which runs from corner a to b.
+  struct CutFace {
+    CutFace(const AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
+      const uint8_t* number = &turned[first_target[mask]];
+      a = corners[number[0]];
+      b = corners[number[1]];
+      c = corners[number[2]];
+      side_bc = sides[number[1]];
+      side_ca = sides[number[2]];
+      on_ab = level.new_vertex[level.edge[3 * f + number[0]]];
+      edge_bc = level.edge[3 * f + number[1]];
     }
-    static constexpr std::array<uint8_t, 5> turns{0, 1, 2, 0, 1};
-    static constexpr std::array<uint8_t, 8> first_split{0, 0, 1, 0, 2, 2, 1, 0};
-
-    uint32_t a, b, c, side_bc, side_ca, on_ab, edge_bc;
+    uint32_t a, b, c;
+    uint32_t side_bc, side_ca;  ///< slots
+    uint32_t on_ab;             ///< the vertex there
+    uint32_t edge_bc;           ///< of the level
   };
 
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
     const uint8_t pattern = choose_transition(*level.choice, f, mask, most_cosine_);
-    const SplitFace face(level, f, mask, corner, side);
+    const CutFace face(level, f, mask, corner, side);
     if (has_two_targets(mask))
       cut_in_three(level, face, pattern % 2 != 0);
     else
       cut_in_two(face);
-    end_face(level, f, split_patterns[pattern]);
+    end_face(level, f, transition_pattern(pattern));
   }
 
-  void cut_in_two(const SplitFace& face) {
+  /// The pieces, here and below, are those of split_pattern.cpp, in their order.
+  void cut_in_two(const CutFace& face) {
     const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
     const uint32_t made = half_edge_count_;
     const uint32_t first = first_half(on_ab, a, b);
@@ -231,7 +228,7 @@ class Assembler {
   }
 
   /// Which of the two diagonals it is nobody can guess: so without branches.
-  void cut_in_three(const AssembledLevel& level, const SplitFace& face, bool second_diagonal) {
+  void cut_in_three(const AssembledLevel& level, const CutFace& face, bool second_diagonal) {
     const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
     const uint32_t made = half_edge_count_;
     const uint32_t on_bc = level.new_vertex[edge_bc];
@@ -338,7 +335,7 @@ class Assembler {
   uint32_t half_edge_count_ = 0;  ///< so far
   uint32_t *origin_, *twin_;      ///< of the result
   List<uint32_t> slots_;          ///< half-edges of the result, or `nobody_`
-  uint32_t first_coarse_, next_inner_, slot_of_none_;
+  uint32_t first_coarse_, next_inner_;
   uint32_t nobody_;  ///< a half-edge behind the result's
   List<OnCurve> on_curves_;
   Mesh out_;

@@ -42,9 +42,6 @@ constexpr void connect(SplitPattern& pattern) {
       pattern.edge[h] = half;
       pattern.outer[half] = static_cast<uint8_t>(h);
     }
-    const bool is_inside = pattern.inner_twin[h] != SplitPattern::outside;
-    pattern.twin_from[h] = is_inside ? 6 : pattern.edge[h];
-    pattern.twin_step[h] = is_inside ? pattern.inner_twin[h] : 0;
   }
 }
 
@@ -55,13 +52,13 @@ constexpr SplitPattern make(unsigned mask, bool second_diagonal) {
       add(pattern, 0, {0, 1, 2});
       break;
     case 1: {
-      const auto i = static_cast<unsigned>(std::countr_zero(mask));
+      const unsigned i = first_target[mask];
       add(pattern, i, {0, 3, 2});
       add(pattern, i, {3, 1, 2});
       break;
     }
     case 2: {
-      const unsigned i = first_of_two_targets(mask);
+      const unsigned i = first_target[mask];
       add(pattern, i, {3, 1, 4});
       if (second_diagonal) {
         add(pattern, i, {0, 3, 2});

@@ -20,11 +20,6 @@ struct SplitPattern {
   /// [2i + half] the child half-edge that is the first half (or the whole) or the second half of edge i.
   std::array<uint8_t, 6> outer{};
 
-  /// [child half-edge] where its twin is found, to be looked up without a branch: what runs against it is
-  /// against[twin_from] + twin_step, against[2i + half] being what runs against the halves of edge i, and against[6]
-  /// the first child half-edge.
-  std::array<uint8_t, 12> twin_from{}, twin_step{};
-
   static constexpr uint8_t outside = 255;
   [[nodiscard]] bool is_outside(uint32_t half_edge) const { return inner_twin[half_edge] == outside; }
 };
@@ -43,8 +38,10 @@ const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
 }
 
 [[nodiscard]] constexpr bool has_two_targets(unsigned mask) { return (0b01101000U >> mask & 1U) != 0; }
-/// For a mask with two targets: edge i as above.
-[[nodiscard]] constexpr uint32_t first_of_two_targets(unsigned mask) { return mask == 3 ? 0 : mask == 6 ? 1 : 2; }
+/// [mask] the edge that is the only target; of two, edge i as above.
+inline constexpr std::array<uint8_t, 8> first_target{0, 0, 1, 0, 2, 2, 1, 0};
+/// Corners and edges in their order from any of them on: from turned[i].
+inline constexpr std::array<uint8_t, 5> turned{0, 1, 2, 0, 1};
 
 /// A corner of a face: its number, which breaks ties, and where it is.
 struct CornerPoint {
@@ -57,7 +54,7 @@ struct CornerPoint {
 template <class Corner, class Middle>
 [[nodiscard]] bool prefers_second_diagonal(unsigned mask, const Corner& corner, const Middle& middle) {
   if (!has_two_targets(mask)) return false;
-  const uint32_t i = first_of_two_targets(mask);
+  const uint32_t i = first_target[mask];
   const uint32_t j = (i + 1) % 3;
   const CornerPoint first_end = corner(i);
   const CornerPoint second_end = corner((j + 1) % 3);

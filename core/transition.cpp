@@ -44,8 +44,6 @@ struct SplitFace {
     if (has_two) on_bc = middle(1);
   }
 
-  static constexpr std::array<uint8_t, 8> first_target{0, 0, 1, 0, 2, 2, 1, 0};
-
   bool has_two;
   uint32_t first;
   Vec3d a, b, c, on_ab, on_bc;
@@ -172,7 +170,7 @@ class FourJudge {
 
   /// Has the cache load what find() will read of a face.
   void prefetch(const Split& split) const {
-    const uint32_t first = SplitFace::first_target[split.mask];
+    const uint32_t first = first_target[split.mask];
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * split.face + (first + i) % 3;
       __builtin_prefetch(level_.mesh.positions.data() + mesh_.origin[h]);
@@ -196,10 +194,9 @@ class FourJudge {
 
   /// The half-edges of the faces, [i] of each the i-th from the first that is split.
   [[nodiscard]] static std::array<FourNumbers, 3> sides(const std::array<Split, 4>& splits) {
-    constexpr std::array<uint8_t, 5> turned{0, 1, 2, 0, 1};
     std::array<FourNumbers, 3> side;
     for (size_t k = 0; k < 4; ++k) {
-      const uint8_t* first = &turned[SplitFace::first_target[splits[k].mask]];
+      const uint8_t* first = &turned[first_target[splits[k].mask]];
       for (size_t i = 0; i < 3; ++i) side[i][k] = 3 * splits[k].face + first[i];
     }
     return side;
