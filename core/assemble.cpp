@@ -207,6 +207,7 @@ class Assembler {
     uint32_t edge_bc;           ///< of the level
   };
 
+  /// With one or two sides split.
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
     const uint8_t pattern = choose_transition(*level.choice, f, mask, most_cosine_);
     const CutFace face(level, f, mask, corner, side);
