@@ -1,5 +1,8 @@
 #include "proto/url.h"
 
+#include <charconv>
+#include <cstdint>
+
 #include "proto/text.h"
 
 namespace papilio::proto {
@@ -19,6 +22,24 @@ std::string encode_url(std::string_view text) {
     }
   }
   return out;
+}
+
+std::optional<std::string> decode_url(std::string_view text, bool plus_is_space) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      decoded += plus_is_space && text[i] == '+' ? ' ' : text[i];
+      continue;
+    }
+    const std::string_view digits = text.substr(i + 1, 2);
+    uint8_t byte = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (error != std::errc() || end != digits.data() + 2) return std::nullopt;
+    decoded += static_cast<char>(byte);
+    i += 2;
+  }
+  return decoded;
 }
 
 std::string join_query(const std::vector<std::pair<std::string, std::string>>& fields) {

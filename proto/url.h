@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,8 @@ namespace papilio::proto {
 
 /// Percent-encodes all but the unreserved characters of RFC 3986 and the comma, which lists use.
 [[nodiscard]] std::string encode_url(std::string_view text);
+/// Undoes that; nothing where a % is without its two hexadecimal digits. `plus_is_space`: as in a query.
+[[nodiscard]] std::optional<std::string> decode_url(std::string_view text, bool plus_is_space = false);
 
 /// "a=1&b=2", names and values percent-encoded.
 [[nodiscard]] std::string join_query(const std::vector<std::pair<std::string, std::string>>& fields);

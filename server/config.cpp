@@ -105,8 +105,8 @@ void add_limits(Settings& settings, Config& config) {
 
 void add_store_settings(Settings& settings, EngineOptions& engine) {
   settings.add("store", engine.store.address,
-               "Where meshes are stored: memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] or "
-               "redis+unix:PATH");
+               "Where meshes are stored: memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] (USER "
+               "and PASSWORD percent-encoded) or redis+unix:PATH");
   settings.add("store-bytes", engine.store.bytes, uint64_t{1024}, most_kept,
                "Size of the store; in memory the meshes used longest ago give way, elsewhere more are refused: 507");
   settings.add("store-seconds", engine.store.seconds, 0, 1 << 30,

@@ -77,8 +77,9 @@ struct Metrics::Families {
   Gauge& slots = gauges(registry, "papilio_slots", "Requests that may compute at once").Add({});
   Gauge& computing = gauges(registry, "papilio_slots_busy", "Requests that compute now").Add({});
   Gauge& waiting = gauges(registry, "papilio_queue_length", "Requests that wait for a slot").Add({});
-  Gauge& meshes = gauges(registry, "papilio_store_meshes", "Meshes in the store, where it knows").Add({});
-  Gauge& mesh_bytes = gauges(registry, "papilio_store_bytes", "Bytes of the meshes in the store").Add({});
+  // Of a store that does not know (Redis) there is no figure, rather than a 0.
+  Family<Gauge>& meshes = gauges(registry, "papilio_store_meshes", "Meshes in the store, where it knows");
+  Family<Gauge>& mesh_bytes = gauges(registry, "papilio_store_bytes", "Bytes of the meshes in the store");
   Gauge& memory = gauges(registry, "process_resident_memory_bytes", "Memory of this process").Add({});
 };
 
@@ -134,8 +135,8 @@ std::string Metrics::text(const Gauges& now) {
   f.waiting.Set(now.waiting);
   f.caches.Add({{"cache", "results"}}).Set(static_cast<double>(now.result_cache_bytes));
   f.caches.Add({{"cache", "meshes"}}).Set(static_cast<double>(now.mesh_cache_bytes));
-  f.meshes.Set(static_cast<double>(now.store_meshes.value_or(0)));
-  f.mesh_bytes.Set(static_cast<double>(now.store_bytes.value_or(0)));
+  if (now.store_meshes) f.meshes.Add({}).Set(static_cast<double>(*now.store_meshes));
+  if (now.store_bytes) f.mesh_bytes.Add({}).Set(static_cast<double>(*now.store_bytes));
   f.memory.Set(resident_bytes());
   return prometheus::TextSerializer().Serialize(f.registry.Collect());
 }

@@ -1,7 +1,8 @@
 #include "server/http/head.h"
 
 #include <algorithm>
-#include <optional>
+
+#include "proto/url.h"
 
 namespace papilio::server {
 namespace {
@@ -13,28 +14,9 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-std::optional<int> hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  const char small = lower(c);
-  if (small >= 'a' && small <= 'f') return small - 'a' + 10;
-  return std::nullopt;
-}
-
 std::string percent_decoded(std::string_view text, bool plus_is_space) {
-  std::string decoded;
-  decoded.reserve(text.size());
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%') {
-      const auto high = i + 1 < text.size() ? hex_digit(text[i + 1]) : std::nullopt;
-      const auto low = i + 2 < text.size() ? hex_digit(text[i + 2]) : std::nullopt;
-      if (!high || !low) throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
-      decoded += static_cast<char>(*high * 16 + *low);
-      i += 2;
-    } else {
-      decoded += plus_is_space && text[i] == '+' ? ' ' : text[i];
-    }
-  }
-  return decoded;
+  if (auto decoded = proto::decode_url(text, plus_is_space)) return *std::move(decoded);
+  throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
 }
 
 Fields parse_query(std::string_view text) {

@@ -16,8 +16,8 @@ std::unique_ptr<MeshStore> open_store(const StoreOptions& options) {
     return std::make_unique<RedisStore>(*redis, options.bytes, options.seconds);
   // The address is not repeated: it may hold a password.
   throw std::runtime_error(
-      "--store (PAPILIO_STORE) takes memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] or "
-      "redis+unix:PATH");
+      "--store (PAPILIO_STORE) takes memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] (USER and "
+      "PASSWORD percent-encoded) or redis+unix:PATH");
 }
 
 }  // namespace papilio::server

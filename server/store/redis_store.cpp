@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "proto/problem.h"
+#include "proto/url.h"
 #include "server/log.h"
 #include "server/sha256.h"
 #include "server/store/host_addresses.h"
@@ -63,8 +64,11 @@ std::optional<RedisAddress> parse_redis_address(std::string_view text) {
     const std::string_view secret = text.substr(0, at);
     const size_t colon = secret.find(':');
     if (colon == std::string_view::npos) return std::nullopt;
-    address.user = secret.substr(0, colon);
-    address.password = secret.substr(colon + 1);
+    auto user = proto::decode_url(secret.substr(0, colon));
+    auto password = proto::decode_url(secret.substr(colon + 1));
+    if (!user || !password) return std::nullopt;
+    address.user = *std::move(user);
+    address.password = *std::move(password);
     text.remove_prefix(at + 1);
   }
   if (const size_t slash = text.find('/'); slash != std::string_view::npos) {

@@ -22,7 +22,8 @@ struct RedisAddress {
   int database = 0;
 };
 
-/// Reads "redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE]" or "redis+unix:PATH"; nothing when it is neither.
+/// Reads "redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE]", USER and PASSWORD percent-encoded, or "redis+unix:PATH";
+/// nothing when it is neither.
 [[nodiscard]] std::optional<RedisAddress> parse_redis_address(std::string_view text);
 
 /// Keeps meshes in Redis, under "papilio:mesh:ID"; several servers share them. Every question has a bound of two

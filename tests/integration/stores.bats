@@ -1,6 +1,7 @@
 #!/usr/bin/env bats
 # Where meshes are stored, and what becomes of them: memory, a directory, a real Redis; results made once.
 
+bats_require_minimum_version 1.5.0
 load helpers
 
 teardown() {
@@ -126,9 +127,9 @@ stop_redis() {
 }
 
 @test "Redis: shared by servers, with a life that use prolongs" {
-  redis_password=of-the-test
+  redis_password='of/the@test'
   start_redis --requirepass "$redis_password"
-  store=redis://:$redis_password@127.0.0.1:$redis_port/3
+  store=redis://:of%2Fthe%40test@127.0.0.1:$redis_port/3
   start_server --store "$store" --store-seconds 1000
   first=$url
   first_pid=$server_pid
@@ -137,6 +138,9 @@ stop_redis() {
   key=papilio:mesh:$(coarse_id)
   ask_redis() { redis-cli --no-auth-warning -a "$redis_password" -p "$redis_port" -n 3 "$@"; }
   (($(ask_redis ttl "$key") > 990))
+  request "$url/metrics"
+  [ "$status" = 200 ]
+  run ! grep '^papilio_store' "$body" # what it holds is not known here: no figure rather than a wrong one
   ask_redis expire "$key" 5
   start_server --store "$store" --store-seconds 1000
   request "$url/v1/meshes/$(coarse_id)"

@@ -187,11 +187,15 @@ TEST(RedisAddress, IsRead) {
   EXPECT_EQ(full->host, "cache.example");
   EXPECT_EQ(full->port, 6380);
   EXPECT_EQ(full->database, 3);
+  const auto encoded = parse_redis_address("redis://a%3Ab:p%40s%2Fs+%25@cache");
+  EXPECT_EQ(encoded->user, "a:b");
+  EXPECT_EQ(encoded->password, "p@s/s+%");
   EXPECT_EQ(parse_redis_address("redis://[::1]:7000")->host, "::1");
   EXPECT_EQ(parse_redis_address("redis://[::1]:7000")->port, 7000);
   EXPECT_EQ(parse_redis_address("redis+unix:/run/redis.sock")->path, "/run/redis.sock");
-  for (const char* bad : {"redis://", "redis:", "redis+unix:", "redis://host:port", "redis://host:70000",
-                          "redis://host/one", "redis://user@host", "http://host"})
+  for (const char* bad :
+       {"redis://", "redis:", "redis+unix:", "redis://host:port", "redis://host:70000", "redis://host/one",
+        "redis://user@host", "redis://:50%@host", "redis://:%4x@host", "http://host"})
     EXPECT_FALSE(parse_redis_address(bad)) << bad;
 }
 
