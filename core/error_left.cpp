@@ -80,9 +80,9 @@ class ErrorFinder {
     } else {
       float too_little = surely_too_little(k);
       // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
-      List<uint32_t> edges;
-      if (trial.planes.empty()) keep_if(edges = choice.region.edges, [&](uint32_t e) { return choice.split[e] == 0; });
-      for (uint32_t e : trial.planes.empty() ? edges : choice.region.edges) {
+      List<uint32_t> edges = choice.region.edges();
+      if (trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
+      for (uint32_t e : edges) {
         if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
         if (!may_matter(choice, e, scales_[k]) || is_near(k, e, 1)) continue;
         add_whole(k, e);

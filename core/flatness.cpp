@@ -53,7 +53,7 @@ class CurvedFinder {
   /// Edge by edge: what is known already need not be computed. [E]
   [[nodiscard]] EdgeMarks by_edges(const Region& region) {
     EdgeMarks marks(topology_.edge_count(), 0);
-    for (uint32_t e : region.edges) {
+    for (uint32_t e : region.edges()) {
       const float known = products_.get(e);
       const bool curved = known != unknown ? known < least_ : is_curved(e);
       marks[e] = curved ? 1 : 0;
@@ -67,7 +67,7 @@ class CurvedFinder {
     Array<uint8_t> found(topology_.edge_count());
     for (uint32_t f : region.faces) look_at(f, found.data());
     EdgeMarks marks(found.size(), 0);
-    for (uint32_t e : region.edges) marks[e] = found[e];
+    for (size_t e = 0; e < marks.size(); ++e) marks[e] = found[e] & region.has_edge[e];
     return marks;
   }
 
@@ -184,16 +184,17 @@ void grow_over_faces(const Topology& mesh, const Region& region, EdgeMarks& mark
     const uint8_t any = seeds[edge[0]] | seeds[edge[1]] | seeds[edge[2]];
     for (uint32_t i = 0; i < 3; ++i) marks[edge[i]] |= any;
   }
+  for (size_t e = 0; e < marks.size(); ++e) marks[e] &= region.has_edge[e];
 }
 
 void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& marks) {
   List<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t e : region.edges) {
+  const List<uint32_t> edges = region.edges();
+  for (uint32_t e : edges) {
     touched[mesh.origin[mesh.half_edge[e]]] |= marks[e];
     touched[mesh.tip(mesh.half_edge[e])] |= marks[e];
   }
-  for (uint32_t e : region.edges)
-    marks[e] |= touched[mesh.origin[mesh.half_edge[e]]] | touched[mesh.tip(mesh.half_edge[e])];
+  for (uint32_t e : edges) marks[e] |= touched[mesh.origin[mesh.half_edge[e]]] | touched[mesh.tip(mesh.half_edge[e])];
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ enum class Growth {
 };
 
 /// Marks the 1-neighbouring edges of those marked, too (one step: new marks do not spread again). Of a mesh only the
-/// region is looked at, of which all marked edges must be; marks of other edges mean nothing afterwards. Marks [E].
+/// region is looked at, of which all marked edges are, before and afterwards. Marks [E].
 void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks);
 
 /// Both, one after the other; where that can be done, in one pass.

@@ -73,7 +73,7 @@ class InPlace {
   void note_error() {
     if (!options_.measure_error) return;
     ErrorLeft left(selection_);
-    for (uint32_t e : region_.edges)
+    for (uint32_t e : region_.edges())
       if (shown_[e] != 0)
         left.add(mesh_, *trial_, selection_.highest_pixels_per_unit(box_), e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();

@@ -30,23 +30,6 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   return marks;
 }
 
-/// The region's edges from their marks, where `faces` are the region's, by fours: both halves of an edge above are in
-/// it or none (the halves come first), and all that lie inside a face (which come behind, face by face).
-List<uint32_t> in_order(const Topology& mesh, const List<uint32_t>& faces, const EdgeMarks& marks) {
-  const uint32_t halves = mesh.edge_count() - 3 * (mesh.face_count() / 4);
-  List<uint32_t> edges(halves + 2 + 3 * (faces.size() / 4));
-  size_t known = 0;
-  for (uint32_t e = 0; e < halves; e += 2) {
-    edges[known] = e;
-    edges[known + 1] = e + 1;
-    known += 2 * size_t{marks[e]};
-  }
-  for (size_t i = 0; i < faces.size(); i += 4)
-    for (uint32_t c = 0; c < 3; ++c) edges[known++] = halves + 3 * (faces[i] / 4) + c;
-  edges.resize(known);
-  return edges;
-}
-
 }  // namespace
 
 uint64_t LevelChoice::count_faces_of_split() const {
@@ -122,7 +105,6 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   for (size_t i = 0; i < red.size(); ++i)
     for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->first_child_of(red[i]) + c;
   choice.region.has_edge = edges_of(*level, choice.region.faces);
-  choice.region.edges = in_order(level->mesh.topology, choice.region.faces, choice.region.has_edge);
   choice.split.assign(level->mesh.topology.edge_count(), 0);
   choice.level = std::move(level);
   return choice;

@@ -9,11 +9,12 @@
 namespace papilio {
 
 Region whole_region(const Topology& mesh) {
-  Region region{List<uint32_t>(mesh.face_count()), List<uint32_t>(mesh.edge_count()), EdgeMarks(mesh.edge_count(), 1)};
+  Region region{List<uint32_t>(mesh.face_count()), EdgeMarks(mesh.edge_count(), 1)};
   std::iota(region.faces.begin(), region.faces.end(), 0U);
-  std::iota(region.edges.begin(), region.edges.end(), 0U);
   return region;
 }
+
+List<uint32_t> Region::edges() const { return marked(has_edge); }
 
 namespace {
 

@@ -7,14 +7,16 @@
 
 namespace papilio {
 
-/// Part of a mesh, as lists, so that work on it costs in proportion to the part.
+/// Part of a mesh, so that work on it costs in proportion to the part.
 struct Region {
   List<uint32_t> faces;  ///< in ascending order
-  List<uint32_t> edges;  ///< in ascending order; all faces at each of them are among `faces`
-  EdgeMarks has_edge;    ///< [E] the same, marked
+  EdgeMarks has_edge;    ///< [E] marks its edges: all faces at each of them are among `faces`
   /// Faces come by four, the children of one face (four_children.h): 4i to 4i + 3.
   bool is_in_fours = false;
   bool has_curves = true;  ///< false only if none of its edges is on one
+
+  /// Its edges in ascending order, found anew at each call.
+  [[nodiscard]] List<uint32_t> edges() const;
 };
 
 /// All of the mesh.

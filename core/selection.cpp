@@ -156,9 +156,7 @@ bool Selection::later_level_is_finer(int level) const {
 EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
                            const Region& region) const {
   if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
-  EdgeMarks all(mesh.topology.edge_count(), 0);
-  for (uint32_t e : region.edges) all[e] = 1;
-  return all;
+  return region.has_edge;
 }
 
 EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
@@ -168,12 +166,8 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<dou
 }
 
 List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
-  if (options_.flatness.empty()) return region.edges;
-  const EdgeMarks marks =
-      find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region);
-  List<uint32_t> edges = region.edges;
-  keep_if(edges, [&](uint32_t e) { return marks[e] != 0; });
-  return edges;
+  if (options_.flatness.empty()) return region.edges();
+  return marked(find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
 }
 
 List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
@@ -225,7 +219,7 @@ void append_edges(const Topology& mesh, const Region& region, const List<float>&
   List<uint32_t> faces(mesh.edge_count(), 0);
   for (uint32_t f : region.faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) ++faces[mesh.edge[h]];
-  for (uint32_t e : region.edges) edges.push_back({errors[e], faces[e]});
+  for (uint32_t e : region.edges()) edges.push_back({errors[e], faces[e]});
 }
 
 float threshold_within(List<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {

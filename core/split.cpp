@@ -99,7 +99,7 @@ class Splitter {
   void split_corners(PointAttributes& attributes) const {
     const Region all = whole_region(mesh_);
     EdgeMarks targets(mesh_.edge_count());
-    for (uint32_t e : all.edges) targets[e] = plan_.is_split(e) ? 1 : 0;
+    for (uint32_t e = 0; e < targets.size(); ++e) targets[e] = plan_.is_split(e) ? 1 : 0;
     const List<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
     Array<uint32_t> point(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)

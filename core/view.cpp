@@ -366,7 +366,7 @@ EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FaceP
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) seen_by[topology.edge[h]] |= of_face;
   }
   EdgeMarks marks(topology.edge_count(), 0);
-  for (uint32_t e : region.edges) marks[e] = seen_by[e] == seen ? 1 : 0;
+  for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = seen_by[e] == seen ? region.has_edge[e] : 0;
   return marks;
 }
 
@@ -433,8 +433,8 @@ bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || 
 void EdgesShown::keep_shown(const Region& region, List<uint32_t>& edges) const {
   if (memory_ == nullptr) return;
   Memory& memory = *memory_;
-  constexpr size_t many = 2;  // one in so many
-  if (edges.size() * many > region.edges.size())
+  constexpr size_t many = 3;  // so many for four faces: about every second edge
+  if (edges.size() * 4 > region.faces.size() * many)
     memory.keep_shown_once_all_are_looked_at(region, edges);
   else
     keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });

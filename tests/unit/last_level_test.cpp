@@ -167,13 +167,12 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
       for (const LevelChoice* below : {&in_last, &in_part}) {
         EXPECT_TRUE(below->region.is_in_fours);
         EXPECT_EQ(below->region.faces.size(), 4 * marked(red).size());
-        EXPECT_EQ(below->region.edges, marked(below->region.has_edge));
       }
       // Numbers differ, but not what they stand for.
       const auto ends = [](const LevelChoice& below) {
         std::vector<std::array<Vec3f, 2>> all;
         const Mesh& mesh = below.level->mesh;
-        for (uint32_t e : below.region.edges) {
+        for (uint32_t e : below.region.edges()) {
           const uint32_t h = mesh.topology.half_edge[e];
           all.push_back({mesh.positions[mesh.topology.origin[h]], mesh.positions[mesh.topology.tip(h)]});
         }
@@ -196,30 +195,29 @@ TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
       Topology& topology = level->mesh.topology;
       choice = choose_below(choice, level);
       Region& region = choice.region;
+      const List<uint32_t> edges = region.edges();
       EXPECT_FALSE(region.has_curves);
       const bool has_creases = round % 2 == 1;
       if (has_creases)
-        for (int i = 0; i < 5; ++i) topology.kind[region.edges[random() % region.edges.size()]] = EdgeKind::crease;
+        for (int i = 0; i < 5; ++i) topology.kind[edges[random() % edges.size()]] = EdgeKind::crease;
       Array<Vec3f> normals = face_normals(level->mesh);
       for (int i = 0; i < 5; ++i) normals[random() % normals.size()] = {};
       const NormalProducts kept(topology.edge_count(), std::numeric_limits<float>::infinity());
       const auto find = [&](bool in_fours, bool has_curves, Growth growth, const NormalProducts& products) {
         region.is_in_fours = in_fours;
         region.has_curves = has_curves;
-        EdgeMarks marks = find_curved_and_grow(level->mesh, normals, products, 0.95, growth, region);
-        for (size_t e = 0; e < marks.size(); ++e) marks[e] &= region.has_edge[e];  // of the others they mean nothing
-        return marks;
+        return find_curved_and_grow(level->mesh, normals, products, 0.95, growth, region);
       };
       for (const Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
         EdgeMarks expected(topology.edge_count(), 0);
-        for (uint32_t e : region.edges) {
+        for (uint32_t e : edges) {
           Region alone;
-          alone.edges = {e};
+          alone.has_edge.assign(topology.edge_count(), 0);
+          alone.has_edge[e] = 1;
           expected[e] = find_curved(level->mesh, normals, kept, 0.95, alone)[e];
           ++(expected[e] != 0 ? curved : flat);
         }
         grow(topology, growth, region, expected);
-        for (size_t e = 0; e < expected.size(); ++e) expected[e] &= region.has_edge[e];
         EXPECT_EQ(find(false, true, growth, {}), expected);
         EXPECT_EQ(find(false, true, growth, kept), expected) << "from what is known";
         if (has_creases) continue;
