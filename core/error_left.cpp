@@ -120,7 +120,7 @@ class ErrorFinder {
     FarFinder far(*this, k);
     const List<uint32_t>& faces = levels_[k].region.faces;
     for (size_t i = 0; i < faces.size(); i += 4) {
-      if (reached_[faces[i]] == 0) continue;
+      if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
       const uint32_t h = 3 * faces[i];
       const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
       std::array<Lanes, 6> at;
@@ -134,6 +134,13 @@ class ErrorFinder {
         far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
       });
     }
+  }
+
+  /// Whether each of the four children of a face is divided in its turn: then nothing of them is in the result.
+  [[nodiscard]] static bool are_all_divided(const LevelChoice& choice, uint32_t child) {
+    if (choice.red.empty()) return false;
+    const uint8_t* red = &choice.red[child];
+    return (red[0] & red[1] & red[2] & red[3]) != 0;
   }
 
   /// Looks at the edges of one level, as above.
