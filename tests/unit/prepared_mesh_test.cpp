@@ -129,6 +129,18 @@ TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereNothingIsSplit) {
   }
 }
 
+TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereTheNextLevelSplitsOnlySome) {
+  // The largest deviation is then left where some of the faces beside are divided further, and others are not.
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  const PreparedMesh prepared(coarse, {.tension = Tension::off}, plenty);
+  for (int i = 0; i < 50; ++i) {
+    const Options options{.levels = 3, .flatness = {1, 0.5 + 0.01 * i, 1}, .tension = Tension::off};
+    const Result cold = refine(coarse, options);
+    ASSERT_EQ(cold.levels, 3);
+    ASSERT_TRUE(is_equal(refine(prepared, options), cold)) << i;
+  }
+}
+
 TEST(PreparedMesh, ServesSeveralThreadsAtOnce) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   for (uint64_t budget : {plenty, uint64_t{1'500'000}}) {
