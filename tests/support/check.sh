@@ -32,9 +32,9 @@ if is_judge clang-format && ((${#sources[@]})); then
   clang-format --dry-run --Werror "${sources[@]}" || failed+=(clang-format)
 fi
 
-# clang-tidy is slow: a file that passed is not read again until it, a header of the project that it includes, the rules
-# or its compile command change.
-export TIDY_CACHE=build/tidy-cache
+# clang-tidy is slow: a file that passed is not read again, in whichever checkout, until it, a header of the project that
+# it includes, the rules or its compile command change.
+export TIDY_CACHE=${XDG_CACHE_HOME:-$HOME/.cache}/papilio/clang-tidy
 mkdir -p "$TIDY_CACHE"
 TIDY_RULES=$({ clang-tidy --version && cat .clang-tidy; } | sha256sum)
 export TIDY_RULES
@@ -46,8 +46,8 @@ tidy() {
     return 1
   fi
   object=$(jq -r '.command | capture(" -o (?<object>[^ ]+)").object' <<<"$entry")
-  mapfile -t headers < <(ninja -C build/release -t deps "$object" | sed -n "s|^ *\($PWD/[a-z].*\.h\)$|\1|p")
-  key=$({ echo "$TIDY_RULES $entry" && cat "$1" "${headers[@]}"; } | sha256sum | cut -d' ' -f1)
+  mapfile -t headers < <(ninja -C build/release -t deps "$object" | sed -nE "s#^ *($PWD/|(\.\./)+)([a-z].*\.h)\$#\3#p")
+  key=$({ echo "$TIDY_RULES ${entry//$PWD/}" && cat "$1" "${headers[@]}"; } | sha256sum | cut -d' ' -f1)
   [[ ! -f $TIDY_CACHE/$key ]] || return 0
   output=$(clang-tidy --quiet -p build/release --extra-arg=-Wno-unknown-warning-option "$1" 2>&1) || {
     printf '%s\n' "$output" | grep -vE '^[0-9]+ warnings? (generated|treated)' # counts what system headers hide

@@ -2,11 +2,13 @@
 # container.sh [suite|throughput|images]: builds the images of docker/ and tests them in containers, by themselves, in the
 # composition and as kubernetes would run them; suite: runs the whole suite on the images' Debian; throughput: measures the
 # composition with one server and two; images: only builds. All without a Docker engine, by buildah and podman, in a
-# storage of its own under build/containers; what it starts is gone when it ends. As root: it makes networks.
+# storage of its own under build/containers; what it starts is gone when it ends, and what its compilers keep lies in the
+# user's cache. As root: it makes networks.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 containers=$root/build/containers
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/papilio/containers
 part=${1:-test}
 export PAPILIO_CONTAINERS=$containers PAPILIO_BUILD=$root/build/release PAPILIO_MESHES=$root/build/deps/meshes
 export CONTAINERS_STORAGE_CONF=$containers/storage.conf CONTAINERS_CONF=$containers/containers.conf
@@ -16,7 +18,7 @@ cd "$root"
   echo "container: this needs root, for its networks: sudo ./dev container" >&2
   exit 1
 }
-mkdir -p "$containers/cache"
+mkdir -p "$containers" "$cache"
 exec 8>"$containers/lock"
 flock -n 8 || {
   echo "container: another ./dev container runs here" >&2
@@ -87,7 +89,7 @@ build_image() {
     -v "$containers/npmrc:/root/.npmrc:ro")
   { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
   chmod 600 "$containers/npmrc"
-  TMPDIR=$containers/cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 && return 0
+  TMPDIR=$cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 && return 0
   { { grep -A12 '^not ok ' "$log" || true; } | head -n 100; tail -n 60 "$log"; } >&2
   return 1
 }

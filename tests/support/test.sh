@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # test.sh PRESET [FILTER]: the unit tests (CTest), the integration tests (bats) and those of the viewer (node), of what is
-# built in build/PRESET; FILTER is a regular expression on their names. All run whatever comes of the others.
+# built in build/PRESET; FILTER is a regular expression on their names. All run whatever comes of the others, as many at a
+# time as there are cores: each starts its own servers.
 set -euo pipefail
 preset=$1
 filter=${2:-}
@@ -25,6 +26,6 @@ if [[ -n $filter ]]; then # prove splits it at spaces
   integration+=" --filter ${filter// /.}"
   web+=" --test-name-pattern=${filter// /.}"
 fi
-prove --failures --comments --exec "$integration" tests/integration/*.bats || failed=1
-prove --failures --comments --exec "$web" tests/web/*.test.mjs || failed=1
+prove --failures --comments --jobs "$(nproc)" --exec "$integration" tests/integration/*.bats || failed=1
+prove --failures --comments --jobs "$(nproc)" --exec "$web" tests/web/*.test.mjs || failed=1
 exit "$failed"
