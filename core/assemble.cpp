@@ -83,7 +83,7 @@ class Assembler {
     for (uint32_t f = 0; f < coarse.face_count(); ++f) {
       const uint32_t* edge = &coarse.edge[size_t{3} * f];
       const OfSides side{first_coarse_ + edge[0], first_coarse_ + edge[1], first_coarse_ + edge[2]};
-      place(levels_[0], f, &coarse.origin[size_t{3} * f], side.data());
+      place(levels_[0], f, mask_of(levels_[0], f), &coarse.origin[size_t{3} * f], side.data());
     }
     out_.topology.origin.resize(half_edge_count_);
     out_.topology.twin.resize(half_edge_count_);
@@ -126,9 +126,8 @@ class Assembler {
   /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side`
   /// [3]: the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what
   /// becomes of it is then foreseen better.)
-  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
-    const uint32_t* edge = &level.edge[size_t{3} * f];
-    const unsigned mask = level.is_split[edge[0]] | level.is_split[edge[1]] << 1U | level.is_split[edge[2]] << 2U;
+  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner,
+                                    const uint32_t* side) {
     if (mask == 0)
       place_whole(level, f, corner, side);
     else if (mask != 7)
@@ -153,27 +152,31 @@ class Assembler {
     const uint32_t child = level.child(f);
     std::array<uint32_t, 12> corners;
     put_corners_of_four({corner[0], corner[1], corner[2]}, middle, corners.data());
-    if (are_all_in_four(below, child)) {
-      for (uint32_t c = 0; c < 4; ++c) cut_in_four(below, child + c, &corners[3 * c]);
+    const FourMasks masks = masks_of_four(below, child);
+    if (masks == all_in_four && !below.has_below && !has_curves_or_points_) {
+      cut_in_sixteen(below, child, corners.data());
       return;
     }
     const Halves half = halves(corner, middle);
     std::array<uint32_t, 12> sides;
     put_edges_of_four(half.first, half.second, next_inner_, sides.data());
     next_inner_ += 3;
-    place(below, child, corners.data(), sides.data());
-    place(below, child + 1, &corners[3], &sides[3]);
-    place(below, child + 2, &corners[6], &sides[6]);
-    place(below, child + 3, &corners[9], &sides[9]);
+    place(below, child, masks[0], corners.data(), sides.data());
+    place(below, child + 1, masks[1], &corners[3], &sides[3]);
+    place(below, child + 2, masks[2], &corners[6], &sides[6]);
+    place(below, child + 3, masks[3], &corners[9], &sides[9]);
   }
 
-  /// Whether each of the four children of a face is cut in four: most are where much is refined.
-  [[nodiscard]] static bool are_all_in_four(const AssembledLevel& level, uint32_t child) {
-    if (level.has_below) return false;
-    const uint32_t* edge = &level.edge[size_t{3} * child];
-    uint8_t all = 1;
-    for (uint32_t i = 0; i < 12; ++i) all &= level.is_split[edge[i]];
-    return all != 0;
+  /// Of the four children of a face: bit i is set where edge i is split.
+  using FourMasks = std::array<uint8_t, 4>;
+  static constexpr FourMasks all_in_four{7, 7, 7, 7};
+  [[nodiscard]] static uint8_t mask_of(const AssembledLevel& level, uint32_t f) {
+    const uint32_t* edge = &level.edge[size_t{3} * f];
+    return static_cast<uint8_t>(level.is_split[edge[0]] | level.is_split[edge[1]] << 1U |
+                                level.is_split[edge[2]] << 2U);
+  }
+  [[nodiscard]] static FourMasks masks_of_four(const AssembledLevel& level, uint32_t child) {
+    return {mask_of(level, child), mask_of(level, child + 1), mask_of(level, child + 2), mask_of(level, child + 3)};
   }
 
   void cut_in_four(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
@@ -187,6 +190,30 @@ class Assembler {
                                  meet(half.second[2], made + 2)};
     put_twins_of_four(made, against_first, against_second, twin_ + made);
     end_face(level, f, split_pattern(7, false));
+  }
+
+  /// The four children of a face, each of which is cut in four: they know each other without having met. `corners` [12]
+  void cut_in_sixteen(const AssembledLevel& level, uint32_t child, const uint32_t* corners) {
+    const uint32_t made = half_edge_count_;
+    const uint32_t last = made + 36;  // of the child in the middle; its side i is side i + 1 of child i
+    std::array<OfSides, 4> middle;
+    for (uint32_t c = 0; c < 4; ++c) middle[c] = middles(level, child + c);
+    for (uint32_t c = 0; c < 4; ++c)
+      put_corners_of_four({corners[3 * c], corners[3 * c + 1], corners[3 * c + 2]}, middle[c], origin_ + made + 12 * c);
+    const auto of_child = [&](uint32_t c) { return halves(corners + 3 * c, middle[c]); };
+    const Halves half0 = of_child(0);
+    const Halves half1 = of_child(1);
+    const Halves half2 = of_child(2);
+    const uint32_t one = made + 12;
+    const uint32_t two = made + 24;
+    put_twins_of_four(made, {meet(half0.first[0], made), last + 2, meet(half0.first[2], made + 8)},
+                      {meet(half0.second[0], made + 3), last + 8, meet(half0.second[2], made + 2)}, twin_ + made);
+    put_twins_of_four(one, {meet(half1.first[0], one), meet(half1.first[1], one + 4), last + 3},
+                      {meet(half1.second[0], one + 3), meet(half1.second[1], one + 7), last}, twin_ + one);
+    put_twins_of_four(two, {last + 7, meet(half2.first[1], two + 4), meet(half2.first[2], two + 8)},
+                      {last + 4, meet(half2.second[1], two + 7), meet(half2.second[2], two + 2)}, twin_ + two);
+    put_twins_of_four(last, {one + 2, two + 3, made + 7}, {one + 8, two, made + 4}, twin_ + last);
+    half_edge_count_ += 48;
   }
 
   /// A face with one or two sides split, seen from the first of these, which runs from corner a to b.

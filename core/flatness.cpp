@@ -1,5 +1,6 @@
 #include "flatness.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -75,29 +76,58 @@ class CurvedFinder {
   [[nodiscard]] EdgeMarks by_faces(const Region& region, bool with_others) {
     EdgeMarks marks(topology_.edge_count(), 0);
     const auto spread = static_cast<uint8_t>(with_others ? 1 : 0);
-    if (region.is_in_fours)
-      for (size_t i = 0; i < region.faces.size(); i += 4)
-        mark_four(region.faces[i], spread, region.has_edge.data(), marks.data());
-    else
-      for (uint32_t f : region.faces) mark(f, spread, region.has_edge.data(), marks.data());
+    run_wide([&]() PAPILIO_INLINED {
+      if (region.is_in_fours)
+        mark_fours(region.faces, spread, region.has_edge.data(), marks.data());
+      else
+        for (uint32_t f : region.faces) mark(f, spread, region.has_edge.data(), marks.data());
+    });
     return marks;
   }
 
  private:
-  /// What the four children of a face mark.
-  void mark_four(uint32_t first, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
+  /// What the four children of faces mark; `faces` has all of these.
+  [[gnu::always_inline]] void mark_fours(const List<uint32_t>& faces, uint8_t spread, const uint8_t* has_edge,
+                                         uint8_t* marks) const {
+    constexpr size_t ahead = 48;  // faces until what is asked for is there
+    for (size_t i = 0; i < faces.size(); i += 4) {
+      prefetch_across(faces[std::min(i + ahead, faces.size() - 4)]);
+      mark_four(faces[i], spread, has_edge, marks);
+    }
+  }
+
+  /// Has the cache load the normals of the faces across the sides of the parent of four.
+  [[gnu::always_inline]] void prefetch_across(uint32_t first) const {
+    const uint32_t* twin = &topology_.twin[size_t{3} * first];
+    for (uint32_t h : {0, 4, 8}) __builtin_prefetch(normals_.data() + Topology::face(twin[h]));
+  }
+
+  [[gnu::always_inline]] void mark_four(uint32_t first, uint8_t spread, const uint8_t* has_edge,
+                                        uint8_t* marks) const {
     const uint32_t* twin = &topology_.twin[size_t{3} * first];
     const uint32_t* edge = &topology_.edge[size_t{3} * first];
     const FourVectors own = at(normals_, {first, first + 1, first + 2, first + 3});
     // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
-    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) {
+    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) PAPILIO_INLINED {
       const uint32_t last = Topology::face(twin[h2]);
       return at(normals_, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
     };
     constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
-    const FourBits one_side = are_curved(own, across(0, 3, 7));
-    const FourBits other_side = are_curved(own, across(2, 4, 8));
-    const FourBits inside = are_curved(own, splat(own, 3));
+    const FourVectors across_one = across(0, 3, 7);
+    const FourVectors across_other = across(2, 4, 8);
+    const FourVectors inner = splat(own, 3);
+    const Four of_one_side = dot(own, across_one);
+    const Four of_other_side = dot(own, across_other);
+    const Four of_inside = dot(own, inner);
+    FourBits one_side = of_one_side < least_in_floats_;
+    FourBits other_side = of_other_side < least_in_floats_;
+    FourBits inside = of_inside < least_in_floats_;
+    // Without a normal a product is 0; else it hardly is.
+    if (is_any((of_one_side == 0) | (of_other_side == 0) | (of_inside == 0))) [[unlikely]] {
+      one_side &= have_normals(own, across_one);
+      other_side &= have_normals(own, across_other);
+      inside &= have_normals(own, inner);
+    }
     const auto of_fourth = static_cast<uint8_t>((inside[0] | inside[1] | inside[2]) & spread);
     for (uint32_t c = 0; c < 3; ++c) {
       const uint32_t one = edge[half_edges[0][c]];
@@ -113,7 +143,7 @@ class CurvedFinder {
   }
 
   /// What a face marks.
-  void mark(uint32_t f, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
+  [[gnu::always_inline]] void mark(uint32_t f, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
     const uint32_t* edge = &topology_.edge[size_t{3} * f];
     const FourBits curved = are_curved_at(f);
     std::array<uint8_t, 3> of_edge{};
@@ -134,7 +164,7 @@ class CurvedFinder {
   }
 
   /// Of the three smooth edges of a face; the fourth means nothing.
-  [[nodiscard]] FourBits are_curved_at(uint32_t f) const {
+  [[nodiscard, gnu::always_inline]] FourBits are_curved_at(uint32_t f) const {
     const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const FourVectors others =
         at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
@@ -142,10 +172,11 @@ class CurvedFinder {
   }
 
   /// Between four faces and four others, by their normals.
-  [[nodiscard]] FourBits are_curved(const FourVectors& one, const FourVectors& other) const {
-    const auto have_normals =
-        ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
-    return (dot(one, other) < least_in_floats_) & have_normals;
+  [[nodiscard, gnu::always_inline]] FourBits are_curved(const FourVectors& one, const FourVectors& other) const {
+    return (dot(one, other) < least_in_floats_) & have_normals(one, other);
+  }
+  [[nodiscard, gnu::always_inline]] static FourBits have_normals(const FourVectors& one, const FourVectors& other) {
+    return ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
   }
 
   [[nodiscard]] bool is_curved(uint32_t e) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,6 +14,27 @@
 #include "vec3.h"
 
 namespace papilio {
+
+// On x86-64 some loops are compiled twice: for every machine, and for those that have AVX2. Which one runs is found out
+// when it runs; the results are the same to the bit.
+#if defined(__x86_64__)
+#define PAPILIO_AVX2 gnu::target("avx2")
+[[nodiscard]] inline bool has_avx2() { return __builtin_cpu_supports("avx2") != 0; }
+template <class Work>
+[[PAPILIO_AVX2]] void run_with_avx2(const Work& work) {
+  work();
+}
+#endif
+/// Behind the parameters of a lambda: what it calls and is to run as it does must be inlined, too.
+#define PAPILIO_INLINED __attribute__((always_inline))
+/// Runs work(), an inlined lambda, with the widest instructions that there are.
+template <class Work>
+void run_wide(const Work& work) {
+#if defined(__x86_64__)
+  if (has_avx2()) return run_with_avx2(work);
+#endif
+  work();
+}
 
 /// Four computations at once in floats: of edges, of faces. For what is to be told from a bound with a margin for
 /// rounding; results proper are not made of it.
@@ -65,6 +90,17 @@ struct FourVectors {
 [[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
   return transposed(widen(points[numbers[0]]), widen(points[numbers[1]]), widen(points[numbers[2]]),
                     widen(points[numbers[3]]));
+}
+
+/// One vector beside the other again, the fourth of each 0.
+[[nodiscard]] inline std::array<Lanes, 4> transposed(const FourVectors& a) {
+  const Four xy = __builtin_shufflevector(a.x, a.y, 0, 4, 1, 5);
+  const Four z0 = __builtin_shufflevector(a.z, Four{}, 0, 4, 1, 5);
+  const Four xy_behind = __builtin_shufflevector(a.x, a.y, 2, 6, 3, 7);
+  const Four z0_behind = __builtin_shufflevector(a.z, Four{}, 2, 6, 3, 7);
+  return {Lanes{__builtin_shufflevector(xy, z0, 0, 1, 4, 5)}, Lanes{__builtin_shufflevector(xy, z0, 2, 3, 6, 7)},
+          Lanes{__builtin_shufflevector(xy_behind, z0_behind, 0, 1, 4, 5)},
+          Lanes{__builtin_shufflevector(xy_behind, z0_behind, 2, 3, 6, 7)}};
 }
 
 /// True where the fourth power of a length, given squared, is surely a number that has all its digits.

@@ -122,7 +122,8 @@ class FourJudge {
 
   using Split = LevelChoice::PartlySplit;
   /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
-  [[nodiscard]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits, bool has_two) const {
+  [[nodiscard, gnu::always_inline]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits,
+                                                                 bool has_two) const {
     const std::array<FourNumbers, 3> side = sides(splits);
     const FourVectors a = corners(side[0]);
     const FourVectors b = corners(side[1]);
@@ -180,10 +181,10 @@ class FourJudge {
 
  private:
   /// Of two numbers as squared_cosine() gives them, with more room than rounding takes.
-  [[nodiscard]] static FourBits is_surely_less(Four a, Four b) { return a < (1 - 2e-5F) * b; }
-  [[nodiscard]] static Four squared_length(const FourVectors& a) { return dot(a, a); }
+  [[nodiscard, gnu::always_inline]] static FourBits is_surely_less(Four a, Four b) { return a < (1 - 2e-5F) * b; }
+  [[nodiscard, gnu::always_inline]] static Four squared_length(const FourVectors& a) { return dot(a, a); }
   /// squared_cosine_of_smallest_angle(), of usual numbers.
-  [[nodiscard]] static Four squared_cosine(Four a, Four b, Four c) {
+  [[nodiscard, gnu::always_inline]] static Four squared_cosine(Four a, Four b, Four c) {
     const Four shorter = lesser(a, b);
     const Four shortest = lesser(shorter, c);
     const Four one = larger(a, b);
@@ -193,7 +194,7 @@ class FourJudge {
   }
 
   /// The half-edges of the faces, [i] of each the i-th from the first that is split.
-  [[nodiscard]] static std::array<FourNumbers, 3> sides(const std::array<Split, 4>& splits) {
+  [[nodiscard, gnu::always_inline]] static std::array<FourNumbers, 3> sides(const std::array<Split, 4>& splits) {
     std::array<FourNumbers, 3> side;
     for (size_t k = 0; k < 4; ++k) {
       const uint8_t* first = &turned[first_target[splits[k].mask]];
@@ -202,12 +203,12 @@ class FourJudge {
     return side;
   }
   /// Where these half-edges of the four faces begin.
-  [[nodiscard]] FourVectors corners(const FourNumbers& h) const {
+  [[nodiscard, gnu::always_inline]] FourVectors corners(const FourNumbers& h) const {
     const auto& origin = mesh_.origin;
     return at(level_.mesh.positions, {origin[h[0]], origin[h[1]], origin[h[2]], origin[h[3]]});
   }
   /// The new vertices on them.
-  [[nodiscard]] FourVectors middles(const FourNumbers& h) const {
+  [[nodiscard, gnu::always_inline]] FourVectors middles(const FourNumbers& h) const {
     const auto number = [&](uint32_t half_edge) { return level_.trial.number(mesh_.edge[half_edge]); };
     return at(level_.trial.made, {number(h[0]), number(h[1]), number(h[2]), number(h[3])});
   }
@@ -253,16 +254,27 @@ class SliverFinder {
   }
 
   void judge(Waiting& waiting) {
-    for (size_t i = 0; i < waiting.count; i += 4) {
-      std::array<Split, 4> splits;
-      for (size_t k = 0; k < 4; ++k) splits[k] = waiting.splits[std::min(i + k, waiting.count - 1)];
-      const std::array<uint32_t, 4> found = judge_four_.find(splits, &waiting == &waiting_[1]);
-      for (size_t k = 0; k < std::min<size_t>(4, waiting.count - i); ++k) {
-        const auto& [f, mask] = splits[k];
-        const uint32_t is = found[k] != 0 ? found[k] : find_in(level_, f, mask, most_cosine_);
-        choice_.transitions[f] = Transition::with_mask(is, mask);
-        if ((is & Transition::has_sliver) != 0) with_sliver_.push_back(f);
-      }
+    if (waiting.count == 0) return;
+    const size_t count = (waiting.count + 3) / 4 * 4;
+    std::fill(waiting.splits.begin() + waiting.count, waiting.splits.begin() + count, waiting.splits[0]);
+    std::array<std::array<uint32_t, 4>, 16> found;
+    run_wide([&]() PAPILIO_INLINED {
+      const auto splits = [&](size_t i) PAPILIO_INLINED {
+        return std::array<Split, 4>{waiting.splits[i], waiting.splits[i + 1], waiting.splits[i + 2],
+                                    waiting.splits[i + 3]};
+      };
+      if (&waiting == &waiting_[0])
+        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), false);
+      else
+        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), true);
+    });
+    for (size_t i = 0; i < waiting.count; ++i) {
+      const auto& [f, mask] = waiting.splits[i];
+      uint32_t is = found[i / 4][i % 4];
+      if (is == 0) [[unlikely]]
+        is = find_in(level_, f, mask, most_cosine_);
+      choice_.transitions[f] = Transition::with_mask(is, mask);
+      if ((is & Transition::has_sliver) != 0) with_sliver_.push_back(f);
     }
     waiting.count = 0;
   }
