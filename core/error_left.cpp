@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "four.h"
 #include "four_children.h"
 #include "lanes.h"
 #include "split_pattern.h"
@@ -119,21 +120,22 @@ class ErrorFinder {
     }
     FarFinder far(*this, k);
     const List<uint32_t>& faces = levels_[k].region.faces;
-    for (size_t i = 0; i < faces.size(); i += 4) {
-      if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
-      const uint32_t h = 3 * faces[i];
-      const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
-      std::array<Lanes, 6> at;
-      for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
-      Lanes farthest{};
-      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) {
-        farthest = larger(far.weighed(mesh.edge[h + half_edge], at[from], at[to]), farthest);
-      });
-      if (far.is_too_near(farthest)) continue;
-      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) {
-        far.look_at(mesh.edge[h + half_edge], at[from], at[to]);
-      });
-    }
+    run_wide([&]() PAPILIO_INLINED {
+      for (size_t i = 0; i < faces.size(); i += 4) {
+        if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
+        const uint32_t h = 3 * faces[i];
+        const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
+        std::array<Lanes, 6> at;
+        for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
+        const uint32_t* edge = &mesh.edge[h];
+        Lanes farthest{};
+        visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) PAPILIO_INLINED {
+          farthest = larger(far.weighed(edge[half_edge], at[from], at[to]), farthest);
+        });
+        if (!far.is_too_near(farthest)) [[unlikely]]
+          far.look_at_four(edge, at);
+      }
+    });
   }
 
   /// Whether each of the four children of a face is divided in its turn: then nothing of them is in the result.
@@ -159,21 +161,26 @@ class ErrorFinder {
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
-    [[nodiscard]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
+    [[nodiscard, gnu::always_inline]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
     /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
     /// where the edge does not. (What is read of such an edge may not even be a number.)
-    [[nodiscard]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
+    [[nodiscard, gnu::always_inline]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
       const Lanes off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
       return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
     }
     /// Of the largest of each direction of some edges: whether all of these are too little to matter.
-    [[nodiscard]] bool is_too_near(Lanes farthest) const {
+    [[nodiscard, gnu::always_inline]] bool is_too_near(Lanes farthest) const {
       return farthest.v[0] + farthest.v[1] + farthest.v[2] <= too_near_.squared();
     }
     void look_at(uint32_t e, Lanes from, Lanes to) {
       const Lanes parts = weighed(e, from, to);
       if (parts.v[0] + parts.v[1] + parts.v[2] > too_near_.squared()) [[unlikely]]
         add(e);
+    }
+    /// At the nine edges of the four children of a face, of their 12 half-edges' and between their vertices.
+    [[gnu::noinline]] void look_at_four(const uint32_t* edge, const std::array<Lanes, 6>& at) {
+      visit_edges_of_four(
+          [&](uint32_t half_edge, uint32_t from, uint32_t to) { look_at(edge[half_edge], at[from], at[to]); });
     }
 
    private:

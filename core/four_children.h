@@ -48,7 +48,7 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
 /// Calls visit(half-edge, from, to) for each of their nine edges: which of the twelve half-edges runs there, and
 /// between which of the six vertices. Written out, so that all of it is known when this is compiled.
 template <class Visit>
-void visit_edges_of_four(const Visit& visit) {
+[[gnu::always_inline]] inline void visit_edges_of_four(const Visit& visit) {
   visit(0, 0, 3);
   visit(3, 3, 1);
   visit(4, 1, 4);

@@ -225,8 +225,9 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
   return below;
 }
 
-/// What LevelMaker makes where everything is held.
-HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
+}  // namespace
+
+HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
   HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
   below.features = level.features;
   descend(below.features, level.mesh.topology.vertex_count);
@@ -234,18 +235,17 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, int threads) {
   below.complete.assign(below.mesh.topology.vertex_count, 1);
   for (uint32_t parent : level.shared)
     for (uint32_t half : {first_half(parent), second_half(parent)}) below.shared.push_back(half);
+  below.red = std::move(red);
+  below.box = bounding_box(below.mesh.positions);
   return below;
 }
 
-}  // namespace
-
 LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
-  const bool all = level.is_whole && level.trial.made.size() == level.mesh.topology.edge_count() &&
-                   std::ranges::find(red, 0) == red.end();
-  LevelBelow below = all ? LevelBelow{refine_whole_level(level, threads), {}} : LevelMaker(level, red).run(threads);
-  HierarchyLevel& made = below.level;
-  made.red = std::move(red);
-  made.box = bounding_box(made.mesh.positions);
+  if (level.is_tried_whole() && std::ranges::find(red, 0) == red.end())
+    return {refine_whole_level(level, std::move(red), threads), {}};
+  LevelBelow below = LevelMaker(level, red).run(threads);
+  below.level.red = std::move(red);
+  below.level.box = bounding_box(below.level.mesh.positions);
   return below;
 }
 

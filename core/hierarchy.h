@@ -41,6 +41,10 @@ struct HierarchyLevel {
   [[nodiscard]] uint32_t parent_of(uint32_t face) const { return parent.empty() ? face / 4 : parent[face / 4]; }
   /// The first child of a face of the level above that has children here.
   [[nodiscard]] uint32_t first_child_of(uint32_t above) const { return child.empty() ? 4 * above : child[above]; }
+  /// Whether all of the level is held, and all of its edges were tried.
+  [[nodiscard]] bool is_tried_whole() const {
+    return is_whole && !trial.is_of_some && trial.made.size() == mesh.topology.edge_count();
+  }
   /// Whether every face at the edge is held, and so are the rings round its ends.
   [[nodiscard]] bool is_complete(uint32_t edge) const;
   /// What it takes in memory.
@@ -68,6 +72,10 @@ struct LevelBelow {
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// must have been tried. Up to so many threads work on it.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
+
+/// Makes all of the next level, with `red` [F] as refine_level() has it. The level must be whole, and all of its edges
+/// tried.
+[[nodiscard]] HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
 
 /// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else but four
 /// faces that stand for all the others of the level (split_part_in_four). Its vertices are those of the whole level. So

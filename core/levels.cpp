@@ -15,6 +15,8 @@ constexpr uint64_t bytes_per_kept_face = 122;
 constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and of what is computed on it
 /// All of a level costs about as much as so large a part of it.
 constexpr double part_as_dear_as_all = 0.75;
+/// All of its connectivity, which follows by formula, as much as so large a part's.
+constexpr double part_as_dear_as_formula = 0.45;
 /// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
 constexpr double part_as_dear_as_all_kept = 1.0 / 3;
 
@@ -102,9 +104,7 @@ bool Levels::may_keep(const List<uint8_t>& red) const {
 
 List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
   const HierarchyLevel& level = *levels_.back();
-  if (!level.is_whole || level.trial.made.size() != level.mesh.topology.edge_count() ||
-      !progress_.has_plenty(4 * red.size(), bytes_per_face))
-    return red;
+  if (!level.is_tried_whole() || !progress_.has_plenty(4 * red.size(), bytes_per_face)) return red;
   const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<double>(std::ranges::count(support, 1));
   if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
@@ -112,7 +112,7 @@ List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
 }
 
 void Levels::make(const List<uint8_t>& red) {
-  if (prepared_ == nullptr && make_last(red)) return;
+  if (prepared_ == nullptr && (make_last(red) || make_whole(red))) return;
   List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
                                             : or_everything(with_margin(red), part_as_dear_as_all_kept);
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
@@ -133,6 +133,29 @@ void Levels::make(const List<uint8_t>& red) {
     try_for_once(*level, parents);
     levels_.push_back(level);
   }
+}
+
+bool Levels::make_whole(const List<uint8_t>& red) {
+  const HierarchyLevel& above = *levels_.back();
+  const Topology& parents = above.mesh.topology;
+  if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 ||
+      !progress_.has_plenty(4 * red.size(), bytes_per_face))
+    return false;
+  const List<uint32_t> held = marked(with_neighbours(parents, red));
+  if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
+  const auto level = std::make_shared<HierarchyLevel>(refine_whole_level(above, red, progress_.threads()));
+  progress_.poll();
+  if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
+  const List<uint32_t> below_red = marked(red);
+  TrialContext context{.features = &level->features,
+                       .parents = &parents,
+                       .normals_of = &below_red,
+                       .threads = progress_.threads()};
+  if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
+  level->trial = try_everything(level->mesh, options_, context);
+  level->trial.prepare_errors(level->mesh, options_, context);
+  levels_.push_back(level);
+  return true;
 }
 
 bool Levels::make_last(const List<uint8_t>& red) {

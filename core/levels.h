@@ -41,6 +41,9 @@ class Levels {
   /// those marked.
   [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
   void make(const List<uint8_t>& red);
+  /// The same where it costs less to make all of the level, of which then only that is tried which may be asked for;
+  /// false, and nothing is done, where that is not so.
+  bool make_whole(const List<uint8_t>& red);
   /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
   /// done, where that cannot be.
   bool make_last(const List<uint8_t>& red);

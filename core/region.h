@@ -33,7 +33,7 @@ void keep_if(List<uint32_t>& numbers, const IsWanted& is_wanted) {
   numbers.resize(kept);
 }
 
-/// The numbers of what is marked, in ascending order.
+/// The numbers of what is marked, in ascending order. Marks are 0 or 1.
 [[nodiscard]] List<uint32_t> marked(const List<uint8_t>& marks);
 
 }  // namespace papilio

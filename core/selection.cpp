@@ -74,6 +74,7 @@ Trial try_everything(const Mesh& mesh, const Options& options, const TrialContex
   Trial trial{.normals = normals_asked_of(mesh, options, context)};
   const std::optional<TensionField> tension = find_tension(mesh.topology, trial.normals, options);
   trial.made = make_all_vertices(mesh, tension ? &*tension : nullptr, context);
+  trial.is_of_some = context.asked_of != nullptr || context.part != nullptr;
   return trial;
 }
 

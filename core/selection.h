@@ -34,6 +34,7 @@ struct Trial {
   Array<Vec3f> normals{};     ///< [F]
   SplitPlan tried{};          ///< the edges whose new vertices were computed; of none: see `made`
   Array<Vec3f> made{};        ///< [T]; where `tried` is of none [E], of which only what could be computed counts
+  bool is_of_some = false;    ///< where `tried` is of none: whether only some were asked for
   Memo<double> deviations{};  ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
   Memo<float> bounds{};       ///< [T] no less than these; infinity where nothing is known; empty as above
   Memo<float> least{};        ///< [T] no more than these; 0 where nothing is known; empty without rooms

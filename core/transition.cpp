@@ -169,6 +169,22 @@ class FourJudge {
     return std::bit_cast<std::array<uint32_t, 4>>(found & are_certain);
   }
 
+  /// Whether the squared cosine of the smallest angle may be larger than `most`, of each of four faces from `first` on.
+  [[nodiscard]] static std::array<bool, 4> may_have_larger(const Mesh& mesh, uint32_t first, double most) {
+    const uint32_t* corner = &mesh.topology.origin[size_t{3} * first];
+    const FourVectors a = at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]});
+    const FourVectors b = at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]});
+    const FourVectors c = at(mesh.positions, {corner[2], corner[5], corner[8], corner[11]});
+    const Four ab = squared_length(b - a);
+    const Four bc = squared_length(c - b);
+    const Four ca = squared_length(a - c);
+    const auto are_less = is_usual(ab) & is_usual(bc) & is_usual(ca) &
+                          is_surely_less(squared_cosine(ab, bc, ca), Four{} + static_cast<float>(most));
+    if (is_all(are_less)) [[likely]]
+      return {};
+    return {are_less[0] == 0, are_less[1] == 0, are_less[2] == 0, are_less[3] == 0};
+  }
+
   /// Has the cache load what find() will read of a face.
   void prefetch(const Split& split) const {
     const uint32_t first = first_target[split.mask];
@@ -291,10 +307,19 @@ class SliverFinder {
 
 double smallest_angle(const Mesh& mesh) {
   double largest = 0;
-  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
-    const auto at = [&](uint32_t corner) { return to_double(mesh.positions[mesh.topology.origin[3 * f + corner]]); };
-    largest = std::max(largest, squared_cosine_of_smallest_angle(at(0), at(1), at(2)));
+  const auto look_at = [&](uint32_t f) {
+    const auto corner = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * f + i]]); };
+    largest = std::max(largest, squared_cosine_of_smallest_angle(corner(0), corner(1), corner(2)));
+  };
+  const uint32_t count = mesh.topology.face_count();
+  const uint32_t in_fours = count / 4 * 4;
+  for (uint32_t f = 0; f < in_fours; f += 4) {
+    const std::array<bool, 4> may_be_smallest = FourJudge::may_have_larger(mesh, f, largest);
+    for (uint32_t i = 0; i < 4; ++i)
+      if (may_be_smallest[i]) [[unlikely]]
+        look_at(f + i);
   }
+  for (uint32_t f = in_fours; f < count; ++f) look_at(f);
   return std::acos(std::sqrt(std::min(largest, 1.0)));
 }
 
