@@ -25,13 +25,15 @@ class FourRule {
                       {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
-  /// Edges of the children of face f.
-  void number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
+  /// Edges of the children of face f. Returns those of the first halves of its sides; those beside them, with the lowest
+  /// bit flipped, are of the second.
+  OfSides number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
                               corner[2] > corner[0] ? 1U : 0U};
     const OfSides first{2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
     put_edges_of_four(first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}, inner_edge(f), child_edge);
+    return first;
   }
 
   /// The first of the three edges inside face f.
@@ -60,8 +62,8 @@ Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, si
 template <bool numbers_edges, class Numbers>
 class FourSplitter {
  public:
-  FourSplitter(const Topology& mesh, const Subset& faces, const Subset& edges, const Numbers& numbers)
-      : mesh_(mesh), faces_(faces), edges_(edges), numbers_(numbers), rule_(mesh.vertex_count, numbers.edge_count()) {}
+  FourSplitter(const Topology& mesh, const Subset& faces, const Numbers& numbers)
+      : mesh_(mesh), faces_(faces), numbers_(numbers), rule_(mesh.vertex_count, numbers.edge_count()) {}
 
   /// `room`: for so many faces' children.
   Topology run(uint32_t room, int threads) {
@@ -69,33 +71,14 @@ class FourSplitter {
     if (numbers_edges) {
       child_.edge.resize(size_t{12} * room);
       child_.half_edge.resize(rule_.inner_edge(room));
-      child_.kind.resize(child_.half_edge.size());
     }
     for_each_part(parts_of(faces_.size(), threads), faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
       for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
     });
-    if (numbers_edges)
-      for_each_part(parts_of(edges_.size(), threads), edges_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
-        for (uint32_t i = first; i < last; ++i) split_edge(i, edges_[i]);
-      });
     return std::move(child_);
   }
 
  private:
-  void split_edge(uint32_t number, uint32_t e) {
-    const uint32_t h = half_edge_of(e);
-    const uint32_t down = mesh_.origin[h] > mesh_.tip(h) ? 1 : 0;
-    child_.half_edge[2 * number + down] = first_half(numbers_.half_edge(h));
-    child_.half_edge[2 * number + 1 - down] = second_half(numbers_.half_edge(h));
-    child_.kind[2 * number] = child_.kind[2 * number + 1] = mesh_.kind[e];
-  }
-  /// Of a face that is split.
-  [[nodiscard]] uint32_t half_edge_of(uint32_t e) const {
-    const uint32_t h = mesh_.half_edge[e];
-    const std::array<uint32_t, 2> both{mesh_.twin[h], h};  // no branch: which it is nobody can guess
-    return both[numbers_.has(Topology::face(h)) ? 1 : 0];
-  }
-
   void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
     const uint32_t base = 12 * number;
@@ -106,14 +89,27 @@ class FourSplitter {
     rule_.split(number, corner, twin.data(), edge, &child_.origin[base], &child_.twin[base]);
     if (!numbers_edges) return;
     const OfSides numbered{numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])};
-    rule_.number_edges(number, corner, numbered.data(), &child_.edge[base]);
-    const uint32_t inner = rule_.inner_edge(number);
-    put(&child_.half_edge[inner], base + 11, base + 9, base + 10);
-    std::fill_n(&child_.kind[inner], 3, EdgeKind::smooth);
+    const OfSides first = rule_.number_edges(number, corner, numbered.data(), &child_.edge[base]);
+    constexpr OfSides first_half_edge{0, 4, 8}, second_half_edge{3, 7, 2};
+    for (uint32_t i = 0; i < 3; ++i) {
+      std::array<uint32_t, 2> unnamed;
+      uint32_t* named = is_named_after(3 * number + i, twin[i], h + i) ? &child_.half_edge[first[i] & ~1U] : unnamed.data();
+      named[first[i] & 1U] = base + first_half_edge[i];
+      named[(first[i] & 1U) ^ 1U] = base + second_half_edge[i];
+    }
+    put(&child_.half_edge[rule_.inner_edge(number)], base + 11, base + 9, base + 10);
+  }
+
+  /// Whether an edge names this half-edge, and not another: the lower one, as its number and that of its twin are; where
+  /// there is no twin, that which the edge of the mesh names.
+  [[nodiscard]] bool is_named_after(uint32_t number, uint32_t twin, uint32_t half_edge) const {
+    if (twin == none) [[unlikely]]
+      return mesh_.half_edge[mesh_.edge[half_edge]] == half_edge;
+    return number < twin;
   }
 
   const Topology& mesh_;
-  const Subset faces_, edges_;
+  const Subset faces_;
   const Numbers numbers_;
   const FourRule rule_;
   Topology child_;
@@ -121,8 +117,7 @@ class FourSplitter {
 
 template <bool numbers_edges>
 Topology split_all(const Topology& mesh, int threads) {
-  return FourSplitter<numbers_edges, OwnNumbers>(mesh, Subset(mesh.face_count()), Subset(mesh.edge_count()),
-                                                 OwnNumbers(mesh.edge_count()))
+  return FourSplitter<numbers_edges, OwnNumbers>(mesh, Subset(mesh.face_count()), OwnNumbers(mesh.edge_count()))
       .run(mesh.face_count(), threads);
 }
 
@@ -136,18 +131,24 @@ void write_others(const Part& part, Topology& children) {
   put_edges_of_four({edge, edge, edge}, {edge + 1, edge + 1, edge + 1}, inner, &children.edge[base]);
   put(&children.half_edge[edge], base, base + 3);
   put(&children.half_edge[inner], base + 11, base + 9, base + 10);
-  for (uint32_t e : {edge, edge + 1, inner, inner + 1, inner + 2}) children.kind[e] = EdgeKind::smooth;
 }
 
 }  // namespace
 
-Topology split_in_four(const Topology& mesh, int threads) { return split_all<true>(mesh, threads); }
+Topology split_in_four(const Topology& mesh, int threads) {
+  Topology children = split_all<true>(mesh, threads);
+  const uint32_t edges = mesh.edge_count();
+  children.kind.resize(children.edge_count());
+  for (uint32_t e = 0; e < edges; ++e) children.kind[2 * e] = children.kind[2 * e + 1] = mesh.kind[e];
+  std::fill(children.kind.begin() + 2 * edges, children.kind.end(), EdgeKind::smooth);
+  return children;
+}
 
 Topology split_part_in_four(const Topology& mesh, const Part& part, int threads) {
-  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()), Subset(part.edges.numbers()),
-                                                      PartNumbers(part))
+  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()), PartNumbers(part))
                           .run(part.other_face() + 1, threads);
   write_others(part, children);
+  children.kind.assign(children.edge_count(), EdgeKind::smooth);
   return children;
 }
 
