@@ -1,6 +1,7 @@
 #include "in_place.h"
 
 #include "attributes.h"
+#include "budget.h"
 #include "split.h"
 
 namespace papilio {
@@ -60,8 +61,8 @@ class InPlace {
     const List<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, threshold);
     if (options_.max_faces > 0) {
       List<WeighedEdge> edges;
-      append_edges(mesh_.topology, region_, errors, edges);
-      threshold = threshold_within(std::move(edges), threshold, mesh_.topology.face_count(), options_.max_faces);
+      append_edges(mesh_.topology, region_, errors, threshold, edges);
+      threshold = threshold_within(edges, threshold, mesh_.topology.face_count(), options_.max_faces);
       if (threshold > selection_.threshold()) {
         out_of_budget_ = true;
         result_.stop_reason = StopReason::budget;

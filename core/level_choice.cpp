@@ -1,10 +1,20 @@
 #include "level_choice.h"
 
 #include <algorithm>
-#include <array>
 
 namespace papilio {
 namespace {
+
+/// The children of faces of the level above.
+List<uint32_t> children_of(const List<uint32_t>& parents, const HierarchyLevel& level) {
+  List<uint32_t> faces(4 * parents.size());
+  uint32_t* to = faces.data();
+  for (uint32_t f : parents) {
+    const uint32_t first = level.first_child_of(f);
+    for (uint32_t c = 0; c < 4; ++c) *to++ = first + c;
+  }
+  return faces;
+}
 
 /// The edges all of whose faces are in the region, which lies below level 0. [E]
 EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
@@ -13,17 +23,16 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   for (size_t i = 0; i < faces.size(); i += 4) is_in[faces[i] / 4] = 1;
   is_in.back() = 1;
   EdgeMarks marks(mesh.edge_count(), 0);
-  // Of the four: two halves of each side, with one neighbour, and the edges between them.
-  constexpr std::array<std::array<uint8_t, 2>, 3> halves{{{0, 3}, {4, 7}, {8, 2}}};
+  const uint32_t families = mesh.face_count() / 4;
   for (size_t i = 0; i < faces.size(); i += 4) {
     const uint32_t* twin = &mesh.twin[size_t{3} * faces[i]];
     const uint32_t* edge = &mesh.edge[size_t{3} * faces[i]];
-    for (const auto& [first, second] : halves) {
-      const uint32_t neighbour = std::min(twin[first] / 12, mesh.face_count() / 4);
-      marks[edge[first]] |= is_in[neighbour];
-      marks[edge[second]] |= is_in[neighbour];
+    // Two halves of each side, which lie together and have one neighbour; and the edges between the four, which do, too.
+    for (const uint32_t first : {0, 4, 8}) {
+      uint8_t* halves = &marks[edge[first] & ~1U];
+      halves[0] = halves[1] = is_in[std::min(twin[first] / 12, families)];
     }
-    for (uint32_t inner = 9; inner < 12; ++inner) marks[edge[inner]] = 1;
+    std::fill_n(&marks[edge[11]], 3, uint8_t{1});
   }
   for (uint32_t h : level.shared)
     if (is_in[h / 12] == 0) marks[mesh.edge[h]] = 0;
@@ -101,9 +110,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
   choice.region.is_in_fours = true;
   choice.region.has_curves = !level->features.curve_half_edges.empty();
-  choice.region.faces.resize(4 * red.size());
-  for (size_t i = 0; i < red.size(); ++i)
-    for (uint32_t c = 0; c < 4; ++c) choice.region.faces[4 * i + c] = level->first_child_of(red[i]) + c;
+  choice.region.faces = children_of(red, *level);
   choice.region.has_edge = edges_of(*level, choice.region.faces);
   choice.split.assign(level->mesh.topology.edge_count(), 0);
   choice.level = std::move(level);

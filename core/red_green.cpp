@@ -5,6 +5,7 @@
 
 #include "assemble.h"
 #include "attributes.h"
+#include "budget.h"
 #include "error_left.h"
 #include "level_choice.h"
 #include "transition.h"
@@ -153,7 +154,7 @@ class RedGreen {
   [[nodiscard]] List<WeighedEdge> weighed_edges() const {
     List<WeighedEdge> edges;
     for (const LevelChoice& choice : choices_)
-      append_edges(choice.level->mesh.topology, choice.region, choice.error, edges);
+      append_edges(choice.level->mesh.topology, choice.region, choice.error, selection_.threshold(), edges);
     return edges;
   }
 

@@ -216,25 +216,4 @@ List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<u
   return errors;
 }
 
-void append_edges(const Topology& mesh, const Region& region, const List<float>& errors, List<WeighedEdge>& edges) {
-  List<uint32_t> faces(mesh.edge_count(), 0);
-  for (uint32_t f : region.faces)
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) ++faces[mesh.edge[h]];
-  for (uint32_t e : region.edges()) edges.push_back({errors[e], faces[e]});
-}
-
-float threshold_within(List<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget) {
-  std::erase_if(edges, [&](const WeighedEdge& e) { return !(e.error >= least); });
-  for (const WeighedEdge& e : edges) faces += e.faces;
-  if (faces <= budget) return least;
-  std::ranges::sort(edges, {}, &WeighedEdge::error);
-  // Equal errors go together: what forces each other has one error.
-  for (size_t i = 0; i < edges.size();) {
-    const float error = edges[i].error;
-    for (; i < edges.size() && edges[i].error == error; ++i) faces -= edges[i].faces;
-    if (faces <= budget) return i < edges.size() ? edges[i].error : std::numeric_limits<float>::infinity();
-  }
-  return std::numeric_limits<float>::infinity();
-}
-
 }  // namespace papilio

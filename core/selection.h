@@ -187,16 +187,4 @@ class ErrorLeft {
 /// What is left of a deviation where a smooth surface is split once more.
 inline constexpr double split_leaves = 0.25;
 
-struct WeighedEdge {
-  float error;
-  uint32_t faces;  ///< how many faces there are at the edge
-};
-/// Appends the region's edges, with their errors [E].
-void append_edges(const Topology& mesh, const Region& region, const List<float>& errors, List<WeighedEdge>& edges);
-
-/// The least threshold, not below `least`, at which no more than `budget` faces come of the `faces` that are there
-/// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing
-/// fits. O(E log E).
-[[nodiscard]] float threshold_within(List<WeighedEdge> edges, float least, uint64_t faces, uint64_t budget);
-
 }  // namespace papilio

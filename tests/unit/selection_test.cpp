@@ -17,21 +17,8 @@ namespace {
 
 using namespace test;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 uint32_t faces_of(const Result& result) { return result.mesh.topology.face_count(); }
-
-TEST(ThresholdWithin, TakesTheLargestErrorsThatFit) {
-  const List<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
-  EXPECT_EQ(threshold_within(edges, 0, 10, 19), 0);  // all fit: nine more faces
-  EXPECT_EQ(threshold_within(edges, 2.5F, 10, 15), 2.5F);
-  EXPECT_EQ(threshold_within(edges, 0, 10, 18), 2);
-  EXPECT_EQ(threshold_within(edges, 0, 10, 15), 3);
-  EXPECT_EQ(threshold_within(edges, 0, 10, 14), 4);  // equal errors go together
-  EXPECT_EQ(threshold_within(edges, 0, 10, 12), 4);
-  EXPECT_EQ(threshold_within(edges, 0, 10, 11), infinity);
-  EXPECT_EQ(threshold_within({}, 0.5F, 10, 10), 0.5F);
-}
 
 TEST(Deviation, IsTheDistanceToTheFacesAtTheEdge) {
   const Mesh roof = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -1, 1}}, {{0, 1, 2}, {1, 0, 3}}});
