@@ -19,6 +19,7 @@ struct AssembledLevel {
   bool has_below;
   const uint32_t* edge;        ///< [H] of the mesh
   const uint8_t* is_split;     ///< [E]
+  const uint8_t* mask;         ///< [F] (LevelChoice); null where it is not known
   Array<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
 
   /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
@@ -115,6 +116,7 @@ class Assembler {
       level.has_below = levels_.size() < levels.size();
       level.edge = mesh.edge.data();
       level.is_split = choice.split.data();
+      level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
       level.new_vertex.resize(mesh.edge_count());
       for (uint32_t e : split_in_order(choice)) {
         out_.positions[vertex] = choice.level->trial.at(e);
@@ -171,11 +173,16 @@ class Assembler {
   using FourMasks = std::array<uint8_t, 4>;
   static constexpr FourMasks all_in_four{7, 7, 7, 7};
   [[nodiscard]] static uint8_t mask_of(const AssembledLevel& level, uint32_t f) {
+    if (level.mask != nullptr) return level.mask[f];
     const uint32_t* edge = &level.edge[size_t{3} * f];
     return static_cast<uint8_t>(level.is_split[edge[0]] | level.is_split[edge[1]] << 1U |
                                 level.is_split[edge[2]] << 2U);
   }
   [[nodiscard]] static FourMasks masks_of_four(const AssembledLevel& level, uint32_t child) {
+    if (level.mask != nullptr) {
+      const uint8_t* mask = level.mask + child;
+      return {mask[0], mask[1], mask[2], mask[3]};
+    }
     return {mask_of(level, child), mask_of(level, child + 1), mask_of(level, child + 2), mask_of(level, child + 3)};
   }
 

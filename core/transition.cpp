@@ -339,6 +339,7 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && (Transition::find(choice, f, mask, most_cosine) & Transition::has_sliver) != 0 &&
            choice.may_divide(f);
   };
+  choice.find_masks();
   // The order decides where dividing one makes a sliver of another.
   List<uint32_t> faces;
   if (level.trial.planes.empty()) {

@@ -17,7 +17,6 @@ namespace {
 
 using namespace test;
 
-
 uint32_t faces_of(const Result& result) { return result.mesh.topology.face_count(); }
 
 TEST(Deviation, IsTheDistanceToTheFacesAtTheEdge) {
