@@ -40,6 +40,94 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
   return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - product_rounding;
 }
 
+[[nodiscard, gnu::always_inline]] inline FourBits have_normals(const FourVectors& one, const FourVectors& other) {
+  return ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
+}
+/// Between four faces and four others, by their normals.
+[[nodiscard, gnu::always_inline]] inline FourBits are_curved(const FourVectors& one, const FourVectors& other,
+                                                             float least) {
+  return (dot(one, other) < least) & have_normals(one, other);
+}
+
+/// Marks the edges of a region without curves that are not flat, face by face.
+struct CurvedMarker {
+  const uint32_t *twin_of, *edge_of;  ///< [H]
+  const Vec3f* normals;               ///< [F]
+  const uint8_t* has_edge;            ///< [E] of the region
+  uint8_t* marks;                     ///< [E]
+  float least;                        ///< of a flat edge's product
+  uint8_t spread;                     ///< 1 to mark the other edges of a face at one, too; else 0
+
+  /// What the four children of faces mark; `faces` has all of these.
+  [[gnu::always_inline]] void mark_fours(const List<uint32_t>& faces) const {
+    constexpr size_t ahead = 48;  // faces until what is asked for is there
+    const uint32_t* first = faces.data();
+    const size_t count = faces.size();
+    for (size_t i = 0; i < count; i += 4) {
+      prefetch_across(first[std::min(i + ahead, count - 4)]);
+      mark_four(first[i]);
+    }
+  }
+
+  /// Has the cache load the normals of the faces across the sides of the parent of four.
+  [[gnu::always_inline]] void prefetch_across(uint32_t first) const {
+    const uint32_t* twin = &twin_of[size_t{3} * first];
+    for (uint32_t h : {0, 4, 8}) __builtin_prefetch(normals + Topology::face(twin[h]));
+  }
+
+  [[gnu::always_inline]] void mark_four(uint32_t first) const {
+    const uint32_t* twin = &twin_of[size_t{3} * first];
+    const uint32_t* edge = &edge_of[size_t{3} * first];
+    const FourVectors own = at(normals, {first, first + 1, first + 2, first + 3});
+    // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
+    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) PAPILIO_INLINED {
+      const uint32_t last = Topology::face(twin[h2]);
+      return at(normals, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
+    };
+    constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
+    const FourVectors across_one = across(0, 3, 7);
+    const FourVectors across_other = across(2, 4, 8);
+    const FourVectors inner = splat<3>(own);
+    const Four of_one_side = dot(own, across_one);
+    const Four of_other_side = dot(own, across_other);
+    const Four of_inside = dot(own, inner);
+    FourBits one_side = of_one_side < least;
+    FourBits other_side = of_other_side < least;
+    FourBits inside = of_inside < least;
+    // Without a normal a product is 0; else it hardly is.
+    if (is_any((of_one_side == 0) | (of_other_side == 0) | (of_inside == 0))) [[unlikely]] {
+      one_side &= have_normals(own, across_one);
+      other_side &= have_normals(own, across_other);
+      inside &= have_normals(own, inner);
+    }
+    const auto of_fourth = static_cast<uint8_t>((inside[0] | inside[1] | inside[2]) & spread);
+    for (uint32_t c = 0; c < 3; ++c) {
+      const uint32_t one = edge[half_edges[0][c]];
+      const uint32_t other = edge[half_edges[1][c]];
+      const auto of_one = static_cast<uint8_t>(one_side[c] & has_edge[one]);
+      const auto of_other = static_cast<uint8_t>(other_side[c] & has_edge[other]);
+      const auto of_inner = static_cast<uint8_t>(inside[c] & 1);
+      const auto of_child = static_cast<uint8_t>((of_one | of_other | of_inner) & spread);
+      marks[one] |= of_one | (of_child & has_edge[one]);
+      marks[other] |= of_other | (of_child & has_edge[other]);
+      marks[edge[half_edges[2][c]]] = of_inner | of_child | of_fourth;
+    }
+  }
+
+  /// What a face marks.
+  [[gnu::always_inline]] void mark(uint32_t f) const {
+    const uint32_t* twin = &twin_of[size_t{3} * f];
+    const uint32_t* edge = &edge_of[size_t{3} * f];
+    const FourVectors others =
+        at(normals, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
+    const FourBits curved = are_curved(splat<3>(others), others, least);
+    std::array<uint8_t, 3> of_edge{};
+    for (uint32_t i = 0; i < 3; ++i) of_edge[i] = static_cast<uint8_t>(curved[i] & has_edge[edge[i]]);
+    const uint8_t of_face = (of_edge[0] | of_edge[1] | of_edge[2]) & spread;
+    for (uint32_t i = 0; i < 3; ++i) marks[edge[i]] |= of_edge[i] | (of_face & has_edge[edge[i]]);
+  }
+};
+
 /// Which of a region's edges are not flat.
 class CurvedFinder {
  public:
@@ -75,83 +163,23 @@ class CurvedFinder {
   /// The same of a region without curves; with the other edges of a face that has one of them, if that is asked. [E]
   [[nodiscard]] EdgeMarks by_faces(const Region& region, bool with_others) {
     EdgeMarks marks(topology_.edge_count(), 0);
-    const auto spread = static_cast<uint8_t>(with_others ? 1 : 0);
+    const CurvedMarker marker{.twin_of = topology_.twin.data(),
+                              .edge_of = topology_.edge.data(),
+                              .normals = normals_.data(),
+                              .has_edge = region.has_edge.data(),
+                              .marks = marks.data(),
+                              .least = least_in_floats_,
+                              .spread = static_cast<uint8_t>(with_others ? 1 : 0)};
     run_wide([&]() PAPILIO_INLINED {
       if (region.is_in_fours)
-        mark_fours(region.faces, spread, region.has_edge.data(), marks.data());
+        marker.mark_fours(region.faces);
       else
-        for (uint32_t f : region.faces) mark(f, spread, region.has_edge.data(), marks.data());
+        for (uint32_t f : region.faces) marker.mark(f);
     });
     return marks;
   }
 
  private:
-  /// What the four children of faces mark; `faces` has all of these.
-  [[gnu::always_inline]] void mark_fours(const List<uint32_t>& faces, uint8_t spread, const uint8_t* has_edge,
-                                         uint8_t* marks) const {
-    constexpr size_t ahead = 48;  // faces until what is asked for is there
-    for (size_t i = 0; i < faces.size(); i += 4) {
-      prefetch_across(faces[std::min(i + ahead, faces.size() - 4)]);
-      mark_four(faces[i], spread, has_edge, marks);
-    }
-  }
-
-  /// Has the cache load the normals of the faces across the sides of the parent of four.
-  [[gnu::always_inline]] void prefetch_across(uint32_t first) const {
-    const uint32_t* twin = &topology_.twin[size_t{3} * first];
-    for (uint32_t h : {0, 4, 8}) __builtin_prefetch(normals_.data() + Topology::face(twin[h]));
-  }
-
-  [[gnu::always_inline]] void mark_four(uint32_t first, uint8_t spread, const uint8_t* has_edge,
-                                        uint8_t* marks) const {
-    const uint32_t* twin = &topology_.twin[size_t{3} * first];
-    const uint32_t* edge = &topology_.edge[size_t{3} * first];
-    const FourVectors own = at(normals_, {first, first + 1, first + 2, first + 3});
-    // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
-    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) PAPILIO_INLINED {
-      const uint32_t last = Topology::face(twin[h2]);
-      return at(normals_, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
-    };
-    constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
-    const FourVectors across_one = across(0, 3, 7);
-    const FourVectors across_other = across(2, 4, 8);
-    const FourVectors inner = splat(own, 3);
-    const Four of_one_side = dot(own, across_one);
-    const Four of_other_side = dot(own, across_other);
-    const Four of_inside = dot(own, inner);
-    FourBits one_side = of_one_side < least_in_floats_;
-    FourBits other_side = of_other_side < least_in_floats_;
-    FourBits inside = of_inside < least_in_floats_;
-    // Without a normal a product is 0; else it hardly is.
-    if (is_any((of_one_side == 0) | (of_other_side == 0) | (of_inside == 0))) [[unlikely]] {
-      one_side &= have_normals(own, across_one);
-      other_side &= have_normals(own, across_other);
-      inside &= have_normals(own, inner);
-    }
-    const auto of_fourth = static_cast<uint8_t>((inside[0] | inside[1] | inside[2]) & spread);
-    for (uint32_t c = 0; c < 3; ++c) {
-      const uint32_t one = edge[half_edges[0][c]];
-      const uint32_t other = edge[half_edges[1][c]];
-      const auto of_one = static_cast<uint8_t>(one_side[c] & has_edge[one]);
-      const auto of_other = static_cast<uint8_t>(other_side[c] & has_edge[other]);
-      const auto of_inner = static_cast<uint8_t>(inside[c] & 1);
-      const auto of_child = static_cast<uint8_t>((of_one | of_other | of_inner) & spread);
-      marks[one] |= of_one | (of_child & has_edge[one]);
-      marks[other] |= of_other | (of_child & has_edge[other]);
-      marks[edge[half_edges[2][c]]] = of_inner | of_child | of_fourth;
-    }
-  }
-
-  /// What a face marks.
-  [[gnu::always_inline]] void mark(uint32_t f, uint8_t spread, const uint8_t* has_edge, uint8_t* marks) const {
-    const uint32_t* edge = &topology_.edge[size_t{3} * f];
-    const FourBits curved = are_curved_at(f);
-    std::array<uint8_t, 3> of_edge{};
-    for (uint32_t i = 0; i < 3; ++i) of_edge[i] = static_cast<uint8_t>(curved[i] & has_edge[edge[i]]);
-    const uint8_t of_face = (of_edge[0] | of_edge[1] | of_edge[2]) & spread;
-    for (uint32_t i = 0; i < 3; ++i) marks[edge[i]] |= of_edge[i] | (of_face & has_edge[edge[i]]);
-  }
-
   void look_at(uint32_t f, uint8_t* found) {
     const uint32_t* edge = &topology_.edge[size_t{3} * f];
     const auto is_smooth = [&](uint32_t i) { return topology_.kind[edge[i]] == EdgeKind::smooth; };
@@ -168,15 +196,7 @@ class CurvedFinder {
     const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const FourVectors others =
         at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
-    return are_curved(splat(others, 3), others);
-  }
-
-  /// Between four faces and four others, by their normals.
-  [[nodiscard, gnu::always_inline]] FourBits are_curved(const FourVectors& one, const FourVectors& other) const {
-    return (dot(one, other) < least_in_floats_) & have_normals(one, other);
-  }
-  [[nodiscard, gnu::always_inline]] static FourBits have_normals(const FourVectors& one, const FourVectors& other) {
-    return ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
+    return are_curved(splat<3>(others), others, least_in_floats_);
   }
 
   [[nodiscard]] bool is_curved(uint32_t e) {

@@ -50,6 +50,9 @@ using FourNumbers = std::array<uint32_t, 4>;
 }
 
 [[nodiscard]] inline bool is_any(FourBits truths) {
+#if defined(__x86_64__)
+  return _mm_movemask_ps(std::bit_cast<__m128>(truths)) != 0;
+#endif
   const auto words = std::bit_cast<std::array<uint64_t, 2>>(truths);
   return (words[0] | words[1]) != 0;
 }
@@ -68,8 +71,11 @@ struct FourVectors {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 /// One of the four vectors, four times.
-[[nodiscard]] inline FourVectors splat(const FourVectors& a, int which) {
-  return {Four{} + a.x[which], Four{} + a.y[which], Four{} + a.z[which]};
+template <int which>
+[[nodiscard]] inline FourVectors splat(const FourVectors& a) {
+  return {__builtin_shufflevector(a.x, a.x, which, which, which, which),
+          __builtin_shufflevector(a.y, a.y, which, which, which, which),
+          __builtin_shufflevector(a.z, a.z, which, which, which, which)};
 }
 /// No less than the length.
 [[nodiscard]] inline Four sum_of_magnitudes(const FourVectors& a) {
@@ -87,9 +93,13 @@ struct FourVectors {
           __builtin_shufflevector(ab_behind, cd_behind, 0, 1, 4, 5)};
 }
 
-[[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
+/// Of an array that has room for one behind its end (lanes.h).
+[[nodiscard]] inline FourVectors at(const Vec3f* points, const FourNumbers& numbers) {
   return transposed(widen(points[numbers[0]]), widen(points[numbers[1]]), widen(points[numbers[2]]),
                     widen(points[numbers[3]]));
+}
+[[nodiscard]] inline FourVectors at(const Array<Vec3f>& points, const FourNumbers& numbers) {
+  return at(points.data(), numbers);
 }
 
 /// One vector beside the other again, the fourth of each 0.
