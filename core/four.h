@@ -46,6 +46,9 @@ using FourNumbers = std::array<uint32_t, 4>;
 [[nodiscard]] inline Four larger(Four a, Four b) { return a > b ? a : b; }
 [[nodiscard]] inline Four magnitude(Four a) { return larger(a, -a); }
 [[nodiscard]] inline Four root(Four a) {
+#if defined(__x86_64__)
+  return _mm_sqrt_ps(a);
+#endif
   return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
 
