@@ -23,7 +23,6 @@ class OwnNumbers {
   explicit OwnNumbers(uint32_t edge_count) : edge_count_(edge_count) {}
   [[nodiscard]] uint32_t face(uint32_t f) const { return f; }
   [[nodiscard]] uint32_t half_edge(uint32_t h) const { return h; }
-  [[nodiscard]] bool has(uint32_t /*face*/) const { return true; }
   [[nodiscard]] uint32_t edge(uint32_t e) const { return e; }
   [[nodiscard]] uint32_t edge_count() const { return edge_count_; }
 
@@ -37,7 +36,6 @@ class PartNumbers {
   explicit PartNumbers(const Part& part) : part_(&part) {}
   [[nodiscard]] uint32_t face(uint32_t f) const { return part_->faces[f]; }
   [[nodiscard]] uint32_t half_edge(uint32_t h) const { return 3 * face(Topology::face(h)) + h % 3; }
-  [[nodiscard]] bool has(uint32_t face) const { return part_->faces.has(face); }
   [[nodiscard]] uint32_t edge(uint32_t e) const { return part_->edges[e]; }
   [[nodiscard]] uint32_t edge_count() const { return part_->other_edge() + 1; }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
+#include "four.h"
 #include "four_children.h"
 #include "parallel.h"
 #include "subset.h"
@@ -73,29 +75,39 @@ class FourSplitter {
       child_.half_edge.resize(rule_.inner_edge(room));
     }
     for_each_part(parts_of(faces_.size(), threads), faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
-      for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
+      run_wide([this, first, last]() PAPILIO_INLINED {
+        for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
+      });
     });
     return std::move(child_);
   }
 
  private:
-  void split_face(uint32_t number, uint32_t f) {
+  [[gnu::always_inline]] void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
     const uint32_t base = 12 * number;
-    const uint32_t* corner = &mesh_.origin[h];
-    const uint32_t* edge = &mesh_.edge[h];
+    const SidesAtOnce corner = read_at_once(&mesh_.origin[h]);
+    const SidesAtOnce edge = read_at_once(&mesh_.edge[h]);
+    put_corners_of_four(corner, mesh_.vertex_count + edge, &child_.origin[base]);
     const OfSides twin{numbers_.half_edge(mesh_.twin[h]), numbers_.half_edge(mesh_.twin[h + 1]),
                        numbers_.half_edge(mesh_.twin[h + 2])};
-    rule_.split(number, corner, twin.data(), edge, &child_.origin[base], &child_.twin[base]);
+    const SidesAtOnce twins = at_once(twin);
+    const auto without_twin = std::bit_cast<SidesAtOnce>(twins == none);
+    const SidesAtOnce firsts = 4 * twins;
+    const SidesAtOnce seconds = at_once({second_half(twin[0]), second_half(twin[1]), second_half(twin[2])});
+    put_twins_of_four(base, seconds | without_twin, firsts | without_twin, &child_.twin[base]);
     if (!numbers_edges) return;
-    const OfSides numbered{numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])};
-    const OfSides first = rule_.number_edges(number, corner, numbered.data(), &child_.edge[base]);
+    // Of each side the half at the half-edge's tip comes first where that is the lower vertex.
+    const SidesAtOnce next_corner = __builtin_shufflevector(corner, corner, 1, 2, 0, 3);
+    const auto is_downward = std::bit_cast<SidesAtOnce>(corner > next_corner);
+    const SidesAtOnce first = 2 * at_once({numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])}) -
+                              is_downward;  // all bits set: minus one
+    put_edges_of_four(first, first ^ 1, rule_.inner_edge(number), &child_.edge[base]);
     constexpr OfSides first_half_edge{0, 4, 8}, second_half_edge{3, 7, 2};
     for (uint32_t i = 0; i < 3; ++i) {
-      std::array<uint32_t, 2> unnamed;
-      uint32_t* named = is_named_after(3 * number + i, twin[i], h + i) ? &child_.half_edge[first[i] & ~1U] : unnamed.data();
-      named[first[i] & 1U] = base + first_half_edge[i];
-      named[(first[i] & 1U) ^ 1U] = base + second_half_edge[i];
+      if (!is_named_after(3 * number + i, twin[i], h + i)) continue;
+      child_.half_edge[first[i]] = base + first_half_edge[i];
+      child_.half_edge[first[i] ^ 1U] = base + second_half_edge[i];
     }
     put(&child_.half_edge[rule_.inner_edge(number)], base + 11, base + 9, base + 10);
   }
