@@ -5,6 +5,7 @@
 #endif
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -17,9 +18,14 @@ namespace papilio {
 
 // On x86-64 some loops are compiled twice: for every machine, and for those that have AVX2. Which one runs is found out
 // when it runs; the results are the same to the bit.
+
+/// Off only for tests of what machines without AVX2 do.
+inline std::atomic<bool> may_use_avx2{true};
 #if defined(__x86_64__)
 #define PAPILIO_AVX2 gnu::target("avx2")
-[[nodiscard]] inline bool has_avx2() { return __builtin_cpu_supports("avx2") != 0; }
+[[nodiscard]] inline bool has_avx2() {
+  return __builtin_cpu_supports("avx2") != 0 && may_use_avx2.load(std::memory_order_relaxed);
+}
 template <class Work>
 [[PAPILIO_AVX2]] void run_with_avx2(const Work& work) {
   work();

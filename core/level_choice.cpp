@@ -27,7 +27,8 @@ EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
   for (size_t i = 0; i < faces.size(); i += 4) {
     const uint32_t* twin = &mesh.twin[size_t{3} * faces[i]];
     const uint32_t* edge = &mesh.edge[size_t{3} * faces[i]];
-    // Two halves of each side, which lie together and have one neighbour; and the edges between the four, which do, too.
+    // Two halves of each side, which lie together and have one neighbour; and the edges between the four, which do,
+    // too.
     for (const uint32_t first : {0, 4, 8}) {
       uint8_t* halves = &marks[edge[first] & ~1U];
       halves[0] = halves[1] = is_in[std::min(twin[first] / 12, families)];

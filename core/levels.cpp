@@ -147,10 +147,8 @@ bool Levels::make_whole(const List<uint8_t>& red) {
   progress_.poll();
   if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
   const List<uint32_t> below_red = marked(red);
-  TrialContext context{.features = &level->features,
-                       .parents = &parents,
-                       .normals_of = &below_red,
-                       .threads = progress_.threads()};
+  TrialContext context{
+      .features = &level->features, .parents = &parents, .normals_of = &below_red, .threads = progress_.threads()};
   if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
   level->trial = try_everything(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);

@@ -81,7 +81,7 @@ using Doubles = double __attribute__((vector_size(32)));
 }
 
 [[PAPILIO_AVX2, gnu::always_inline]] inline void write_four_normals_with_avx2(const Mesh& mesh, uint32_t f,
-                                                                             Vec3f* normals) {
+                                                                              Vec3f* normals) {
   const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
   const Vectors<Doubles> a = in_double(at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]}));
   const Vectors<Doubles> b = in_double(at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]}));
@@ -92,7 +92,7 @@ using Doubles = double __attribute__((vector_size(32)));
 
 /// What write_fours() writes.
 [[PAPILIO_AVX2]] void write_fours_with_avx2(const Mesh& mesh, const Subset& fours, uint32_t first, uint32_t last,
-                                           Array<Vec3f>& normals) {
+                                            Array<Vec3f>& normals) {
   for (uint32_t i = first; i < last; ++i)
     write_four_normals_with_avx2(mesh, 4 * fours[i], &normals[size_t{4} * fours[i]]);
 }

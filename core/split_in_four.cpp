@@ -27,8 +27,8 @@ class FourRule {
                       {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
-  /// Edges of the children of face f. Returns those of the first halves of its sides; those beside them, with the lowest
-  /// bit flipped, are of the second.
+  /// Edges of the children of face f. Returns those of the first halves of its sides; those beside them, with the
+  /// lowest bit flipped, are of the second.
   OfSides number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
@@ -112,8 +112,8 @@ class FourSplitter {
     put(&child_.half_edge[rule_.inner_edge(number)], base + 11, base + 9, base + 10);
   }
 
-  /// Whether an edge names this half-edge, and not another: the lower one, as its number and that of its twin are; where
-  /// there is no twin, that which the edge of the mesh names.
+  /// Whether an edge names this half-edge, and not another: the lower one, as its number and that of its twin are;
+  /// where there is no twin, that which the edge of the mesh names.
   [[nodiscard]] bool is_named_after(uint32_t number, uint32_t twin, uint32_t half_edge) const {
     if (twin == none) [[unlikely]]
       return mesh_.half_edge[mesh_.edge[half_edge]] == half_edge;

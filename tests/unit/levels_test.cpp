@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 #include <string>
 
@@ -30,18 +31,23 @@ List<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
   return red;
 }
 
-/// The children of red faces, of which either level may hold others too.
-void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const List<uint8_t>& red) {
+/// The children of red faces, of which either level may hold others too. `in_all`: which face of the level above those
+/// are where all are held.
+void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const List<uint8_t>& red,
+                  const std::vector<uint32_t>& in_all) {
   const Topology& topology = some.mesh.topology;
+  std::vector<uint8_t> red_in_all(all.mesh.topology.face_count() / 4);
+  for (uint32_t f = 0; f < red.size(); ++f)
+    if (red[f] != 0) red_in_all[in_all[f]] = 1;
   for (uint32_t f = 0; f < red.size(); ++f) {
     if (red[f] == 0) continue;
     for (uint32_t i = 0; i < 12; ++i) {
       const uint32_t h = 3 * some.first_child_of(f) + i;
-      const uint32_t h_of_all = 3 * all.first_child_of(f) + i;
+      const uint32_t h_of_all = 3 * all.first_child_of(in_all[f]) + i;
       const uint32_t twin = all.mesh.topology.twin[h_of_all];
       ASSERT_EQ(some.mesh.positions[topology.origin[h]], all.mesh.positions[all.mesh.topology.origin[h_of_all]]);
       ASSERT_EQ(some.trial.normals[Topology::face(h)], all.trial.normals[Topology::face(h_of_all)]);
-      if (twin != none && red[all.parent_of(Topology::face(twin))] == 0) continue;
+      if (twin != none && red_in_all[all.parent_of(Topology::face(twin))] == 0) continue;
       const uint32_t e = topology.edge[h];
       const uint32_t e_of_all = all.mesh.topology.edge[h_of_all];
       ASSERT_EQ(some.trial.at(e), all.trial.at(e_of_all));
@@ -50,8 +56,30 @@ void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const L
   }
 }
 
+/// Where the faces of a level are in one that holds all.
+std::vector<uint32_t> places_in_all(const HierarchyLevel& some, const HierarchyLevel& all) {
+  std::vector<uint32_t> places(some.mesh.topology.face_count());
+  for (uint32_t f = 0; f < places.size(); ++f) places[f] = all.first_child_of(some.parent_of(f)) + f % 4;
+  return places;
+}
+
+/// Some of the faces that a request may want divided in their turn: they and those beside them are below red ones.
+List<uint8_t> some_below(const HierarchyLevel& level, const List<uint8_t>& red, std::mt19937& random) {
+  const Topology& topology = level.mesh.topology;
+  const uint32_t density = 1 + random() % 3;
+  const auto is_below_red = [&](uint32_t f) { return red[level.parent_of(f)] != 0; };
+  List<uint8_t> below(topology.face_count(), 0);
+  for (uint32_t f = 0; f < below.size(); ++f) {
+    bool may_be = is_below_red(f) && random() % density == 0;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+      may_be = may_be && (topology.twin[h] == none || is_below_red(Topology::face(topology.twin[h])));
+    below[f] = may_be ? 1 : 0;
+  }
+  return below;
+}
+
 struct Count {
-  int whole = 0, part = 0;
+  int whole = 0, part = 0, below_whole_for_some = 0;
 };
 
 void compare(const Mesh& coarse, const Options& options, std::mt19937& random, Count& count) {
@@ -59,6 +87,10 @@ void compare(const Mesh& coarse, const Options& options, std::mt19937& random, C
   const Progress progress(options, hooks);
   Levels all(coarse, options, progress);
   all.deepen(List<uint8_t>(coarse.topology.face_count(), 1));
+  const std::shared_ptr<const HierarchyLevel> all_of_first = all.deepest();
+  if (options.levels > 2) all.deepen(List<uint8_t>(all_of_first->mesh.topology.face_count(), 1));
+  std::vector<uint32_t> in_all(coarse.topology.face_count());
+  std::iota(in_all.begin(), in_all.end(), 0U);
   std::uniform_real_distribution<double> coordinate(-1, 1);
   for (double share : {0.05, 0.2, 0.4, 0.5, 0.6, 0.7, 0.95}) {
     const Vec3d direction{coordinate(random), coordinate(random), coordinate(random)};
@@ -66,8 +98,15 @@ void compare(const Mesh& coarse, const Options& options, std::mt19937& random, C
     Levels some(coarse, options, progress);
     some.deepen(red);
     SCOPED_TRACE(std::to_string(share) + " of " + std::to_string(options.levels) + " levels");
-    expect_alike(*some.deepest(), *all.deepest(), red);
-    ++(some.deepest()->is_whole ? count.whole : count.part);
+    const std::shared_ptr<const HierarchyLevel> first = some.deepest();
+    expect_alike(*first, *all_of_first, red, in_all);
+    ++(first->is_whole ? count.whole : count.part);
+    if (options.levels <= 2) continue;
+    const List<uint8_t> red_below = some_below(*first, red, random);
+    if (std::ranges::find(red_below, 1) == red_below.end()) continue;
+    some.deepen(red_below);
+    expect_alike(*some.deepest(), *all.deepest(), red_below, places_in_all(*first, *all_of_first));
+    count.below_whole_for_some += first->is_whole && !first->is_tried_whole() ? 1 : 0;
   }
 }
 
@@ -75,7 +114,7 @@ TEST(Levels, AreBelowWhatIsRedAsWhereAllIs) {
   std::mt19937 random(5);
   Count count;
   for (const TriangleMesh& triangles : {real_mesh("bunny600.obj"), torus(12, 9), grid(9, 7), box({4, 4, 4}, {1, 1, 1})})
-    for (int levels : {1, 2, 3})
+    for (int levels : {1, 2, 3, 4})
       for (Tension tension : {Tension::off, Tension::soft})
         for (double w : {0.0, 0.02})
           for (double tolerance : {0.0, 1e-3})
@@ -83,6 +122,7 @@ TEST(Levels, AreBelowWhatIsRedAsWhereAllIs) {
                     random, count);
   EXPECT_GT(count.whole, 100);
   EXPECT_GT(count.part, 100);
+  EXPECT_GT(count.below_whole_for_some, 20);
 }
 
 }  // namespace

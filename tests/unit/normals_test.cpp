@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "core/four.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {
@@ -43,6 +44,16 @@ TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
       }
     }
   EXPECT_GT(without, 10U);
+}
+
+TEST(FaceNormals, AreTheSameWithoutAvx2) {
+  for (const Mesh& mesh : meshes()) {
+    const Array<Vec3f> with = face_normals(mesh);
+    may_use_avx2 = false;
+    const Array<Vec3f> without = face_normals(mesh);
+    may_use_avx2 = true;
+    for (uint32_t f = 0; f < with.size(); ++f) ASSERT_TRUE(are_same_bits(with[f], without[f])) << f;
+  }
 }
 
 TEST(FaceNormals, OfFoursAreThoseAskedOf) {

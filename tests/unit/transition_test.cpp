@@ -127,5 +127,21 @@ TEST(SmallestAngle, IsThatOfAllFacesWhateverTheirSize) {
   }
 }
 
+TEST(SmallestAngle, IsThatOfTheFacesOneByOneToTheBit) {
+  std::mt19937 random(14);
+  for (int i = 0; i < 200; ++i) {
+    TriangleMesh triangles = i % 2 == 0 ? random_manifold(random) : torus(5 + random() % 9, 4 + random() % 5);
+    const float flat = std::pow(10.0F, std::uniform_real_distribution<float>(-6, 0)(random));
+    for (Vec3f& p : triangles.positions) p = {flat * p.x, p.y, p.z};
+    const Mesh mesh = build_mesh(triangles);
+    double smallest = std::numbers::pi;
+    for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+      const auto corner = [&](uint32_t c) { return mesh.positions[mesh.topology.origin[3 * f + c]]; };
+      smallest = std::min(smallest, smallest_angle(build_mesh({{corner(0), corner(1), corner(2)}, {{0, 1, 2}}})));
+    }
+    EXPECT_EQ(smallest_angle(mesh), smallest);
+  }
+}
+
 }  // namespace
 }  // namespace papilio
