@@ -279,10 +279,10 @@ class SliverFinder {
         return std::array<Split, 4>{waiting.splits[i], waiting.splits[i + 1], waiting.splits[i + 2],
                                     waiting.splits[i + 3]};
       };
-      if (&waiting == &waiting_[0])
-        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), false);
-      else
+      if (has_two_targets(waiting.splits[0].mask))
         for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), true);
+      else
+        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), false);
     });
     for (size_t i = 0; i < waiting.count; ++i) {
       const auto& [f, mask] = waiting.splits[i];
