@@ -27,15 +27,13 @@ class FourRule {
                       {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
-  /// Edges of the children of face f. Returns those of the first halves of its sides; those beside them, with the
-  /// lowest bit flipped, are of the second.
-  OfSides number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
+  /// Edges of the children of face f.
+  void number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
     // Whether the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
                               corner[2] > corner[0] ? 1U : 0U};
     const OfSides first{2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
     put_edges_of_four(first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}, inner_edge(f), child_edge);
-    return first;
   }
 
   /// The first of the three edges inside face f.
