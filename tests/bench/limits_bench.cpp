@@ -63,6 +63,8 @@ void add_growth(const char* name, int levels, int few_levels) {
 void add_limits() {
   add_copy("elephant20k.drc", 3);
   add_copy("elephant89k.drc", 3);
+  add_growth("elephant62.5k.drc", 4, 2);  // 16 million triangles of one
+  add_growth("elephant62.5k.drc", 4, 3);
   add_growth("elephant89k.drc", 3, 2);
   add_growth("elephant89k.drc", 4, 2);
 }

@@ -2,8 +2,8 @@
 # coarse_meshes.sh PRESET: makes, in build/deps/meshes and unless they are there, with the programs of build/PRESET:
 #   bunny600.obj, bunny600.drc   the bunny in 600 faces
 #   elephant2000.obj             the elephant in 2000
-#   elephant2k.drc, elephant10k.drc, elephant20k.drc, elephant89k.drc
-#                                a finer, closed elephant in 2000, 10000, 20000 and
+#   elephant2k.drc, elephant10k.drc, elephant20k.drc, elephant62.5k.drc, elephant89k.drc
+#                                a finer, closed elephant in 2000, 10000, 20000, 62,500 and
 #                                all its 88,928 faces
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -17,9 +17,9 @@ in_draco_order() {
   mv unfinished.drc "$2"
 }
 [[ -f bunny600.drc ]] || in_draco_order bunny600.obj bunny600.drc
-for thousands in 2 10 20; do
+for thousands in 2 10 20 62.5; do
   [[ ! -f elephant${thousands}k.drc ]] || continue
-  "$programs/simplify_mesh" cgal/refined_elephant.off unfinished.obj "${thousands}000"
+  "$programs/simplify_mesh" cgal/refined_elephant.off unfinished.obj "$(awk "BEGIN { print 1000 * $thousands }")"
   in_draco_order unfinished.obj "elephant${thousands}k.drc"
   rm unfinished.obj
 done
