@@ -163,6 +163,20 @@ json parse_document(std::string_view text) {
   }
 }
 
+/// Appends the values of a list that is given as repeated fields (`a=1&a=2`) to its first field (`a=1,2`).
+QueryFields join_repeated_lists(const QueryFields& fields) {
+  QueryFields joined;
+  for (const auto& [name, text] : fields) {
+    const bool is_list = find(name).type == ParameterType::numbers;
+    const auto first = std::ranges::find(joined, name, &QueryFields::value_type::first);
+    if (is_list && first != joined.end())
+      first->second += "," + text;
+    else
+      joined.emplace_back(name, text);
+  }
+  return joined;
+}
+
 std::string value_text(const ParameterInfo& info, const std::vector<double>& values) {
   if (info.type == ParameterType::boolean) return values[0] != 0 ? "true" : "false";
   if (info.type == ParameterType::choice) return std::string(info.choices[static_cast<size_t>(values[0])]);
@@ -180,7 +194,7 @@ bool operator==(const Parameters& a, const Parameters& b) {
 
 Parameters parse_query(const QueryFields& fields) {
   Reader reader;
-  for (const auto& [name, text] : fields) {
+  for (const auto& [name, text] : join_repeated_lists(fields)) {
     const ParameterInfo& info = find(name);
     reader.set(info, parse_text(info, text));
   }

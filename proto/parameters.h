@@ -48,7 +48,7 @@ struct ParameterInfo {
 
 /// Both refuse, with `Problem`: unknown_parameter for a name that is not in the table, bad_parameter for a
 /// name given twice, a value of another type or out of range, and a view that defines no picture; bad_request
-/// for JSON that cannot be read.
+/// for JSON that cannot be read. The numbers of a list may be spread over repeated fields.
 [[nodiscard]] Parameters parse_query(const QueryFields& fields);
 /// `text`: one object, nested where names have dots, lists as arrays.
 [[nodiscard]] Parameters parse_json(std::string_view text);

@@ -200,18 +200,16 @@ ordered_json content(const std::vector<std::string>& types, const ordered_json& 
 }
 
 const ordered_json& binary() {
-  static const ordered_json schema = ordered_json::object();  // OpenAPI 3.1: bytes have a media type, but no schema
+  // OpenAPI 3.1 needs no schema for bytes, but without `format` client generators send and expect JSON.
+  static const ordered_json schema{{"type", "string"}, {"format", "binary"}};
   return schema;
 }
 
 ordered_json refined_answer() {
-  ordered_json types = content({draco_type, bytes_type}, binary());
-  types[multipart_type] = {
-      {"schema",
-       {{"type", "array"},
-        {"description",
-         "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
-         "and a JSON summary. A problem after the stream has begun is its last part."}}}};
+  ordered_json types = content({draco_type, bytes_type, multipart_type}, binary());
+  types[multipart_type]["schema"]["description"] =
+      "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
+      "and a JSON summary. A problem after the stream has begun is its last part.";
   return {{"description", "The refined mesh"},
           {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
                                          "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
@@ -226,9 +224,12 @@ ordered_json json_answer(const std::string& description, const std::string& sche
 }
 
 ordered_json file_answer(const std::string& description, const std::vector<std::string>& types) {
+  ordered_json bodies = ordered_json::object();
+  for (const std::string& type : types)
+    bodies[type]["schema"] = type.starts_with("text/") ? ordered_json{{"type", "string"}} : binary();
   return {{"description", description},
           {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control"})},
-          {"content", content(types, binary())}};
+          {"content", bodies}};
 }
 
 void add_successes(const Endpoint& endpoint, ordered_json& answers) {
@@ -309,14 +310,14 @@ void add_problems(const Endpoint& endpoint, ordered_json& answers) {
 ordered_json request_body(Input input) {
   ordered_json types;
   if (input == Input::parameters) types = content({json_type}, schema_reference("Parameters"));
-  if (input == Input::mesh || input == Input::mesh_or_form) types = content({draco_type, bytes_type}, binary());
+  // Client generators look at the first type, and know of this one that it is bytes.
+  if (input == Input::mesh || input == Input::mesh_or_form) types = content({bytes_type, draco_type}, binary());
   if (input == Input::mesh_or_form)
-    types["multipart/form-data"] = {{"schema",
-                                     {{"type", "object"},
-                                      {"required", {"mesh"}},
-                                      {"properties",
-                                       {{"mesh", {{"type", "string"}, {"contentMediaType", draco_type}}},
-                                        {"params", schema_reference("Parameters")}}}}}};
+    types["multipart/form-data"] = {
+        {"schema",
+         {{"type", "object"},
+          {"required", {"mesh"}},
+          {"properties", {{"mesh", binary()}, {"params", schema_reference("Parameters")}}}}}};
   return {{"required", true}, {"content", types}};
 }
 
@@ -342,18 +343,18 @@ ordered_json operation(const Endpoint& endpoint) {
 }  // namespace
 
 std::string openapi_json(const EngineOptions& options) {
-  ordered_json document{
-      {"openapi", "3.1.0"},
-      {"info",
-       {{"title", "Papilio"},
-        {"version", PAPILIO_VERSION},
-        {"summary", "Refines Draco meshes where they are curved, visible and large on screen"},
-        {"description",
-         "HEAD follows GET, and OPTIONS answers, everywhere. Parameters that are not known are refused."},
-        {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
-      {"servers", {{{"url", "/"}}}},
-      {"security", {{{"key", ordered_json::array()}}, ordered_json::object()}},
-      {"paths", ordered_json::object()}};
+  ordered_json document{{"openapi", "3.1.0"},
+                        {"info",
+                         {{"title", "Papilio"},
+                          {"version", PAPILIO_VERSION},
+                          {"summary", "Refines Draco meshes where they are curved, visible and large on screen"},
+                          {"description",
+                           "HEAD follows GET, and OPTIONS answers, everywhere. Parameters that are not known are "
+                           "refused. A list in the query is written with commas or as repeated fields."},
+                          {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
+                        {"servers", {{{"url", "/"}}}},
+                        {"security", {{{"key", ordered_json::array()}}, ordered_json::object()}},
+                        {"paths", ordered_json::object()}};
   for (const Endpoint& endpoint : endpoints()) {
     std::string method(endpoint.method);
     std::ranges::transform(method, method.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -74,4 +74,4 @@ fi
 [[ $meshes == no ]] || "$here/real_meshes.sh"
 [[ $page == no ]] || "$here/web_packages.sh"
 [[ $manifests == no ]] || "$here/manifest_tools.sh"
-[[ " $* " != *" test "* ]] || "$here/openapi_linter.sh"
+[[ " $* " != *" test "* ]] || { "$here/openapi_linter.sh" && "$here/client_generators.sh"; }

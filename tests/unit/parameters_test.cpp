@@ -74,6 +74,24 @@ TEST(Parameters, CanonicalFormIsOneForEqualParametersAndReadsBack) {
   EXPECT_EQ(parse_query(to_fields(full)), full);
 }
 
+TEST(Parameters, RepeatedFieldsOfAListAreOneList) {
+  const Parameters commas = parse_query({{"view.eye", "0,1,3"}, {"levels", "1"}, {"flatness", "0.8,0.9"}});
+  const Parameters repeated = parse_query({{"view.eye", "0"},
+                                           {"flatness", "0.8"},
+                                           {"view.eye", "1"},
+                                           {"levels", "1"},
+                                           {"flatness", "0.9"},
+                                           {"view.eye", "3"}});
+  EXPECT_EQ(repeated, commas);
+  EXPECT_EQ(to_query(repeated), to_query(commas));
+  EXPECT_EQ(parse_query({{"view.eye", "0,1"}, {"view.eye", "3"}, {"levels", "1"}, {"flatness", "0.8,0.9"}}), commas);
+  const Refusal twice = query_refusal({{"view.eye", "0,1,3"}, {"view.eye", "0,1,3"}});
+  EXPECT_EQ(twice.code, Code::bad_parameter);
+  EXPECT_EQ(twice.parameter, "view.eye");
+  EXPECT_EQ(query_refusal({{"view.eye", "0"}, {"view.eye", ""}, {"view.eye", "3"}}).parameter, "view.eye");
+  EXPECT_EQ(query_refusal({{"w", "0"}, {"w", "0"}}).detail, "w is given twice; give it once.");
+}
+
 TEST(Parameters, EveryRowRoundTripsAndRefusesItsNeighbours) {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string name(info.name);
