@@ -1,0 +1,193 @@
+#include "tests/support/optimal_collapse.h"
+
+#include <algorithm>
+#include <queue>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "tests/support/quadric.h"
+
+namespace papilio::test {
+namespace {
+
+/// A boundary's plane counts this many times as much as a face's of the edge's length squared.
+constexpr double boundary_weight = 100;
+/// A collapse that turns a face's normal to a smaller cosine is refused.
+constexpr double least_cosine = 0.2;
+
+struct Collapse {
+  double cost;
+  Vec3d place;  ///< of the vertex that is left
+  uint32_t kept, removed;
+  uint32_t age;  ///< the ages of both vertices when it was computed: a collapse is stale once either has changed
+};
+/// For a heap whose top is the cheapest. Ties go by index: the result does not depend on the library.
+bool is_later(const Collapse& a, const Collapse& b) {
+  if (a.cost != b.cost) return a.cost > b.cost;
+  return a.kept != b.kept ? a.kept > b.kept : a.removed > b.removed;
+}
+
+class Simplifier {
+ public:
+  explicit Simplifier(const Mesh& mesh)
+      : faces_of_(mesh.positions.size()),
+        quadrics_(mesh.positions.size()),
+        ages_(mesh.positions.size()),
+        face_count_(mesh.topology.face_count()) {
+    const Topology& t = mesh.topology;
+    for (const Vec3f p : mesh.positions) places_.push_back(to_double(p));
+    for (uint32_t f = 0; f < face_count_; ++f) {
+      faces_.push_back({t.origin[3 * f], t.origin[3 * f + 1], t.origin[3 * f + 2]});
+      for (const uint32_t v : faces_[f]) faces_of_[v].push_back(f);
+      add_quadrics(t, f);
+    }
+    for (const uint32_t h : t.half_edge) propose(t.origin[h], t.tip(h));
+  }
+
+  void run(size_t faces) {
+    while (face_count_ > faces && !queue_.empty()) {
+      const Collapse next = queue_.top();
+      queue_.pop();
+      if (next.age == ages_[next.kept] + ages_[next.removed] && is_allowed(next)) apply(next);
+    }
+    if (face_count_ > faces)
+      throw std::runtime_error("no further edge can be collapsed at " + std::to_string(face_count_) + " faces");
+  }
+
+  [[nodiscard]] TriangleMesh result() const {
+    TriangleMesh out;
+    std::vector<uint32_t> index(places_.size());
+    for (uint32_t v = 0; v < places_.size(); ++v) {
+      if (faces_of_[v].empty()) continue;
+      index[v] = static_cast<uint32_t>(out.positions.size());
+      out.positions.push_back(to_float(places_[v]));
+    }
+    for (uint32_t f = 0; f < faces_.size(); ++f)
+      if (is_alive(f)) out.triangles.push_back({index[faces_[f][0]], index[faces_[f][1]], index[faces_[f][2]]});
+    return out;
+  }
+
+ private:
+  void add_quadrics(const Topology& t, uint32_t face) {
+    const auto [a, b, c] = faces_[face];
+    const Vec3d twice_area = cross(places_[b] - places_[a], places_[c] - places_[a]);
+    const double size = length(twice_area);
+    if (size == 0) return;
+    const Vec3d normal = (1 / size) * twice_area;
+    for (const uint32_t v : faces_[face]) quadrics_[v] = quadrics_[v] + Quadric(normal, places_[a], size / 2);
+    for (uint32_t h = 3 * face; h < 3 * face + 3; ++h) {
+      if (t.twin[h] != none) continue;
+      const Vec3d edge = places_[t.tip(h)] - places_[t.origin[h]];
+      const double squared = dot(edge, edge);
+      if (squared == 0) continue;
+      const Quadric wall((1 / std::sqrt(squared)) * cross(edge, normal), places_[t.origin[h]],
+                         boundary_weight * squared);
+      for (const uint32_t v : {t.origin[h], t.tip(h)}) quadrics_[v] = quadrics_[v] + wall;
+    }
+  }
+
+  void propose(uint32_t a, uint32_t b) {
+    const Quadric sum = quadrics_[a] + quadrics_[b];
+    const auto [kept, removed] = std::minmax(a, b);
+    const Vec3d place = best_place(sum, places_[kept], places_[removed]);
+    queue_.push({sum.at(place), place, kept, removed, ages_[a] + ages_[b]});
+  }
+
+  /// The quadric's minimum; where it has none, or one far away, the best of both ends and the midpoint.
+  static Vec3d best_place(const Quadric& quadric, Vec3d a, Vec3d b) {
+    const Vec3d middle = 0.5 * (a + b);
+    const std::optional<Vec3d> minimum = quadric.minimum();
+    if (minimum && length(*minimum - middle) < 2 * length(b - a)) return *minimum;
+    return std::ranges::min({middle, a, b}, {}, [&](Vec3d p) { return quadric.at(p); });
+  }
+
+  [[nodiscard]] std::vector<uint32_t> neighbours(uint32_t v) const {
+    std::vector<uint32_t> all;
+    for (const uint32_t f : faces_of_[v])
+      for (const uint32_t corner : faces_[f])
+        if (corner != v) all.push_back(corner);
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+  [[nodiscard]] bool is_alive(uint32_t face) const { return faces_[face][0] != faces_[face][1]; }
+  [[nodiscard]] bool has(uint32_t face, uint32_t v) const {
+    return std::ranges::find(faces_[face], v) != faces_[face].end();
+  }
+  [[nodiscard]] bool is_allowed(const Collapse& c) const {
+    return keeps_topology(c.kept, c.removed) && turns_no_face(c);
+  }
+
+  /// The link condition: the neighbours of both ends are the apexes of the edge's faces and no others; an edge between
+  /// two boundaries is one; and faces are left over.
+  [[nodiscard]] bool keeps_topology(uint32_t a, uint32_t b) const {
+    const std::vector<uint32_t> around_a = neighbours(a), around_b = neighbours(b);
+    std::vector<uint32_t> common;
+    std::ranges::set_intersection(around_a, around_b, std::back_inserter(common));
+    const auto shared = static_cast<size_t>(std::ranges::count_if(faces_of_[a], [&](uint32_t f) { return has(f, b); }));
+    const bool both_on_boundary = around_a.size() > faces_of_[a].size() && around_b.size() > faces_of_[b].size();
+    return common.size() == shared && !(shared == 2 && both_on_boundary) &&
+           around_a.size() + around_b.size() > 2 * (shared + 1);
+  }
+
+  [[nodiscard]] Vec3d normal(const Triangle& t, uint32_t moved, Vec3d place) const {
+    const auto at = [&](uint32_t v) { return v == moved ? place : places_[v]; };
+    return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+  }
+
+  [[nodiscard]] bool turns_no_face(const Collapse& c) const {
+    const auto is_kept_upright = [&](uint32_t v, uint32_t other) {
+      return std::ranges::all_of(faces_of_[v], [&](uint32_t f) {
+        if (has(f, other)) return true;
+        const Vec3d before = normal(faces_[f], v, places_[v]), after = normal(faces_[f], v, c.place);
+        return dot(before, after) > least_cosine * length(before) * length(after) || length(before) == 0;
+      });
+    };
+    return is_kept_upright(c.kept, c.removed) && is_kept_upright(c.removed, c.kept);
+  }
+
+  void apply(const Collapse& c) {
+    for (const uint32_t f : faces_of_[c.removed]) {
+      if (has(f, c.kept)) {
+        for (const uint32_t v : faces_[f])
+          if (v != c.removed) std::erase(faces_of_[v], f);
+        faces_[f] = {};
+        --face_count_;
+      } else {
+        std::ranges::replace(faces_[f], c.removed, c.kept);
+        faces_of_[c.kept].push_back(f);
+      }
+    }
+    faces_of_[c.removed].clear();
+    places_[c.kept] = c.place;
+    quadrics_[c.kept] = quadrics_[c.kept] + quadrics_[c.removed];
+    ++ages_[c.kept];
+    ++ages_[c.removed];
+    for (const uint32_t v : neighbours(c.kept)) propose(c.kept, v);
+  }
+
+  std::vector<Vec3d> places_;
+  std::vector<Triangle> faces_;  ///< a removed one has all corners equal
+  std::vector<std::vector<uint32_t>> faces_of_;
+  std::vector<Quadric> quadrics_;
+  std::vector<uint32_t> ages_;  ///< how often the vertex has changed
+  size_t face_count_;
+  std::priority_queue<Collapse, std::vector<Collapse>, decltype(&is_later)> queue_{&is_later};
+};
+
+}  // namespace
+
+TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces) {
+  const Mesh welded = build_mesh(mesh);
+  if (!welded.topology.pinched.empty() ||
+      std::ranges::find(welded.topology.kind, EdgeKind::shared) != welded.topology.kind.end())
+    throw std::runtime_error("the surface is not manifold");
+  Simplifier simplifier(welded);
+  simplifier.run(faces);
+  return simplifier.result();
+}
+
+}  // namespace papilio::test

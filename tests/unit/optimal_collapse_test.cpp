@@ -1,0 +1,108 @@
+#include "tests/support/optimal_collapse.h"
+
+#include <gtest/gtest.h>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "client/lib/compare.h"
+#include "core/refine.h"
+#include "tests/support/invariants.h"
+#include "tests/support/quadric.h"
+#include "tests/support/shapes.h"
+
+namespace papilio::test {
+namespace {
+
+/// A sphere of radius one: an octahedron in four, four times, its vertices moved out.
+TriangleMesh sphere() {
+  Options options;
+  options.levels = 4;
+  TriangleMesh mesh = refine(build_mesh(octahedron()), options).mesh.triangles();
+  for (Vec3f& p : mesh.positions) p = (1 / length(p)) * p;
+  return mesh;
+}
+
+TriangleMesh by_meshoptimizer(const TriangleMesh& mesh, size_t faces) {
+  TriangleMesh out;
+  out.positions = mesh.positions;
+  std::vector<uint32_t> indices(3 * mesh.triangles.size());
+  const size_t count =
+      meshopt_simplify(indices.data(), mesh.triangles.data()->data(), indices.size(), &mesh.positions.data()->x,
+                       mesh.positions.size(), sizeof(Vec3f), 3 * faces, 1.0F, 0, nullptr);
+  for (size_t i = 0; i < count; i += 3) out.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  return out;
+}
+
+double rms(const TriangleMesh& fine, const TriangleMesh& coarse) {
+  return client::compare(fine, coarse, {.samples = 2000}).rms_forward;
+}
+
+TEST(Quadric, MinimumIsWherePlanesMeet) {
+  const Vec3d corner{2, -3, 5};
+  const Quadric sum = Quadric({1, 0, 0}, corner, 4) + Quadric({0, 0.6, 0.8}, corner, 1) + Quadric({0, 0, 1}, corner, 9);
+  ASSERT_TRUE(sum.minimum());
+  EXPECT_NEAR(length(*sum.minimum() - corner), 0, 1e-12);
+  EXPECT_NEAR(sum.at(corner), 0, 1e-12);
+  EXPECT_NEAR(sum.at({3, -3, 5}), 4, 1e-12) << "the weight times the squared distance to the one plane left";
+}
+
+TEST(Quadric, ParallelPlanesHaveNoSingleMinimum) {
+  EXPECT_FALSE((Quadric({0, 0, 1}, {0, 0, 1}, 1) + Quadric({0, 0, 1}, {0, 0, 2}, 1)).minimum());
+  EXPECT_FALSE((Quadric({0, 0, 1}, {}, 1) + Quadric({1, 0, 0}, {}, 1)).minimum());
+}
+
+TEST(OptimalCollapse, FlatSquareBecomesTwoFacesWithoutError) {
+  const TriangleMesh square = grid(12, 12);
+  const TriangleMesh result = collapse_optimally(square, 2);
+  EXPECT_EQ(result.triangles.size(), 2U);
+  EXPECT_LT(client::compare(square, result, {.samples = 2000}).hausdorff, 1e-6);
+}
+
+TEST(OptimalCollapse, BoxBecomesTwelveFacesWithoutError) {
+  const TriangleMesh fine = box({8, 6, 4}, {4, 3, 2});
+  const TriangleMesh result = collapse_optimally(fine, 12);
+  EXPECT_EQ(result.triangles.size(), 12U);
+  EXPECT_LT(client::compare(fine, result, {.samples = 2000}).hausdorff, 1e-6);
+}
+
+TEST(OptimalCollapse, TopologyIsKept) {
+  for (const auto& [mesh, euler] : {std::pair{sphere(), 2}, std::pair{torus(40, 20), 0}}) {
+    for (const size_t faces : {size_t{200}, size_t{60}}) {
+      const TriangleMesh result = collapse_optimally(mesh, faces);
+      EXPECT_EQ(result.triangles.size(), faces);
+      const EdgeCensus edges = count_edges(result);
+      EXPECT_EQ(edges.boundary, 0U);
+      EXPECT_EQ(edges.irregular, 0U);
+      EXPECT_EQ(euler_characteristic(result), euler);
+    }
+  }
+}
+
+TEST(OptimalCollapse, TetrahedronIsTheSmallestSphere) {
+  EXPECT_EQ(collapse_optimally(sphere(), 4).triangles.size(), 4U);
+  EXPECT_THROW((void)collapse_optimally(sphere(), 2), std::runtime_error);
+}
+
+TEST(OptimalCollapse, IsCloserThanHalfEdgeCollapse) {
+  for (const TriangleMesh& mesh : {sphere(), torus(60, 30)}) {
+    const TriangleMesh halved = by_meshoptimizer(mesh, 300);
+    ASSERT_GT(halved.triangles.size(), 200U);
+    const TriangleMesh ours = collapse_optimally(mesh, halved.triangles.size());
+    EXPECT_LE(ours.triangles.size(), halved.triangles.size());
+    EXPECT_LT(rms(mesh, ours), 0.7 * rms(mesh, halved));
+  }
+}
+
+TEST(OptimalCollapse, NonManifoldIsRefused) {
+  TriangleMesh wing;
+  wing.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+  wing.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+  EXPECT_THROW((void)collapse_optimally(wing, 2), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace papilio::test
