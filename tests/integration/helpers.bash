@@ -26,6 +26,11 @@ stop_server() {
   wait "$server_pid"
 }
 
+# skip_if_sanitized: for tests of what is the same in every build.
+skip_if_sanitized() {
+  ! grep -q '^PAPILIO_SANITIZE:STRING=.' "$PAPILIO_BUILD/CMakeCache.txt" || skip "the release build runs it"
+}
+
 # free_port: one that nobody listens on.
 free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
 

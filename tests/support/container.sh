@@ -85,8 +85,9 @@ no_test_ran() { ! grep -qE '^(not )?ok |tests passed' "$1"; }
 # The same once, with this machine's certificates and npm settings, should it have any of its own; says why it failed.
 build_image() {
   local log=$containers/$1.log
-  local options=(--isolation chroot --layers --pull-never --format docker -v /etc/ssl/certs:/etc/ssl/certs:ro
-    -v "$containers/npmrc:/root/.npmrc:ro")
+  # Warnings are errors as in the suite's build: with equal flags the compiler's cache of one serves the other.
+  local options=(--isolation chroot --layers --pull-never --format docker --build-arg PAPILIO_WERROR=ON
+    -v /etc/ssl/certs:/etc/ssl/certs:ro -v "$containers/npmrc:/root/.npmrc:ro")
   { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
   chmod 600 "$containers/npmrc"
   TMPDIR=$cache buildah bud "${options[@]}" -f "$2" -t "$1" . >"$log" 2>&1 && return 0

@@ -1,0 +1,1 @@
+set(PAPILIO_VERSION 0.1.0)
