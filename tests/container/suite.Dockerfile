@@ -7,6 +7,6 @@ COPY dev ./
 COPY tests/support tests/support
 COPY client/web/package.json client/web/package-lock.json client/web/.npmrc client/web/
 COPY tests/openapi/package.json tests/openapi/package-lock.json tests/openapi/.npmrc tests/openapi/
-RUN tests/support/setup.sh build test
+RUN tests/support/setup.sh build page test
 COPY . .
 RUN --mount=type=cache,target=/root/.cache/ccache ./dev test

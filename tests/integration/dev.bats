@@ -23,3 +23,26 @@ clang_stubs() {
   [[ $output == *"clang-format 14 is required, and there is only: Debian clang-format version 19.1.7"* ]]
   [[ $output == *"apt-get install clang-format-14"* ]]
 }
+
+@test "build and demo need none of the libraries of the tests" {
+  tested=$("$support/setup.sh" --list build test)
+  [[ $tested == *gtest* && $tested == *benchmark* && $tested == *openmesh* ]]
+  needed=$("$support/setup.sh" --list build demo)
+  [[ $needed == *g++* && $needed == *libdraco-dev* ]]
+  [[ $needed != *gtest* && $needed != *benchmark* && $needed != *openmesh* && $needed != *npm* ]]
+  for package in GTest benchmark; do
+    options+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON") # as if it were not installed
+  done
+  cmake -G Ninja -S "$BATS_TEST_DIRNAME/../.." -B "$BATS_TEST_TMPDIR/build" "${options[@]}" \
+    -DPAPILIO_TESTS=OFF -DPAPILIO_WEB=OFF -DPAPILIO_DEMO=ON >/dev/null
+  ! grep -qi openmesh "$BATS_TEST_TMPDIR/build/CMakeCache.txt"
+}
+
+@test "the demo with --exit refines a bunny, and does not point to a viewer that is gone" {
+  run "$support/demo.sh" --exit
+  [ "$status" = 0 ]
+  [[ $output =~ coarse\ +302\ +600 ]]
+  [[ $output =~ uniform,\ 3\ levels\ +19202\ +38400 ]]
+  [[ $output == *"From the start of ./dev demo:"* ]]
+  [[ $output != *http* && $output != *iewer* ]]
+}

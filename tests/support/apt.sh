@@ -46,9 +46,12 @@ apt_install() {
     die "this needs root: run \`apt-get update && apt-get install -y --no-install-recommends $*\` as root, then this again"
   fi
   apt_update
-  say "installing $*"
+  local count began=$SECONDS
+  count=$(apt-get install --simulate --no-install-recommends "$@" 2>/dev/null | grep -c '^Inst ') || true
+  say "installing $count packages (about $((count / 150 + 1)) min): $*, and what they need"
   as_root install -y --no-install-recommends "$@" || { sleep 10 && as_root install -y --no-install-recommends "$@"; } ||
     die "could not install: $*"
+  say "installed in $((SECONDS - began)) s"
 }
 
 # unpack_package PACKAGE FOLDER: the package's files under FOLDER, without installing it or what it depends on.

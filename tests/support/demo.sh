@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # demo.sh [--exit]: starts the release server on loopback, refines a coarse bunny uniformly, adaptively and for a view,
-# and shows what each cost. The server stays up until Ctrl-C; with --exit it is stopped at once.
+# and shows what each cost. The server stays up with the viewer until Ctrl-C; with --exit it has no viewer and is stopped
+# at once. What is refined and what comes back is in build/demo.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cd "$root"
@@ -26,16 +27,22 @@ die() {
   exit 1
 }
 
-tests/support/coarse_meshes.sh release
-coarse=build/deps/meshes/bunny600.drc
+programs=${PAPILIO_BUILD:-build/release}
+coarse=build/demo/bunny.drc
 rm -rf build/demo
-tests/support/demo_samples.sh build/demo/samples
-info=$(build/release/papilio info --json "$coarse")
+mkdir -p build/demo/samples
+"$programs/coarsen" build/deps/meshes/cgal/bunny00.off build/demo/bunny.obj 600
+"$programs/papilio" convert build/demo/bunny.obj "$coarse"
+cp "$coarse" build/demo/samples/
+info=$("$programs/papilio" info --json "$coarse")
+viewer=()
+[[ ${1:-} != --exit ]] || viewer=(--web '')
 
 # Port 8080, or a free one where something else answers there.
 port=8080
 if (exec 3<>/dev/tcp/127.0.0.1/8080) 2>/dev/null; then port=0; fi
-build/release/papilio-server --host 127.0.0.1 --port "$port" --samples build/demo/samples >build/demo/server.out 2>build/demo/server.log &
+"$programs/papilio-server" --host 127.0.0.1 --port "$port" --samples build/demo/samples "${viewer[@]}" \
+  >build/demo/server.out 2>build/demo/server.log &
 server_pid=$!
 for _ in {1..100}; do
   if [[ -s build/demo/server.out ]] || ! kill -0 "$server_pid" 2>/dev/null; then break; fi
@@ -86,14 +93,17 @@ refine 'uniform, 3 levels' uniform 'levels=3'
 refine 'to 0.1 % of its size' adaptive 'levels=3&tolerance=0.001'
 refine 'to a pixel, from the front' view "levels=3&$view&view.error_pixels=1&view.edge_pixels=0"
 refine 'the best 4000 faces' budget 'levels=3&max_faces=4000'
-printf '\nThe requests, to be pasted again in %s; the meshes are in build/demo:\n%s' "$root" "$commands"
-
-printf '\nThe viewer, with these and other meshes: %s/\n' "$url"
-
+elapsed=$((EPOCHSECONDS - ${PAPILIO_DEMO_BEGAN:-EPOCHSECONDS}))
 if [[ ${1:-} == --exit ]]; then
+  printf '\nThe meshes are in build/demo.\n'
   stop_server || die "the server did not stop cleanly; what it said is in build/demo/server.log"
-  exit 0
+else
+  printf '\nThe requests, to be pasted again in %s; the meshes are in build/demo:\n%s' "$root" "$commands"
+  printf '\nThe viewer, with this and other meshes: %s/\n' "$url"
 fi
+printf '%s\n' "From the start of ./dev demo: $((elapsed / 60)) min $((elapsed % 60)) s."
+[[ ${1:-} != --exit ]] || exit 0
+
 printf 'The server stays up; Ctrl-C stops it.\n'
 trap 'echo; stop_server || exit 1; exit 0' INT TERM
 wait "$server_pid" || die "the server ended by itself; what it said is in build/demo/server.log"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Real meshes for the tests, the benchmark and the demo, fetched by package name into build/deps/meshes; never committed.
+# real_meshes.sh [cgal] [bunny]: real meshes for the tests, the benchmark and the demo, fetched by package name into
+# build/deps/meshes; never committed.
 #   cgal/*.off ...   the example data of CGAL (Debian's libcgal-demo, unpacked, not installed)
 #   bunny.obj        the Stanford bunny, 3,674 faces, closed (npm's `bunny`, public domain)
 set -euo pipefail
@@ -9,7 +10,7 @@ source "$here/apt.sh"
 meshes=$deps/meshes
 mkdir -p "$meshes"
 
-if [[ ! -d $meshes/cgal ]]; then
+if [[ " $* " == *" cgal "* && ! -d $meshes/cgal ]]; then
   unfinished=$(unfinished_folder cgal)
   unpack_package libcgal-demo "$unfinished"
   tar -C "$unfinished" -xzf "$unfinished/usr/share/doc/libcgal-dev/data.tar.gz" data/meshes
@@ -17,7 +18,7 @@ if [[ ! -d $meshes/cgal ]]; then
   rm -r "$unfinished"
 fi
 
-if [[ ! -f $meshes/bunny.obj ]]; then
+if [[ " $* " == *" bunny "* && ! -f $meshes/bunny.obj ]]; then
   say "fetching the bunny"
   unfinished=$(unfinished_folder bunny)
   (cd "$unfinished" && npm pack --silent bunny@1.0.1 </dev/null >npm.log 2>&1) || {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# setup.sh [build|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there yet; without arguments, everything.
-# Says what it does; when there is nothing to do it does nothing, quickly and silently.
+# setup.sh [--list] [build|page|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there
+# yet; without arguments, everything. Says what it does; when there is nothing to do it does nothing, quickly and
+# silently. --list: only prints the names of the packages and programs.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh
@@ -8,36 +9,48 @@ source "$here/apt.sh"
 
 packages=()
 programs=() # as program:package, for what may have been installed in some other way
-meshes=no
+meshes=() # as real_meshes.sh calls them
+libraries=no # of the tests: GoogleTest, Google Benchmark, OpenMesh
 page=no
 manifests=no
-(($#)) || set -- build test demo bench check fuzz soak container
+list=no
+if [[ ${1:-} == --list ]]; then
+  list=yes
+  shift
+fi
+(($#)) || set -- build page test demo bench check fuzz soak container
 for purpose in "$@"; do
   case $purpose in
     build)
       packages+=(g++ cmake ninja-build pkgconf ccache libcpp-httplib-dev nlohmann-json3-dev libdraco-dev libspdlog-dev
-        libcli11-dev libmeshoptimizer-dev libgtest-dev libgmock-dev libbenchmark-dev libssl-dev libhiredis-dev
-        prometheus-cpp-dev ca-certificates)
-      page=yes
+        libcli11-dev libmeshoptimizer-dev libssl-dev libhiredis-dev prometheus-cpp-dev ca-certificates)
       ;;
+    page) page=yes ;;
     test)
-      meshes=yes packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx chromium fonts-dejavu-core)
+      meshes=(cgal bunny) libraries=yes
+      packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx chromium fonts-dejavu-core)
       programs+=(python3:python3)
       ;;
-    demo) meshes=yes packages+=(curl jq ca-certificates) ;;
-    bench) meshes=yes packages+=(ca-certificates) ;;
-    check) page=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
-    fuzz) packages+=(clang libclang-rt-dev dpkg-dev ca-certificates) ;;
-    soak) meshes=yes packages+=(wrk curl jq ca-certificates) ;;
+    demo) meshes+=(cgal) packages+=(curl jq ca-certificates) ;;
+    bench) meshes=(cgal bunny) libraries=yes packages+=(ca-certificates) ;;
+    check) page=yes libraries=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
+    fuzz) packages+=(libgtest-dev clang libclang-rt-dev dpkg-dev ca-certificates) ;;
+    soak) meshes=(cgal bunny) libraries=yes packages+=(wrk curl jq ca-certificates) ;;
     container)
-      meshes=yes manifests=yes
+      meshes=(cgal bunny) libraries=yes manifests=yes
       packages+=(buildah podman runc netavark aardvark-dns catatonit docker-compose iptables iproute2 util-linux mmdebstrap bats perl curl jq
         wrk redis-server ca-certificates)
       ;;
     *) die "unknown purpose '$purpose'" ;;
   esac
 done
-[[ $meshes$page == nono ]] || programs+=(node:nodejs npm:npm)
+[[ $libraries == no ]] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev)
+[[ $page$manifests == nono && " ${meshes[*]} " != *" bunny "* ]] || programs+=(node:nodejs npm:npm)
+if [[ $list == yes ]]; then
+  printf '%s\n' "${packages[@]}" "${programs[@]#*:}" | sort -u
+  [[ $libraries == no ]] || echo libopenmesh-dev
+  exit
+fi
 
 missing=()
 if command -v dpkg-query >/dev/null; then
@@ -60,18 +73,21 @@ flock 9 # two set-ups at once: the second finds nothing left to do
 
 # OpenMesh: its library's package, whose name carries a version; and the headers alone of its development package, which
 # would pull in a whole viewer.
-if ! compgen -G '/usr/lib/*/libOpenMeshCore.so.*' >/dev/null; then
-  apt_update
-  library=$(apt-cache depends libopenmesh-dev | sed -n 's/^ *Depends: \(libopenmesh[0-9].*\)$/\1/p')
-  apt_install "$library"
-fi
-if [[ ! -d $deps/openmesh ]]; then
+openmesh() {
+  local library unfinished
+  if ! compgen -G '/usr/lib/*/libOpenMeshCore.so.*' >/dev/null; then
+    apt_update
+    library=$(apt-cache depends libopenmesh-dev | sed -n 's/^ *Depends: \(libopenmesh[0-9].*\)$/\1/p')
+    apt_install "$library"
+  fi
+  [[ ! -d $deps/openmesh ]] || return 0
   unfinished=$(unfinished_folder openmesh)
   unpack_package libopenmesh-dev "$unfinished"
   mv -T "$unfinished" "$deps/openmesh"
-fi
+}
 
-[[ $meshes == no ]] || "$here/real_meshes.sh"
+[[ $libraries == no ]] || openmesh
+((${#meshes[@]} == 0)) || "$here/real_meshes.sh" "${meshes[@]}"
 [[ $page == no ]] || "$here/web_packages.sh"
 [[ $manifests == no ]] || "$here/manifest_tools.sh"
 [[ " $* " != *" test "* ]] || { "$here/openapi_linter.sh" && "$here/client_generators.sh"; }

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# compile.sh FOLDER TARGET...: builds the targets in a build folder, which is configured. Says beforehand how many steps
+# there are and about how long they take when the compiler's cache is empty: 4 s of one core each.
+set -euo pipefail
+folder=$1
+shift
+cores=$(nproc)
+steps=$(ninja -C "$folder" -n "$@" | sed -nE 's#^\[[0-9]+/([0-9]+)\].*#\1#p' | tail -n 1)
+if ((${steps:-0} > 20)); then
+  printf 'build: %d steps on %d cores, up to about %d min\n' "$steps" "$cores" "$(((steps * 4 / cores + 59) / 60))"
+fi
+cmake --build "$folder" --parallel "$cores" --target "$@"
