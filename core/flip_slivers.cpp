@@ -12,6 +12,8 @@ namespace {
 constexpr double sliver_height = 1e-6;
 /// Slivers beside slivers take several rounds.
 constexpr int max_rounds = 16;
+/// Most faces at a sliver's apex: each sliver there looks at all.
+constexpr uint32_t most_faces = 1000;
 
 /// The longest half-edge of the face if it is a sliver, else `none`.
 uint32_t longest_of_sliver(const Mesh& mesh, uint32_t face) {
@@ -31,7 +33,10 @@ uint32_t longest_of_sliver(const Mesh& mesh, uint32_t face) {
 
 class Flipper {
  public:
-  Flipper(Mesh& mesh, uint32_t first) : mesh_(mesh), first_(first), touched_(mesh.topology.face_count()) {}
+  Flipper(Mesh& mesh, uint32_t first)
+      : mesh_(mesh), first_(first), touched_(mesh.topology.face_count()), faces_(mesh.topology.vertex_count, 0) {
+    for (uint32_t v : mesh.topology.origin) ++faces_[v];
+  }
 
   /// Flips what it can, no face twice. Returns whether that was anything.
   bool run() {
@@ -49,7 +54,7 @@ class Flipper {
  private:
   bool may_flip(uint32_t h) {
     const Topology& topology = mesh_.topology;
-    if (topology.is_curve(h)) return false;
+    if (topology.is_curve(h) || faces_[topology.apex(h)] > most_faces) return false;
     const uint32_t t = topology.twin[h];
     const uint32_t beyond = Topology::face(t);
     if (beyond < first_ || touched_[Topology::face(h)] || touched_[beyond]) return false;
@@ -76,7 +81,8 @@ class Flipper {
   Mesh& mesh_;
   uint32_t first_;
   std::vector<bool> touched_;
-  Array<uint32_t> origin_;  ///< [H] after the flips, once there are any
+  std::vector<uint32_t> faces_;  ///< [V] at each vertex
+  Array<uint32_t> origin_;       ///< [H] after the flips, once there are any
   Fan fan_;
 };
 

@@ -40,7 +40,8 @@ std::vector<bool> find_locked(const Mesh& mesh, const std::vector<bool>& hidden)
 /// Where something went wrong, and how often.
 class Trouble {
  public:
-  explicit Trouble(const Topology& mesh) : mesh_(mesh), reach_(mesh.vertex_count, 0) {}
+  Trouble(const Topology& mesh, const std::function<void()>& poll)
+      : mesh_(mesh), poll_(poll), reach_(mesh.vertex_count, 0) {}
 
   /// Locks the faults and what is within a few edges of each: twice as many each time that a vertex turns up again.
   void lock(std::vector<uint32_t> faults, std::vector<bool>& locked) {
@@ -53,33 +54,37 @@ class Trouble {
       rings[v] = reach_[v] + 1;
       most = std::max(most, reach_[v]);
     }
-    for (uint32_t ring = 0; ring < most; ++ring)
+    for (uint32_t ring = 0; ring < most; ++ring) {
+      poll_();
       for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
         uint32_t& a = rings[mesh_.origin[h]];
         uint32_t& b = rings[mesh_.tip(h)];
         if (a > b + 1) b = a - 1;
         if (b > a + 1) a = b - 1;
       }
+    }
     for (uint32_t v = 0; v < mesh_.vertex_count; ++v)
       if (rings[v] > 0) locked[v] = true;
   }
 
  private:
   const Topology& mesh_;
+  const std::function<void()>& poll_;
   std::vector<uint32_t> reach_;  ///< [V] rings locked round it the last time
 };
 
 /// Attempts until one does no damage: round each fault everything is locked the next time. Nothing when all fail.
 std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hidden, const std::vector<bool>& to_lock,
                                   double error, const std::function<void()>& poll) {
-  const Collapser collapser(mesh, hidden);
+  const Collapser collapser(mesh, hidden, poll);
   for (int k = 0; k < max_errors; ++k, error /= 4) {
     std::vector<bool> locked = to_lock;
-    Trouble trouble(mesh.topology);
+    Trouble trouble(mesh.topology, poll);
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
-      if (poll) poll();
       Collapsed result = collapser.run(locked, error);
-      std::vector<uint32_t> faults = find_faults(mesh, result);
+      poll();
+      std::vector<uint32_t> faults = find_faults(mesh, result, poll);
+      poll();
       if (faults.empty()) {
         // Without any fault to be seen, a handle may have gone: a smaller error keeps it.
         if (result.mesh.topology.euler_characteristic() != mesh.topology.euler_characteristic()) break;
@@ -136,7 +141,7 @@ Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error, const std::f
   // What `connect_faces` would make of the faces at hand, so that before and after compare.
   const std::vector<uint32_t> creases = unmark_creases(mesh.topology);
   const std::vector<uint32_t> pinched = std::exchange(mesh.topology.pinched, find_pinched(mesh.topology));
-  std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error, poll);
+  std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error, poll ? poll : std::function<void()>([] {}));
   if (result && restore_creases(mesh.topology, creases, *result)) return std::move(result->mesh);
 
   for (uint32_t e : creases) mesh.topology.kind[e] = EdgeKind::crease;

@@ -20,8 +20,11 @@ inline constexpr double default_hidden_error = 0.0025;
 /// (boundary, shared, crease), pinched, or on a seam. The curves and the Euler characteristic stay, no edge becomes
 /// non-manifold, no face flipped or degenerate. Where that cannot be had, less is simplified, at worst nothing. The
 /// visible faces come first, in their order; vertices and points keep their order, less those not used any more. The
-/// mesh comes back as it is when nothing is hidden. Deterministic. `poll`, if any, is called between attempts; it may
-/// throw to stop.
+/// mesh comes back as it is when nothing is hidden. Deterministic. `poll`, if any, is called between steps, of which
+/// each is short whatever the mesh is; it may throw to stop.
+///
+/// Hidden faces are simplified in parts (collapse.h): from 65,536 of them on a few more are left. Hidden faces at a
+/// vertex with more than 256 of them are left as they are.
 ///
 /// By meshoptimizer, not by OpenMesh's Decimater (ModQuadric, locked vertices): 4 to 13 times as fast although what it
 /// does is checked and done again, takes what is not manifold, leaves fewer faces folded over, and is a small library

@@ -93,15 +93,19 @@ void append_difference(const std::vector<Item>& before, const std::vector<Item>&
 
 }  // namespace
 
-std::vector<uint32_t> find_faults(const Mesh& before, const Collapsed& after) {
+std::vector<uint32_t> find_faults(const Mesh& before, const Collapsed& after, const std::function<void()>& poll) {
   const auto same = [](uint32_t v) { return v; };
   const auto old = [&](uint32_t v) { return after.vertex[v]; };
   std::vector<uint32_t> faults = lost_components(before.topology, after.vertex);
+  poll();
   append_difference(open_half_edges(before.topology, same), open_half_edges(after.mesh.topology, old), faults);
   append_difference(pinched_vertices(before.topology, same), pinched_vertices(after.mesh.topology, old), faults);
+  poll();
 
   const Array<Vec3f> normals = vertex_normals(before);
+  poll();
   const std::vector<Triangle> bad_before = bad_faces(before, same, normals);
+  poll();
   for (const Triangle& face : bad_faces(after.mesh, old, normals))
     if (!std::ranges::binary_search(bad_before, face)) append(faults, face);
   return faults;

@@ -365,6 +365,45 @@ TEST(SimplifyHidden, VeryLargeAndVerySmall) {
   }
 }
 
+// 80,000 faces are two parts.
+TEST(SimplifyHidden, MeshOfSeveralPartsKeepsItsTopology) {
+  const Mesh mesh = build_mesh(grid(200, 200));
+  const View view = looking_elsewhere(mesh);
+  const Mesh result = simplify_hidden(mesh, Camera(view));
+  EXPECT_TRUE(is_consistent({result.topology, result.positions}));
+  EXPECT_EQ(open_half_edges(result), open_half_edges(mesh));
+  EXPECT_EQ(result.topology.euler_characteristic(), mesh.topology.euler_characteristic());
+  EXPECT_LT(share_left(mesh, view, result), 0.1);
+}
+
+TEST(SimplifyHidden, FacesAtACrowdedVertexStay) {
+  TriangleMesh cone = fan(300, true);
+  cone.positions[0].z = 0.5F;
+  const Mesh mesh = build_mesh(join(cone, grid(20, 20), 3));
+  const Mesh result = simplify_checked(mesh, looking_elsewhere(mesh));
+  std::vector<uint32_t> faces(result.topology.vertex_count, 0);
+  for (uint32_t v : result.topology.origin) ++faces[v];
+  EXPECT_EQ(std::ranges::count(faces, 300U), 1);
+  EXPECT_LT(result.topology.face_count(), 500U);
+}
+
+TEST(SimplifyHidden, IsStoppedByItsPollAtAnyCall) {
+  const Mesh mesh = build_mesh(grid(200, 200));
+  const Camera camera(looking_elsewhere(mesh));
+  int calls = 0;
+  (void)simplify_hidden(mesh, camera, default_hidden_error, [&] { ++calls; });
+  EXPECT_GT(calls, 6);
+  for (int last = 1; last <= calls; last += 4) {
+    int left = last;
+    EXPECT_THROW((void)simplify_hidden(mesh, camera, default_hidden_error,
+                                       [&] {
+                                         if (--left == 0) throw std::runtime_error("stopped");
+                                       }),
+                 std::runtime_error);
+    EXPECT_EQ(left, 0);
+  }
+}
+
 TEST(SimplifyHidden, RandomMeshes) {
   std::mt19937 random(7);
   for (int i = 0; i < 40; ++i) {
