@@ -17,7 +17,6 @@ namespace {
 constexpr uint64_t most_attributes = 16;
 constexpr uint64_t most_components = 32;
 constexpr size_t longest_name = 256;
-constexpr const char* name_entry = "name";
 
 static_assert(draco::GeometryAttribute::NORMAL == 1 + static_cast<int>(AttributeKind::normal));
 static_assert(draco::GeometryAttribute::GENERIC == 1 + static_cast<int>(AttributeKind::generic));
@@ -172,38 +171,5 @@ draco::GeometryAttribute::Type draco_type(AttributeKind kind) {
 }
 
 draco::DataType draco_type(ValueType type) { return static_cast<draco::DataType>(1 + static_cast<int>(type)); }
-
-int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
-                         const VertexPoints* points) {
-  draco::GeometryAttribute description;
-  description.Init(type, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);
-  const int number = out.AddAttribute(description, points == nullptr, static_cast<uint32_t>(values.size()));
-  draco::PointAttribute& added = *out.attribute(number);
-  added.buffer()->Write(0, values.data(), values.size() * sizeof(Vec3f));
-  if (points != nullptr)
-    for (uint32_t p = 0; p < points->vertex().size(); ++p)
-      added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(points->vertex()[p]));
-  return number;
-}
-
-int add_point_attribute(draco::Mesh& out, const StoredValues& values, uint32_t components,
-                        const AttributeFormat& format) {
-  draco::GeometryAttribute description;
-  const int64_t stride = int64_t{components} * draco::DataTypeLength(draco_type(format.type));
-  description.Init(draco_type(format.kind), nullptr, static_cast<uint8_t>(components), draco_type(format.type),
-                   format.normalized, stride, 0);
-  const int number = out.AddAttribute(description, false, static_cast<uint32_t>(values.bytes.size() / stride));
-  draco::PointAttribute& added = *out.attribute(number);
-  added.buffer()->Write(0, values.bytes.data(), values.bytes.size());
-  for (uint32_t p = 0; p < values.value.size(); ++p)
-    added.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(values.value[p]));
-  added.set_unique_id(format.id);
-  if (!format.name.empty()) {
-    auto metadata = std::make_unique<draco::AttributeMetadata>();
-    metadata->AddEntryString(name_entry, format.name);
-    out.AddAttributeMetadata(number, std::move(metadata));
-  }
-  return number;
-}
 
 }  // namespace papilio::proto

@@ -11,6 +11,9 @@
 
 namespace papilio::proto {
 
+/// The metadata entry that names an attribute.
+inline constexpr const char* name_entry = "name";
+
 /// Throws `Problem` mesh_too_large for more than 16 attributes or 32 components besides a position. Needs no values.
 void require_attributes_within_limits(const draco::PointCloud& mesh);
 
@@ -73,13 +76,5 @@ auto with_number(ValueType type, Visit visit) {
 
 [[nodiscard]] draco::GeometryAttribute::Type draco_type(AttributeKind kind);
 [[nodiscard]] draco::DataType draco_type(ValueType type);
-
-/// Adds an attribute with one value a vertex, which all its points share. Returns its number.
-int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
-                         const VertexPoints* points);
-
-/// Adds an attribute of the points, with its name. Returns its number.
-int add_point_attribute(draco::Mesh& out, const StoredValues& values, uint32_t components,
-                        const AttributeFormat& format);
 
 }  // namespace papilio::proto

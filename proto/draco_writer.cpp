@@ -1,18 +1,10 @@
 #include "proto/draco_writer.h"
 
-#include <draco/compression/expert_encode.h>
 #include <draco/core/draco_version.h>
-#include <draco/mesh/mesh.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <stdexcept>
+#include <vector>
 
 #include "proto/draco_attributes.h"
 #include "proto/edgebreaker/writer.h"
@@ -23,88 +15,6 @@ namespace papilio::proto {
 namespace {
 
 constexpr double smallest_range = 1e-30;  // below, Draco's steps a unit overflow
-
-std::string exact_text(float value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-/// What ExpertEncoder::SetAttributeExplicitQuantization sets, but to the bit: that writes numbers with six decimals, in
-/// which the box of a small mesh is lost.
-draco::Options explicit_quantization(const std::vector<float>& origin, float range, int bits) {
-  std::string text;
-  for (float component : origin) text += (text.empty() ? "" : " ") + exact_text(component);
-  draco::Options options;
-  options.SetInt("quantization_bits", bits);
-  options.SetString("quantization_origin", text);
-  options.SetString("quantization_range", exact_text(range));
-  return options;
-}
-
-/// A mesh on its way to Draco.
-class Encoding {
- public:
-  /// With `attributes` points are what the faces name, else vertices.
-  Encoding(const Mesh& mesh, bool attributes, uint32_t position_id) : mesh_(mesh), encoder_(out_) {
-    if (attributes) points_.emplace(mesh);
-    const Array<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
-    out_.set_num_points(attributes ? mesh.attributes.point_count : mesh.topology.vertex_count);
-    out_.SetNumFaces(mesh.topology.face_count());
-    for (uint32_t f = 0; f < mesh.topology.face_count(); ++f)
-      out_.SetFace(draco::FaceIndex(f), {draco::PointIndex(corner[3 * f]), draco::PointIndex(corner[3 * f + 1]),
-                                         draco::PointIndex(corner[3 * f + 2])});
-    add_vertex_attribute(out_, draco::GeometryAttribute::POSITION, mesh.positions, points());
-    out_.attribute(0)->set_unique_id(position_id);
-  }
-
-  /// Null without attributes.
-  [[nodiscard]] const VertexPoints* points() const { return points_ ? &*points_ : nullptr; }
-
-  void add(const OutputAttribute& attribute) {
-    const int number = attribute.is_of_vertices()
-                           ? add_at_vertices(attribute)
-                           : add_point_attribute(out_, attribute.values, attribute.components, attribute.format);
-    if (attribute.coding == Coding::octahedral) options().SetAttributeInt(number, "quantization_bits", attribute.bits);
-    if (attribute.coding == Coding::grid)
-      options().SetAttributeOptions(number,
-                                    explicit_quantization(attribute.grid.origin, attribute.grid.range, attribute.bits));
-    if (attribute.is_too_large) {
-      options().SetAttributeInt(number, "prediction_scheme", draco::PREDICTION_NONE);
-      encoder_.SetUseBuiltInAttributeCompression(false);  // of all attributes, there is no other way
-    } else if (attribute.format.kind == AttributeKind::normal && attribute.coding != Coding::octahedral) {
-      // Below speed 4 Draco predicts normals as if they were octahedral: integers that are not change, or it writes
-      // past the end of its memory.
-      options().SetAttributeInt(number, "prediction_scheme", draco::PREDICTION_DIFFERENCE);
-    }
-  }
-
-  [[nodiscard]] draco::EncoderOptions& options() { return encoder_.options(); }
-
-  std::string run() {
-    // Named, since the automatic choice is sequential at speed 10: eleven times the bytes.
-    encoder_.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    // Above speed 5 Draco would cut the surface open at seams, and write their positions twice.
-    if (points_) options().SetGlobalBool("split_mesh_on_seams", false);
-    draco::EncoderBuffer buffer;
-    const draco::Status status = encoder_.EncodeToBuffer(&buffer);
-    if (!status.ok()) throw std::runtime_error("Draco's encoder refuses the mesh: " + status.error_msg_string());
-    return {buffer.data(), buffer.size()};
-  }
-
- private:
-  int add_at_vertices(const OutputAttribute& attribute) {
-    Array<Vec3f> values(mesh_.topology.vertex_count);
-    std::memcpy(values.data(), attribute.values.bytes.data(), attribute.values.bytes.size());
-    const int number = add_vertex_attribute(out_, draco_type(attribute.format.kind), values, points());
-    out_.attribute(number)->set_unique_id(attribute.format.id);
-    return number;
-  }
-
-  const Mesh& mesh_;
-  draco::Mesh out_;
-  draco::ExpertEncoder encoder_;
-  std::optional<VertexPoints> points_;
-};
 
 AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   AttributeEncoding::Grid grid;
@@ -144,31 +54,20 @@ AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format) {
 }
 
 std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
-                        const AttributeEncoding& attributes, bool* by_libdraco) {
-  const std::vector<OutputAttribute> outputs = output_attributes(mesh, options, attributes);
-  const uint32_t position_id = attributes.format.position_id;
-  std::optional<std::string> written = edgebreaker::write(mesh, box, options, position_id, outputs);
-  if (by_libdraco != nullptr) *by_libdraco = !written;
-  return written ? std::move(*written) : write_with_libdraco(mesh, box, options, position_id, outputs);
-}
-
-std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
-                                uint32_t position_id, std::span<const OutputAttribute> attributes) {
-  const bool has_points = !std::ranges::all_of(attributes, &OutputAttribute::is_of_vertices);
-  Encoding encoding(mesh, has_points, position_id);
-  encoding.options().SetSpeed(options.speed, options.speed);
-  encoding.options().SetAttributeOptions(
-      0, explicit_quantization({box.origin.x, box.origin.y, box.origin.z}, box.range, options.position_bits));
-  for (const OutputAttribute& attribute : attributes) encoding.add(attribute);
-  return encoding.run();
+                        const AttributeEncoding& attributes, const std::function<void()>& poll) {
+  return edgebreaker::write(mesh, box, options, attributes.format.position_id,
+                            output_attributes(mesh, options, attributes), poll);
 }
 
 std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format) {
   const Mesh mesh = build_mesh(triangles);
-  Encoding encoding(mesh, !format.attributes.empty(), format.position_id);
-  for (size_t a = 0; a < format.attributes.size(); ++a)
-    encoding.add(exact_attribute(mesh.attributes.attributes[a], format.attributes[a], *encoding.points()));
-  return encoding.run();
+  std::vector<OutputAttribute> attributes;
+  if (!format.attributes.empty()) {
+    const VertexPoints points(mesh);
+    for (size_t a = 0; a < format.attributes.size(); ++a)
+      attributes.push_back(exact_attribute(mesh.attributes.attributes[a], format.attributes[a], points));
+  }
+  return edgebreaker::write_exact(mesh, format.position_id, attributes);
 }
 
 std::string_view draco_version() { return draco::kDracoVersion; }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,8 +9,6 @@
 #include "proto/mesh_format.h"
 
 namespace papilio::proto {
-
-struct OutputAttribute;
 
 /// The cube in whose grid positions are quantised. It comes from the coarse mesh alone, so that a vertex
 /// stays where it is from level to level and from view to view.
@@ -42,18 +40,14 @@ struct OutputOptions {
   bool normals = false;    ///< adds unit normals of the vertices, at 10 bits, in place of the mesh's own
 };
 
-/// Encodes the mesh as a Draco 2.2 edgebreaker stream. The mesh must have faces; positions must be finite. Each vertex
-/// has one position; attributes that `attributes` describes (all, in order, or none) have their seams. 32-bit floats
-/// are quantised: texture coordinates at 14 bits, unit normals at 10, the rest at 16. All else is kept: integers
-/// (uint32 to 2^31 - 1), float64, normals that are not three floats, floats with a range that is no float's.
-/// Throws std::runtime_error with Draco's words when it refuses. Straight from the half-edges where that is possible
-/// (edgebreaker/writer.h), else by libdraco; the bytes are the same. `by_libdraco`, where it is given, tells which.
+/// Encodes the mesh as a Draco 2.2 edgebreaker stream (edgebreaker/writer.h). The mesh must have faces; positions must
+/// be finite. Each vertex has one position, but where several fans of faces meet at a vertex it is written once for
+/// each. Attributes that `attributes` describes (all, in order, or none) have their seams. 32-bit floats are quantised:
+/// texture coordinates at 14 bits, unit normals at 10, the rest at 16. All else is kept: integers (uint32 to 2^31 - 1),
+/// float64, normals that are not three floats, floats with a range that is no float's. `poll`, if any, is called every
+/// few milliseconds; it may throw to stop.
 [[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
-                                      const AttributeEncoding& attributes = {}, bool* by_libdraco = nullptr);
-/// The same by libdraco alone.
-[[nodiscard]] std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box,
-                                              const OutputOptions& options, uint32_t position_id,
-                                              std::span<const OutputAttribute> attributes = {});
+                                      const AttributeEncoding& attributes = {}, const std::function<void()>& poll = {});
 
 /// Encodes triangles as they are, positions and the attributes of `format` to the bit: what the client sends of a mesh
 /// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws

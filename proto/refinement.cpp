@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -111,10 +112,11 @@ Result Refinement::refine_coarse(const Hooks& hooks) {
   return refine(*prepared_->under_rules_of(options_), options_, hooks);
 }
 
-EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times) const {
+EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,
+                                const std::function<void()>& poll) const {
   Stopwatch watch;
   EncodedLevel made;
-  made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, &made.statistics.by_libdraco);
+  made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, poll);
   times.encode += watch.lap();
   made.statistics.level = level;
   made.statistics.vertices = mesh.topology.vertex_count;
@@ -128,8 +130,10 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   Stopwatch watch;
   StageTimes encoded;  // with what was spent on the last level that was encoded
   Aside aside;         // encodes a level while the next is made
+  std::mutex asking;   // the threads ask one at a time
   const auto stop = [&] {
     require_time();
+    const std::lock_guard lock(asking);
     return aside.has_failed() || (hooks.cancelled && hooks.cancelled());
   };
   const auto poll = [&] {
@@ -144,7 +148,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
       aside.wait();
       times_.encode = encoded.encode;
       const auto hand_on = [&, number = level.level, times = times_](const Mesh& mesh) {
-        const EncodedLevel made = encode(mesh, number, times);
+        const EncodedLevel made = encode(mesh, number, times, poll);
         encoded = made.statistics.times;
         hooks.on_level(made);
       };
@@ -167,11 +171,10 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   aside.wait();
   times_.encode = encoded.encode;
   poll();
-  EncodedLevel made = encode(result.mesh, result.levels, times_);
+  EncodedLevel made = encode(result.mesh, result.levels, times_, poll);
   made.statistics.stop_reason = result.stop_reason;
   made.statistics.error = result.error;
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
-  poll();  // Draco's encoder cannot be stopped; who left meanwhile is not given an answer
   if (hooks.on_level) hooks.on_level(made);
   return made;
 }

@@ -33,7 +33,6 @@ struct Statistics {
   std::optional<double> error_pixels{};   ///< the same in pixels, where there is a view
   BuildReport found{};                    ///< in the coarse mesh
   StageTimes times;
-  bool by_libdraco = false;  ///< it was not encoded from the half-edges (draco_writer.h)
 };
 
 /// A mesh and its statistics.
@@ -46,10 +45,11 @@ struct EncodedLevel {
 struct RefinementHooks {
   /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
   /// to stop. With more than one thread a level is encoded, and this is called, beside the making of the next: one call
-  /// at a time, but not always from the thread that runs it all, and while that one may ask `cancelled`.
+  /// at a time, but not always from the thread that runs it all, and while `cancelled` may be asked.
   std::function<void(const EncodedLevel&)> on_level{};
-  std::function<bool()> cancelled{};  ///< asked between steps
-  int threads = 1;                    ///< at most so many work on it at once
+  /// Asked every few milliseconds: one call at a time, but not always from the thread that runs it all.
+  std::function<bool()> cancelled{};
+  int threads = 1;  ///< at most so many work on it at once
 };
 
 /// One refinement: decoded and checked when it is made, carried out by `run`.
@@ -72,7 +72,8 @@ class Refinement {
   [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
   /// `times`: what was spent before.
-  [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times) const;
+  [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times,
+                                    const std::function<void()>& poll) const;
   void require_time() const;
   Result refine_coarse(const Hooks& hooks);
 

@@ -66,9 +66,6 @@ struct Metrics::Families {
   Histogram& encode = stage_seconds.Add({{"stage", "encode"}}, seconds);
   Counter& faces_in = counter(registry, "faces_in_total", "Faces of the meshes that were refined");
   Counter& faces_out = counter(registry, "faces_out_total", "Faces of the results");
-  Family<Counter>& encodings = counters(registry, "encodings_total", "Results encoded, by what wrote them");
-  Counter& by_half_edges = encodings.Add({{"writer", "half_edges"}});
-  Counter& by_libdraco = encodings.Add({{"writer", "libdraco"}});
   Counter& bytes_in = counter(registry, "received_bytes_total", "Bytes of requests");
   Counter& bytes_out = counter(registry, "sent_bytes_total", "Bytes of answers");
   Family<Counter>& lookups = counters(registry, "cache_lookups_total", "Questions to a cache");
@@ -114,7 +111,6 @@ void Metrics::count_refinement(uint64_t faces_in, const proto::Statistics& made)
   Families& f = *families_;
   f.faces_in.Increment(static_cast<double>(faces_in));
   f.faces_out.Increment(static_cast<double>(made.faces));
-  (made.by_libdraco ? f.by_libdraco : f.by_half_edges).Increment();
   f.decode.Observe(made.times.decode / 1000);
   f.refine.Observe(made.times.refine / 1000);
   f.encode.Observe(made.times.encode / 1000);

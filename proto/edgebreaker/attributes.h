@@ -11,10 +11,6 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// Whether the attribute can be written from here: predicted integers of 32 bits, whatever they stand for, without a
-/// name.
-[[nodiscard]] bool can_write(const OutputAttribute& attribute);
-
 /// Writes what a decoder has to know of it first: what it is for, its type, components and id.
 void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 /// How its values are coded, in Draco's numbers.
@@ -24,14 +20,14 @@ void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 struct WrittenSurface {
   const CornerMesh& mesh;
   const Array<uint32_t>& starts;      ///< [faces] (connectivity.h)
-  const VertexOrder& order;           ///< of the positions
-  const Array<GridPoint>& positions;  ///< [vertices]
+  const VertexOrder& order;           ///< of values without seams
+  const Array<GridPoint>& positions;  ///< [vertices], where they are on a grid
+  uint32_t points;                    ///< of the mesh: few are predicted otherwise than many
 };
 
-/// Writes the attribute's values, as differences from what is predicted at Draco's `speed`, 2 to 10. False where that
-/// leads to numbers too large: libdraco says so.
-[[nodiscard]] bool write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& surface,
-                                int speed, draco::EncoderBuffer& out);
+/// Writes the attribute's values: as differences from what is predicted at Draco's `speed`, 0 to 10, or as they are.
+void write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& written, int speed,
+                  Pace& pace, draco::EncoderBuffer& out);
 
 /// Writes what a decoder needs to come back from integers.
 void write_coding(const OutputAttribute& attribute, draco::EncoderBuffer& out);

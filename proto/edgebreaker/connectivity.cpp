@@ -108,23 +108,32 @@ class ValenceSymbols {
 
   void take(uint32_t corner, int edges) { valence_[mesh_.vertex(corner)] -= edges; }
 
-  /// The vertex at the corner falls in two: one for the faces on the left, which keeps its number, one for those on the
-  /// right.
+  /// The vertex at the corner falls in two: the side with fewer faces gets a new one. Both sides are counted at once,
+  /// and only until the smaller one ends: a face changes its vertex O(log F) times.
   void split(uint32_t corner, const Array<uint8_t>& faces) {
-    int left = 0;
-    for (uint32_t c = mesh_.left(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
-         c = mesh_.opposite(CornerMesh::next(c)))
-      ++left;
-    valence_[mesh_.vertex(corner)] = left + 1;
-    const auto added = static_cast<uint32_t>(valence_.size());
-    int right = 0;
-    for (uint32_t c = mesh_.right(corner); c != none && faces[CornerMesh::face(c)] == unvisited;
-         c = mesh_.opposite(CornerMesh::previous(c))) {
-      ++right;
-      moved_.push_back({CornerMesh::next(c), mesh_.vertex(CornerMesh::next(c))});
-      mesh_.set_vertex(CornerMesh::next(c), added);
+    const auto is_left = [&](uint32_t c) { return c != none && faces[CornerMesh::face(c)] == unvisited; };
+    const auto on_left = [&](uint32_t c) { return mesh_.opposite(CornerMesh::next(c)); };
+    const auto on_right = [&](uint32_t c) { return mesh_.opposite(CornerMesh::previous(c)); };
+    uint32_t left = mesh_.left(corner);
+    uint32_t right = mesh_.right(corner);
+    int count = 0;
+    for (; is_left(left) && is_left(right); ++count) {
+      left = on_left(left);
+      right = on_right(right);
     }
-    valence_.push_back(right + 1);
+    const auto added = static_cast<uint32_t>(valence_.size());
+    const auto move = [&](uint32_t c) {
+      moved_.push_back({c, mesh_.vertex(c)});
+      mesh_.set_vertex(c, added);
+    };
+    const uint32_t vertex = mesh_.vertex(corner);
+    if (!is_left(left))
+      for (uint32_t c = mesh_.left(corner); is_left(c); c = on_left(c)) move(CornerMesh::previous(c));
+    else
+      for (uint32_t c = mesh_.right(corner); is_left(c); c = on_right(c)) move(CornerMesh::next(c));
+    // The faces still to come at a vertex are one less than its edges, before the split and on either side after it.
+    valence_[vertex] -= count + 1;
+    valence_.push_back(count + 1);
   }
 
   struct Moved {
@@ -188,9 +197,10 @@ class Holes {
 template <class Symbols>
 class Walk {
  public:
-  Walk(CornerMesh& mesh, std::span<const Seams> attributes)
+  Walk(CornerMesh& mesh, std::span<const Seams> attributes, Pace& pace)
       : mesh_(mesh),
         attributes_(attributes),
+        pace_(pace),
         symbols_(mesh),
         holes_(mesh),
         face_state_(mesh.face_count(), unvisited),
@@ -267,6 +277,7 @@ class Walk {
   /// The corner to go on with; `none` where the walk ends or falls in two.
   uint32_t visit(uint32_t corner) {
     const uint32_t face = CornerMesh::face(corner);
+    pace_.step();
     mesh_.prefetch(mesh_.right(corner));
     mesh_.prefetch(mesh_.left(corner));
     const uint32_t vertex = mesh_.vertex(corner);
@@ -377,6 +388,7 @@ class Walk {
 
   const CornerMesh& mesh_;
   std::span<const Seams> attributes_;
+  Pace& pace_;
   Symbols symbols_;
   Holes holes_;
   Array<uint8_t> face_state_;            ///< [faces] FaceState
@@ -392,10 +404,10 @@ class Walk {
 
 }  // namespace
 
-Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
+Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes, Pace& pace,
                                    draco::EncoderBuffer& out) {
-  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes).run(out);
-  return Walk<ValenceSymbols>(mesh, attributes).run(out);
+  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes, pace).run(out);
+  return Walk<ValenceSymbols>(mesh, attributes, pace).run(out);
 }
 
 }  // namespace papilio::proto::edgebreaker

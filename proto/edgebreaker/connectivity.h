@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/edgebreaker/corner_mesh.h"
+#include "proto/edgebreaker/pace.h"
 #include "proto/edgebreaker/seams.h"
 
 namespace papilio::proto::edgebreaker {
@@ -19,8 +20,9 @@ enum class Traversal : uint8_t {
 /// Walks over all faces, one that touches those before after another, and writes how they touch: Draco's bitstream
 /// specification, edgebreaker connectivity; and for each attribute beside the positions which edges are its seams.
 /// Returns the corner at which the walk came to each face, in the order in which a decoder meets them. [faces] The mesh
-/// is lent: afterwards it is as it was.
+/// is lent: afterwards it is as it was. O(F log F) at worst, O(F) on usual meshes. `pace` steps once a face.
 [[nodiscard]] Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal,
-                                                 std::span<const Seams> attributes, draco::EncoderBuffer& out);
+                                                 std::span<const Seams> attributes, Pace& pace,
+                                                 draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "proto/edgebreaker/predictions.h"
 #include "proto/edgebreaker/symbols.h"
 
 namespace papilio::proto::edgebreaker {
@@ -99,29 +100,37 @@ class Writer {
 
 }  // namespace
 
-Array<GridPoint> to_grid(const Array<Vec3f>& positions, const QuantizationBox& box, int bits) {
+Array<GridPoint> to_grid(const Array<Vec3f>& positions, const Surface& surface, const QuantizationBox& box, int bits) {
   const Grid grid(box, bits);
-  Array<GridPoint> values(positions.size());
+  Array<GridPoint> values(surface.mesh.vertex_count());
   Floats p{};
-  for (size_t v = 0; v + 1 < positions.size(); ++v) {
-    std::memcpy(&p, &positions[v], sizeof p);  // the fourth is the next one's
+  if (surface.vertex.empty()) {
+    for (size_t v = 0; v + 1 < values.size(); ++v) {
+      std::memcpy(&p, &positions[v], sizeof p);
+      p[3] = 0;  // it was the next one's
+      values[v] = grid.at(p);
+    }
+    std::memcpy(&p, &positions.back(), sizeof(Vec3f));
+    values.back() = grid.at(p);
+    return values;
+  }
+  for (size_t v = 0; v < values.size(); ++v) {
+    std::memcpy(&p, &positions[surface.vertex[v]], sizeof(Vec3f));
     values[v] = grid.at(p);
   }
-  std::memcpy(&p, &positions.back(), sizeof(Vec3f));
-  values.back() = grid.at(p);
   return values;
 }
 
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Array<GridPoint>& values,
-                     Prediction prediction, int compression_level, draco::EncoderBuffer& out) {
+                     Prediction prediction, int compression_level, Pace& pace, draco::EncoderBuffer& out) {
   const auto count = static_cast<uint32_t>(order.corners.size());
   Writer writer(mesh, values);
   uint32_t done = 0;
   const auto put_differences = [&](uint32_t end) {
-    for (; done < end; ++done) writer.put_difference(order.corners[done]);
+    for (; done < end; ++done, pace.step()) writer.put_difference(order.corners[done]);
   };
   const auto put_parallelograms = [&](uint32_t end) {
-    for (; done < end; ++done) writer.put_parallelogram(order.corners[done]);
+    for (; done < end; ++done, pace.step()) writer.put_parallelogram(order.corners[done]);
   };
   if (prediction == Prediction::parallelogram) {
     for (uint32_t alone : order.alone) {
@@ -139,6 +148,28 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Arr
   write_symbols(std::span(writer.symbols().data(), size_t{3} * count), 3, compression_level, out);
   out.Encode(writer.corrections().low());
   out.Encode(writer.corrections().high());
+}
+
+void write_positions_multi_parallelogram(const CornerMesh& mesh, const Array<uint32_t>& corners,
+                                         const Array<GridPoint>& values, int speed, uint32_t points, Pace& pace,
+                                         draco::EncoderBuffer& out) {
+  const OrderedSurface surface(mesh, corners, pace);
+  Integers integers{3, {}};
+  integers.values.reserve(3 * corners.size());
+  for (uint32_t c : corners) {
+    const GridPoint& p = values[mesh.vertex(c)];
+    integers.values.insert(integers.values.end(), {p[0], p[1], p[2]});
+  }
+  (void)write_predicted(integers, *wrapped_predictor(surface, speed, points), {}, speed, out);  // it is never refused
+}
+
+void write_positions_exactly(const Array<Vec3f>& positions, const Surface& surface, const Array<uint32_t>& corners,
+                             Pace& pace, draco::EncoderBuffer& out) {
+  for (uint32_t c : corners) {
+    pace.step();
+    const uint32_t v = surface.mesh.vertex(c);
+    out.Encode(positions[surface.vertex.empty() ? v : surface.vertex[v]]);
+  }
 }
 
 void write_grid(const QuantizationBox& box, int bits, draco::EncoderBuffer& out) {

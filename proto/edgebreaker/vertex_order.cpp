@@ -7,8 +7,8 @@ namespace {
 
 class DepthFirst {
  public:
-  explicit DepthFirst(const CornerMesh& mesh)
-      : mesh_(mesh), visited_(mesh.face_count(), 0), known_(mesh.vertex_count(), is_new) {
+  DepthFirst(const CornerMesh& mesh, Pace& pace)
+      : mesh_(mesh), pace_(pace), visited_(mesh.face_count(), 0), known_(mesh.vertex_count(), is_new) {
     order_.corners.reserve(mesh.vertex_count());
     for (uint32_t c : mesh.at_boundary())
       known_[mesh.vertex(CornerMesh::next(c))] = known_[mesh.vertex(CornerMesh::previous(c))] = is_new_on_boundary;
@@ -64,6 +64,7 @@ class DepthFirst {
   /// The corner to go on with; `none` where the walk ends or falls in two.
   uint32_t visit(uint32_t corner) {
     visited_[CornerMesh::face(corner)] = 1;
+    pace_.step();
     const uint32_t right = mesh_.right(corner);
     mesh_.prefetch(right);
     mesh_.prefetch(mesh_.left(corner));
@@ -87,6 +88,7 @@ class DepthFirst {
   }
 
   const CornerMesh& mesh_;
+  Pace& pace_;
   Array<uint8_t> visited_;  ///< [faces]
   Array<uint8_t> known_;    ///< [vertices] Known
   std::vector<uint32_t> stack_;
@@ -95,8 +97,8 @@ class DepthFirst {
 
 }  // namespace
 
-VertexOrder order_vertices(const CornerMesh& mesh, const Array<uint32_t>& starts) {
-  return DepthFirst(mesh).run(starts);
+VertexOrder order_vertices(const CornerMesh& mesh, const Array<uint32_t>& starts, Pace& pace) {
+  return DepthFirst(mesh, pace).run(starts);
 }
 
 }  // namespace papilio::proto::edgebreaker

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "proto/edgebreaker/corner_mesh.h"
+#include "proto/edgebreaker/pace.h"
 
 namespace papilio::proto::edgebreaker {
 
@@ -12,7 +13,12 @@ struct VertexOrder {
   List<uint32_t> alone;
 };
 
-/// `starts`: a corner of each face, in the order of `write_connectivity`.
-[[nodiscard]] VertexOrder order_vertices(const CornerMesh& mesh, const Array<uint32_t>& starts);
+/// `starts`: a corner of each face, in the order of `write_connectivity`. `pace` steps once a face.
+[[nodiscard]] VertexOrder order_vertices(const CornerMesh& mesh, const Array<uint32_t>& starts, Pace& pace);
+
+/// Orders vertices so that more of them lie opposite several faces whose vertices came before: Draco's maximum
+/// prediction degree traversal. Returns the corner at which the walk comes to each vertex. [vertices]
+[[nodiscard]] Array<uint32_t> order_by_prediction_degree(const CornerMesh& mesh, const Array<uint32_t>& starts,
+                                                         Pace& pace);
 
 }  // namespace papilio::proto::edgebreaker

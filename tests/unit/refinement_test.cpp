@@ -127,6 +127,21 @@ TEST(Refinement, CancelledStops) {
   }
 }
 
+TEST(Refinement, IsCancelledInsideTheEncoder) {
+  const std::string draco = write_draco_exact(test::torus(330, 200));
+  const auto run = [&](const std::function<bool()>& cancelled) {
+    Refinement refinement(draco, parse_query({{"levels", "0"}}), {});
+    (void)refinement.run({.cancelled = cancelled});
+  };
+  int calls = 0;
+  run([&] { return ++calls < 0; });
+  EXPECT_GT(calls, 8);  // once in 65,536 faces or vertices of each step
+  for (int last = calls; last > calls - 6; --last) {
+    int left = last;
+    EXPECT_THROW(run([&] { return --left == 0; }), Problem);
+  }
+}
+
 TEST(Refinement, StatisticsAreHeaders) {
   Statistics statistics{.level = 2,
                         .vertices = 10,
