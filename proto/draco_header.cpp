@@ -104,6 +104,7 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
 
   DracoHeader header;
   header.edgebreaker = method == 1;
+  header.connectivity = bytes.size() - cursor.left();
   if (header.edgebreaker) {
     cursor.byte();  // traversal
     header.vertices = cursor.varint();

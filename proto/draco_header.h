@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -11,7 +12,8 @@ namespace papilio::proto {
 struct DracoHeader {
   bool edgebreaker = false;  ///< else sequential
   uint32_t faces = 0;
-  uint32_t vertices = 0;  ///< encoded vertices (edgebreaker) or points (sequential)
+  uint32_t vertices = 0;    ///< encoded vertices (edgebreaker) or points (sequential)
+  size_t connectivity = 0;  ///< place of the byte behind the metadata
 };
 
 /// Reads the header of a triangle mesh, bitstream 2.2, past its metadata if there is any. The decoder trusts

@@ -10,6 +10,7 @@
 
 #include "proto/draco_attributes.h"
 #include "proto/draco_header.h"
+#include "proto/draco_merges.h"
 #include "proto/draco_orientations.h"
 #include "proto/problem.h"
 
@@ -81,6 +82,7 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
 
 FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   const DracoHeader header = read_draco_header(bytes, limits);
+  if (header.edgebreaker) require_bounded_merges(bytes, header);
   const std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
   // A point for every corner is the most that seams can make of a mesh.
