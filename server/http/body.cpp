@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "proto/text.h"
+#include "server/http/chunk_line.h"
+
 namespace papilio::server {
 namespace {
 
@@ -19,10 +22,10 @@ Problem too_large(uint64_t limit) {
 
 Problem damaged_chunks() { return {Code::bad_request, "The body's chunked encoding is damaged."}; }
 
-/// All digits of the base, and nothing else; a number past 64 bits is the largest one.
-bool parse_number(std::string_view text, int base, uint64_t& number) {
+/// Decimal digits and nothing else; a number past 64 bits is the largest one.
+bool parse_number(std::string_view text, uint64_t& number) {
   const char* end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, number, base);
+  const auto [last, error] = std::from_chars(text.data(), end, number);
   if (error == std::errc::result_out_of_range) number = UINT64_MAX;
   return error != std::errc::invalid_argument && last == end;
 }
@@ -33,6 +36,9 @@ Framing framing_of(const Head& head) {
   const size_t hosts = head.count("Host");
   if (hosts > 1 || (hosts == 0 && head.minor_version == 1))
     throw Problem(Code::bad_request, "A request has one Host header.");
+  const std::string host = head.field("Host");
+  if (!host.empty() && !is_authority(host))
+    throw Problem(Code::bad_request, "Host is " + proto::quote(host) + ", which is not valid. Send HOST or HOST:PORT.");
   const size_t lengths = head.count("Content-Length");
   const size_t encodings = head.count("Transfer-Encoding");
   if (lengths + encodings == 0) return {};
@@ -44,7 +50,7 @@ Framing framing_of(const Head& head) {
     return {Framing::Kind::chunked};
   }
   Framing framing{Framing::Kind::length};
-  if (!parse_number(head.field("Content-Length"), 10, framing.length))
+  if (!parse_number(head.field("Content-Length"), framing.length))
     throw Problem(Code::bad_request, "Content-Length must be a whole number of bytes.");
   if (framing.length == 0) framing.kind = Framing::Kind::none;
   return framing;
@@ -98,9 +104,7 @@ void BodyReader::hold(uint64_t bytes) {
 
 void BodyReader::read_chunks(std::string& bytes) {
   for (;;) {
-    const std::string line = read_line();
-    uint64_t size = 0;
-    if (!parse_number(trimmed(line.substr(0, line.find(';'))), 16, size)) throw damaged_chunks();
+    const uint64_t size = chunk_size(read_line());
     if (size == 0) break;
     read_exactly(size, bytes);
     if (!read_line().empty()) throw damaged_chunks();
@@ -109,6 +113,7 @@ void BodyReader::read_chunks(std::string& bytes) {
   for (std::string line = read_line(); !line.empty(); line = read_line()) {
     trailer += line.size();
     if (trailer > longest_trailer) throw damaged_chunks();
+    (void)parse_field(line);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "proto/text.h"
 #include "proto/url.h"
 
 namespace papilio::server {
@@ -11,6 +12,8 @@ using proto::Code;
 using proto::Problem;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
@@ -32,20 +35,29 @@ Fields parse_query(std::string_view text) {
   return fields;
 }
 
-/// "http://host:port/path" is a lawful way to ask for "/path".
+/// The part of the target that begins with the path: the whole target, or what follows the authority of
+/// "http://host:port/path".
 std::string_view without_origin(std::string_view target) {
-  constexpr std::string_view scheme = "http://";
-  if (!same_ignoring_case(target.substr(0, scheme.size()), scheme)) return target;
-  const size_t slash = target.find('/', scheme.size());
-  return slash == std::string_view::npos ? "/" : target.substr(slash);
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!same_ignoring_case(target.substr(0, scheme.size()), scheme)) continue;
+    const std::string_view rest = target.substr(scheme.size());
+    const std::string_view authority = rest.substr(0, rest.find_first_of("/?"));
+    if (authority.starts_with(':') || !is_authority(authority))
+      throw Problem(Code::bad_request, "The host in the address is " + proto::quote(authority) +
+                                           ", which is not valid. Send http://HOST:PORT/PATH, or the path alone.");
+    return rest.substr(authority.size());
+  }
+  return target;
 }
 
 void parse_target(Head& head) {
   const std::string_view target = without_origin(head.target);
-  if (!target.starts_with('/') && target != "*")
-    throw Problem(Code::bad_request, "The address must be a path that begins with /.");
   const size_t mark = target.find('?');
-  head.path = percent_decoded(target.substr(0, mark), false);
+  const std::string_view path = target.substr(0, mark);
+  const bool is_absolute = target.size() < head.target.size();
+  if (!path.starts_with('/') && path != "*" && !(is_absolute && path.empty()))
+    throw Problem(Code::bad_request, "The address must be a path that begins with /.");
+  head.path = path.empty() ? "/" : percent_decoded(path, false);
   if (std::ranges::any_of(head.path, is_control))
     throw Problem(Code::bad_request, "The path holds a control character.");
   if (mark != std::string_view::npos) head.query = parse_query(target.substr(mark + 1));
@@ -63,16 +75,6 @@ void parse_request_line(std::string_view line, Head& head) {
   head.minor_version = version.back() - '0';
   head.method = line.substr(0, first);
   head.target = line.substr(first + 1, second - first - 1);
-}
-
-std::pair<std::string, std::string> parse_field(std::string_view line) {
-  const size_t colon = line.find(':');
-  if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
-    throw Problem(Code::bad_request, "A header line is not of the form `Name: value`.");
-  const std::string_view value = trimmed(line.substr(colon + 1));
-  if (std::ranges::any_of(value, [](char c) { return is_control(c) && c != '\t'; }))
-    throw Problem(Code::bad_request, "A header field's value holds a control character.");
-  return {std::string(line.substr(0, colon)), std::string(value)};
 }
 
 }  // namespace
@@ -96,7 +98,7 @@ std::string lower_case(std::string_view text) {
 bool is_token(std::string_view text) {
   constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
   return !text.empty() && std::ranges::all_of(text, [&](char c) {
-    return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') || marks.find(c) != std::string_view::npos;
+    return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'z') || marks.find(c) != std::string_view::npos;
   });
 }
 
@@ -128,6 +130,33 @@ bool Head::lists(std::string_view name, std::string_view token) const {
     }
   }
   return false;
+}
+
+bool is_authority(std::string_view text) {
+  const auto all_of = [](std::string_view part, std::string_view marks) {
+    return std::ranges::all_of(part, [&](char c) {
+      return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'z') || marks.find(c) != std::string_view::npos;
+    });
+  };
+  const bool is_literal = text.starts_with('[');
+  const size_t bracket = is_literal ? text.find(']') : 0;
+  if (bracket == std::string_view::npos) return false;
+  const size_t colon = text.find(':', bracket);
+  const std::string_view port = colon == std::string_view::npos ? "" : text.substr(colon + 1);
+  const std::string_view host = text.substr(0, colon);
+  if (text.empty() || !std::ranges::all_of(port, is_digit)) return false;
+  if (!is_literal) return all_of(host, "-._~!$&'()*+,;=%");
+  return bracket + 1 == host.size() && bracket > 1 && host.find_first_not_of("0123456789abcdefABCDEF:.", 1) == bracket;
+}
+
+std::pair<std::string, std::string> parse_field(std::string_view line) {
+  const size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
+    throw Problem(Code::bad_request, "A header line is not of the form `Name: value`.");
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  if (std::ranges::any_of(value, [](char c) { return is_control(c) && c != '\t'; }))
+    throw Problem(Code::bad_request, "A header field's value holds a control character.");
+  return {std::string(line.substr(0, colon)), std::string(value)};
 }
 
 void parse_head(std::string_view text, Head& head) {

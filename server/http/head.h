@@ -19,11 +19,16 @@ namespace papilio::server {
 [[nodiscard]] std::string lower_case(std::string_view text);
 /// True for a non-empty `token` of RFC 9110, of which methods and names of fields are made.
 [[nodiscard]] bool is_token(std::string_view text);
+/// True for a host, which may be empty, with or without a port: a name, an IPv4 address or an IPv6 address in brackets
+/// (RFC 3986, section 3.2). User information is refused, as RFC 9110, section 4.2.4 advises.
+[[nodiscard]] bool is_authority(std::string_view text);
+/// Parses one line of a head or of a trailer, without its CR LF. Throws `Problem` bad_request.
+[[nodiscard]] std::pair<std::string, std::string> parse_field(std::string_view line);
 
 struct Head {
   std::string method;
   std::string target;  ///< as it was sent; visible ASCII only
-  std::string path;    ///< percent-decoded, without control characters
+  std::string path;    ///< percent-decoded, without control characters; "/" where an absolute target has none
   Fields query;        ///< percent-decoded, in the original order, duplicates kept
   int minor_version = 1;
   Fields fields;

@@ -123,6 +123,7 @@ void add_messages(Seeds& seeds) {
             "Content-Type: application/x-draco\r\nX-Request-Id: a\r\n\r\n");
   seeds.add("request_head",
             "GET http://here/v1/info HTTP/1.0\r\nTransfer-Encoding: chunked\r\nRange: bytes=0-1\r\n\r\n");
+  seeds.add("chunk_line", "1f;name=value ; quoted = \"a\\\"b\";alone");
   seeds.add("form",
             "multipart/form-data; boundary=\"cut\"\nbefore\r\n--cut\r\nContent-Disposition: form-data; name=\"mesh\"; "
             "filename=a.drc\r\nContent-Type: application/x-draco\r\n\r\nDRACO\r\n--cut\r\n"

@@ -78,6 +78,37 @@ TEST_F(HttpServerTest, DamagedChunkingIsRefused) {
   expect_refused(request("POST /echo", "Transfer-Encoding: chunked\r\n", endless), 400, "bad_request");
 }
 
+TEST_F(HttpServerTest, ChunkExtensionsOfTheGrammarAreIgnored) {
+  start();
+  Client client(port_);
+  for (const char* line : {"5;a", "5 ; a", "5\t;\ta = b", "05;a=b;c=\"d;\\\" \t\xc3\xa4\";e"}) {
+    SCOPED_TRACE(line);
+    const std::string body = std::string(line) + "\r\nhello\r\n0;last\r\n\r\n";
+    EXPECT_EQ(client.ask(request("POST /echo", "Transfer-Encoding: chunked\r\n", body)).body, "hello");
+  }
+}
+
+TEST_F(HttpServerTest, ChunkLinesOutsideTheGrammarAreRefused) {
+  start();
+  using namespace std::string_literals;
+  for (const std::string& line :
+       {"5;a\rb"s,     "5;\r"s,    "5\r"s,       "5;a=\"\rb\""s, "5;a=\"\\\r\""s, "5;a\0"s,      "5\0"s,
+        "5;a=\"\0\""s, "5;a\x7f"s, "5;a\x01=b"s, " 5"s,          "5 "s,           "5;"s,         "5;a="s,
+        "5;=b"s,       "5;a=\"b"s, "5;a b"s,     "5;a=b c"s,     "5 a"s,          "5\xc2\xa0;a"s}) {
+    const std::string body = line + "\r\nhello\r\n0\r\n\r\n" + smuggled;
+    expect_refused(request("POST /echo", "Transfer-Encoding: chunked\r\n", body), 400, "bad_request");
+  }
+}
+
+TEST_F(HttpServerTest, TrailersThatNoHeadCouldHoldAreRefused) {
+  start();
+  using namespace std::string_literals;
+  for (const std::string& trailer : {"X: a\rb"s, "X: \0"s, "no colon"s, " folded: x"s, "X : y"s}) {
+    const std::string body = "5\r\nhello\r\n0\r\n" + trailer + "\r\n\r\n" + smuggled;
+    expect_refused(request("POST /echo", "Transfer-Encoding: chunked\r\n", body), 400, "bad_request");
+  }
+}
+
 TEST_F(HttpServerTest, BodyThatEndsEarlyIsRefused) {
   start();
   for (const std::string& bytes : {request("POST /echo", "Content-Length: 10\r\n", "short"),

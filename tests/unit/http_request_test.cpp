@@ -78,8 +78,28 @@ TEST_F(HttpServerTest, OptionsListsTheMethods) {
 TEST_F(HttpServerTest, QueryKeepsOrderDuplicatesAndEqualsSigns) {
   start();
   EXPECT_EQ(ask(get("/query?b=2&a=1&a=1&c=x=y&d&e=%2C+?&&=z")).body, "b=2;a=1;a=1;c=x=y;d=;e=, ?;=z;");
-  EXPECT_EQ(ask(get("http://test:80/query?a=1")).body, "a=1;");
   EXPECT_EQ(ask(get("/hell%6F")).body, "hello GET");
+}
+
+TEST_F(HttpServerTest, AbsoluteTargetsHaveTheirOwnPathOrTheRoot) {
+  start();
+  for (const char* origin : {"http://test:80", "HTTP://test", "https://127.0.0.1:", "http://[::1]:8080", "http://%41"})
+    EXPECT_EQ(ask(get(std::string(origin) + "/query?a=1")).body, "a=1;") << origin;
+  // The path is empty, whatever slashes the query holds: there is no route at the root here.
+  for (const char* target :
+       {"http://test?x/hello", "http://test", "http://test?/hello", "http://test:80?a=http://x/hello"})
+    expect_problem(ask(get(target)), 404, "not_found");
+}
+
+TEST_F(HttpServerTest, AuthoritiesThatAreNotValidAreRefused) {
+  start();
+  for (const char* authority : {"", ":80", "user@test", "user:word@test", "te st", "test:8o", "test:80:80", "[::1",
+                                "[]", "[::1]x", "[g::1]", "a[b]", "te\"st", "test\\", "te#st"})
+    expect_refused(get("http://" + std::string(authority) + "/hello"), 400, "bad_request");
+  for (const char* host : {"a b", "user@test", "te/st", "test:x", "[::1", "a,b@c"})
+    expect_refused("GET /hello HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n", 400, "bad_request");
+  for (const char* host : {"", "test:8080", "[::1]:80", "a_b.example"})
+    EXPECT_EQ(ask("GET /hello HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").status, 200) << host;
 }
 
 TEST_F(HttpServerTest, HeaderValuesAreNotPercentDecoded) {
