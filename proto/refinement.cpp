@@ -134,7 +134,11 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   const auto stop = [&] {
     require_time();
     const std::lock_guard lock(asking);
-    return aside.has_failed() || (hooks.cancelled && hooks.cancelled());
+    if (aside.has_failed() || !hooks.cancelled) return aside.has_failed();
+    const auto asked = std::chrono::steady_clock::now();
+    const bool is_cancelled = hooks.cancelled();
+    waited_ = waited_.load() + (std::chrono::steady_clock::now() - asked);
+    return is_cancelled;
   };
   const auto poll = [&] {
     if (stop()) throw Problem(Code::cancelled, "The client went away.");
@@ -180,7 +184,8 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
 }
 
 void Refinement::require_time() const {
-  if (most_seconds_ > 0 && std::chrono::steady_clock::now() - begin_ > std::chrono::seconds(most_seconds_))
+  if (most_seconds_ > 0 &&
+      std::chrono::steady_clock::now() - begin_ - waited_.load() > std::chrono::seconds(most_seconds_))
     throw Problem(Code::takes_too_long, "The work takes longer than " + std::to_string(most_seconds_) +
                                             " seconds, the limit. Ask for fewer levels or a coarser mesh.");
 }

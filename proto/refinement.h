@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -47,7 +48,8 @@ struct RefinementHooks {
   /// to stop. With more than one thread a level is encoded, and this is called, beside the making of the next: one call
   /// at a time, but not always from the thread that runs it all, and while `cancelled` may be asked.
   std::function<void(const EncodedLevel&)> on_level{};
-  /// Asked every few milliseconds: one call at a time, but not always from the thread that runs it all.
+  /// Asked every few milliseconds: one call at a time, but not always from the thread that runs it all. It may wait, so
+  /// that other work goes first: the time limit does not count that.
   std::function<bool()> cancelled{};
   int threads = 1;  ///< at most so many work on it at once
 };
@@ -83,6 +85,7 @@ class Refinement {
   std::shared_ptr<const PreparedMesh> prepared_;  ///< prepared
   StageTimes times_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::atomic<std::chrono::steady_clock::duration> waited_{};  ///< in `RefinementHooks::cancelled`
   int most_seconds_;
 };
 

@@ -142,6 +142,17 @@ TEST(Refinement, IsCancelledInsideTheEncoder) {
   }
 }
 
+TEST(Refinement, TheTimeLimitDoesNotCountWaitsOfTheCaller) {
+  int questions = 0;
+  const auto wait_once = [&] {
+    if (++questions == 1) std::this_thread::sleep_for(std::chrono::milliseconds(2200));
+    return false;
+  };
+  Refinement refinement(coarse(), parse_query({{"levels", "3"}}), {.max_compute_seconds = 2});
+  EXPECT_EQ(refinement.run({.cancelled = wait_once}).statistics.faces, 20U << 6);
+  EXPECT_GT(questions, 1);
+}
+
 TEST(Refinement, StatisticsAreHeaders) {
   Statistics statistics{.level = 2,
                         .vertices = 10,
