@@ -1,6 +1,8 @@
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <functional>
@@ -31,6 +33,15 @@ sigset_t block_signals() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);  // a client or a store that goes away shows in the result of a call
   return signals;
+}
+
+/// Lets the process open as many files as it may: each silent connection takes one.
+void raise_descriptor_limit() {
+  constexpr rlim_t most = 65536;
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, most));
+  ::setrlimit(RLIMIT_NOFILE, &limit);  // what is refused stays as it was
 }
 
 /// From then on a second SIGTERM or SIGINT ends the program at once. SIGHUP stays blocked: a reload that comes while
@@ -71,6 +82,7 @@ int wait_for_end(const sigset_t& signals, const Config& config, HttpServer& serv
 int serve(const Config& config) {
   const sigset_t signals = block_signals();
   start_log(config.log_level, config.log_format);
+  raise_descriptor_limit();
   limit_address_space(config);
   if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0)
     bound_by_container(config.container_memory_bytes);

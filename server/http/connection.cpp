@@ -22,7 +22,6 @@ using std::chrono::milliseconds;
 
 constexpr size_t receive_bytes = 64 << 10;
 constexpr uint64_t least_bytes_a_second = 1 << 10;
-constexpr milliseconds give_up_interval{200};
 constexpr std::chrono::seconds longest_linger{2};
 
 std::string peer_address(int fd) {
@@ -61,55 +60,86 @@ bool Connection::wait(short events, Clock::time_point deadline) const {
   }
 }
 
-Connection::Received Connection::receive(Clock::time_point deadline) {
+Transport::Step Connection::receive_now() {
   if (begin_ > 0) std::ranges::copy(buffered(), buffer_.begin());
   end_ -= std::exchange(begin_, 0);
   if (buffer_.size() < end_ + receive_bytes) buffer_.resize(end_ + receive_bytes);
+  const Transport::Step step = transport_->read(buffer_.data() + end_, receive_bytes);
+  end_ += step.bytes;
+  return step;
+}
+
+Connection::Received Connection::receive(Clock::time_point deadline) {
   for (;;) {
-    const Transport::Step step = transport_->read(buffer_.data() + end_, receive_bytes);
-    end_ += step.bytes;
+    const Transport::Step step = receive_now();
     if (step.bytes > 0) return Received::bytes;
     if (step.wait_for == 0) return Received::closed;
     if (!wait(step.wait_for, deadline)) return Received::timeout;
   }
 }
 
-bool Connection::wait_for_request(std::chrono::seconds idle, const std::function<bool()>& give_up) {
-  const auto deadline = Clock::now() + idle;
-  while (!has_buffered()) {
-    const auto now = Clock::now();
-    if (now >= deadline || give_up()) return false;
-    if (receive(std::min(deadline, now + give_up_interval)) == Received::closed) return false;
-  }
-  return true;
+void Connection::await_request(std::chrono::seconds idle) {
+  deadline_ = Clock::now() + idle;
+  has_begun_ = has_empty_line_ = false;
+  scanned_ = 0;
 }
 
-std::string Connection::read_head(size_t limit) {
-  const auto deadline = Clock::now() + read_wait_;
-  // An empty line before the request is a client's slip after the last body; RFC 9112 asks to pass over it.
-  if (buffered().starts_with("\r\n")) begin_ += 2;
-  size_t length = 0;
+Connection::Gathered Connection::gather_head(size_t limit, Clock::duration patience) {
+  const auto patient_until = Clock::now() + patience;
   for (;;) {
-    const std::string_view held = buffered();
-    for (; length < std::min(held.size(), limit); ++length) {
-      if (held[length] != '\n') continue;
-      if (length == 0 || held[length - 1] != '\r')
-        throw Problem(Code::bad_request, "Every line of a request's head must end in CR LF.");
-      if (held.substr(0, length + 1).ends_with("\r\n\r\n")) {
-        std::string head(held.substr(0, length + 1));
-        consume(head.size());
-        return head;
-      }
+    if (has_buffered() && !has_begun_) {
+      has_begun_ = true;
+      head_begun_ = Clock::now();
+      deadline_ = head_begun_ + read_wait_;
     }
-    if (length == limit)
+    if (has_begun_ && scan_head(limit) != HeadState::incomplete) return {Gathered::State::ready};
+    if (Clock::now() >= deadline_) return {has_begun_ ? Gathered::State::ready : Gathered::State::ended};
+    const Transport::Step step = receive_now();
+    if (step.bytes > 0) continue;
+    if (step.wait_for == 0) return {Gathered::State::ended};
+    if (!wait(step.wait_for, std::min(deadline_, patient_until)) && Clock::now() < deadline_)
+      return {Gathered::State::waiting, step.wait_for};
+  }
+}
+
+Connection::HeadState Connection::scan_head(size_t limit) {
+  // An empty line before the request is a client's slip after the last body; RFC 9112 asks to pass over it.
+  if (!has_empty_line_ && buffered().starts_with("\r\n")) {
+    begin_ += 2;
+    has_empty_line_ = true;
+    scanned_ = 0;
+  }
+  const std::string_view held = buffered();
+  for (; scanned_ < std::min(held.size(), limit); ++scanned_) {
+    if (held[scanned_] != '\n') continue;
+    if (scanned_ == 0 || held[scanned_ - 1] != '\r') return HeadState::bad_line;
+    if (held.substr(0, scanned_ + 1).ends_with("\r\n\r\n")) return HeadState::complete;
+  }
+  return scanned_ == limit ? HeadState::too_large : HeadState::incomplete;
+}
+
+std::string Connection::take_head(size_t limit) {
+  switch (scan_head(limit)) {
+    case HeadState::complete: {
+      std::string head(buffered().substr(0, scanned_ + 1));
+      consume(head.size());
+      return head;
+    }
+    case HeadState::bad_line:
+      throw Problem(Code::bad_request, "Every line of a request's head must end in CR LF.");
+    case HeadState::too_large:
       throw Problem(Code::headers_too_large,
                     "The request line and the header fields may have " + std::to_string(limit) + " bytes together.");
-    const Received received = receive(deadline);
-    if (received == Received::closed) return {};
-    if (received == Received::timeout)
+    default:
       throw Problem(Code::request_timeout,
                     "The request's head did not arrive in " + std::to_string(read_wait_.count()) + " seconds.");
   }
+}
+
+void Connection::shrink() {
+  buffer_ = std::string(buffered());
+  buffer_.shrink_to_fit();
+  end_ -= std::exchange(begin_, 0);
 }
 
 void Connection::begin_body() {

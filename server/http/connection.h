@@ -27,13 +27,30 @@ class Connection {
   /// From the socket alone: nothing that a client writes into a header changes it.
   [[nodiscard]] const std::string& remote_address() const { return remote_address_; }
 
-  /// Waits for the first byte of a request, a TLS handshake before it included. False when the client has closed or
-  /// brought none within `idle`, or once `give_up` (asked a few times a second) says so.
-  bool wait_for_request(std::chrono::seconds idle, const std::function<bool()>& give_up);
-  /// The head up to and with its empty line; "" when the client closed before its end. Throws
-  /// headers_too_large past `limit` bytes, request_timeout, and bad_request at a line feed without its
-  /// carriage return.
-  std::string read_head(size_t limit);
+  /// Starts the clock for a request: its first byte must come within `idle`, a TLS handshake before it included.
+  void await_request(std::chrono::seconds idle);
+  /// What came of waiting for a head.
+  struct Gathered {
+    enum class State {
+      ready,    ///< `take_head` gives the head, or says why it is refused
+      waiting,  ///< bytes are missing: to be called again when the socket is ready for `wait_for` or at the deadline
+      ended,    ///< the client has closed, or brought no byte in time
+    };
+    State state;
+    short wait_for = 0;
+  };
+  /// Receives a head of up to `limit` bytes, and waits no longer than `patience` for it.
+  Gathered gather_head(size_t limit, Clock::duration patience);
+  /// When a client that brings nothing more is given up.
+  [[nodiscard]] Clock::time_point deadline() const { return deadline_; }
+  /// When the first byte of the head came.
+  [[nodiscard]] Clock::time_point head_begun() const { return head_begun_; }
+  /// The head up to and with its empty line, once it is ready. Throws headers_too_large past `limit` bytes,
+  /// request_timeout, and bad_request at a line feed without its carriage return.
+  std::string take_head(size_t limit);
+  /// Keeps no more memory than what was received takes.
+  void shrink();
+  [[nodiscard]] int fd() const { return transport_->fd(); }
 
   /// Starts the clock for a body.
   void begin_body();
@@ -64,6 +81,11 @@ class Connection {
   /// False once the deadline has passed, ready or not.
   [[nodiscard]] bool wait(short events, Clock::time_point deadline) const;
   Received receive(Clock::time_point deadline);
+  /// Reads what has come, without waiting.
+  Transport::Step receive_now();
+  enum class HeadState { incomplete, complete, bad_line, too_large };
+  /// Looks at the bytes that it has not seen yet.
+  HeadState scan_head(size_t limit);
 
   const std::unique_ptr<Transport> transport_;
   const std::chrono::seconds read_wait_;
@@ -71,7 +93,12 @@ class Connection {
   std::string remote_address_;
   std::string buffer_;  ///< from begin_ to end_: received, not consumed; it keeps its size, as growing would fill it
   size_t begin_ = 0, end_ = 0;
-  bool broken_ = false;  ///< a write has failed: no further one is tried
+  bool broken_ = false;         ///< a write has failed: no further one is tried
+  Clock::time_point deadline_;  ///< of the head, or of its first byte
+  Clock::time_point head_begun_;
+  bool has_begun_ = false;       ///< the first byte of a head has come
+  bool has_empty_line_ = false;  ///< one was passed over before the head
+  size_t scanned_ = 0;           ///< bytes of the head that `scan_head` has seen
   Clock::time_point body_deadline_;
   uint64_t body_stretch_ = 0;  ///< bytes since the deadline was last moved
   uint64_t bytes_in_ = 0;

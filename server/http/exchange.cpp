@@ -7,15 +7,12 @@
 
 namespace papilio::server {
 
-bool Exchange::receive() {
+void Exchange::receive() {
   id_ = request_id({});
-  const std::string text = connection_.read_head(options_.max_header_bytes);
-  if (text.empty()) return false;
-  parse_head(text, head_);
+  parse_head(connection_.take_head(options_.max_header_bytes), head_);
   id_ = request_id(head_.field("X-Request-Id"));
   framing_ = framing_of(head_);
   body_.emplace(connection_, framing_, options_.max_body_bytes, &held_);
-  return true;
 }
 
 void Exchange::refuse_unreadable() const { server::refuse_unreadable(head_, framing_, options_.max_body_bytes); }

@@ -18,8 +18,8 @@ class Exchange final : public Request {
   Exchange(Connection& connection, const HttpOptions& options, ByteBudget& held)
       : connection_(connection), options_(options), held_(held) {}
 
-  /// Reads and parses the head. False when the client closed before its end. Throws `Problem`.
-  bool receive();
+  /// Takes the head, which is ready, from the connection and parses it. Throws `Problem`.
+  void receive();
   /// Refuses a body that would not be read. Throws `Problem`.
   void refuse_unreadable() const;
   /// True when the next bytes of the connection begin another request, and the client wants to send one.

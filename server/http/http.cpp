@@ -22,12 +22,29 @@ struct HttpServer::Impl {
 
   void serve(int fd) {
     try {
-      Connection connection(tls ? tls->transport(fd) : plain_transport(fd), std::chrono::seconds(options.read_seconds),
-                            std::chrono::seconds(options.write_seconds));
-      const Listed listed(*this, connection);
-      if (!listener.closed()) Session(connection, options, held, routes, gate, listener).run();
+      go_on(std::make_shared<Client>(*this, tls ? tls->transport(fd) : plain_transport(fd)));
     } catch (...) {
       // Out of memory outside of a handler: this connection is lost, its thread goes on to the next.
+    }
+  }
+
+  struct Client;
+  /// Serves the client for as long as it has requests, and no other waits for the thread.
+  void go_on(const std::shared_ptr<Client>& client) {
+    const auto later = [this, client] {
+      try {
+        go_on(client);
+      } catch (...) {
+        // As above.
+      }
+    };
+    while (!listener.closed()) {
+      const Session::Next next = client->session.run();
+      if (next.what == Session::Next::What::nothing) return;
+      const Connection& connection = client->session.connection();
+      if (next.what == Session::Next::What::bytes)
+        return listener.park(connection.fd(), next.wait_for, connection.deadline(), later);
+      if (listener.others_wait()) return listener.enqueue(later);
     }
   }
 
@@ -57,13 +74,21 @@ struct HttpServer::Impl {
     Connection& connection_;
   };
 
+  struct Client {
+    Client(Impl& impl, std::unique_ptr<Transport> transport)
+        : session(std::move(transport), impl.options, impl.held, impl.routes, impl.gate, impl.listener),
+          listed(impl, session.connection()) {}
+    Session session;
+    Listed listed;
+  };
+
   const HttpOptions options;
   ByteBudget held{options.max_held_bytes};
   std::optional<TlsContext> tls;
   Routes routes;
   Gate gate;
   std::mutex mutex;
-  std::set<Connection*> connections;  ///< guarded by mutex: those being served
+  std::set<Connection*> connections;  ///< guarded by mutex: all that are open
   Listener listener;
 };
 

@@ -121,17 +121,18 @@ struct Finished {
 /// Everything that can be set, each with its default and unit.
 struct HttpOptions {
   std::string host = "127.0.0.1";
-  int port = 8080;                        ///< 0: any free one
-  std::string tls_cert;                   ///< PEM file of a certificate and its intermediates; "": plain HTTP
-  std::string tls_key;                    ///< PEM file of its key; given when tls_cert is
-  uint64_t max_body_bytes = 64u << 20;    ///< larger: 413, before it is read where a length is declared
-  uint64_t max_held_bytes = 512u << 20;   ///< bodies held in memory at once, of all requests together: 429
-  uint64_t max_header_bytes = 32u << 10;  ///< request line and header fields together: 431
-  int threads = 128;                      ///< connections served at once; each holds a thread
-  int idle_seconds = 5;            ///< an idle connection is closed after this, or when others wait for its thread
-  int read_seconds = 10;           ///< for a whole head, and for each 1 KiB times this of a body: 408
-  int write_seconds = 30;          ///< longest wait for the client to take the next bytes of an answer
-  int keep_alive_requests = 1000;  ///< requests on one connection
+  int port = 8080;                             ///< 0: any free one
+  std::string tls_cert;                        ///< PEM file of a certificate and its intermediates; "": plain HTTP
+  std::string tls_key;                         ///< PEM file of its key; given when tls_cert is
+  uint64_t max_body_bytes = 64u << 20;         ///< larger: 413, before it is read where a length is declared
+  uint64_t max_held_bytes = 512u << 20;        ///< bodies held in memory at once: 429; and answers: the oldest are cut
+  uint64_t max_header_bytes = 32u << 10;       ///< request line and header fields together: 431
+  int threads = 128;                           ///< requests served at once, each on a thread
+  int idle_seconds = 5;                        ///< a silent connection is closed after this, or when there are too many
+  int read_seconds = 10;                       ///< for a whole head, and for each 1 KiB times this of a body: 408
+  int write_seconds = 30;                      ///< longest wait for the client to take any further byte of an answer
+  int keep_alive_requests = 1000;              ///< requests on one connection
+  std::vector<std::string> trusted_proxies{};  ///< addresses whose `X-Forwarded-For` is believed
   /// Who is asking: a name for the log. Throws `Problem` unauthorized or forbidden. Empty: everybody may do all.
   std::function<std::string(const Request&, Access)> authorize{};
   /// May add headers to any answer, refusals too, before it is sent.

@@ -1,7 +1,9 @@
 #include "server/http/listener.h"
 
 #include <httplib.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -20,11 +22,12 @@ constexpr int backlog = 1024;
 /// Longer than a client takes between two connections, shorter than the time after which memory is given back.
 constexpr std::chrono::milliseconds idle_thread{1000};
 
-/// Our thread pool, as the library wants it.
+/// Our thread pool, as the library wants it, and the sockets that need no thread now.
 class TaskQueue : public httplib::TaskQueue {
  public:
-  TaskQueue(size_t threads, std::atomic<const ThreadPool*>& known) : pool_(threads, idle_thread), known_(known) {
-    known_ = &pool_;
+  TaskQueue(size_t threads, size_t most_parked, std::atomic<TaskQueue*>& known)
+      : pool_(threads, idle_thread), parking_(most_parked), known_(known) {
+    known_ = this;
   }
   ~TaskQueue() override { known_ = nullptr; }
 
@@ -34,12 +37,31 @@ class TaskQueue : public httplib::TaskQueue {
     pool_.enqueue(std::move(serve));
     return Enqueued(true);
   }
-  void shutdown() override { pool_.shutdown(); }
+  void shutdown() override {
+    parking_.close();  // it must not resume anything in a pool that is shut down
+    pool_.shutdown();
+  }
+
+  void park(int fd, short events, Parking::Clock::time_point deadline, std::function<void()> resume) {
+    parking_.park(fd, events, deadline,
+                  [this, resume = std::move(resume)]() mutable { pool_.enqueue(std::move(resume)); });
+  }
+  [[nodiscard]] bool has_waiting() const { return pool_.has_waiting(); }
 
  private:
   ThreadPool pool_;
-  std::atomic<const ThreadPool*>& known_;
+  Parking parking_;
+  std::atomic<TaskQueue*>& known_;
 };
+
+/// As many as descriptors are left beside those of connections that are served, of stores and of files.
+size_t most_parked(size_t threads) {
+  constexpr size_t most = 4096, least = 16, others = 64;
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  const size_t descriptors = limit.rlim_cur;
+  return std::clamp(descriptors > threads + others ? descriptors - threads - others : 0, least, most);
+}
 
 /// The library's default sets SO_REUSEPORT, with which two servers share a port without a word.
 void set_listening_options(int fd) {
@@ -52,7 +74,9 @@ void set_listening_options(int fd) {
 class Listener::Server : public httplib::Server {
  public:
   Server(int threads, std::function<void(int)> serve) : serve_(std::move(serve)) {
-    new_task_queue = [this, threads] { return new TaskQueue(static_cast<size_t>(threads), pool_); };
+    new_task_queue = [this, threads] {
+      return new TaskQueue(static_cast<size_t>(threads), most_parked(static_cast<size_t>(threads)), tasks_);
+    };
     set_socket_options(set_listening_options);
     // Accepted sockets inherit it. Without it a small answer waits 40 ms for the client's delayed
     // acknowledgement.
@@ -90,9 +114,13 @@ class Listener::Server : public httplib::Server {
 
   [[nodiscard]] bool closed() const { return closed_; }
   [[nodiscard]] bool others_wait() const {
-    const ThreadPool* pool = pool_;
-    return pool != nullptr && pool->has_waiting();
+    const TaskQueue* const tasks = tasks_;
+    return tasks != nullptr && tasks->has_waiting();
   }
+  void park(int fd, short events, Parking::Clock::time_point deadline, std::function<void()> resume) {
+    tasks_.load()->park(fd, events, deadline, std::move(resume));
+  }
+  void enqueue(std::function<void()> work) { tasks_.load()->enqueue(std::move(work)); }
 
  private:
   bool process_and_close_socket(socket_t fd) override {
@@ -102,7 +130,7 @@ class Listener::Server : public httplib::Server {
 
   const std::function<void(int)> serve_;
   std::atomic<socket_t> fd_ = INVALID_SOCKET;
-  std::atomic<const ThreadPool*> pool_ = nullptr;  ///< the library makes it and deletes it
+  std::atomic<TaskQueue*> tasks_ = nullptr;  ///< the library makes it and deletes it
   std::atomic<bool> closed_ = false;
 };
 
@@ -114,5 +142,9 @@ void Listener::run() { server_->run(); }
 void Listener::close() { server_->stop_listening(); }
 bool Listener::closed() const { return server_->closed(); }
 bool Listener::others_wait() const { return server_->others_wait(); }
+void Listener::enqueue(std::function<void()> work) { server_->enqueue(std::move(work)); }
+void Listener::park(int fd, short events, Parking::Clock::time_point deadline, std::function<void()> resume) {
+  server_->park(fd, events, deadline, std::move(resume));
+}
 
 }  // namespace papilio::server

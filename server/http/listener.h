@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "server/http/parking.h"
+
 namespace papilio::server {
 
 /// Listens, accepts, and hands each connection to one of a bounded number of threads. The only place that knows
@@ -23,8 +25,12 @@ class Listener {
   /// times.
   void close();
   [[nodiscard]] bool closed() const;
-  /// True while an accepted connection waits for a thread: an idle one should then make room.
+  /// True while a connection waits for a thread.
   [[nodiscard]] bool others_wait() const;
+  /// Runs the work on one of the threads, after what waits already. To be called from one of them.
+  void enqueue(std::function<void()> work);
+  /// Runs `resume` on one of the threads once the socket is ready (`Parking::park`). To be called from one of them.
+  void park(int fd, short events, Parking::Clock::time_point deadline, std::function<void()> resume);
 
  private:
   class Server;

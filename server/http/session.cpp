@@ -30,6 +30,10 @@ std::string trace_id(const std::string& traceparent) {
   return valid ? std::string(text.substr(3, 32)) : "";
 }
 
+/// A thread stays with a connection so long before it serves others: the next request of a busy client, and the first
+/// one of a new client, come sooner.
+constexpr std::chrono::milliseconds short_wait{5};
+
 /// A request counts as running from its complete head until its answer is sent and logged.
 class Pass {
  public:
@@ -48,17 +52,37 @@ class Pass {
 
 }  // namespace
 
-void Session::run() {
-  for (int served = 0; served < options_.keep_alive_requests; ++served) {
-    const auto give_up = [&] { return listener_.closed() || (served > 0 && listener_.others_wait()); };
-    if (!connection_.wait_for_request(std::chrono::seconds(options_.idle_seconds), give_up)) return;
-    if (!answer_one(served + 1 == options_.keep_alive_requests)) break;
+Session::Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held,
+                 const Routes& routes, Gate& gate, const Listener& listener)
+    : connection_(std::move(transport), std::chrono::seconds(options.read_seconds),
+                  std::chrono::seconds(options.write_seconds)),
+      options_(options),
+      held_(held),
+      routes_(routes),
+      gate_(gate),
+      listener_(listener) {
+  connection_.await_request(std::chrono::seconds(options_.idle_seconds));
+}
+
+Session::Next Session::run() {
+  const bool others_wait = listener_.others_wait();
+  const auto [state, wait_for] =
+      connection_.gather_head(options_.max_header_bytes, others_wait ? std::chrono::milliseconds(0) : short_wait);
+  if (state == Connection::Gathered::State::waiting) {
+    connection_.shrink();
+    return {Next::What::bytes, wait_for};
+  }
+  if (state == Connection::Gathered::State::ended) return {Next::What::nothing};
+  if (answer_one(++served_ == options_.keep_alive_requests)) {
+    connection_.await_request(std::chrono::seconds(options_.idle_seconds));
+    return {Next::What::request};
   }
   connection_.linger();
+  return {Next::What::nothing};
 }
 
 bool Session::answer_one(bool last) {
-  const auto start = Connection::Clock::now();
+  const auto start = connection_.head_begun();
   const uint64_t in_before = connection_.bytes_in();
   const uint64_t out_before = connection_.bytes_out();
   Exchange exchange(connection_, options_, held_);
@@ -66,7 +90,7 @@ bool Session::answer_one(bool last) {
   std::optional<Pass> pass;
   Response response;
   try {
-    if (!exchange.receive()) return false;
+    exchange.receive();
     pass.emplace(gate_);
     RouteMatch match = routes_.find(exchange.method(), exchange.path());
     finished.route = std::move(match.pattern);
@@ -93,7 +117,7 @@ bool Session::answer_one(bool last) {
   if (!finished.trace.empty()) response.headers.emplace_back("traceparent", exchange.header("traceparent"));
   if (options_.decorate) options_.decorate(exchange, response);
 
-  const bool keep_alive = !last && exchange.may_keep_alive() && !gate_.closed() && !listener_.others_wait();
+  const bool keep_alive = !last && exchange.may_keep_alive() && !gate_.closed();
   const bool sent = send_reply(connection_, response,
                                {.request_id = exchange.id(),
                                 .head_only = exchange.method() == "HEAD",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "server/http/connection.h"
@@ -11,21 +12,29 @@
 
 namespace papilio::server {
 
-/// The requests of one connection, one after the other.
+/// The requests of one connection, one after the other. It is used by one thread at a time.
 class Session {
  public:
-  Session(Connection& connection, const HttpOptions& options, ByteBudget& held, const Routes& routes, Gate& gate,
-          const Listener& listener)
-      : connection_(connection), options_(options), held_(held), routes_(routes), gate_(gate), listener_(listener) {}
+  Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held, const Routes& routes,
+          Gate& gate, const Listener& listener);
 
-  void run();
+  /// What the session goes on with.
+  struct Next {
+    enum class What { request, bytes, nothing };
+    What what;
+    short wait_for = 0;  ///< for `bytes`: what the socket must be ready for
+  };
+  /// Answers one request when its head is there, or comes at once. Holds the thread for no client that is silent.
+  Next run();
+  [[nodiscard]] Connection& connection() { return connection_; }
 
  private:
   /// Returns whether another request may follow.
   bool answer_one(bool last);
   [[nodiscard]] Response refusal(const Exchange& exchange, const proto::Problem& problem, Finished& finished) const;
 
-  Connection& connection_;
+  Connection connection_;
+  int served_ = 0;
   const HttpOptions& options_;
   ByteBudget& held_;
   const Routes& routes_;

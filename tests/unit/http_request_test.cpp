@@ -302,14 +302,36 @@ TEST_F(HttpServerTest, IdleConnectionIsClosed) {
   EXPECT_EQ(finished(1).size(), 1u) << "an idle connection is no request";
 }
 
-TEST_F(HttpServerTest, IdleConnectionMakesRoomForAWaitingOne) {
+TEST_F(HttpServerTest, SilentConnectionsHoldNoThread) {
   options_.threads = 1;
   options_.idle_seconds = 600;
+  options_.read_seconds = 600;
   start();
+  Client silent(port_);
+  Client half(port_);
+  half.send("GET /hello HTTP/1.1\r\nHo");
   Client idle(port_);
   EXPECT_EQ(idle.ask(get("/hello")).status, 200);
   EXPECT_EQ(ask(get("/hello")).status, 200);
-  EXPECT_TRUE(idle.at_end());
+  EXPECT_EQ(idle.ask(get("/hello")).status, 200);
+  EXPECT_EQ(silent.ask(get("/hello")).status, 200);
+  EXPECT_EQ(half.ask("st: test\r\n\r\n").status, 200);
+}
+
+TEST_F(HttpServerTest, BusyConnectionsTakeTurns) {
+  options_.threads = 1;
+  start();
+  std::atomic<bool> done = false;
+  std::thread busy([&] {
+    Client client(port_);
+    std::string many;
+    for (int i = 0; i < 100; ++i) many += get("/hello");
+    while (!done && client.send(many))
+      for (int i = 0; i < 100; ++i) client.receive();
+  });
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(get("/hello")).status, 200);
+  done = true;
+  busy.join();
 }
 
 TEST_F(HttpServerTest, RemoteAddressCannotBeForged) {
