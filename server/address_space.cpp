@@ -32,8 +32,8 @@ uint64_t address_space_needed(const Config& config) {
       engine.limits.max_compute_bytes > 0 ? engine.limits.max_compute_bytes : unlimited_compute_bytes;
   const auto slots = static_cast<uint64_t>(engine.slots);
   const uint64_t store = engine.store.address == "memory" ? engine.store.bytes : 0;
-  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) + config.http.max_held_bytes +
-         store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
+  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) +
+         2 * config.http.max_held_bytes + store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
 }
 
 void limit_address_space(const Config& config) {

@@ -75,15 +75,16 @@ void add_http_settings(Settings& settings, HttpOptions& http) {
       ->check(CLI::ExistingFile);
   certificate->needs("--tls-key");
   settings.add("max-body-bytes", http.max_body_bytes, uint64_t{1}, most_bytes, "Largest request body: 413");
-  settings.add("max-held-bytes", http.max_held_bytes, uint64_t{1}, most_kept,
-               "Most bytes of all bodies that are held at once: 429");
+  settings.add(
+      "max-held-bytes", http.max_held_bytes, uint64_t{1}, most_kept,
+      "Most bytes of all bodies that are held at once: 429; as many of answers that are sent, the oldest are cut");
   settings.add("max-header-bytes", http.max_header_bytes, uint64_t{1024}, uint64_t{1} << 20,
                "Longest request line and header fields together: 431");
   settings.add("connections", http.threads, 1, 10000,
                "Requests served at once, each on a thread; silent connections take none");
   settings.add("idle-seconds", http.idle_seconds, 1, 3600, "A silent connection is closed after this");
   settings.add("read-seconds", http.read_seconds, 1, 3600, "Longest wait for the next bytes of a request");
-  settings.add("write-seconds", http.write_seconds, 1, 3600, "Longest wait for a client to take more bytes");
+  settings.add("write-seconds", http.write_seconds, 1, 3600, "Longest wait for a client to take any further byte");
 }
 
 void add_limits(Settings& settings, Config& config) {

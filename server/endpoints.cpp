@@ -147,6 +147,7 @@ std::span<const Endpoint> endpoints() { return table; }
 std::span<const Code> common_problems() { return common; }
 
 void add_endpoints(HttpServer& server, Engine& engine) {
+  engine.observe_held_bytes([&server] { return server.held(); });
   for (const Endpoint& endpoint : endpoints())
     server.add(std::string(endpoint.method), std::string(endpoint.path),
                [&engine, &endpoint](Request& request) { return endpoint.answer(engine, request); },

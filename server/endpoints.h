@@ -35,7 +35,7 @@ struct Endpoint {
 /// The refusals that any endpoint may answer with.
 [[nodiscard]] std::span<const proto::Code> common_problems();
 
-/// Adds every endpoint of the table. The engine must outlive the server.
+/// Adds every endpoint of the table. The engine must outlive the server, and is asked nothing after it.
 void add_endpoints(HttpServer& server, Engine& engine);
 
 }  // namespace papilio::server

@@ -63,7 +63,8 @@ std::string Engine::metrics_text() {
                 .computing = admission_.computing(),
                 .waiting = admission_.waiting(),
                 .result_cache_bytes = results_.bytes(),
-                .mesh_cache_bytes = meshes_.bytes()};
+                .mesh_cache_bytes = meshes_.bytes(),
+                .held = held_()};
   if (const auto usage = store_->usage()) {
     gauges.store_meshes = usage->meshes;
     gauges.store_bytes = usage->bytes;

@@ -59,6 +59,8 @@ class Engine {
   /// A stored mesh that has been refined takes more memory than before.
   void count_again(const std::string& id);
   [[nodiscard]] std::string metrics_text();
+  /// What metrics say of the memory that the HTTP server holds. To be called before it runs.
+  void observe_held_bytes(std::function<HeldBytes()> held) { held_ = std::move(held); }
 
  private:
   [[nodiscard]] std::shared_ptr<const proto::PreparedMesh> prepared(const std::string& id);
@@ -69,6 +71,7 @@ class Engine {
   ResultCache results_;
   Lru<const proto::PreparedMesh> meshes_;
   Metrics metrics_;
+  std::function<HeldBytes()> held_ = [] { return HeldBytes{}; };
   const Samples samples_;
   const Page page_;
 };

@@ -71,6 +71,7 @@ struct Metrics::Families {
   Family<Counter>& lookups = counters(registry, "cache_lookups_total", "Questions to a cache");
   Counter& shared = counter(registry, "shared_results_total", "Results taken from a request that was making the same");
   Family<Gauge>& caches = gauges(registry, "papilio_cache_bytes", "Bytes that a cache holds");
+  Family<Gauge>& held = gauges(registry, "papilio_held_bytes", "Bytes of requests' bodies, and of answers being sent");
   Gauge& slots = gauges(registry, "papilio_slots", "Requests that may compute at once").Add({});
   Gauge& computing = gauges(registry, "papilio_slots_busy", "Requests that compute now").Add({});
   Gauge& waiting = gauges(registry, "papilio_queue_length", "Requests that wait for a slot").Add({});
@@ -131,6 +132,8 @@ std::string Metrics::text(const Gauges& now) {
   f.waiting.Set(now.waiting);
   f.caches.Add({{"cache", "results"}}).Set(static_cast<double>(now.result_cache_bytes));
   f.caches.Add({{"cache", "meshes"}}).Set(static_cast<double>(now.mesh_cache_bytes));
+  f.held.Add({{"what", "bodies"}}).Set(static_cast<double>(now.held.bodies));
+  f.held.Add({{"what", "answers"}}).Set(static_cast<double>(now.held.answers));
   if (now.store_meshes) f.meshes.Add({}).Set(static_cast<double>(*now.store_meshes));
   if (now.store_bytes) f.mesh_bytes.Add({}).Set(static_cast<double>(*now.store_bytes));
   f.memory.Set(resident_bytes());

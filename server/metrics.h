@@ -14,6 +14,7 @@ namespace papilio::server {
 struct Gauges {
   int slots = 0, computing = 0, waiting = 0;
   uint64_t result_cache_bytes = 0, mesh_cache_bytes = 0;
+  HeldBytes held{};
   std::optional<uint64_t> store_meshes{}, store_bytes{};
 };
 

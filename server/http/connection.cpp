@@ -1,9 +1,11 @@
 #include "server/http/connection.h"
 
 #include <arpa/inet.h>
+#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -33,6 +35,13 @@ std::string peer_address(int fd) {
                            ? static_cast<const void*>(&reinterpret_cast<sockaddr_in6*>(&address)->sin6_addr)
                            : &reinterpret_cast<sockaddr_in*>(&address)->sin_addr;
   return ::inet_ntop(address.ss_family, number, text.data(), text.size()) ? text.data() : "";
+}
+
+/// Bytes that were written to the socket, and that the client's system has not acknowledged.
+int unacknowledged_bytes(int fd) {
+  int bytes = 0;
+  ::ioctl(fd, SIOCOUTQ, &bytes);
+  return bytes;
 }
 
 }  // namespace
@@ -170,19 +179,32 @@ bool Connection::write(std::string_view bytes, bool more) {
     const Transport::Step step = transport_->write(bytes, more);
     bytes.remove_prefix(step.bytes);
     bytes_out_ += step.bytes;
-    if (step.bytes == 0) broken_ = step.wait_for == 0 || !wait(step.wait_for, Clock::now() + write_wait_);
+    if (step.bytes == 0) broken_ = step.wait_for == 0 || !wait_to_write(step.wait_for);
   }
   return !broken_;
+}
+
+/// A socket counts as writable only once tens of kilobytes were taken. A slow client takes them in smaller pieces,
+/// which show in what it has acknowledged.
+bool Connection::wait_to_write(short events) const {
+  auto deadline = Clock::now() + write_wait_;
+  for (int unacknowledged = unacknowledged_bytes(transport_->fd());;) {
+    const auto now = Clock::now();
+    if (now >= deadline) return false;
+    if (wait(events, std::min(deadline, now + Clock::duration(write_wait_) / 8))) return true;
+    const int left = unacknowledged_bytes(transport_->fd());
+    if (left < unacknowledged) deadline = Clock::now() + write_wait_;
+    unacknowledged = left;
+  }
 }
 
 bool Connection::peer_gone() { return broken_ || transport_->peer_gone(); }
 
 void Connection::linger() {
   if (broken_) return;
-  const auto write_deadline = Clock::now() + write_wait_;
   for (short wait_for = transport_->end_writing().wait_for; wait_for != 0;
        wait_for = transport_->end_writing().wait_for)
-    if (!wait(wait_for, write_deadline)) return;
+    if (!wait_to_write(wait_for)) return;
   const auto deadline = Clock::now() + std::min(read_wait_, longest_linger);
   do {
     begin_ = end_;

@@ -60,7 +60,8 @@ class Connection {
   void consume(size_t count);
   [[nodiscard]] bool has_buffered() const { return begin_ < end_; }
 
-  /// False once the client is gone or has taken nothing for the whole of `write_wait`. `more`: what follows
+  /// False once the client is gone or has taken nothing for the whole of `write_wait`, however long it takes over all
+  /// of them. `more`: what follows
   /// comes at once, and may share a packet with this.
   bool write(std::string_view bytes, bool more = false);
   /// True once the client has closed its side (a half-close counts) or the connection is lost.
@@ -80,6 +81,8 @@ class Connection {
   enum class Received { bytes, closed, timeout };
   /// False once the deadline has passed, ready or not.
   [[nodiscard]] bool wait(short events, Clock::time_point deadline) const;
+  /// False once the client has taken nothing for the whole of `write_wait`, or less than shows in that time.
+  [[nodiscard]] bool wait_to_write(short events) const;
   Received receive(Clock::time_point deadline);
   /// Reads what has come, without waiting.
   Transport::Step receive_now();

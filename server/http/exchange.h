@@ -26,6 +26,8 @@ class Exchange final : public Request {
   /// False for as long as any of this one's are left: they would be executed as a request.
   [[nodiscard]] bool may_keep_alive() const;
   [[nodiscard]] const Head& head() const { return head_; }
+  /// The body's memory is free again.
+  void release_body() { held_.give_back(); }
   void set_path_parameters(Fields parameters) { path_parameters_ = std::move(parameters); }
 
   [[nodiscard]] const std::string& method() const override { return head_.method; }

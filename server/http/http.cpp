@@ -76,7 +76,7 @@ struct HttpServer::Impl {
 
   struct Client {
     Client(Impl& impl, std::unique_ptr<Transport> transport)
-        : session(std::move(transport), impl.options, impl.held, impl.routes, impl.gate, impl.listener),
+        : session(std::move(transport), impl.options, impl.held, impl.answers, impl.routes, impl.gate, impl.listener),
           listed(impl, session.connection()) {}
     Session session;
     Listed listed;
@@ -84,6 +84,7 @@ struct HttpServer::Impl {
 
   const HttpOptions options;
   ByteBudget held{options.max_held_bytes};
+  HeldAnswers answers{options.max_held_bytes};
   std::optional<TlsContext> tls;
   Routes routes;
   Gate gate;
@@ -109,6 +110,8 @@ void HttpServer::reload_certificate() {
 }
 
 int HttpServer::running() const { return impl_->gate.running(); }
+
+HeldBytes HttpServer::held() const { return {impl_->held.held(), impl_->answers.bytes()}; }
 
 bool HttpServer::drain(int seconds) {
   impl_->gate.close();

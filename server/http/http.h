@@ -67,6 +67,9 @@ class Sink {
   virtual ~Sink() = default;
   /// False once the client is gone; the rest of the answer is then not worth making.
   virtual bool write(std::string_view bytes) = 0;
+  /// The bytes that the answer holds in memory from now on: what is made and not yet written. Where all answers hold
+  /// too many, this one may be cut. Any thread may call it.
+  virtual void hold(uint64_t bytes) = 0;
 };
 
 /// What a handler answers.
@@ -141,6 +144,12 @@ struct HttpOptions {
   std::function<void(const Finished&)> on_finished{};
 };
 
+/// Memory of all requests together.
+struct HeldBytes {
+  uint64_t bodies = 0;   ///< of requests that are read or worked on
+  uint64_t answers = 0;  ///< of answers that are sent, each object once
+};
+
 /// An HTTP/1.1 server: add routes, bind, run, drain. `add` before `bind`; `drain` and `stop` may be called
 /// from any thread. `run` must have returned before the server is destroyed.
 class HttpServer {
@@ -164,6 +173,7 @@ class HttpServer {
   void reload_certificate();
   /// Requests being answered now.
   [[nodiscard]] int running() const;
+  [[nodiscard]] HeldBytes held() const;
   /// Refuses new requests with 503 `draining` from now on (but for routes added with `answer`), waits until
   /// the running ones are done or the time is over, then stops. True when none was cut short.
   bool drain(int seconds);

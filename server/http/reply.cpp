@@ -137,7 +137,8 @@ std::string reply_head(const Response& response, const Delivery& delivery) {
 
 class ConnectionSink final : public Sink {
  public:
-  ConnectionSink(Connection& connection, bool chunked) : connection_(connection), chunked_(chunked) {}
+  ConnectionSink(Connection& connection, bool chunked, HeldAnswers::Share& held)
+      : connection_(connection), chunked_(chunked), held_(held) {}
 
   bool write(std::string_view bytes) override {
     lost_ = lost_ || connection_.peer_gone();
@@ -146,6 +147,8 @@ class ConnectionSink final : public Sink {
     lost_ = !(chunked_ ? write_chunk(bytes) : connection_.write(bytes));
     return !lost_;
   }
+
+  void hold(uint64_t bytes) override { held_.hold(bytes); }
 
   /// The client was seen to be gone while the stream was written: it has not got all of it.
   [[nodiscard]] bool lost() const { return lost_; }
@@ -160,6 +163,7 @@ class ConnectionSink final : public Sink {
 
   Connection& connection_;
   const bool chunked_;
+  HeldAnswers::Share& held_;
   bool lost_ = false;
 };
 
@@ -176,13 +180,14 @@ Response problem_response(const proto::Problem& problem, const std::string& requ
   return response;
 }
 
-bool send_reply(Connection& connection, const Response& response, const Delivery& delivery) {
+bool send_reply(Connection& connection, const Response& response, const Delivery& delivery, HeldAnswers::Share& held) {
   const bool with_body = has_body(response.status) && !delivery.head_only;
   const bool with_bytes = with_body && !response.stream && !bytes_of(response).empty();
+  if (with_bytes) held.hold(bytes_of(response).size(), response.shared.get());
   if (!connection.write(reply_head(response, delivery), with_bytes)) return false;
   if (with_bytes) return connection.write(bytes_of(response));
   if (!with_body || !response.stream) return true;
-  ConnectionSink sink(connection, delivery.chunked);
+  ConnectionSink sink(connection, delivery.chunked, held);
   try {
     response.stream(sink);
   } catch (...) {

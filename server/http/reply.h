@@ -3,6 +3,7 @@
 #include <string>
 
 #include "server/http/connection.h"
+#include "server/http/held_answers.h"
 #include "server/http/http.h"
 
 namespace papilio::server {
@@ -18,8 +19,9 @@ struct Delivery {
 /// The answer to an error.
 [[nodiscard]] Response problem_response(const proto::Problem& problem, const std::string& request_id);
 
-/// Sends the whole answer. False when the client did not get all of it; the connection is then of no further
-/// use.
-[[nodiscard]] bool send_reply(Connection& connection, const Response& response, const Delivery& delivery);
+/// Sends the whole answer, whose memory counts in `held` meanwhile. False when the client did not get all of it; the
+/// connection is then of no further use.
+[[nodiscard]] bool send_reply(Connection& connection, const Response& response, const Delivery& delivery,
+                              HeldAnswers::Share& held);
 
 }  // namespace papilio::server

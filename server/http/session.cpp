@@ -53,11 +53,12 @@ class Pass {
 }  // namespace
 
 Session::Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held,
-                 const Routes& routes, Gate& gate, const Listener& listener)
+                 HeldAnswers& answers, const Routes& routes, Gate& gate, const Listener& listener)
     : connection_(std::move(transport), std::chrono::seconds(options.read_seconds),
                   std::chrono::seconds(options.write_seconds)),
       options_(options),
       held_(held),
+      answers_(answers),
       routes_(routes),
       gate_(gate),
       listener_(listener) {
@@ -117,15 +118,19 @@ bool Session::answer_one(bool last) {
   if (!finished.trace.empty()) response.headers.emplace_back("traceparent", exchange.header("traceparent"));
   if (options_.decorate) options_.decorate(exchange, response);
 
+  exchange.release_body();
+  HeldAnswers::Share held(answers_, connection_);
   const bool keep_alive = !last && exchange.may_keep_alive() && !gate_.closed();
   const bool sent = send_reply(connection_, response,
                                {.request_id = exchange.id(),
                                 .head_only = exchange.method() == "HEAD",
                                 .chunked = exchange.head().minor_version == 1,
-                                .keep_alive = keep_alive});
+                                .keep_alive = keep_alive},
+                               held);
   if (!sent && finished.code.empty()) {
     finished.code = "not_sent";
-    finished.detail = "the answer was not sent to its end";
+    finished.detail = held.is_cut() ? "the answer was cut: all answers together passed --max-held-bytes"
+                                    : "the answer was not sent to its end";
   }
   if (options_.on_finished) {
     finished.id = exchange.id();

@@ -6,6 +6,7 @@
 #include "server/http/connection.h"
 #include "server/http/exchange.h"
 #include "server/http/gate.h"
+#include "server/http/held_answers.h"
 #include "server/http/http.h"
 #include "server/http/listener.h"
 #include "server/http/routes.h"
@@ -15,8 +16,8 @@ namespace papilio::server {
 /// The requests of one connection, one after the other. It is used by one thread at a time.
 class Session {
  public:
-  Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held, const Routes& routes,
-          Gate& gate, const Listener& listener);
+  Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held, HeldAnswers& answers,
+          const Routes& routes, Gate& gate, const Listener& listener);
 
   /// What the session goes on with.
   struct Next {
@@ -37,6 +38,7 @@ class Session {
   int served_ = 0;
   const HttpOptions& options_;
   ByteBudget& held_;
+  HeldAnswers& answers_;
   const Routes& routes_;
   Gate& gate_;
   const Listener& listener_;

@@ -22,9 +22,14 @@ using proto::Problem;
 /// The way of the parts from the thread that makes them to the one that sends them.
 class Outbox {
  public:
+  /// The sink is told how much is held here.
+  explicit Outbox(Sink& sink) : sink_(sink) {}
+
   void put(Part part) {
     const std::lock_guard lock(mutex_);
+    bytes_ += part.body.size();
     parts_.push_back(std::move(part));
+    sink_.hold(bytes_);
     changed_.notify_one();
   }
   void close() {
@@ -32,12 +37,14 @@ class Outbox {
     closed_ = true;
     changed_.notify_one();
   }
-  /// Nothing when none has come in `longest`, or none will come.
+  /// Nothing when none has come in `longest`, or none will come. What was taken before is no longer held.
   std::optional<Part> take(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
+    if (taken_ > 0) sink_.hold(bytes_ -= std::exchange(taken_, 0));
     changed_.wait_for(lock, longest, [&] { return !parts_.empty() || closed_; });
     if (parts_.empty()) return std::nullopt;
     Part part = std::move(parts_.front());
+    taken_ = part.body.size();
     parts_.pop_front();
     return part;
   }
@@ -49,7 +56,10 @@ class Outbox {
  private:
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  Sink& sink_;
   std::deque<Part> parts_;
+  uint64_t bytes_ = 0;  ///< of the parts, and of the one that was taken last
+  uint64_t taken_ = 0;
   bool closed_ = false;
 };
 
@@ -103,7 +113,7 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
                       {"X-Accel-Buffering", "no"}};  // a proxy is to pass each level on as it comes
   response.stream = [&engine, &request, writer, slot = std::move(slot),
                      refinement = std::move(refinement)](Sink& sink) mutable {
-    Outbox outbox;
+    Outbox outbox(sink);
     std::atomic<bool> gone = false;
     std::atomic<bool> failed = false;
     const std::jthread maker([&] {

@@ -100,9 +100,11 @@ class Client {
   }
 
   /// Up to `most` bytes of what has come, thrown away.
-  bool skip(size_t most) const {
+  bool skip(size_t most) const { return skip_some(most) > 0; }
+  /// The number of bytes; 0 at the end.
+  size_t skip_some(size_t most) const {
     std::string bytes(most, 0);
-    return ::recv(fd_, bytes.data(), bytes.size(), 0) > 0;
+    return static_cast<size_t>(std::max<ssize_t>(0, ::recv(fd_, bytes.data(), bytes.size(), 0)));
   }
 
   /// True when the server ends the connection properly, without a reset and without sending anything more.
@@ -178,6 +180,7 @@ inline std::string form(const std::string& body, const std::string& boundary = "
 
 inline const std::string smuggled = get("/count");
 inline constexpr uint64_t body_limit = 4096;
+inline constexpr size_t large_size = 130'000;  ///< of the answer of /large; more than fits into a client's small buffer
 
 class HttpServerTest : public ::testing::Test {
  protected:
@@ -326,6 +329,18 @@ class HttpServerTest : public ::testing::Test {
       saw_gone_ = eventually([&r] { return r.client_gone(); });
       --inside_;
       return text("watched");
+    });
+    const auto large = [this](Request& r) {
+      if (r.method() == "POST") (void)r.read_body();
+      ++inside_;
+      return text(std::string(large_size, 'x'));
+    };
+    server_->add("GET", "/large", large);
+    server_->add("POST", "/large", large);
+    server_->add("GET", "/large-shared", [shared = std::make_shared<std::string>(large_size, 'x')](Request&) {
+      Response response = text("");
+      response.shared = shared;
+      return response;
     });
     server_->add("GET", "/pour", [this](Request&) {
       Response response = text("");

@@ -115,6 +115,73 @@ TEST_F(HttpServerTest, ClientThatReadsSlowlyIsServed) {
   }
 }
 
+/// Reads the whole answer in small pieces, about 24 KB a second; returns its size, with the head.
+size_t read_slowly(const Client& client) {
+  size_t size = 0;
+  for (size_t count = 1; count > 0; size += count) {
+    std::this_thread::sleep_for(100ms);
+    count = client.skip_some(2400);
+  }
+  return size;
+}
+
+TEST_F(HttpServerTest, SteadySlowReaderGetsTheWholeAnswer) {
+  // Far too little to make the socket writable within a second.
+  options_.write_seconds = 1;
+  start();
+  const Client client(port_, 2048);
+  client.send(get("/large", "Connection: close\r\n"));
+  EXPECT_GT(read_slowly(client), large_size);
+  EXPECT_EQ(finished(1).at(0).code, "");
+  EXPECT_GT(finished(1).at(0).milliseconds, 2000) << "longer than the wait for one byte";
+}
+
+TEST_F(HttpServerTest, AnswersCountWhileTheyAreSent) {
+  start();
+  auto client = std::make_unique<Client>(port_, 2048);
+  client->send(get("/large-shared"));
+  EXPECT_TRUE(eventually([&] { return server_->held().answers == large_size; }));
+  auto second = std::make_unique<Client>(port_, 2048);
+  second->send(get("/large-shared"));
+  Client other(port_, 2048);
+  other.send(get("/large"));
+  EXPECT_TRUE(eventually([&] { return server_->held().answers == 2 * large_size; })) << "a shared object counts once";
+  client->reset();
+  second->reset();
+  EXPECT_TRUE(eventually([&] { return server_->held().answers == large_size; }));
+  other.reset();
+  EXPECT_TRUE(eventually([&] { return server_->held().answers == 0; }));
+}
+
+TEST_F(HttpServerTest, WhereAnswersHoldTooMuchTheOldestIsCut) {
+  options_.max_held_bytes = 5 * large_size / 2;
+  start();
+  std::vector<std::unique_ptr<Client>> clients;
+  for (int i = 0; i < 4; ++i) {
+    clients.push_back(std::make_unique<Client>(port_, 2048));
+    clients.back()->send(get("/large", "X-Request-Id: client-" + std::to_string(i) + "\r\n"));
+    EXPECT_TRUE(eventually([&] { return inside_ == i + 1; }));
+    EXPECT_TRUE(eventually([&] { return server_->held().answers == std::min(i + 1, 2) * large_size; }));
+  }
+  const auto cut = finished(2);
+  ASSERT_EQ(cut.size(), 2U);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(cut[i].id, "client-" + std::to_string(i));
+    EXPECT_EQ(cut[i].code, "not_sent");
+    EXPECT_NE(cut[i].detail.find("--max-held-bytes"), std::string::npos);
+  }
+}
+
+TEST_F(HttpServerTest, ABodyDoesNotCountWhileItsAnswerIsSent) {
+  options_.max_body_bytes = options_.max_held_bytes = 1 << 20;
+  start();
+  Client slow(port_, 2048);
+  slow.send(post("/large", std::string(1 << 20, 'x')));
+  EXPECT_TRUE(eventually([&] { return server_->held().answers == large_size; }));
+  EXPECT_EQ(server_->held().bodies, 0U);
+  EXPECT_EQ(ask(post("/echo", std::string(1 << 20, 'x'))).status, 200);
+}
+
 TEST_F(HttpServerTest, ClientThatDoesNotReadIsCut) {
   options_.write_seconds = 1;
   start();

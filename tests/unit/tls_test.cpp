@@ -217,6 +217,30 @@ TEST_F(TlsTest, ClientThatDoesNotReadIsCutAndOneThatReadsSlowlyIsServed) {
   EXPECT_EQ(finished(1).at(0).code, "not_sent");
 }
 
+TEST_F(TlsTest, SteadySlowReaderGetsTheWholeAnswer) {
+  options_.write_seconds = 1;
+  start();
+  TlsClient slow(port_, 2048);
+  ASSERT_TRUE(slow.send(get("/large", "Connection: close\r\n")));
+  size_t size = 0;
+  for (std::string some = slow.receive(2400); !some.empty(); some = slow.receive(2400)) {
+    size += some.size();
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_GT(size, large_size);
+  EXPECT_EQ(finished(1).at(0).code, "");
+}
+
+TEST_F(TlsTest, HandshakesThatStallHoldNoThread) {
+  options_.idle_seconds = 600;
+  options_.threads = 1;
+  start();
+  const TlsClient silent(port_);
+  const TlsClient stalled(port_);
+  stalled.send_raw(std::string("\x16\x03\x01\x02\x00\x01", 6));
+  EXPECT_EQ(common_name(), "first");
+}
+
 TEST_F(TlsTest, StopCutsHandshakesAndRequests) {
   options_.idle_seconds = 600;
   start();
