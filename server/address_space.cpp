@@ -17,6 +17,7 @@ constexpr uint64_t least_base_bytes = 128ULL << 20;
 /// A level, the levels above it, and what is encoded from it.
 constexpr uint64_t levels_held = 3;
 constexpr uint64_t unlimited_compute_bytes = 8ULL << 30;
+constexpr uint64_t paused_bytes = 256ULL << 20;  ///< what a request makes in its time on the express slot
 
 uint64_t stacks(const Config& config) {
   return (static_cast<uint64_t>(config.http.threads) + static_cast<uint64_t>(config.engine.slots)) * stack_bytes;
@@ -30,9 +31,10 @@ uint64_t address_space_needed(const Config& config) {
   const EngineOptions& engine = config.engine;
   const uint64_t compute =
       engine.limits.max_compute_bytes > 0 ? engine.limits.max_compute_bytes : unlimited_compute_bytes;
-  const auto slots = static_cast<uint64_t>(engine.slots);
+  const auto slots = static_cast<uint64_t>(engine.slots) + 1;  // and the express slot
+  const auto paused = static_cast<uint64_t>(Admission::most_paused(engine.queue));
   const uint64_t store = engine.store.address == "memory" ? engine.store.bytes : 0;
-  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) +
+  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) + paused * paused_bytes +
          2 * config.http.max_held_bytes + store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
 }
 

@@ -100,8 +100,9 @@ void add_limits(Settings& settings, Config& config) {
   settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
                "Address space of the process; 0: what the other settings may need");
   settings.add("slots", config.engine.slots, 0, 1024,
-               "Requests computed at once; 0: one a core that the container has");
-  settings.add("queue", config.engine.queue, 0, 100000, "Requests that may wait for a slot; more are refused with 429");
+               "Requests computed at once, besides one small one; 0: one a core that the container has");
+  settings.add("queue", config.engine.queue, 0, 100000,
+               "Requests that may wait for a slot, half of them large ones; more are refused with 429");
   settings.add("drain-seconds", config.drain_seconds, 0, 3600, "Longest wait for running requests after SIGTERM");
 }
 
@@ -129,6 +130,10 @@ void add_page_settings(Settings& settings, EngineOptions& engine) {
 void add_access_settings(Settings& settings, Config& config) {
   settings.add("keys", config.keys, "File of keys, `NAME KEY` or `NAME KEY manage` a line; SIGHUP reads it again");
   settings.add_flag("allow-open", config.allow_open, "Listen beyond loopback without keys");
+  settings
+      .add("trusted-proxies", config.http.trusted_proxies,
+           "Addresses of proxies, as the log's remote= has them, whose X-Forwarded-For says which client is asking")
+      ->delimiter(',');
   settings.add("cors-origins", config.cors_origins, "Origins whose pages may use the service, or *")->delimiter(',');
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "proto/draco_header.h"
 #include "proto/problem.h"
 
 namespace papilio::server {
@@ -10,28 +11,60 @@ namespace papilio::server {
 using proto::Code;
 using proto::Problem;
 
+namespace {
+
+constexpr uint64_t face_count_bytes = 4ULL << 20;  ///< some 10,000 counts
+
+}  // namespace
+
 Engine::Engine(const EngineOptions& options)
     : options_(options),
       admission_(options.slots, options.queue),
       store_(open_store(options.store)),
       results_(options.result_cache_bytes, options.slots + options.queue),
       meshes_(options.mesh_cache_bytes),
+      face_counts_(face_count_bytes),
       samples_(options.samples, options.limits),
       page_(options.web) {}
 
-std::shared_ptr<Admission::Slot> Engine::enter(const std::function<bool()>& abandoned) {
+std::shared_ptr<Admission::Slot> Engine::enter(const Request& request, Work work,
+                                               const std::function<bool()>& abandoned) {
   const auto begin = std::chrono::steady_clock::now();
-  auto slot = admission_.enter(abandoned);
+  auto slot = admission_.enter(request.client(), work, abandoned);
   metrics_.observe_wait(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return slot;
 }
 
-proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks) {
+proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
+  hooks.cancelled = [abandoned = std::move(hooks.cancelled), &slot] {
+    slot.take_turn(abandoned);
+    return abandoned();
+  };
   const uint64_t faces = refinement.coarse_faces();
   hooks.threads = 1 + std::max(0, options_.slots - admission_.computing());  // its own slot's and those of free ones
   proto::EncodedLevel made = refinement.run(hooks);
   metrics_.count_refinement(faces, made.statistics);
   return made;
+}
+
+Work Engine::work_of(std::string_view draco, const Options& options) const {
+  return predicted_work(proto::read_draco_header(draco, options_.limits).faces, options, options_.limits);
+}
+
+Work Engine::work_of_stored(const std::string& id, const Options& options) {
+  std::shared_ptr<const uint64_t> faces = face_counts_.get(id);
+  if (faces == nullptr) {
+    faces = std::make_shared<uint64_t>(proto::read_draco_header(*stored_bytes(id), options_.limits).faces);
+    face_counts_.put(id, faces, sizeof(uint64_t));
+  }
+  return predicted_work(*faces, options, options_.limits);
+}
+
+MeshStore::Bytes Engine::stored_bytes(const std::string& id) {
+  MeshStore::Bytes bytes = store_->get(id);
+  if (bytes == nullptr)
+    throw Problem(Code::mesh_not_found, "No mesh is stored under this id. Send it to POST /v1/meshes.");
+  return bytes;
 }
 
 std::unique_ptr<proto::Refinement> Engine::refinement_of(const std::string& id, const proto::Parameters& parameters) {
@@ -45,9 +78,7 @@ std::shared_ptr<const proto::PreparedMesh> Engine::prepared(const std::string& i
     count_again(id);
     return mesh;
   }
-  const MeshStore::Bytes bytes = store_->get(id);
-  if (bytes == nullptr)
-    throw Problem(Code::mesh_not_found, "No mesh is stored under this id. Send it to POST /v1/meshes.");
+  const MeshStore::Bytes bytes = stored_bytes(id);
   // One mesh may have a quarter of the cache, so that a few large ones are kept beside each other.
   mesh = std::make_shared<const proto::PreparedMesh>(*bytes, options_.limits, options_.mesh_cache_bytes / 4);
   meshes_.put(id, mesh, mesh->bytes());

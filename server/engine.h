@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "proto/limits.h"
 #include "proto/prepared_mesh.h"
@@ -16,6 +17,7 @@
 #include "server/page.h"
 #include "server/samples/samples.h"
 #include "server/store/mesh_store.h"
+#include "server/work.h"
 
 namespace papilio::server {
 
@@ -49,10 +51,18 @@ class Engine {
   [[nodiscard]] const Page& page() const { return page_; }
   [[nodiscard]] const proto::Limits& limits() const { return options_.limits; }
 
-  /// Waits for a slot; throws as `Admission::enter`.
-  [[nodiscard]] std::shared_ptr<Admission::Slot> enter(const std::function<bool()>& abandoned);
-  /// Runs a refinement to its end, on the threads of free slots too, and counts it. Throws `Problem`.
-  [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks);
+  /// Waits for a slot for the request's client; throws as `Admission::enter`.
+  [[nodiscard]] std::shared_ptr<Admission::Slot> enter(const Request& request, Work work,
+                                                       const std::function<bool()>& abandoned);
+  /// Runs a refinement to its end, on the threads of free slots too, and counts it. Between steps it takes turns with
+  /// other requests (`Slot::take_turn`). Throws `Problem`.
+  [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks,
+                                        Admission::Slot& slot);
+  /// Work of refining a mesh that has the faces which the Draco stream declares. Throws `Problem` where the stream is
+  /// refused by its header.
+  [[nodiscard]] Work work_of(std::string_view draco, const Options& options) const;
+  /// Work of refining a stored mesh. Throws `Problem`, mesh_not_found too.
+  [[nodiscard]] Work work_of_stored(const std::string& id, const Options& options);
   /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
                                                                  const proto::Parameters& parameters);
@@ -64,12 +74,15 @@ class Engine {
 
  private:
   [[nodiscard]] std::shared_ptr<const proto::PreparedMesh> prepared(const std::string& id);
+  /// Never null. Throws `Problem` mesh_not_found.
+  [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
 
   const EngineOptions options_;
   Admission admission_;
   std::unique_ptr<MeshStore> store_;
   ResultCache results_;
   Lru<const proto::PreparedMesh> meshes_;
+  Lru<const uint64_t> face_counts_;  ///< of stored meshes, so that work is predicted without reading one
   Metrics metrics_;
   std::function<HeldBytes()> held_ = [] { return HeldBytes{}; };
   const Samples samples_;

@@ -86,7 +86,7 @@ int serve(const Config& config) {
   limit_address_space(config);
   if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0)
     bound_by_container(config.container_memory_bytes);
-  set_up_heap(config.engine.slots);
+  set_up_heap(config.engine.slots + 1);  // the express slot
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);
   Engine engine(config.engine);
@@ -123,7 +123,7 @@ int serve(const Config& config) {
              {"samples", engine.samples().all().size()},
              {"keys", keys ? keys->size() : 0}});
 
-  const int held_by_work = 2 * (config.engine.slots + config.engine.queue);
+  const int held_by_work = 2 * (config.engine.slots + config.engine.queue) + 1;  // the express slot
   if (held_by_work >= http.threads)
     log_event(
         "warning", "settings",

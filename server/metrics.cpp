@@ -72,9 +72,10 @@ struct Metrics::Families {
   Counter& shared = counter(registry, "shared_results_total", "Results taken from a request that was making the same");
   Family<Gauge>& caches = gauges(registry, "papilio_cache_bytes", "Bytes that a cache holds");
   Family<Gauge>& held = gauges(registry, "papilio_held_bytes", "Bytes of requests' bodies, and of answers being sent");
-  Gauge& slots = gauges(registry, "papilio_slots", "Requests that may compute at once").Add({});
+  Gauge& slots = gauges(registry, "papilio_slots", "Requests that may compute at once, besides one small one").Add({});
   Gauge& computing = gauges(registry, "papilio_slots_busy", "Requests that compute now").Add({});
-  Gauge& waiting = gauges(registry, "papilio_queue_length", "Requests that wait for a slot").Add({});
+  Gauge& waiting =
+      gauges(registry, "papilio_queue_length", "Requests that wait for a slot, or for another one").Add({});
   // Of a store that does not know (Redis) there is no figure, rather than a 0.
   Family<Gauge>& meshes = gauges(registry, "papilio_store_meshes", "Meshes in the store, where it knows");
   Family<Gauge>& mesh_bytes = gauges(registry, "papilio_store_bytes", "Bytes of the meshes in the store");

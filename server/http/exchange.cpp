@@ -1,5 +1,6 @@
 #include "server/http/exchange.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "server/http/form.h"
@@ -19,6 +20,15 @@ void Exchange::refuse_unreadable() const { server::refuse_unreadable(head_, fram
 
 bool Exchange::may_keep_alive() const {
   return body_ && body_->complete() && head_.minor_version == 1 && !head_.lists("Connection", "close");
+}
+
+void Exchange::set_client(const std::string& name) {
+  client_ = name.empty() ? remote_address() : name;
+  if (!name.empty() || std::ranges::find(options_.trusted_proxies, client_) == options_.trusted_proxies.end()) return;
+  // Each proxy appends the address that it was asked from: only the last one is the trusted proxy's own word.
+  const std::string forwarded = head_.field("X-Forwarded-For");
+  const std::string_view last = trimmed(std::string_view(forwarded).substr(forwarded.rfind(',') + 1));
+  if (!last.empty()) client_ = last;
 }
 
 std::string Exchange::path_parameter(std::string_view name) const {

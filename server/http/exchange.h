@@ -28,6 +28,8 @@ class Exchange final : public Request {
   [[nodiscard]] const Head& head() const { return head_; }
   /// The body's memory is free again.
   void release_body() { held_.give_back(); }
+  /// Without a name the client is known by its address.
+  void set_client(const std::string& name);
   void set_path_parameters(Fields parameters) { path_parameters_ = std::move(parameters); }
 
   [[nodiscard]] const std::string& method() const override { return head_.method; }
@@ -36,6 +38,7 @@ class Exchange final : public Request {
   [[nodiscard]] const Fields& query() const override { return head_.query; }
   [[nodiscard]] std::string header(std::string_view name) const override { return head_.field(name); }
   [[nodiscard]] const std::string& remote_address() const override { return connection_.remote_address(); }
+  [[nodiscard]] const std::string& client() const override { return client_; }
   [[nodiscard]] const std::string& id() const override { return id_; }
   [[nodiscard]] std::string content_type() const override;
   [[nodiscard]] Body read_body() override;
@@ -48,6 +51,7 @@ class Exchange final : public Request {
   Head head_;
   Fields path_parameters_;
   std::string id_;
+  std::string client_;
   Framing framing_;
   std::optional<BodyReader> body_;  ///< empty until the framing is known
   bool body_taken_ = false;

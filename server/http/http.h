@@ -48,7 +48,11 @@ class Request {
   /// A header field's value, "" when absent; several lines of one name are one list. Names are matched without regard
   /// to case.
   [[nodiscard]] virtual std::string header(std::string_view name) const = 0;
+  /// Of the socket's other end: of a proxy where there is one.
   [[nodiscard]] virtual const std::string& remote_address() const = 0;
+  /// Who is asking, for sharing what there is among clients: the name of the key, or without keys the client's address.
+  /// The address is the last in `X-Forwarded-For` where a trusted proxy has sent it, else that of the socket.
+  [[nodiscard]] virtual const std::string& client() const = 0;
   /// `X-Request-Id`: the client's when it sent a sane one (1..64 of [A-Za-z0-9._-]), else a fresh random one.
   [[nodiscard]] virtual const std::string& id() const = 0;
   /// The type without its parameters, in lower case: "multipart/form-data".

@@ -100,6 +100,7 @@ bool Session::answer_one(bool last) {
     if (!pass->entered() && route.while_draining == WhileDraining::refuse)
       throw Problem(Code::draining, "This server is shutting down; ask another one.");
     if (options_.authorize) finished.client = options_.authorize(exchange, route.access);
+    exchange.set_client(finished.client);
     exchange.refuse_unreadable();
     response = match.route->handler(exchange);
   } catch (const Problem& problem) {

@@ -79,7 +79,7 @@ void report(Engine& engine, const std::string& request_id, Code code, const std:
 
 /// Makes all parts of the stream, the last one a problem where it cannot be carried on. Throws only when there is no
 /// memory for that.
-void make_parts(Engine& engine, proto::Refinement& refinement, const std::string& request_id,
+void make_parts(Engine& engine, proto::Refinement& refinement, const std::string& request_id, Admission::Slot& slot,
                 const std::function<bool()>& abandoned, Outbox& outbox) {
   const auto fail = [&](const Problem& problem) {
     outbox.put({{{"Content-Type", "application/problem+json"}}, problem.json(request_id)});
@@ -87,7 +87,7 @@ void make_parts(Engine& engine, proto::Refinement& refinement, const std::string
   try {
     const EncodedLevel last = engine.run(
         refinement,
-        {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level)); }, .cancelled = abandoned});
+        {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level)); }, .cancelled = abandoned}, slot);
     outbox.put({{{"Content-Type", json_type}}, proto::statistics_json(last.statistics)});
   } catch (const Problem& problem) {
     if (problem.code() == Code::cancelled) return;  // nobody reads it, and the one who sends says so
@@ -119,7 +119,7 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
     const std::jthread maker([&] {
       try {
         make_parts(
-            engine, *refinement, request.id(), [&] { return gone.load(); }, outbox);
+            engine, *refinement, request.id(), *slot, [&] { return gone.load(); }, outbox);
       } catch (...) {
         failed = true;
       }

@@ -93,12 +93,13 @@ Response store_mesh(Engine& engine, Request& request) {
     throw Problem(Code::unsupported_media_type,
                   "Bodies of type " + proto::quote(type) +
                       " are not stored. Send a Draco file with -H 'Content-Type: application/x-draco'.");
-  engine.admission().refuse_when_full();
+  engine.admission().refuse_when_full(request.client());
   const std::string mesh = request.read_body().bytes;
   const std::string id = sha256(mesh);
   std::string described;
   {
-    const auto slot = engine.enter([&] { return request.client_gone(); });
+    const auto slot =
+        engine.enter(request, engine.work_of(mesh, unrefined().options), [&] { return request.client_gone(); });
     described = description(id, mesh.size(), Refinement(mesh, unrefined(), engine.limits()));
   }
   Response response;
@@ -132,7 +133,8 @@ Response stored_mesh(Engine& engine, Request& request) {
   if (mesh == nullptr) throw no_such_mesh();
   response.content_type = *type;
   if (describes) {
-    const auto slot = engine.enter([&] { return request.client_gone(); });
+    const auto slot =
+        engine.enter(request, engine.work_of(*mesh, unrefined().options), [&] { return request.client_gone(); });
     response.body = description(id, mesh->size(), Refinement(*mesh, unrefined(), engine.limits()));
   } else {
     response.shared = mesh;
@@ -172,9 +174,9 @@ bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
 ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
                                  const Parameters& parameters, const std::string& key) {
   const auto make = [&](const std::function<bool()>& abandoned) {
-    const auto slot = engine.enter(abandoned);
+    const auto slot = engine.enter(request, engine.work_of_stored(id, parameters.options), abandoned);
     const auto refinement = engine.refinement_of(id, parameters);
-    auto made = std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}));
+    auto made = std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}, *slot));
     engine.count_again(id);
     return made;
   };
@@ -193,7 +195,8 @@ Response refined_mesh(Engine& engine, Request& request) {
   const std::string key = entity_tag(id, parameters, "");  // the bytes are the same whatever their type is called
   if (!is_stored(engine, id, key)) throw no_such_mesh();
   if (type == multipart_type) {
-    auto slot = engine.enter([&] { return request.client_gone(); });
+    auto slot =
+        engine.enter(request, engine.work_of_stored(id, parameters.options), [&] { return request.client_gone(); });
     return level_stream(engine, request, std::move(slot), engine.refinement_of(id, parameters));
   }
   const bool cacheable = request.method() != "POST";

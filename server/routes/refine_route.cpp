@@ -61,13 +61,13 @@ Order read_order(Request& request) {
 
 Response refine_route(Engine& engine, Request& request) {
   const std::string type = negotiate_refined(request);
-  engine.admission().refuse_when_full();
+  engine.admission().refuse_when_full(request.client());
   const Order order = read_order(request);
   const auto gone = [&] { return request.client_gone(); };
-  auto slot = engine.enter(gone);
+  auto slot = engine.enter(request, engine.work_of(order.mesh, order.parameters.options), gone);
   auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
   if (type == multipart_type) return level_stream(engine, request, std::move(slot), std::move(refinement));
-  proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone});
+  proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone}, *slot);
   Response response = refined_response(made.statistics, type);
   response.body = std::move(made.draco);
   response.headers.emplace_back("Cache-Control", "no-store");

@@ -121,7 +121,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
     sleep 0.1
   done
   for _ in {1..50}; do
-    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
+    request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6"
     [ "$status" = 429 ] || break
     sleep 0.1
   done

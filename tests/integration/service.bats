@@ -89,13 +89,13 @@ long_request() {
   running=$!
 }
 
-# until_full: returns once every slot and waiting place is taken.
-until_full() {
+# until_busy [WAITING]: returns once one request computes, and WAITING (0) wait.
+until_busy() {
   for _ in {1..500}; do
-    request "$url/ready"
-    [ "$status" = 200 ] || break
+    request "$url/metrics"
+    ! grep -q '^papilio_slots_busy 1$' "$body" || ! grep -q "^papilio_queue_length ${1:-0}\$" "$body" || return 0
   done
-  expect_problem 503 not_ready
+  return 1
 }
 
 # leave PROCESS: the client goes away without a word.
@@ -104,18 +104,82 @@ leave() {
   wait "$1" || true
 }
 
-@test "busy: with every slot and place taken others get 429 and Retry-After, health stays" {
+@test "busy: with every slot and place taken large requests get 429 and Retry-After, small ones an answer" {
   start_server --slots 1 --queue 0
   long_request long 'levels=6&output.normals=true'
-  until_full
-  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  until_busy
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6"
   expect_problem 429 busy
   [[ $(header Retry-After) =~ ^[0-9]+$ ]]
   server_is_well
-  wait "$running"
-  [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
   [ "$status" = 200 ]
+  request "$url/ready"
+  [ "$status" = 200 ]
+  wait "$running"
+  [ "$(cat "$BATS_TEST_TMPDIR/code")" = 200 ]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6"
+  [ "$status" = 200 ]
+}
+
+@test "not ready: while not even a small request would be let in" {
+  start_server --slots 1 --queue 0
+  long_request long 'levels=6&flatness=1&growth=2&output.normals=true'
+  first=$running
+  until_busy
+  # Each of these holds the express slot until it turns out to be large, and is then refused.
+  curl -s --noproxy '*' --parallel --parallel-max 4 -o /dev/null -H "$draco" --data-binary @"$coarse" \
+    "$url/v1/refine?levels=6&flatness=1&growth=2&w=0.0[01-40]" 3>&- &
+  running=$!
+  for _ in {1..500}; do
+    request "$url/ready"
+    [ "$status" = 200 ] || break
+  done
+  expect_problem 503 not_ready
+  kill "$running" 2>/dev/null || true # if it is not through with all of them
+  wait "$running" || true
+  leave "$first"
+}
+
+@test "small requests are answered while large ones hold every slot and wait; the large ones finish" {
+  start_server --slots 2 --max-compute-seconds 0
+  large=()
+  for number in {1..6}; do
+    curl -sS --noproxy '*' -o /dev/null -w '%{http_code} %{time_total}\n' -H "$draco" --data-binary @"$coarse" \
+      "$url/v1/refine?levels=6&flatness=1&growth=2&w=0.0$number" >"$BATS_TEST_TMPDIR/large$number" 3>&- &
+    large+=($!)
+  done
+  all_in() { request "$url/metrics" && (($(awk '/^papilio_(slots_busy|queue_length) / { n += $2 } END { print n }' "$body") >= 6)); }
+  eventually all_in
+  for query in 'levels=2' 'levels=8&tolerance=0.01'; do
+    curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code} %{time_total}\n' -H "$draco" \
+      --data-binary @"$coarse" "$url/v1/refine?$query&crease_angle=[101-125]" >>"$BATS_TEST_TMPDIR/small"
+  done
+  wait "${large[@]}"
+  [ "$(grep -c '^200 ' "$BATS_TEST_TMPDIR/small")" = 50 ]
+  [ "$(cat "$BATS_TEST_TMPDIR"/large* | grep -c '^200 ')" = 6 ]
+  slowest_small=$(sort -k2 -n "$BATS_TEST_TMPDIR/small" | tail -1 | cut -d' ' -f2)
+  slowest_large=$(cat "$BATS_TEST_TMPDIR"/large* | sort -k2 -n | tail -1 | cut -d' ' -f2)
+  echo "small $slowest_small s, large $slowest_large s"
+  awk "BEGIN { exit !($slowest_small < $slowest_large / 2) }"
+}
+
+@test "2,000 silent connections do not keep others waiting" {
+  ulimit -Sn "$(ulimit -Hn)"
+  most=$(($(ulimit -n) == 0 || $(ulimit -n) > 5000 ? 2000 : $(ulimit -n) / 3))
+  start_server --connections 8 --idle-seconds 3600
+  python3 -c 'import socket, sys, time
+silent = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for _ in range(int(sys.argv[2]))]
+print("open", flush=True)
+time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
+  silent=$!
+  eventually test -s "$BATS_TEST_TMPDIR/silent"
+  for _ in {1..20}; do
+    server_is_well
+  done
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=0"
+  [ "$status" = 200 ]
+  leave "$silent"
 }
 
 @test "a request that must wait is answered when its turn comes" {
@@ -128,7 +192,7 @@ leave() {
 @test "a client that goes away stops its work" {
   start_server --slots 1 --queue 0
   long_request leaver 'levels=6&flatness=1&growth=2&output.normals=true'
-  until_full
+  until_busy
   leave "$running"
   stop_server
   eventually grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
@@ -139,7 +203,7 @@ leave() {
   long_request first 'levels=6&output.normals=true'
   first=$running
   long_request waiter 'levels=6&flatness=1&growth=2&output.normals=true'
-  until_full
+  until_busy 1
   leave "$running"
   wait "$first"
   stop_server
@@ -149,7 +213,7 @@ leave() {
 @test "SIGTERM lets a running request finish, refuses others, and exits 0" {
   start_server --slots 1 --queue 0
   long_request long 'levels=6&output.normals=true'
-  until_full
+  until_busy
   kill -TERM "$server_pid"
   request "$url/v1/info"
   expect_problem 503 draining
@@ -164,7 +228,7 @@ leave() {
 @test "SIGHUP while the last requests are answered cuts none of them short" {
   start_server --slots 1 --queue 0
   long_request long 'levels=6&output.normals=true'
-  until_full
+  until_busy
   kill -TERM "$server_pid"
   until grep -q msg=draining "$BATS_FILE_TMPDIR/server.log"; do sleep 0.05; done
   kill -HUP "$server_pid"

@@ -147,11 +147,8 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
     "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
-  for _ in {1..500}; do
-    request "$url/ready"
-    [ "$status" = 200 ] || break
-  done
-  expect_problem 503 not_ready
+  at_work() { request "$url/metrics" && grep -q '^papilio_slots_busy 1$' "$body"; }
+  eventually at_work
   kill -KILL "$running"
   wait "$running" || true
   stop_server

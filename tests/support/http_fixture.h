@@ -292,6 +292,7 @@ class HttpServerTest : public ::testing::Test {
     });
     server_->add("GET", "/address",
                  [](Request& r) { return text(r.remote_address() + " " + r.header("remote_addr")); });
+    server_->add("GET", "/client", [](Request& r) { return text(r.client()); });
     server_->add("GET", "/mirror", [](Request& r) {
       Response response = text(r.header("x-in"));
       for (const auto& [name, value] : r.query()) response.headers.emplace_back(name, value);

@@ -2,77 +2,277 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "proto/problem.h"
 
+// Work here is counted, not done: a request holds its slot until the test takes it away, so that times play no part.
+
 namespace papilio::server {
 namespace {
 
+using namespace std::chrono_literals;
+
+constexpr Work small{1000, 1000};
+constexpr Work large{100 * small_work, 100 * small_work};
+constexpr Work unknown{1000, 100 * small_work};  ///< expected to be small, but it may be large
+
 bool stays() { return false; }
 
-proto::Code refusal_of(Admission& admission, const std::function<bool()>& gone) {
+std::optional<proto::Code> refusal_of(Admission& admission, Work work = small, const std::string& client = "a",
+                                      const std::function<bool()>& gone = stays) {
   try {
-    (void)admission.enter(gone);
+    (void)admission.enter(client, work, gone);
   } catch (const proto::Problem& problem) {
     return problem.code();
   }
-  return proto::Code::internal;
+  return std::nullopt;
+}
+
+/// Requests that wait on threads of their own, and say in which order they were let in.
+class Crowd {
+ public:
+  explicit Crowd(Admission& admission) : admission_(admission) {}
+
+  /// Returns once the request waits, or is answered.
+  void add(const std::string& name, Work work, const std::string& client = "a") {
+    const int waiting = admission_.waiting();
+    const size_t answered = answers().size();
+    threads_.emplace_back([this, name, work, client] {
+      try {
+        const auto slot = admission_.enter(client, work, stays);
+        note(name);
+      } catch (const proto::Problem&) {
+        note(name + " refused");
+      }
+    });
+    while (admission_.waiting() == waiting && answers().size() == answered) std::this_thread::yield();
+  }
+  /// In the order in which they came, once all have.
+  std::vector<std::string> finish() {
+    threads_.clear();
+    return answers();
+  }
+  std::vector<std::string> answers() {
+    const std::lock_guard lock(mutex_);
+    return answers_;
+  }
+
+ private:
+  void note(const std::string& answer) {
+    const std::lock_guard lock(mutex_);
+    answers_.push_back(answer);
+  }
+
+  Admission& admission_;
+  std::mutex mutex_;
+  std::vector<std::string> answers_;
+  std::vector<std::jthread> threads_;
+};
+
+using Names = std::vector<std::string>;
+using Slots = std::vector<std::shared_ptr<Admission::Slot>>;
+
+/// Takes all slots, the express one included, for clients whose account does not matter.
+Slots take_all(Admission& admission, int slots) {
+  Slots held;
+  for (int i = 0; i < slots; ++i) held.push_back(admission.enter("held " + std::to_string(i), large, stays));
+  held.push_back(admission.enter("held", small, stays));
+  return held;
 }
 
 TEST(Admission, RefusesWhenSlotsAndQueueAreFull) {
   Admission admission(2, 0);
-  auto first = admission.enter(stays);
-  const auto second = admission.enter(stays);
+  Slots held = take_all(admission, 2);
+  EXPECT_EQ(admission.computing(), 3);
   EXPECT_TRUE(admission.full());
-  EXPECT_THROW(admission.refuse_when_full(), proto::Problem);
-  EXPECT_EQ(refusal_of(admission, stays), proto::Code::busy);
-  first.reset();
+  EXPECT_THROW(admission.refuse_when_full("a"), proto::Problem);
+  EXPECT_EQ(refusal_of(admission), proto::Code::busy);
+  held.pop_back();
   EXPECT_FALSE(admission.full());
-  const auto third = admission.enter(stays);
+  EXPECT_EQ(refusal_of(admission), std::nullopt);
+  EXPECT_EQ(refusal_of(admission, large), proto::Code::busy) << "the express slot is for small work";
+}
+
+TEST(Admission, SmallWorkDoesNotWaitForLargeWork) {
+  Admission admission(2, 4);
+  Slots held{admission.enter("a", large, stays), admission.enter("a", large, stays)};
+  Crowd crowd(admission);
+  crowd.add("large", large);
+  EXPECT_EQ(admission.waiting(), 1);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(refusal_of(admission), std::nullopt);
+  EXPECT_TRUE(crowd.answers().empty());
+  held.clear();
+  EXPECT_EQ(crowd.finish(), Names{"large"});
+}
+
+TEST(Admission, EqualRequestsOfAClientComeInTheirOrder) {
+  Admission admission(1, 8);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  for (const char* name : {"0", "1", "2", "3", "4"}) crowd.add(name, small);
+  held.front().reset();
+  EXPECT_EQ(crowd.finish(), (Names{"0", "1", "2", "3", "4"}));
+}
+
+TEST(Admission, LessWorkGoesFirst) {
+  Admission admission(1, 8);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  crowd.add("300", {300, 300});
+  crowd.add("100", {100, 100});
+  crowd.add("200", {200, 200});
+  held.front().reset();
+  EXPECT_EQ(crowd.finish(), (Names{"100", "200", "300"}));
+}
+
+TEST(Admission, LargeWorkIsPassedOverOnlyUntilOthersWereGivenAsMuch) {
+  Admission admission(1, 8);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  crowd.add("large", {10'000, 10'000});
+  int passed = 0;
+  while (crowd.answers().empty() && passed < 100) {
+    std::shared_ptr<Admission::Slot> next;
+    std::jthread later([&] { next = admission.enter("a", small, stays); });
+    while (admission.waiting() < 2) std::this_thread::yield();
+    held.front().reset();
+    later.join();
+    held.front() = next;
+    if (crowd.answers().empty()) ++passed;
+  }
+  EXPECT_GE(passed, 5);
+  EXPECT_LE(passed, 10) << "ten small ones are as much work";
+}
+
+TEST(Admission, AClientThatHadLessGoesBeforeOneThatHadMore) {
+  Admission admission(1, 16);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  for (const char* name : {"a1", "a2", "a3", "a4"}) crowd.add(name, small, "a");
+  crowd.add("b1", small, "b");
+  crowd.add("b2", small, "b");
+  held.front().reset();
+  EXPECT_EQ(crowd.finish(), (Names{"a1", "b1", "a2", "b2", "a3", "a4"}));
+}
+
+TEST(Admission, LargeRequestsLeaveHalfOfThePlaces) {
+  Admission admission(1, 4);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  for (const char* name : {"large 1", "large 2", "large 3"}) crowd.add(name, large);
+  EXPECT_EQ(crowd.answers(), Names{"large 3 refused"});
+  crowd.add("small 1", small);
+  crowd.add("small 2", small);
+  EXPECT_EQ(admission.waiting(), 4);
+  EXPECT_TRUE(admission.full());
+  crowd.add("small 3", small);
+  EXPECT_EQ(crowd.answers().back(), "small 3 refused");
+  held.clear();
+  (void)crowd.finish();
+}
+
+TEST(Admission, TheClientWithTheMostWaitingRequestsGivesUpAPlace) {
+  Admission admission(1, 4);
+  Slots held = take_all(admission, 1);
+  Crowd crowd(admission);
+  for (const char* name : {"a1", "a2", "a3", "a4"}) crowd.add(name, small, "a");
+  EXPECT_TRUE(admission.full());
+  EXPECT_THROW(admission.refuse_when_full("a"), proto::Problem);
+  EXPECT_NO_THROW(admission.refuse_when_full("b"));
+  crowd.add("b1", small, "b");
+  while (crowd.answers().empty()) std::this_thread::yield();
+  EXPECT_EQ(crowd.answers(), Names{"a4 refused"});
+  crowd.add("b2", small, "b");
+  while (crowd.answers().size() < 2) std::this_thread::yield();
+  EXPECT_EQ(crowd.answers()[1], "a3 refused");
+  EXPECT_THROW(admission.refuse_when_full("b"), proto::Problem) << "both have two";
+  EXPECT_EQ(refusal_of(admission, small, "b"), proto::Code::busy);
+  held.clear();
+  EXPECT_EQ(crowd.finish().size(), 6U);
+}
+
+TEST(Admission, WorkThatTurnsOutLargeGivesTheExpressSlotBack) {
+  Admission admission(1, 4, 0ms);
+  auto ordinary = admission.enter("a", large, stays);
+  std::atomic<bool> resumed = false;
+  std::jthread thread([&] {
+    const auto slot = admission.enter("b", unknown, stays);
+    slot->take_turn(stays);
+    resumed = true;
+    slot->take_turn(stays);  // on an ordinary slot it computes on
+  });
+  while (admission.waiting() == 0) std::this_thread::yield();
+  EXPECT_EQ(admission.computing(), 1);
+  EXPECT_FALSE(resumed);
+  EXPECT_EQ(refusal_of(admission), std::nullopt) << "the express slot is free";
+  ordinary.reset();
+  thread.join();
+  EXPECT_TRUE(resumed);
+  EXPECT_EQ(admission.computing(), 0);
+}
+
+TEST(Admission, WorkThatIsCertainToBeSmallKeepsTheExpressSlot) {
+  Admission admission(1, 4, 0ms);
+  const auto ordinary = admission.enter("a", large, stays);
+  const auto express = admission.enter("a", small, stays);
+  express->take_turn(stays);
   EXPECT_EQ(admission.computing(), 2);
 }
 
-TEST(Admission, WaitingRequestsComeInTheirOrder) {
-  Admission admission(1, 8);
-  auto held = admission.enter(stays);
-  std::vector<int> order;
-  std::vector<std::jthread> threads;
-  for (int i = 0; i < 5; ++i) {
-    threads.emplace_back([&, i] {
-      const auto slot = admission.enter(stays);
-      order.push_back(i);  // one slot: one thread at a time
-    });
-    while (admission.waiting() <= i) std::this_thread::yield();
+TEST(Admission, WorkThatTurnsOutLargeIsRefusedWithoutAPlaceToWait) {
+  Admission admission(1, 0, 0ms);
+  const auto ordinary = admission.enter("a", large, stays);
+  const auto express = admission.enter("b", unknown, stays);
+  EXPECT_THROW(express->take_turn(stays), proto::Problem);
+}
+
+TEST(Admission, PausedWorkTakesAPlaceOfLargeWork) {
+  Admission admission(1, 2, 0ms);
+  auto ordinary = admission.enter("a", large, stays);
+  std::jthread paused([&] { admission.enter("b", unknown, stays)->take_turn(stays); });
+  while (admission.waiting() == 0) std::this_thread::yield();
+  EXPECT_EQ(refusal_of(admission, large), proto::Code::busy);
+  EXPECT_EQ(admission.waiting(), 1) << "what has been begun is not refused for a newcomer";
+  ordinary.reset();
+}
+
+TEST(Admission, APausedRequestWhoseClientLeavesGivesUpItsPlace) {
+  Admission admission(1, 2, 0ms);
+  const auto ordinary = admission.enter("a", large, stays);
+  {
+    const auto express = admission.enter("b", unknown, stays);
+    express->take_turn([] { return true; });
+    EXPECT_EQ(admission.waiting(), 0);
   }
-  held.reset();
-  threads.clear();
-  EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4}));
-  EXPECT_EQ(admission.computing(), 0);
+  EXPECT_EQ(admission.computing(), 1);
 }
 
 TEST(Admission, AClientThatLeavesGivesUpItsPlace) {
   Admission admission(1, 1);
-  const auto held = admission.enter(stays);
-  EXPECT_EQ(refusal_of(admission, [] { return true; }), proto::Code::cancelled);
+  const Slots held = take_all(admission, 1);
+  EXPECT_EQ(refusal_of(admission, small, "a", [] { return true; }), proto::Code::cancelled);
   EXPECT_EQ(admission.waiting(), 0);
-  Admission idle(1, 0);
-  EXPECT_EQ(refusal_of(idle, [] { return true; }), proto::Code::cancelled);  // asked even when a slot is free
+  Admission idle(1, 0);  // asked even when a slot is free
+  EXPECT_EQ(refusal_of(idle, small, "a", [] { return true; }), proto::Code::cancelled);
   EXPECT_EQ(idle.computing(), 0);
 }
 
 TEST(Admission, ManyThreadsNeverExceedTheSlots) {
-  Admission admission(3, 100);
+  Admission admission(3, 100, 0ms);
   std::atomic<int> inside = 0;
   std::atomic<int> most = 0;
   {
     std::vector<std::jthread> threads;
     for (int i = 0; i < 30; ++i) {
-      threads.emplace_back([&] {
+      threads.emplace_back([&, i] {
         for (int n = 0; n < 20; ++n) {
-          const auto slot = admission.enter(stays);
+          const auto slot = admission.enter(std::to_string(i % 4), i % 2 ? small : unknown, stays);
+          slot->take_turn(stays);
           const int now = ++inside;
           for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
           }
@@ -81,8 +281,9 @@ TEST(Admission, ManyThreadsNeverExceedTheSlots) {
       });
     }
   }
-  EXPECT_LE(most, 3);
+  EXPECT_LE(most, 3 + 1);
   EXPECT_EQ(admission.computing(), 0);
+  EXPECT_EQ(admission.waiting(), 0);
 }
 
 }  // namespace

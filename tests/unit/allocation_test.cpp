@@ -159,7 +159,8 @@ TEST(Allocation, AnLruThatCouldNotTakeAnEntryIsWhole) {
 TEST(Allocation, ASlotThatCouldNotBeMadeIsFree) {
   server::Admission admission(1, 0);
   const std::function<bool()> stays = [] { return false; };
-  fail_each_allocation_of([&] { (void)admission.enter(stays); });
+  const std::string client = "a name too long for the string itself";
+  fail_each_allocation_of([&] { (void)admission.enter(client, {1, 1}, stays); });
   EXPECT_EQ(admission.computing(), 0);
   EXPECT_EQ(admission.waiting(), 0);
   EXPECT_FALSE(admission.full());

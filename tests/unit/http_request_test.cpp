@@ -340,6 +340,21 @@ TEST_F(HttpServerTest, RemoteAddressCannotBeForged) {
   EXPECT_EQ(ask(get("/address", "REMOTE_ADDR: 6.6.6.6\r\nX-Forwarded-For: 6.6.6.6\r\n")).body, "127.0.0.1 6.6.6.6");
 }
 
+TEST_F(HttpServerTest, OnlyATrustedProxySaysWhoseRequestItIs) {
+  start();
+  const std::string forwarded = "X-Forwarded-For: 6.6.6.6, 10.0.0.7\r\n";
+  EXPECT_EQ(ask(get("/client", forwarded)).body, "127.0.0.1");
+  stop();
+  options_.trusted_proxies = {"10.0.0.1", "127.0.0.1"};
+  start();
+  EXPECT_EQ(ask(get("/client", forwarded)).body, "10.0.0.7") << "the first is what the client claims";
+  EXPECT_EQ(ask(get("/client")).body, "127.0.0.1");
+  stop();
+  options_.authorize = [](const Request&, Access) { return std::string("the key's name"); };
+  start();
+  EXPECT_EQ(ask(get("/client", forwarded)).body, "the key's name");
+}
+
 TEST_F(HttpServerTest, TakesOverSaneRequestIdsOnly) {
   start();
   const std::string longest(64, 'a');

@@ -25,6 +25,7 @@ class Asking final : public Request {
     return name == "Authorization" ? authorization_ : "";
   }
   [[nodiscard]] const std::string& remote_address() const override { return text_; }
+  [[nodiscard]] const std::string& client() const override { return text_; }
   [[nodiscard]] const std::string& id() const override { return text_; }
   [[nodiscard]] std::string content_type() const override { return {}; }
   [[nodiscard]] Body read_body() override { return {}; }
