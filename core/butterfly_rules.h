@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
+#include "base/trigonometry.h"
 #include "curve.h"
 #include "face_shares.h"
 #include "family.h"
@@ -223,21 +224,22 @@ class ButterflyRules {
   template <class Add>
   void split_interior_spokes_by_harmonics(const Fan& fan, const Add& add) const {
     const uint32_t k = fan.valence();
-    const auto angle = [&](uint32_t j) { return 2 * std::numbers::pi * j / k; };
+    const std::vector<SineCosine> angles = sines_and_cosines_of_turn(k, k);
+    const auto twice = [&](uint32_t j) { return angles[2 * j < k ? 2 * j : 2 * j - k]; };
     Vec3d sum, c1, s1, c2, s2;
     for (uint32_t j = 0; j < k; ++j) {
       const Vec3d p = widen(p_[fan.ring[j]]);
       sum += p;
-      c1 += std::cos(angle(j)) * p;
-      s1 += std::sin(angle(j)) * p;
-      c2 += std::cos(2 * angle(j)) * p;
-      s2 += std::sin(2 * angle(j)) * p;
+      c1 += angles[j].cosine * p;
+      s1 += angles[j].sine * p;
+      c2 += twice(j).cosine * p;
+      s2 += twice(j).sine * p;
     }
     const Vec3d constant = stencil::interior_centre * widen(p_[fan.centre]) + (stencil::harmonic_0 / k) * sum;
     const Real factor = tensed_ ? tensed_->least_factor(fan) : Real(1);
     for (uint32_t i = 0; i < k; ++i) {
-      const Vec3d first = std::cos(angle(i)) * c1 + std::sin(angle(i)) * s1;
-      const Vec3d second = std::cos(2 * angle(i)) * c2 + std::sin(2 * angle(i)) * s2;
+      const Vec3d first = angles[i].cosine * c1 + angles[i].sine * s1;
+      const Vec3d second = twice(i).cosine * c2 + twice(i).sine * s2;
       const Point q = narrow(constant + (stencil::harmonic_1 / k) * first + (stencil::harmonic_2 / k) * second);
       add(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q, factor) : q);
     }
@@ -246,16 +248,17 @@ class ButterflyRules {
   template <class Add>
   void split_curve_spokes(const Fan& fan, const Add& add) const {
     const uint32_t k = fan.valence();
-    const double theta = std::numbers::pi / k;
+    if (k < 2) return;  // none lies inside
+    const stencil::CurveRule rules(k);
     Vec3d sum_1, sum_2;
     for (uint32_t j = 1; j < k; ++j) {
       const Vec3d p = widen(p_[fan.ring[j]]);
-      sum_1 += std::sin(j * theta) * p;
-      sum_2 += std::sin(2 * j * theta) * p;
+      sum_1 += rules.sine(j) * p;
+      sum_2 += rules.sine(2 * j) * p;
     }
     const Vec3d across = widen(p_[fan.ring[0]]) - widen(p_[fan.ring[k]]);
     for (uint32_t i = 1; i < k; ++i) {
-      const stencil::CurveSpoke rule = stencil::curve_spoke(k, i);
+      const stencil::CurveSpoke rule = rules.spoke(i);
       const Point q =
           narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 + rule.sine_2 * sum_2);
       add(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q) : q);

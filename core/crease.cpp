@@ -1,9 +1,8 @@
 #include "crease.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "base/trigonometry.h"
 #include "normals.h"
 
 namespace papilio {
@@ -28,7 +27,7 @@ std::vector<uint32_t> find_darts(const Topology& mesh) {
 void mark_creases(Mesh& mesh, double degrees) {
   if (degrees >= 180) return;
   Topology& topology = mesh.topology;
-  const double least_product = std::cos(degrees * std::numbers::pi / 180) - product_rounding;
+  const double least_product = cosine_of_degrees(degrees) - product_rounding;
   const Array<Vec3f> normals = face_normals(mesh);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     if (topology.kind[e] != EdgeKind::smooth) continue;

@@ -70,7 +70,7 @@ double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge
     const double pixels = distance * camera.pixels_per_unit(middle);
     outline = 0.8 * contrast * std::sqrt(camera.projected_length(a, b) / std::max(1.0, pixels));
   }
-  return std::hypot(floor_weight, shading, outline);
+  return length(Vec3d{floor_weight, shading, outline});
 }
 
 }  // namespace papilio

@@ -1,11 +1,6 @@
 #include "stencil.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace papilio::stencil {
-
-using std::numbers::pi;
 
 Interior interior(uint32_t valence) {
   const auto k = static_cast<double>(valence);
@@ -20,30 +15,34 @@ Interior interior(uint32_t valence) {
       break;
   }
   Interior weights{interior_centre, std::vector<double>(valence)};
-  for (uint32_t j = 0; j < valence; ++j) {
-    const double angle = 2 * pi * j / k;
-    weights.ring[j] = (harmonic_0 + harmonic_1 * std::cos(angle) + harmonic_2 * std::cos(2 * angle)) / k;
-  }
+  for (uint64_t j = 0; j < valence; ++j)
+    weights.ring[j] =
+        (harmonic_0 + harmonic_1 * cosine_of_turn(j, valence) + harmonic_2 * cosine_of_turn(2 * j, valence)) / k;
   return weights;
 }
 
-CurveSpoke curve_spoke(uint32_t triangles, uint32_t spoke) {
-  const auto k = static_cast<double>(triangles);
-  const double theta = pi / k;
-  const double i = spoke;
+CurveRule::CurveRule(uint32_t triangles)
+    : triangles_(triangles), angles_(sines_and_cosines_of_turn(triangles, uint64_t{2} * triangles)) {
+  const uint64_t turn = uint64_t{4} * triangles;  // in halves of t = pi / K
   // sin t / (1 - cos t) = cot(t / 2) and cos t - cos 2t = 2 sin(3t / 2) sin(t / 2), which keep their digits at large K.
-  const double centre = 1 - std::sin(i * theta) / (k * std::tan(theta / 2));
-  const double end = std::cos(i * theta) / 4 - std::sin(2 * theta) * std::sin(2 * i * theta) /
-                                                   (8 * k * std::sin(1.5 * theta) * std::sin(theta / 2));
-  return {centre, end, std::sin(i * theta) / k, std::sin(2 * i * theta) / (2 * k)};
+  of_centre_ = triangles_ * tangent_of_turn(1, turn);
+  of_end_ = sine_of_turn(4, turn);
+  over_end_ = 8 * triangles_ * sine_of_turn(3, turn) * sine_of_turn(1, turn);
+}
+
+CurveSpoke CurveRule::spoke(uint32_t i) const {
+  const auto [sine, cosine] = angles_[i];
+  const double sine_of_twice = this->sine(2 * i);
+  return {1 - sine / of_centre_, cosine / 4 - of_end_ * sine_of_twice / over_end_, sine / triangles_,
+          sine_of_twice / (2 * triangles_)};
 }
 
 std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke) {
-  const CurveSpoke rule = curve_spoke(triangles, spoke);
-  const double theta = pi / triangles;
+  const CurveRule rules(triangles);
+  const CurveSpoke rule = rules.spoke(spoke);
   std::vector<double> weights{rule.centre, rule.end};
   for (uint32_t j = 1; j < triangles; ++j)
-    weights.push_back(rule.sine_1 * std::sin(j * theta) + rule.sine_2 * std::sin(2 * j * theta));
+    weights.push_back(rule.sine_1 * rules.sine(j) + rule.sine_2 * rules.sine(2 * j));
   weights.push_back(-rule.end);
   return weights;
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/trigonometry.h"
+
 // Every weight of the Modified Butterfly scheme, and nothing else. Each row sums to 1 and reproduces linear
 // functions on its own regular layout. Sources: [DGL90] Dyn, Gregory, Levin, "A butterfly subdivision scheme
 // for surface interpolation with tension control", 1990; [ZSS96] Zorin, Schroeder, Sweldens, "Interpolating
@@ -85,7 +87,20 @@ inline constexpr uint32_t harmonic_valence = 33;
 struct CurveSpoke {
   double centre, end, sine_1, sine_2;
 };
-[[nodiscard]] CurveSpoke curve_spoke(uint32_t triangles, uint32_t spoke);
+class CurveRule {  // the rows of all spokes of such a vertex
+ public:
+  explicit CurveRule(uint32_t triangles);
+  [[nodiscard]] CurveSpoke spoke(uint32_t i) const;
+  /// sin(i pi / K), i < 2 K.
+  [[nodiscard]] double sine(uint32_t i) const {
+    return i < angles_.size() ? angles_[i].sine : -angles_[i - angles_.size()].sine;
+  }
+
+ private:
+  double triangles_;
+  std::vector<SineCosine> angles_;        ///< [K] of multiples of pi / K
+  double of_centre_, of_end_, over_end_;  ///< what is the same for all spokes
+};
 /// The explicit weights: the centre, then c_0..c_K.
 [[nodiscard]] std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke);
 

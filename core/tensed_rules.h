@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/trigonometry.h"
 #include "fan.h"
 #include "lanes.h"
 #include "stencil.h"
@@ -17,9 +17,8 @@ class RingAngles {
  public:
   RingAngles() {
     for (uint32_t k = 3; k < stencil::harmonic_valence; ++k) {
-      const double theta = 2 * std::numbers::pi / k;
-      for (uint32_t j = 0; j < k; ++j) sine_[k][j] = std::sin(j * theta);
-      cosine_[k] = std::cos(theta);
+      for (uint32_t j = 0; j < k; ++j) sine_[k][j] = sine_of_turn(j, k);
+      cosine_[k] = cosine_of_turn(1, k);
     }
   }
   /// The sines of the angles to the neighbours 0, 1, .. of K.

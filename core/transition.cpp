@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/trigonometry.h"
 #include "four.h"
 
 namespace papilio {
@@ -320,10 +321,10 @@ double smallest_angle(const Mesh& mesh) {
         look_at(f + i);
   }
   for (uint32_t f = in_fours; f < count; ++f) look_at(f);
-  return std::acos(std::sqrt(std::min(largest, 1.0)));
+  return arc_cosine(std::sqrt(std::min(largest, 1.0)));
 }
 
-double most_cosine_beside(double smallest_angle) { return std::cos(sliver_share * smallest_angle); }
+double most_cosine_beside(double smallest_angle) { return cosine_of_small_angle(sliver_share * smallest_angle); }
 
 uint32_t Transition::find(const LevelChoice& choice, uint32_t face, unsigned mask, double most_cosine) {
   const uint32_t bits = known(choice, face, mask);

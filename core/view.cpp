@@ -4,9 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
+#include "base/hypotenuse.h"
+#include "base/trigonometry.h"
 #include "error.h"
 #include "four_children.h"
 #include "normals.h"
@@ -161,7 +162,7 @@ Camera::Camera(const View& view) : perspective_(view.projection == Projection::p
   up_ = cross(right_, forward_);
   near_ = view.near > 0 ? view.near : 1e-3 * distance;
 
-  const double tan_y = std::tan(view.fov_y * std::numbers::pi / 360);
+  const double tan_y = tangent_of_degrees(view.fov_y / 2);
   const double tan_x = tan_y * view.viewport[0] / view.viewport[1];
   const double half_height = perspective_ ? tan_y : tan_y * distance;
   pixels_per_unit_ = view.viewport[1] / (2 * half_height);
@@ -273,7 +274,7 @@ std::array<double, 2> Camera::project(Vec3d relative) const {
 
 double Camera::projected_length(Vec3d a, Vec3d b) const {
   const auto [x, y] = projected_difference(a, b);
-  return std::hypot(x, y);
+  return hypotenuse(x, y);
 }
 
 /// What is not near the border is decided by squares, without a root; and in perspective by products with both depths,

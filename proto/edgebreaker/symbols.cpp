@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/array.h"
+#include "core/base/logarithm.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -87,7 +87,7 @@ int64_t estimate_bits(const Counts& counts, size_t symbols, int table_size, int&
   for (const auto count : counts) {
     if (count == 0) continue;
     ++different;
-    bits += static_cast<double>(count) * std::log2(static_cast<double>(count) / static_cast<double>(symbols));
+    bits += static_cast<double>(count) * logarithm_to_base_2(static_cast<double>(count) / static_cast<double>(symbols));
   }
   return static_cast<int64_t>(-bits) +
          draco::ApproximateRAnsFrequencyTableBits(table_size < 0 ? different : table_size, different);

@@ -1,14 +1,12 @@
 #include "server/samples/models.h"
 
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "core/base/trigonometry.h"
 
 namespace papilio::server {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// Corners of a quadrangle, counter-clockwise seen from outside.
 using Quad = std::array<uint32_t, 4>;
@@ -43,8 +41,8 @@ class Lathe {
     for (const ProfilePoint& ring : rings) {
       for (uint32_t sector = 0; sector < sectors; ++sector) {
         // The middle of sector 0 looks along x.
-        const double angle = 2 * pi * (sector - 0.5) / sectors;
-        add_vertex(mesh, {ring.radius * std::cos(angle), ring.radius * std::sin(angle), ring.height});
+        const auto [sine, cosine] = sine_and_cosine_of_turn(2 * (sector + sectors) - 1, 2 * sectors);
+        add_vertex(mesh, {ring.radius * cosine, ring.radius * sine, ring.height});
       }
     }
     first_pole_ = add_vertex(mesh, {0, 0, first_pole});
@@ -77,11 +75,11 @@ class Lathe {
 void add_tyre(TriangleMesh& mesh, double radius, double tube, uint32_t sectors, uint32_t sides) {
   const auto first = static_cast<uint32_t>(mesh.positions.size());
   for (uint32_t sector = 0; sector < sectors; ++sector) {
-    const double along = 2 * pi * sector / sectors;
+    const SineCosine along = sine_and_cosine_of_turn(sector, sectors);
     for (uint32_t side = 0; side < sides; ++side) {
-      const double round = 2 * pi * side / sides;
-      const double distance = radius + tube * std::cos(round);
-      add_vertex(mesh, {distance * std::cos(along), distance * std::sin(along), tube * std::sin(round)});
+      const SineCosine round = sine_and_cosine_of_turn(side, sides);
+      const double distance = radius + tube * round.cosine;
+      add_vertex(mesh, {distance * along.cosine, distance * along.sine, tube * round.sine});
     }
   }
   const auto at = [&](uint32_t sector, uint32_t side) { return first + sector % sectors * sides + side % sides; };
@@ -99,13 +97,13 @@ void add_handle(TriangleMesh& mesh, const Quad& upper_hole, const Quad& lower_ho
   constexpr double rise = 2.2;
   constexpr double half_thickness = 0.35;
   constexpr double half_width = 0.55;
-  constexpr int sections = 10;
+  constexpr uint32_t sections = 10;
   Quad previous = upper_hole;
-  for (int s = 1; s <= sections; ++s) {
-    const double angle = pi / 2 - pi * s / (sections + 1);
+  for (uint32_t s = 1; s <= sections; ++s) {
+    const SineCosine from_top = sine_and_cosine_of_turn(s, 2 * (sections + 1));
     const auto corner = [&](double side, double outward) {
-      return add_vertex(mesh, {x + (reach + outward * half_thickness) * std::cos(angle), side * half_width,
-                               z + (rise + outward * half_thickness) * std::sin(angle)});
+      return add_vertex(mesh, {x + (reach + outward * half_thickness) * from_top.sine, side * half_width,
+                               z + (rise + outward * half_thickness) * from_top.cosine});
     };
     const Quad section{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
     add_tube(mesh, previous, section);
@@ -115,9 +113,9 @@ void add_handle(TriangleMesh& mesh, const Quad& upper_hole, const Quad& lower_ho
   add_tube(mesh, previous, {lower_hole[3], lower_hole[2], lower_hole[1], lower_hole[0]});
 }
 
-/// A box along the direction `angle` in the plane z = 0, between two distances from the axis.
-void add_spoke(TriangleMesh& mesh, double angle, double from, double to, double half_width) {
-  const Vec3d along{std::cos(angle), std::sin(angle), 0};
+/// A box along a direction in the plane z = 0, between two distances from the axis.
+void add_spoke(TriangleMesh& mesh, SineCosine direction, double from, double to, double half_width) {
+  const Vec3d along{direction.cosine, direction.sine, 0};
   const Vec3d across{-along.y, along.x, 0};
   const auto end = [&](double distance) {
     Quad corners{};
@@ -155,12 +153,12 @@ TriangleMesh mug() {
 }
 
 TriangleMesh wheel() {
-  constexpr int spokes = 8;
+  constexpr uint32_t spokes = 8;
   TriangleMesh mesh;
   add_tyre(mesh, 30, 4, 12, 6);
   const std::vector<ProfilePoint> hub{{3, -5}, {4, -4}, {4, 0}, {4, 4}, {3, 5}};
   Lathe(mesh, 5, -5.5, hub, 5.5).add_faces(mesh, [](uint32_t, uint32_t) { return false; });
-  for (int s = 0; s < spokes; ++s) add_spoke(mesh, 2 * pi * s / spokes, 2.5, 28, 0.8);
+  for (uint32_t s = 0; s < spokes; ++s) add_spoke(mesh, sine_and_cosine_of_turn(s, spokes), 2.5, 28, 0.8);
   return mesh;
 }
 
