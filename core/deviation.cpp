@@ -71,9 +71,10 @@ double deviation_from_faces(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_a
   const Vec3d point = to_double(q);
   const TriangleCorners face{to_double(a), to_double(b), to_double(apex)};
   const TriangleCorners other{face.b, face.a, to_double(other_apex)};
+  const double most = squared_distance_to_middle(q, a, b);
   if (const auto squared = squared_distance_to_either(point, face.a, face.b, face.c, other.c))
-    return std::sqrt(*squared);
-  return std::sqrt(std::min(squared_distance(point, face), squared_distance(point, other)));
+    return std::sqrt(std::min(*squared, most));
+  return std::sqrt(std::min({squared_distance(point, face), squared_distance(point, other), most}));
 }
 
 double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
@@ -86,7 +87,8 @@ double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
   const Vec3f a = at(topology.origin[h]);
   const Vec3f b = at(topology.tip(h));
   if (topology.kind[edge] != EdgeKind::smooth)
-    return std::sqrt(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)));
+    return std::sqrt(std::min(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)),
+                              squared_distance_to_middle(q, a, b)));
   return deviation_from_faces(q, a, b, at(topology.apex(h)), at(topology.apex(topology.twin[h])));
 }
 

@@ -16,9 +16,15 @@ namespace papilio {
   return 0.5 * (to_double(mesh.positions[mesh.topology.origin[h]]) + to_double(mesh.positions[mesh.topology.tip(h)]));
 }
 
+/// Squared distance from q to the middle of the segment from a to b.
+[[nodiscard]] inline double squared_distance_to_middle(Vec3f q, Vec3f a, Vec3f b) {
+  const Vec3d off = to_double(q) - 0.5 * (to_double(a) + to_double(b));
+  return dot(off, off);
+}
+
 /// Distance from the edge's new vertex q to the surface as it is there: to the nearer of the edge's faces; on a curve
 /// (boundary, shared, crease) to the edge itself. A vertex that slides inside a flat face does not move the surface.
-/// In the mesh's unit.
+/// In the mesh's unit. The edge's middle is on the surface: the distance to it is an upper bound, in spite of rounding.
 [[nodiscard]] double deviation(const Mesh& mesh, uint32_t edge, Vec3f q);
 
 /// That of a smooth edge from a to b, from the apexes of its two faces, the one on its left first. The same to the bit
@@ -43,8 +49,6 @@ class ErrorMeasure {
   [[nodiscard]] double least_deviation(float error, double scale) const;
   /// Whether of two deviations at an edge the larger never has the lesser error: what lights make of one is not known.
   [[nodiscard]] bool grows_with_distance() const { return view_ == nullptr || view_->lights.empty(); }
-  /// Whether errors are deviations in pixels, and nothing else.
-  [[nodiscard]] bool is_in_pixels() const { return camera_ != nullptr && tolerated_ == 0 && view_->lights.empty(); }
   /// The deviation in pixels of the view; 0 without one.
   [[nodiscard]] double pixels(const Mesh& mesh, uint32_t edge, double distance) const {
     return camera_ == nullptr ? 0 : distance * camera_->pixels_per_unit(midpoint(mesh, edge));

@@ -19,8 +19,7 @@ namespace {
 /// level's order; which of them count is asked only of those that may matter.
 class ErrorFinder {
  public:
-  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection)
-      : levels_(levels), errors_are_pixels_(selection.errors_are_pixels()), left_(selection) {
+  ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection) : levels_(levels), left_(selection) {
     for (const LevelChoice& choice : levels) scales_.push_back(selection.highest_pixels_per_unit(choice.level->box));
   }
 
@@ -62,14 +61,11 @@ class ErrorFinder {
     return static_cast<float>(rounding * left_.least_that_matters(scales_[k]));
   }
 
-  /// Whether an edge that stays may have the largest deviation. The error of one that is wanted is often known better
-  /// than what follows from the bound.
-  [[nodiscard]] bool may_matter(const LevelChoice& choice, uint32_t e, double scale) const {
-    constexpr double rounding = 1 + 1e-6;
-    const double most = choice.level->trial.no_less_than_deviation_at(e);
-    if (left_.may_grow_by_distance(most)) return true;
-    if (!left_.may_grow_by_pixels(most * scale)) return false;
-    return !errors_are_pixels_ || choice.error[e] < 0 || left_.may_grow_by_pixels(rounding * choice.error[e]);
+  /// Whether an edge that stays may have the largest deviation. (Its error in the choice does not tell: that may be of
+  /// what lies below.)
+  [[nodiscard]] bool may_matter(const HierarchyLevel& level, uint32_t e, double scale) const {
+    const double most = level.trial.no_less_than_deviation_at(e);
+    return left_.may_grow_by(most, scale) && left_.may_grow_at(level.mesh, e, most);
   }
 
   void add_whole(size_t k) {
@@ -85,7 +81,7 @@ class ErrorFinder {
       if (trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
       for (uint32_t e : edges) {
         if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
-        if (!may_matter(choice, e, scales_[k]) || is_near(k, e, 1)) continue;
+        if (!may_matter(*choice.level, e, scales_[k]) || is_near(k, e, 1)) continue;
         add_whole(k, e);
         too_little = surely_too_little(k);
       }
@@ -301,7 +297,6 @@ class ErrorFinder {
   }
 
   std::span<const LevelChoice> levels_;
-  bool errors_are_pixels_;
   List<double> scales_;         ///< [level] the highest pixels per unit
   List<uint8_t> has_children_;  ///< [F] of a level of which splits are looked at
   List<uint8_t> reached_;       ///< [F] of the level at hand: whether all faces above are divided

@@ -115,7 +115,9 @@ void Trial::keep_more(const Topology& mesh) {
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
   float known = no_less_than_deviation_at(edge);
   if (known != infinity) return known;
-  known = rounded_up(length(to_double(at(edge)) - midpoint(mesh, edge)));
+  const uint32_t h = mesh.topology.half_edge[edge];
+  known = rounded_up(std::sqrt(squared_distance_to_middle(at(edge), mesh.positions[mesh.topology.origin[h]],
+                                                          mesh.positions[mesh.topology.tip(h)])));
   if (!bounds.empty()) bounds.put(number(edge), known);
   return known;
 }

@@ -103,8 +103,6 @@ class Selection {
   [[nodiscard]] bool is_by_error() const;
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
-  /// Whether errors are deviations in pixels, and nothing else.
-  [[nodiscard]] bool errors_are_pixels() const { return is_by_error() && measure_.is_in_pixels(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
   /// No less than the view has anywhere in the box; 0 without one.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
@@ -168,6 +166,10 @@ class ErrorLeft {
   /// Whether a deviation of at most that may be the largest.
   [[nodiscard]] bool may_grow_by(double most, double scale) const {
     return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
+  }
+  /// The same of a deviation at the edge, whose own scale is taken.
+  [[nodiscard]] bool may_grow_at(const Mesh& mesh, uint32_t edge, double most) const {
+    return may_grow_by_distance(most) || may_grow_by_pixels(measure_->pixels(mesh, edge, most));
   }
   /// A smaller deviation is not the largest. `scale` as above.
   [[nodiscard]] double least_that_matters(double scale) const {

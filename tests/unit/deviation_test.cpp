@@ -48,6 +48,20 @@ TEST(Deviation, OfTwoFacesIsTheDistanceToTheNearer) {
   EXPECT_GT(above_none, 500);  // the distance to the edge itself is met, too
 }
 
+TEST(Deviation, NeverExceedsTheDistanceToTheEdgesMiddle) {
+  // Almost flat, and the vertex almost in the middle: there rounding is as large as the distances.
+  RandomPoints points;
+  for (int i = 0; i < 20000; ++i) {
+    const float height = i % 2 == 0 ? 1e-7F : 0;
+    const auto flat = [&] { return Vec3f{points.share(), points.share(), height * points.share()}; };
+    const Vec3f a = flat();
+    const Vec3f b = flat();
+    const Vec3f q = 0.5F * (a + b) + height * flat();
+    const double most = length(to_double(q) - 0.5 * (to_double(a) + to_double(b)));
+    ASSERT_LE(deviation_from_faces(q, a, b, flat(), flat()), most) << i;
+  }
+}
+
 TEST(Deviation, OfAPointInAFaceIsNone) {
   RandomPoints points;
   for (int i = 0; i < 1000; ++i) {

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 #include <thread>
 
 #include "proto/prepared_mesh.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"
+#include "tests/support/random_request.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 
@@ -60,6 +62,27 @@ TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
         EXPECT_EQ(warm.coarse_faces(), cold.coarse_faces());
         expect_equal(warm.run(), cold.run());
       }
+    }
+  }
+}
+
+TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
+  constexpr int requests_of_one_mesh = 8;
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    std::mt19937 random(seed);
+    const TriangleMesh triangles = random_small_mesh(random);
+    const std::string draco = write_draco_exact(triangles);
+    const Mesh coarse = build_mesh(triangles);
+    const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, random() % 2 == 0 ? plenty : 100'000);
+    Parameters parameters;
+    choose_rules(random, parameters.options);
+    for (int request = 0; request < requests_of_one_mesh; ++request) {
+      choose_request(random, coarse, parameters.options);
+      parameters.output = {.position_bits = static_cast<int>(8 + random() % 9),
+                           .speed = static_cast<int>(random() % 11),
+                           .normals = random() % 4 == 0};
+      SCOPED_TRACE("seed " + std::to_string(seed) + " request " + std::to_string(request));
+      expect_equal(Refinement(stored, parameters, {}).run(), Refinement(draco, parameters, {}).run());
     }
   }
 }

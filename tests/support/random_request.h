@@ -1,0 +1,23 @@
+#pragma once
+
+#include <random>
+
+#include "core/mesh.h"
+#include "core/options.h"
+#include "core/triangle_mesh.h"
+
+namespace papilio::test {
+
+/// A mesh of 2 to a few hundred faces: torus, sphere, box, open patch, fan, several edges at one vertex or three faces
+/// at one edge. Its size is between 1e-3 and 1e3, its place up to 1e3 away from the origin. Half are exact, so that
+/// many of their edges are alike; the others are jittered.
+[[nodiscard]] TriangleMesh random_small_mesh(std::mt19937& random);
+
+/// Sets the rules that a prepared mesh is made for: tension, w and crease angle.
+void choose_rules(std::mt19937& random, Options& options);
+
+/// Sets all other options, with every combination of criteria, projections, lights, near planes and scales, among them
+/// more than 1e10 pixels a unit.
+void choose_request(std::mt19937& random, const Mesh& mesh, Options& options);
+
+}  // namespace papilio::test
