@@ -5,6 +5,7 @@
 #include "proto/findings.h"
 #include "proto/parameters.h"
 #include "proto/problem.h"
+#include "proto/results_version.h"
 #include "proto/text.h"
 #include "server/accept.h"
 #include "server/http/head.h"
@@ -68,8 +69,9 @@ std::string mesh_id(const Request& request) {
 }
 
 std::string entity_tag(const std::string& id, const Parameters& parameters, const std::string& type) {
-  const std::string made_by = std::string(PAPILIO_VERSION) + " " + std::string(proto::draco_version());
-  return '"' + sha256(made_by + '\n' + id + '\n' + proto::to_query(parameters) + '\n' + type).substr(0, 32) + '"';
+  return '"' +
+         sha256(proto::results_version() + '\n' + id + '\n' + proto::to_query(parameters) + '\n' + type).substr(0, 32) +
+         '"';
 }
 
 bool none_match_has(const std::string& if_none_match, const std::string& tag) {
@@ -120,8 +122,8 @@ Response stored_mesh(Engine& engine, Request& request) {
                                             "description application/json.");
   // By the type too: two representations never share a tag. The description depends on who makes it, the bytes do not.
   const bool describes = type == json_type;
-  const std::string tag =
-      describes ? entity_tag(id, unrefined(), *type) : '"' + id.substr(0, 32) + (type == draco_type ? "\"" : "-b\"");
+  const std::string tag = describes ? entity_tag(id, unrefined(), *type + " " PAPILIO_VERSION)
+                                    : '"' + id.substr(0, 32) + (type == draco_type ? "\"" : "-b\"");
   Response response;
   response.headers = {{"ETag", tag},
                       {"Cache-Control", describes ? cache_control(engine, engine.options().cache_seconds, false)

@@ -23,7 +23,8 @@ namespace papilio::server {
 /// The id in the request's path. Throws `Problem` mesh_not_found when it cannot be one.
 [[nodiscard]] std::string mesh_id(const Request& request);
 /// The strong entity tag, quotes included, of a result: it depends on the mesh, the parameters in their canonical form,
-/// the type, and on what made it (the versions of this server and of Draco).
+/// the type, and on all that results depend on besides (proto/results_version.h). Servers of other versions whose
+/// results are the same give the same tag.
 [[nodiscard]] std::string entity_tag(const std::string& id, const proto::Parameters& parameters,
                                      const std::string& type);
 /// Whether `If-None-Match` names the tag, by weak comparison (RFC 9110, section 13.1.2).
