@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "client/mesh_file/byte_order_mark.h"
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
@@ -148,6 +149,7 @@ void add_attribute(proto::FormattedMesh& mesh, AttributeKind kind, uint32_t comp
 }  // namespace
 
 proto::FormattedMesh parse_obj(std::string_view bytes) {
+  bytes = skip_byte_order_mark(bytes);
   if (bytes.find('\0') != std::string_view::npos) throw ParseError("is not a text, as OBJ files are");
   Lists lists = parse_lists(bytes);
   const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");

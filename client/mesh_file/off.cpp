@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "client/mesh_file/byte_order_mark.h"
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
@@ -41,6 +42,7 @@ void parse_keyword(TextScanner& scanner) {
 }  // namespace
 
 TriangleMesh parse_off(std::string_view bytes) {
+  bytes = skip_byte_order_mark(bytes);
   TextScanner scanner(bytes, {.hash_comments = true});
   parse_keyword(scanner);
   scanner.to_word();

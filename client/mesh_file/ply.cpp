@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "client/mesh_file/binary.h"
+#include "client/mesh_file/byte_order_mark.h"
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/ply_attributes.h"
 #include "client/mesh_file/ply_header.h"
@@ -152,6 +153,7 @@ void read_faces(PlyNumbers& numbers, const PlyElement& element, Array<Triangle>&
 }  // namespace
 
 proto::FormattedMesh parse_ply(std::string_view bytes) {
+  bytes = skip_byte_order_mark(bytes);
   const PlyHeader header = parse_ply_header(bytes);
   PlyNumbers numbers(bytes, header);
   proto::FormattedMesh mesh;

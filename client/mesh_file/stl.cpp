@@ -1,11 +1,13 @@
 // Stereolithography, binary and text. Binary: 80 bytes of anything, a count, 50 bytes for each triangle. The
 // text begins with `solid`, but so do the 80 bytes of many binary files: what tells them apart is the size,
-// which the count gives.
+// which the count gives. Some writers append bytes of their own to a binary file. They are skipped, unless they could
+// be whole triangles that the count leaves out.
 
 #include <cctype>
 #include <cmath>
 
 #include "client/mesh_file/binary.h"
+#include "client/mesh_file/byte_order_mark.h"
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
@@ -21,14 +23,33 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower) {
   return std::ranges::equal(word, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
 }
 
-size_t declared_size(std::string_view bytes) {
-  return kHeaderBytes + kTriangleBytes * load<uint32_t>(bytes.substr(80), std::endian::little);
+/// The header must be whole.
+size_t declared_triangles(std::string_view bytes) { return load<uint32_t>(bytes.substr(80), std::endian::little); }
+
+size_t size_of_binary(size_t triangles) { return kHeaderBytes + kTriangleBytes * triangles; }
+
+/// Whether the size is to the byte what a binary file's count asks for.
+bool is_surely_binary(std::string_view bytes) {
+  return bytes.size() >= kHeaderBytes && size_of_binary(declared_triangles(bytes)) == bytes.size();
 }
 
 bool is_text(std::string_view bytes) {
-  if (bytes.size() >= kHeaderBytes && declared_size(bytes) == bytes.size()) return false;
   return equals_ignoring_case(TextScanner(bytes, {}).word_anywhere(), "solid") &&
          bytes.find('\0') == std::string_view::npos;
+}
+
+/// Throws where triangles are missing, or are there and not counted.
+void check_size(std::string_view bytes) {
+  const size_t declared = declared_triangles(bytes);
+  const size_t needed = size_of_binary(declared);
+  const std::string count = "declares " + std::to_string(declared) + " triangles, ";
+  if (needed > bytes.size())
+    throw ParseError(count + "which take " + std::to_string(needed) + " bytes, but has " +
+                     std::to_string(bytes.size()) + ": it is cut short, or is no STL file");
+  const size_t more = bytes.size() - needed;
+  if (more > 0 && more % kTriangleBytes == 0)
+    throw ParseError(count + "but its " + std::to_string(bytes.size()) + " bytes hold " +
+                     std::to_string(declared + more / kTriangleBytes) + ": its count or its end is damaged");
 }
 
 /// The next of the positions, which become one corner each.
@@ -39,10 +60,8 @@ uint32_t append_corner(TriangleMesh& mesh, Vec3f position) {
 
 TriangleMesh parse_binary(std::string_view bytes) {
   if (bytes.size() < kHeaderBytes) throw ParseError("is no STL file: neither text nor long enough for a binary one");
-  if (declared_size(bytes) > bytes.size())
-    throw ParseError("is cut short, or is no STL file: as a binary one it would have " +
-                     std::to_string(declared_size(bytes)) + " bytes, but has " + std::to_string(bytes.size()));
-  const size_t triangles = load<uint32_t>(bytes.substr(80), std::endian::little);
+  check_size(bytes);
+  const size_t triangles = declared_triangles(bytes);
   TriangleMesh mesh;
   mesh.positions.reserve(3 * triangles);
   mesh.triangles.reserve(triangles);
@@ -107,7 +126,11 @@ Vec3f unit_normal(Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
-TriangleMesh parse_stl(std::string_view bytes) { return is_text(bytes) ? parse_text(bytes) : parse_binary(bytes); }
+TriangleMesh parse_stl(std::string_view bytes) {
+  if (is_surely_binary(bytes)) return parse_binary(bytes);
+  const std::string_view text = skip_byte_order_mark(bytes);
+  return is_text(text) ? parse_text(text) : parse_binary(bytes);
+}
 
 std::string format_stl(const TriangleMesh& mesh) {
   std::string bytes = "binary STL, written by papilio";

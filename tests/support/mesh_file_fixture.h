@@ -155,6 +155,9 @@ inline std::vector<fs::path> real_meshes() {
 
 inline constexpr std::string_view kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 inline constexpr std::string_view kOffBody = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+inline constexpr std::string_view kStlText =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    "endsolid a\n";
 
 inline std::string ply_header(const std::string& format, const std::string& vertex, const std::string& face) {
   return "ply\nformat " + format + " 1.0\ncomment element face 7\nobj_info end_header\nelement vertex 3\n" + vertex +

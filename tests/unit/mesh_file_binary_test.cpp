@@ -90,6 +90,30 @@ TEST_F(mesh_file, stl_binary_may_begin_with_solid) {
   }
 }
 
+TEST_F(mesh_file, stl_binary_may_begin_with_a_byte_order_mark) {
+  for (const std::string header : {"\xef\xbb\xbf solid", "\xff\xfe", "\xfe\xff"})
+    EXPECT_EQ(read(Format::stl, binary_stl(untidy(), header)), soup(untidy()));
+}
+
+TEST_F(mesh_file, stl_count_that_disagrees_with_the_length_is_refused) {
+  const std::string four = binary_stl(tetrahedron(), "");
+  const auto with_count = [&](uint32_t count, const std::string& rest = "") {
+    std::string bytes = four.substr(0, 80);
+    put_number(bytes, count, std::endian::little);
+    return bytes + four.substr(84) + rest;
+  };
+  EXPECT_EQ(read(Format::stl, with_count(4)), soup(tetrahedron()));
+  for (const uint32_t count : {0U, 1U, 3U})
+    EXPECT_THAT(complaint(Format::stl, with_count(count)),
+                HasSubstr("declares " + std::to_string(count) + " triangles, but its 284 bytes hold 4"));
+  EXPECT_THAT(complaint(Format::stl, with_count(5)),
+              HasSubstr("declares 5 triangles, which take 334 bytes, but has 284"));
+  EXPECT_THAT(complaint(Format::stl, with_count(4, std::string(100, 'x'))), HasSubstr("hold 6"));
+  // What is no whole number of triangles was appended by its writer.
+  for (const size_t size : {1U, 49U, 51U, 5003U})
+    EXPECT_EQ(read(Format::stl, with_count(4, std::string(size, 'x'))), soup(tetrahedron()));
+}
+
 TEST_F(mesh_file, stl_text_in_its_dialects) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1e-39F, -0.0F}}, {{0, 1, 2}}};
   for (const std::string text : {

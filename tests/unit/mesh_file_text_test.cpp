@@ -31,6 +31,39 @@ TEST_F(mesh_file, obj_other_keywords_are_passed_over) {
   EXPECT_EQ(read(Format::obj, text), (TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
 }
 
+TEST_F(mesh_file, a_byte_order_mark_of_utf8_is_skipped) {
+  const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const std::string mark = "\xef\xbb\xbf";
+  EXPECT_EQ(read(Format::obj, mark + std::string(kThree) + "f 1 2 3\n"), expected);
+  EXPECT_EQ(read(Format::off, mark + "OFF\n" + std::string(kOffBody)), expected);
+  EXPECT_EQ(read(Format::off, mark + std::string(kOffBody)), expected);
+  EXPECT_EQ(read(Format::stl, mark + std::string(kStlText)), expected);
+  EXPECT_EQ(read(Format::ply, mark + ply_header("ascii", kXyz, kIndices) + kPlyText), expected);
+  const std::string binary_ply = ply_header("binary_little_endian", kXyz, kIndices) + std::string(36, '\0') + "\3" +
+                                 std::string({0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0});
+  EXPECT_EQ(read(Format::ply, mark + binary_ply), read(Format::ply, binary_ply));
+  EXPECT_THAT(complaint(Format::obj, mark + std::string(kThree) + "f 1 2 4\n"), HasSubstr("vertex 3"));
+  EXPECT_NE(complaint(Format::obj, mark), "");
+}
+
+TEST_F(mesh_file, other_unicode_encodings_are_refused_by_name) {
+  const auto widened = [](std::string_view text, const std::string& before, const std::string& after) {
+    std::string wide;
+    for (const char c : text) wide += before + c + after;
+    return wide;
+  };
+  const std::string zero(1, '\0'), zeros(3, '\0');
+  for (const auto& [format, text] : {std::pair{Format::obj, std::string(kThree) + "f 1 2 3\n"},
+                                     {Format::off, "OFF\n" + std::string(kOffBody)},
+                                     {Format::stl, std::string(kStlText)},
+                                     {Format::ply, ply_header("ascii", kXyz, kIndices) + kPlyText}}) {
+    EXPECT_THAT(complaint(format, "\xff\xfe" + widened(text, "", zero)), HasSubstr("UTF-16 text; save it as UTF-8"));
+    EXPECT_THAT(complaint(format, "\xfe\xff" + widened(text, zero, "")), HasSubstr("UTF-16 text; save it as UTF-8"));
+    EXPECT_THAT(complaint(format, "\xff\xfe" + zero + zero + widened(text, "", zeros)), HasSubstr("UTF-32 text"));
+    EXPECT_THAT(complaint(format, zero + zero + "\xfe\xff" + widened(text, zeros, "")), HasSubstr("UTF-32 text"));
+  }
+}
+
 TEST_F(mesh_file, polygons_become_fans) {
   const std::string pentagon = "0 0 0\n2 0 0\n3 1 0\n1 2 0\n0 1 0\n";
   const auto fan = ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4});
