@@ -7,7 +7,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr double any = coordinate_limit;
+constexpr double any = 1e18;  // coordinate_limit, in decimal to the digit
 
 View& view_of(Parameters& p) { return p.options.view ? *p.options.view : p.options.view.emplace(); }
 View view_of(const Parameters& p) { return p.options.view.value_or(View{}); }

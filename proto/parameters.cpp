@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "proto/name_suggestion.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 #include "proto/url.h"
@@ -45,24 +46,50 @@ class Reader {
   std::set<std::string_view> given_;
 };
 
+/// "an integer", "3 numbers", "1 to 8 times 3 numbers".
+std::string describe_count(const ParameterInfo& info) {
+  if (info.type == ParameterType::integer) return "an integer";
+  if (info.type == ParameterType::number) return "a number";
+  const auto groups = [&](size_t count) { return std::to_string(count / info.group); };
+  const std::string count =
+      info.least == info.most ? std::to_string(info.least) : groups(info.least) + " to " + groups(info.most);
+  return count + (info.group > 1 ? " times " + std::to_string(info.group) : "") + " numbers";
+}
+
 const ParameterInfo& find(const std::string& name) {
   const auto table = parameter_table();
   const auto row = std::ranges::find(table, name, &ParameterInfo::name);
   if (row != table.end()) return *row;
-  std::string known;
-  for (const ParameterInfo& info : table) append_item(known, ", ", info.name);
-  throw Problem(Code::unknown_parameter, "There is no parameter " + quote(name) + ". There are: " + known + ".",
-                shorten(name));
+  std::vector<std::string_view> names;
+  for (const ParameterInfo& info : table) names.push_back(info.name);
+  std::string advice;
+  if (const auto meant = suggest_name(name, names)) {
+    advice = "Did you mean " + std::string(*meant) + "?";
+  } else {
+    for (const std::string_view known : names) append_item(advice, ", ", known);
+    advice = "There are: " + advice + ".";
+  }
+  throw Problem(Code::unknown_parameter, "There is no parameter " + quote(name) + ". " + advice, shorten(name));
 }
 
 std::string what_it_takes(const ParameterInfo& info) { return "must be " + describe_range(info); }
 
+/// Refuses a number below or above its bounds, and names the bound where the parameter's range does not show it or the
+/// number is one of several.
+void check_bounds(const ParameterInfo& info, double value, const std::string& given) {
+  if (value >= info.min && value <= info.max) return;
+  const bool is_list = info.type == ParameterType::numbers;
+  if (!is_list && info.max < coordinate_limit) Reader::refuse(info, what_it_takes(info) + ", not " + given);
+  const std::string bound =
+      value > info.max ? " of at most " + format_number(info.max) : " of at least " + format_number(info.min);
+  Reader::refuse(info, "must be " + describe_count(info) + bound + ", not " + (is_list ? format_number(value) : given));
+}
+
 void check_numbers(const ParameterInfo& info, const std::vector<double>& values, const std::string& given) {
-  const auto good = [&](double v) {
-    return v >= info.min && v <= info.max && (info.type != ParameterType::integer || v == std::floor(v));
-  };
-  if (values.size() < info.least || values.size() > info.most || values.size() % info.group != 0 ||
-      !std::ranges::all_of(values, good))
+  if (values.size() < info.least || values.size() > info.most || values.size() % info.group != 0)
+    Reader::refuse(info, what_it_takes(info) + ", not " + given);
+  for (const double value : values) check_bounds(info, value, given);
+  if (info.type == ParameterType::integer && values[0] != std::floor(values[0]))
     Reader::refuse(info, what_it_takes(info) + ", not " + given);
 }
 
@@ -241,12 +268,7 @@ std::string describe_range(const ParameterInfo& info) {
     range = " in " + format_number(info.min) + ".." + format_number(info.max);
   else if (info.min > -coordinate_limit)
     range = " of at least " + format_number(info.min);
-  if (info.type == ParameterType::integer) return "an integer" + range;
-  if (info.type == ParameterType::number) return "a number" + range;
-  const auto groups = [&](size_t count) { return std::to_string(count / info.group); };
-  const std::string count =
-      info.least == info.most ? std::to_string(info.least) : groups(info.least) + " to " + groups(info.most);
-  return count + (info.group > 1 ? " times " + std::to_string(info.group) : "") + " numbers" + range;
+  return describe_count(info) + range;
 }
 
 std::string describe_default(const ParameterInfo& info) {

@@ -129,6 +129,33 @@ TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
   EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail, "output.normals must be true or false, not \"1\".");
 }
 
+TEST(Parameters, RefusalsNameTheBoundThatFailed) {
+  EXPECT_EQ(query_refusal({{"view.near", "1e300"}}).detail,
+            "view.near must be a number of at most 1e+18, not \"1e300\".");
+  EXPECT_EQ(query_refusal({{"view.near", "-1"}}).detail, "view.near must be a number of at least 0, not \"-1\".");
+  EXPECT_EQ(query_refusal({{"view.eye", "0,1.1e18,0"}}).detail,
+            "view.eye must be 3 numbers of at most 1e+18, not 1.1e+18.");
+  EXPECT_EQ(query_refusal({{"view.eye", "0,0,-1e19"}}).detail,
+            "view.eye must be 3 numbers of at least -1e+18, not -1e+19.");
+  EXPECT_EQ(query_refusal({{"view.eye", "1,2"}}).detail, "view.eye must be 3 numbers, not \"1,2\".");
+  EXPECT_EQ(query_refusal({{"flatness", "0.5,3"}}).detail, "flatness must be 1 to 10 numbers of at most 1, not 3.");
+  EXPECT_EQ(json_refusal("{\"view\": {\"near\": 1e300}}").detail,
+            "view.near must be a number of at most 1e+18, not 1e+300.");
+  EXPECT_EQ(parse_query({{"view.eye", "1e18,0,0"}}).options.view->eye.x, 1e18);
+}
+
+TEST(Parameters, AMisspeltNameIsAnsweredWithTheOneMeant) {
+  for (const auto& [typed, meant] : std::vector<std::pair<std::string, std::string>>{
+           {"tolerence", "tolerance"}, {"crease-angle", "crease_angle"}, {"eye", "view.eye"}, {"level", "levels"}}) {
+    const Refusal refusal = query_refusal({{typed, "1"}});
+    EXPECT_EQ(refusal.code, Code::unknown_parameter);
+    EXPECT_EQ(refusal.detail, "There is no parameter \"" + typed + "\". Did you mean " + meant + "?");
+  }
+  EXPECT_NE(json_refusal("{\"view\": {\"edgePixels\": 1}}").detail.find("Did you mean view.edge_pixels?"),
+            std::string::npos);
+  EXPECT_NE(query_refusal({{"colour", "1"}}).detail.find("There are: levels, "), std::string::npos);
+}
+
 TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {
   EXPECT_EQ(query_refusal({{"view.eye", "1,2,3"}, {"view.target", "1,2,3"}}).parameter, "view.target");
   EXPECT_EQ(query_refusal({{"view.up", "0,0,1"}}).parameter, "view.up");
