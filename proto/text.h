@@ -17,6 +17,10 @@ namespace papilio::proto {
 /// The same in double quotes.
 [[nodiscard]] std::string quote(std::string_view text);
 
+/// Text of others for a terminal or a log: a control character, a mark that reverses the direction of text, and a byte
+/// that is no UTF-8 become escapes such as \x1b or \u202e. All other characters stay.
+[[nodiscard]] std::string escape_controls(std::string_view text);
+
 /// Appends an item to a list, after the separator unless it is the first.
 void append_item(std::string& list, std::string_view separator, std::string_view item);
 
