@@ -19,7 +19,7 @@ void check(const TriangleMesh& input) {
   const size_t points = input.positions.size();
   if (points >= none) throw Error(Fault::index_out_of_range, "The mesh has more points than 32 bits can number.");
   if (input.triangles.size() > face_count_limit)
-    throw Error(Fault::result_too_large, "The mesh has more than 2^30 faces. Send fewer.");
+    throw Error(Fault::result_too_large, "The mesh has more than 2^30 faces. Use fewer.");
   for (size_t f = 0; f < input.triangles.size(); ++f)
     for (uint32_t p : input.triangles[f])
       if (p >= points)
@@ -331,7 +331,7 @@ Mesh build(const TriangleMesh& input, BuildReport* report) {
 
   if (topology.origin.empty()) {
     throw Error(Fault::no_faces, input.triangles.empty()
-                                     ? "The mesh has no faces. Send a triangle mesh."
+                                     ? "The mesh has no faces. Use a triangle mesh."
                                      : "Every face of the mesh has two corners in one place, so there is no surface "
                                        "to refine. Check the mesh's scale and precision.");
   }
@@ -349,9 +349,9 @@ Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
   try {
     return build(input, report);
   } catch (const std::bad_alloc&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Send a smaller one.");
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
   } catch (const std::length_error&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Send a smaller one.");
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
   }
 }
 

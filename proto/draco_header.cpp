@@ -38,7 +38,7 @@ class Cursor {
 
   std::string_view take(size_t size) {
     if (size > bytes_.size())
-      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Send the whole file.");
+      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Use the whole file.");
     const std::string_view taken = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return taken;
@@ -82,7 +82,7 @@ void require_within(uint64_t count, uint64_t limit, const char* what, const char
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (!bytes.starts_with("DRACO"))
     throw Problem(Code::mesh_not_draco,
-                  bytes.empty() ? "The mesh is empty. Send a Draco file as the body."
+                  bytes.empty() ? "The mesh is empty: it has 0 bytes. A Draco file is needed."
                                 : "The mesh does not start with DRACO, so it is not a Draco file. Encode it with "
                                   "draco_encoder or `papilio convert in.obj out.drc`.");
   Cursor cursor(bytes);

@@ -24,6 +24,6 @@ struct DracoHeader {
 
 /// Throws `Problem` mesh_too_large, naming the limit, when there are more than it allows of `what` ("faces"). `advice`
 /// says what to do about it.
-void require_within(uint64_t count, uint64_t limit, const char* what, const char* advice = "Send a coarser mesh.");
+void require_within(uint64_t count, uint64_t limit, const char* what, const char* advice = "Use a coarser mesh.");
 
 }  // namespace papilio::proto
