@@ -108,13 +108,10 @@ fs::path resolved(const fs::path& path) {
   return failed ? path : target;
 }
 
-}  // namespace
-
-std::string read_bytes(const fs::path& path, uint64_t limit) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file.is_open()) throw failure(path, "be opened", errno);
+/// All of an open file. `path` is its name for messages.
+std::string read_open(int descriptor, const fs::path& path, uint64_t limit) {
   struct stat about {};
-  if (::fstat(file.number(), &about) != 0) throw failure(path, "be read", errno);
+  if (::fstat(descriptor, &about) != 0) throw failure(path, "be read", errno);
   if (S_ISDIR(about.st_mode)) throw FileError(path, "is a folder; name a file in it");
   const auto refuse_if_above_limit = [&](uint64_t size) {
     if (size > limit)
@@ -130,7 +127,7 @@ std::string read_bytes(const fs::path& path, uint64_t limit) {
   // One byte more than the size, so that the end of the file is met without growing again.
   bytes.resize(std::max<size_t>(size + 1, kChunk));
   for (;;) {
-    const ssize_t got = ::read(file.number(), bytes.data() + used, bytes.size() - used);
+    const ssize_t got = ::read(descriptor, bytes.data() + used, bytes.size() - used);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw failure(path, "be read", errno);
     if (got == 0) break;
@@ -141,6 +138,16 @@ std::string read_bytes(const fs::path& path, uint64_t limit) {
   bytes.resize(used);
   return bytes;
 }
+
+}  // namespace
+
+std::string read_bytes(const fs::path& path, uint64_t limit) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open()) throw failure(path, "be opened", errno);
+  return read_open(file.number(), path, limit);
+}
+
+std::string read_standard_input(uint64_t limit) { return read_open(STDIN_FILENO, standard_input_name, limit); }
 
 void write_atomically(const fs::path& path, std::string_view bytes) {
   const fs::path target = resolved(path);

@@ -20,6 +20,11 @@ struct FileError : std::runtime_error {
 /// string.
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, uint64_t limit);
 
+/// What standard input is called in messages.
+inline constexpr const char* standard_input_name = "standard input";
+/// All of standard input, as `read_bytes`.
+[[nodiscard]] std::string read_standard_input(uint64_t limit);
+
 /// Puts `bytes` at `path`, all or nothing: they go to a temporary file in the same folder, which is then
 /// renamed, so that whoever reads `path` finds the old content or the new. A symbolic link is followed.
 /// Throws `FileError` with the reason (no folder, no permission, disk full, not a regular file), and leaves

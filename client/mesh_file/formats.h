@@ -29,6 +29,10 @@ struct ParseError : std::runtime_error {
 [[nodiscard]] proto::FormattedMesh parse_ply(std::string_view bytes);
 [[nodiscard]] TriangleMesh parse_stl(std::string_view bytes);
 
+/// Whether it is surely an STL file: binary and of the size that its count asks for, or a text that begins with
+/// `solid`.
+[[nodiscard]] bool looks_like_stl(std::string_view bytes);
+
 /// Indices must be in range. `format` describes all of the mesh's attributes, in order, or none.
 [[nodiscard]] std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format);
 [[nodiscard]] std::string format_off(const TriangleMesh& mesh);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -71,21 +72,32 @@ std::string describe_broken(const TriangleMesh& mesh, size_t index) {
 
 }  // namespace
 
-Format format_of(const std::filesystem::path& path) {
+std::string_view name_of(Format format) {
+  return std::ranges::find(kExtensions, format, &std::pair<std::string_view, Format>::second)->first.substr(1);
+}
+
+std::optional<Format> format_named(std::string_view name) {
+  for (const auto& [extension, format] : kExtensions)
+    if (extension.substr(1) == name) return format;
+  return std::nullopt;
+}
+
+std::optional<Format> known_format_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [known, format] : kExtensions)
-    if (extension == known) return format;
-  const std::string found =
-      extension.empty() ? "has no extension" : "'" + path.extension().string() + "' is not a known extension";
+  return extension.empty() ? std::nullopt : format_named(std::string_view(extension).substr(1));
+}
+
+Format format_of(const std::filesystem::path& path) {
+  if (const std::optional<Format> format = known_format_of(path)) return *format;
+  const std::string extension = path.extension().string();
+  const std::string found = extension.empty() ? "has no extension" : "'" + extension + "' is not a known extension";
   throw FileError(path, found + "; use one of .drc, .obj, .ply, .off, .stl");
 }
 
-proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format) {
-  if (format == Format::drc) throw draco_is_elsewhere();
-  const std::string bytes = read_bytes(path, kMaxFileBytes);
-  if (bytes.empty()) throw FileError(path, "is empty; export the mesh again");
+proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes) {
+  if (bytes.empty()) throw FileError(name, "is empty; export the mesh again");
   try {
     proto::FormattedMesh mesh = parse(format, bytes);
     if (mesh.triangles.empty()) throw ParseError("holds no triangles");
@@ -93,20 +105,30 @@ proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format fo
       throw ParseError(describe_broken(mesh, sound));
     return mesh;
   } catch (const ParseError& error) {
-    throw FileError(path, std::string(error.what()) + "; export the mesh again, or check that the extension is right");
+    throw FileError(name, std::string(error.what()) + "; export the mesh again, or check that its format is " +
+                              std::string(name_of(format)));
   }
 }
 
-void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
-                     const proto::MeshFormat& mesh_format) {
+proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format) {
   if (format == Format::drc) throw draco_is_elsewhere();
+  return parse_triangles(path.string(), format, read_bytes(path, kMaxFileBytes));
+}
+
+std::string encode_triangles(const std::string& name, Format format, const TriangleMesh& mesh,
+                             const proto::MeshFormat& mesh_format) {
   if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
     throw std::invalid_argument(describe_broken(mesh, sound));
   // PLY's indices are signed in most readers, STL's count has 32 bits.
   constexpr size_t kMost = std::numeric_limits<int32_t>::max();
   if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)
-    throw FileError(path, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
-  write_atomically(path, to_bytes(format, mesh, mesh_format));
+    throw FileError(name, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
+  return to_bytes(format, mesh, mesh_format);
+}
+
+void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
+                     const proto::MeshFormat& mesh_format) {
+  write_atomically(path, encode_triangles(path.string(), format, mesh, mesh_format));
 }
 
 }  // namespace papilio::client

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "client/mesh_file/file_bytes.h"
 #include "proto/mesh_format.h"
@@ -10,26 +13,38 @@ namespace papilio::client {
 /// The kinds of mesh files, by what their names end in.
 enum class Format { drc, obj, ply, off, stl };
 
-/// By the extension, in upper or lower case. Throws `FileError` that names the extension and those that are
-/// known.
+/// "drc", "obj", "ply", "off", "stl".
+[[nodiscard]] std::string_view name_of(Format format);
+/// The reverse of `name_of`; nothing for any other text.
+[[nodiscard]] std::optional<Format> format_named(std::string_view name);
+
+/// By the extension, in upper or lower case; nothing for an unknown one.
+[[nodiscard]] std::optional<Format> known_format_of(const std::filesystem::path& path);
+/// By the extension. Throws `FileError` that names the extension and those that are known.
 [[nodiscard]] Format format_of(const std::filesystem::path& path);
+/// By what the bytes begin with: Draco's or PLY's magic, OFF's keyword or counts, `solid` or the size of a binary STL
+/// file, or lines of an OBJ file. `name` is for messages. Throws `FileError` where none fits.
+[[nodiscard]] Format format_of_content(const std::string& name, std::string_view bytes);
 
 /// The largest file that is read: 4 GiB.
 inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 
 /// Positions and triangles as they stand in the file: repeated, degenerate and non-manifold faces are kept,
 /// unused positions too. Polygons become fans around their first corner; polygons of one or two corners,
-/// which OFF and PLY allow, are left out. OBJ's texture coordinates (`vt`, of two or three numbers) and
-/// normals (`vn`) are attributes: each position is then one point for each pair of them that faces name with it; where
-/// a corner lacks one it is zero. PLY's normals, colours and texture coordinates of vertices are attributes. Those of
-/// OFF and STL, and all materials, are not read. STL has no shared vertices: three new positions for each triangle.
-/// Coordinates that are NaN or infinite are passed on.
+/// which OFF and PLY allow, are left out. Text may begin with the byte order mark of UTF-8. A binary STL file may be
+/// longer than its count asks for, but not by a whole number of triangles. OBJ's texture coordinates (`vt`, of two or
+/// three numbers) and normals (`vn`) are attributes: each position is then one point for each pair of them that faces
+/// name with it; where a corner lacks one it is zero. PLY's normals, colours and texture coordinates of vertices are
+/// attributes. Those of OFF and STL, and all materials, are not read. STL has no shared vertices: three new positions
+/// for each triangle. Coordinates that are NaN or infinite are passed on.
 ///
 /// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
 /// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,
 /// or holds no triangle; and `std::logic_error` for `Format::drc`, whose bytes are read by `proto`. Memory stays within
 /// a small multiple of the file's size, whatever counts the file declares. Any number of threads may call it.
 [[nodiscard]] proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format);
+/// `read_triangles` of a file's bytes. `name` is the file's, for messages.
+[[nodiscard]] proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes);
 
 /// Writes through `write_atomically`. OBJ and OFF as text, in the shortest digits that give back the same
 /// float; PLY and STL binary, little-endian. Positions survive to the bit in all four; STL loses what is
@@ -41,5 +56,8 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 /// not exist; `std::logic_error` for `Format::drc`.
 void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
                      const proto::MeshFormat& mesh_format = {});
+/// The bytes that `write_triangles` writes. `name` is the file's, for messages.
+[[nodiscard]] std::string encode_triangles(const std::string& name, Format format, const TriangleMesh& mesh,
+                                           const proto::MeshFormat& mesh_format = {});
 
 }  // namespace papilio::client

@@ -126,6 +126,8 @@ Vec3f unit_normal(Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
+bool looks_like_stl(std::string_view bytes) { return is_surely_binary(bytes) || is_text(skip_byte_order_mark(bytes)); }
+
 TriangleMesh parse_stl(std::string_view bytes) {
   if (is_surely_binary(bytes)) return parse_binary(bytes);
   const std::string_view text = skip_byte_order_mark(bytes);
