@@ -4,6 +4,7 @@
 #include <string>
 
 #include "client/lib/compare.h"
+#include "client/lib/mesh_stream.h"
 #include "client/lib/remote.h"
 #include "proto/parameters.h"
 
@@ -13,32 +14,31 @@
 namespace papilio::client {
 
 struct RefineFlags {
-  std::string input;       ///< mesh file or folder
-  std::string output;      ///< mesh file, folder, or "-" for standard output
-  std::string server;      ///< URL; empty: refine in this process
-  RemoteOptions remote;    ///< how that server is spoken to
-  std::string to = "drc";  ///< kind of the results of a folder
-  int jobs = 1;            ///< meshes of a folder refined at once
-  bool json = false;       ///< statistics as JSON on standard output
+  MeshPlace input;       ///< mesh file, folder, or "-"
+  MeshPlace output;      ///< mesh file, folder, or "-"; without a path: beside the input
+  std::string server;    ///< URL; empty: refine in this process
+  RemoteOptions remote;  ///< how that server is spoken to
+  int jobs = 1;          ///< meshes of a folder refined at once
+  bool json = false;     ///< statistics as JSON on standard output
   proto::Parameters parameters;
 };
 void refine_command(const RefineFlags& flags);
 
 struct InfoFlags {
-  std::string input;
+  MeshPlace input;
   bool json = false;
 };
 void info_command(const InfoFlags& flags);
 
 struct ConvertFlags {
-  std::string input, output;
+  MeshPlace input, output;
   bool exact = false;  ///< to .drc: positions to the bit
   proto::OutputOptions options;
 };
 void convert_command(const ConvertFlags& flags);
 
 struct CompareFlags {
-  std::string a, b;
+  MeshPlace a, b;
   CompareOptions options;
   bool json = false;
 };
@@ -51,6 +51,10 @@ struct HealthFlags {
 };
 /// Prints the server's word for it; anything but yes is an exception.
 void health_command(const HealthFlags& flags);
+
+/// Refuses an output that cannot be written, before the work: a name without a known extension, a folder, binary data
+/// to a terminal. Throws `UsageError`, and `FileError` for a folder that does not exist.
+void check_output(const MeshPlace& output);
 
 /// A mistake in how the program was called: exit status 2.
 struct UsageError : std::runtime_error {

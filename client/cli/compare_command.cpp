@@ -5,8 +5,13 @@
 #include "client/lib/mesh_stream.h"
 
 namespace papilio::client {
+
 void compare_command(const CompareFlags& flags) {
-  const Comparison found = compare(load_triangles(flags.a), load_triangles(flags.b), flags.options);
+  if (flags.a.is_standard() && flags.b.is_standard())
+    throw UsageError("Standard input is one mesh. Name a file for the other.");
+  const proto::FormattedMesh a = triangles_of(read_mesh(flags.a));
+  const proto::FormattedMesh b = triangles_of(read_mesh(flags.b));
+  const Comparison found = compare(a, b, flags.options, {flags.a.name(), flags.b.name()});
   const nlohmann::ordered_json document{
       {"hausdorff", found.hausdorff},     {"rms", found.rms},
       {"max_forward", found.max_forward}, {"max_backward", found.max_backward},

@@ -1,23 +1,24 @@
 #include "client/cli/commands.h"
-#include "client/lib/mesh_stream.h"
+#include "client/lib/file_words.h"
 #include "proto/draco_writer.h"
 
 namespace papilio::client {
 
 void convert_command(const ConvertFlags& flags) {
-  const Format format = format_of(flags.output);
-  const proto::FormattedMesh triangles = load_triangles(flags.input);
+  check_output(flags.output);
+  const Format format = output_format(flags.output);
+  const MeshBytes file = read_mesh(flags.input);
+  const proto::FormattedMesh triangles = triangles_of(file);
   if (format != Format::drc) {
-    write_triangles(flags.output, format, triangles, triangles.format);
+    save_bytes(flags.output, encode_triangles(flags.output.path.string(), format, triangles, triangles.format));
     return;
   }
-  if (flags.exact) {
-    write_atomically(flags.output, proto::write_draco_exact(triangles, triangles.format));
-    return;
-  }
-  const Mesh mesh = build_mesh(triangles);
-  write_atomically(flags.output, proto::write_draco(mesh, proto::quantization_box(mesh.positions), flags.options,
-                                                    proto::attribute_encoding(mesh, triangles.format)));
+  save_bytes(flags.output, in_words_of_the_file(file.name, [&] {
+               if (flags.exact) return proto::write_draco_exact(triangles, triangles.format);
+               const Mesh mesh = build_mesh(triangles);
+               return proto::write_draco(mesh, proto::quantization_box(mesh.positions), flags.options,
+                                         proto::attribute_encoding(mesh, triangles.format));
+             }));
 }
 
 }  // namespace papilio::client

@@ -2,24 +2,26 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/commands.h"
-#include "client/lib/mesh_stream.h"
+#include "client/lib/file_words.h"
 #include "core/mesh.h"
 #include "proto/findings.h"
+#include "proto/text.h"
 
 namespace papilio::client {
 namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json describe(const std::string& path) {
+ordered_json describe(const MeshPlace& input) {
+  const MeshBytes file = read_mesh(input);
   BuildReport report;
-  const Mesh mesh = build_mesh(load_triangles(path), &report);
+  const Mesh mesh = in_words_of_the_file(file.name, [&] { return build_mesh(triangles_of(file), &report); });
   const Topology& topology = mesh.topology;
   const Box box = bounding_box(mesh.positions);
   const auto triple = [](Vec3f p) { return ordered_json{p.x, p.y, p.z}; };
   ordered_json description{
-      {"file", path},
-      {"bytes", std::filesystem::file_size(path)},
+      {"file", file.name},
+      {"bytes", file.bytes.size()},
       {"vertices", topology.vertex_count},
       {"faces", topology.face_count()},
       {"edges", topology.edge_count()},
@@ -36,7 +38,7 @@ void print(const ordered_json& value, const std::string& name) {
     return;
   }
   std::cout << name << std::string(name.size() < 24 ? 24 - name.size() : 1, ' ')
-            << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+            << (value.is_string() ? proto::escape_controls(value.get<std::string>()) : value.dump()) << '\n';
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "client/cli/commands.h"
-#include "core/error.h"
 #include "proto/problem.h"
+#include "proto/text.h"
 
 using namespace papilio;
 using namespace papilio::client;
@@ -13,7 +13,21 @@ namespace {
 
 enum ExitStatus { success = 0, failed = 1, usage = 2 };
 
-constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl)";
+constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl), or - for standard input";
+
+/// A flag whose value is the name of a mesh format.
+void add_format(CLI::App& command, const std::string& flag, std::optional<Format>& format,
+                const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          flag, [&format](const std::string& name) { format = format_named(name); }, description)
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl"}));
+}
+
+void add_from(CLI::App& command, MeshPlace& input) {
+  add_format(command, "--from", input.format, "Format of the input, instead of by its extension or content");
+}
 
 /// Values of the table's parameters by name, as they were typed; empty where they were not given.
 using TypedParameters = std::map<std::string, std::string>;
@@ -41,9 +55,17 @@ void add_refine(CLI::App& app) {
   auto flags = std::make_shared<RefineFlags>();
   auto typed = std::make_shared<TypedParameters>();
   CLI::App* command = app.add_subcommand("refine", "Refine a mesh, or every mesh in a folder");
-  command->add_option("input", flags->input, "Mesh file (.drc .obj .ply .off .stl) or folder")->required();
-  command->add_option("-o,--output", flags->output, "File whose extension names its kind, folder, or - (Draco)")
+  command
+      ->add_option("input", flags->input.path, "Mesh file (.drc .obj .ply .off .stl), folder, or - for standard input")
       ->required();
+  command->add_option(
+      "-o,--output", flags->output.path,
+      "File whose extension names its format, folder, or - for standard output; without it NAME.refined.EXT "
+      "beside the input, - where that is -");
+  add_from(*command, flags->input);
+  add_format(*command, "--to", flags->output.format,
+             "Format of a folder's results and of standard output (default drc), or of NAME.refined.EXT (default the "
+             "input's)");
   command->add_option("--server", flags->server, "Refine there instead of here: http://host:port or https://");
   command
       ->add_option("--ca", flags->remote.ca_file,
@@ -51,9 +73,6 @@ void add_refine(CLI::App& app) {
       ->check(CLI::ExistingFile);
   command->add_option("--key", flags->remote.key, "Key that the server asks for; safer in the environment")
       ->envname("PAPILIO_KEY");
-  command->add_option("--to", flags->to, "Kind of the results of a folder")
-      ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl"}))
-      ->capture_default_str();
   command->add_option("--jobs", flags->jobs, "Meshes of a folder refined at once")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -68,7 +87,8 @@ void add_refine(CLI::App& app) {
 void add_info(CLI::App& app) {
   auto flags = std::make_shared<InfoFlags>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a mesh file");
-  command->add_option("input", flags->input, mesh_file)->required();
+  command->add_option("input", flags->input.path, mesh_file)->required();
+  add_from(*command, flags->input);
   command->add_flag("--json", flags->json, "As JSON");
   command->callback([flags] { info_command(*flags); });
 }
@@ -77,8 +97,12 @@ void add_convert(CLI::App& app) {
   auto flags = std::make_shared<ConvertFlags>();
   auto typed = std::make_shared<TypedParameters>();
   CLI::App* command = app.add_subcommand("convert", "Turn a mesh file into another kind");
-  command->add_option("input", flags->input, mesh_file)->required();
-  command->add_option("output", flags->output, "Mesh file; its extension names its kind")->required();
+  command->add_option("input", flags->input.path, mesh_file)->required();
+  command
+      ->add_option("output", flags->output.path, "Mesh file whose extension names its format, or - for standard output")
+      ->required();
+  add_from(*command, flags->input);
+  add_format(*command, "--to", flags->output.format, "Format of standard output; default drc");
   command->add_flag("--exact", flags->exact, "To .drc: keep positions to the bit instead of quantising them");
   add_parameters(*command, *typed, "output.");
   command->callback([flags, typed, command] {
@@ -90,8 +114,8 @@ void add_convert(CLI::App& app) {
 void add_compare(CLI::App& app) {
   auto flags = std::make_shared<CompareFlags>();
   CLI::App* command = app.add_subcommand("compare", "Distances between two surfaces");
-  command->add_option("a", flags->a, mesh_file)->required();
-  command->add_option("b", flags->b, mesh_file)->required();
+  command->add_option("a", flags->a.path, mesh_file)->required();
+  command->add_option("b", flags->b.path, mesh_file)->required();
   command->add_option("--samples", flags->options.samples, "Points sampled on each surface, besides its vertices")
       ->check(CLI::Range(size_t{0}, size_t{100'000'000}))
       ->capture_default_str();
@@ -117,7 +141,7 @@ void add_parameters_command(CLI::App& app) {
 }
 
 int complain(const std::string& what, ExitStatus status) {
-  std::cerr << "papilio: " << what << '\n';
+  std::cerr << "papilio: " << proto::escape_controls(what) << '\n';
   return status;
 }
 
@@ -133,7 +157,7 @@ int run(int argc, char** argv) {
   add_parameters_command(app);
   try {
     app.parse(argc, argv);
-    return std::cout.flush() ? success : complain("Standard output took not all of the result.", failed);
+    return std::cout.flush() ? success : complain("Could not write all output.", failed);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? success : usage;
   } catch (const UsageError& error) {

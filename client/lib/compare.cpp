@@ -129,9 +129,10 @@ double diagonal_of(std::span<const Vec3d> vertices) {
 
 }  // namespace
 
-Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options) {
-  const Triangles a_triangles = corners_of(a, "the first mesh");
-  const Triangles b_triangles = corners_of(b, "the second mesh");
+Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options,
+                   const std::array<std::string, 2>& names) {
+  const Triangles a_triangles = corners_of(a, names[0]);
+  const Triangles b_triangles = corners_of(b, names[1]);
   const std::vector<Vec3d> a_vertices = used_vertices(a);
   const std::vector<Vec3d> b_vertices = used_vertices(b);
   const OneWay forward =

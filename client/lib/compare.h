@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <string>
 
 #include "core/triangle_mesh.h"
 
@@ -35,7 +37,8 @@ struct Comparison {
 /// they cover; positions that no triangle uses do not count.
 ///
 /// Throws `std::invalid_argument`, which says which mesh, if one has no triangles, an index out of range, or
-/// a coordinate that is not finite.
-[[nodiscard]] Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options = {});
+/// a coordinate that is not finite. `names` are what the meshes are called there.
+[[nodiscard]] Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options = {},
+                                 const std::array<std::string, 2>& names = {"the first mesh", "the second mesh"});
 
 }  // namespace papilio::client

@@ -1,24 +1,56 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "client/mesh_file/mesh_file.h"
+#include "core/mesh.h"
+#include "proto/limits.h"
 #include "proto/mesh_format.h"
 
 // Mesh files of every kind as Draco streams, which are all that a refinement takes and gives.
 
 namespace papilio::client {
 
-/// A mesh file's triangles and attributes. Throws `FileError`, and `proto::Problem` for a bad Draco stream.
-[[nodiscard]] proto::FormattedMesh load_triangles(const std::filesystem::path& path);
+/// Limits of meshes on a user's own machine: what the core can number.
+inline constexpr proto::Limits own_limits{face_count_limit, face_count_limit, face_count_limit};
+
+/// Where a mesh comes from or goes to.
+struct MeshPlace {
+  std::filesystem::path path{};    ///< "-": standard input or output
+  std::optional<Format> format{};  ///< nothing: by the extension; of standard input by its content, of output .drc
+
+  [[nodiscard]] bool is_standard() const { return path == "-"; }
+  /// What an input is called in messages.
+  [[nodiscard]] std::string name() const { return is_standard() ? standard_input_name : path.string(); }
+};
+
+/// A mesh file as it was read.
+struct MeshBytes {
+  std::string name;  ///< for messages
+  Format format = Format::drc;
+  std::string bytes{};
+};
+
+/// Reads a mesh file without a look at its content. Throws `FileError`, also where it is empty.
+[[nodiscard]] MeshBytes read_mesh(const MeshPlace& place);
+
+/// A mesh file's triangles and attributes. Throws `FileError`.
+[[nodiscard]] proto::FormattedMesh triangles_of(const MeshBytes& file);
 
 /// A mesh file as a Draco stream: .drc as it is, others encoded with their positions and attributes to the bit. Throws
-/// `FileError`, and `Error` where there is no surface in the file.
-[[nodiscard]] std::string load_draco(const std::filesystem::path& path);
+/// `FileError`, also where there is no surface in the file.
+[[nodiscard]] std::string draco_of(MeshBytes file);
 
-/// Writes a Draco stream as the kind of file that the name asks for. Throws `FileError`.
-void save_draco(const std::filesystem::path& path, std::string_view draco);
+/// The format of what is written there. Throws `FileError` for an extension that is unknown or not that of the format.
+[[nodiscard]] Format output_format(const MeshPlace& place);
+
+/// Writes a Draco stream in the format of the place. Throws `FileError`.
+void save_draco(const MeshPlace& place, std::string_view draco);
+
+/// Writes a file's bytes, to a file all or nothing. Throws `FileError`.
+void save_bytes(const MeshPlace& place, std::string_view bytes);
 
 }  // namespace papilio::client

@@ -7,6 +7,9 @@ setup_file() { start_server; }
 teardown_file() { stop_server; }
 setup() { cd "$BATS_TEST_TMPDIR" || return; }
 
+# nan_mesh: an OBJ file with a coordinate that is no number.
+nan_mesh() { printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n'; }
+
 @test "here and there give the same bytes, from every kind of file to every kind" {
   for kind in obj ply off stl drc; do "$papilio" convert "$coarse" "in.$kind"; done
   for kind in obj ply off stl drc; do
@@ -156,7 +159,7 @@ END
     [[ $output == *'cut short'* ]]
   done
   [ ! -e out.drc ]
-  for command in "info $coarse" parameters "refine $coarse -o fine.drc --json"; do
+  for command in "info $coarse" parameters "refine $coarse -o fine.drc --json" "refine $coarse -o -"; do
     # shellcheck disable=SC2086
     ! "$papilio" $command >/dev/full
   done
@@ -164,6 +167,87 @@ END
   [ "$status" = 1 ]
   run "$papilio"
   [ "$status" = 2 ]
+}
+
+@test "without -o the result lies beside the input, and replaces nothing" {
+  mkdir deep
+  "$papilio" convert "$coarse" deep/in.OBJ
+  "$papilio" refine deep/in.OBJ --levels 1
+  [ "$("$papilio" info --json deep/in.refined.OBJ | jq .faces)" = 2400 ]
+  run "$papilio" refine deep/in.OBJ
+  [[ $status == 2 && $output == *'deep/in.refined.OBJ exists already'* ]]
+  [ "$("$papilio" info --json deep/in.refined.OBJ | jq .faces)" = 2400 ]
+  "$papilio" refine deep/in.OBJ --levels 1 --to ply
+  [ "$("$papilio" info --json deep/in.refined.ply | jq .faces)" = 2400 ]
+  run "$papilio" refine deep
+  [[ $status == 2 && $output == *'-o FOLDER'* ]]
+  run "$papilio" refine deep/in.OBJ -o deep
+  [[ $status == 2 && $output == *'is a folder'* ]]
+  run "$papilio" refine deep/in.OBJ -o out.obj --to ply
+  [[ $status == 2 && $output == *'leave --to away'* ]]
+}
+
+@test "- is standard input, whose format is seen, and standard output" {
+  "$papilio" refine "$coarse" -o fine.drc --levels 1
+  for kind in obj ply off stl drc; do
+    "$papilio" convert "$coarse" in.$kind
+    "$papilio" refine in.$kind -o fine.$kind --levels 1
+    "$papilio" refine - -o - --to $kind --levels 1 <in.$kind 2>messages | cmp - fine.$kind
+    "$papilio" refine - --from $kind --levels 1 <in.$kind 2>messages >out.drc
+    [ "$(decoded_faces out.drc)" = 2400 ]
+    [ "$("$papilio" info - --json <in.$kind | jq -c '[.file, .bytes, .faces]')" = \
+      "[\"standard input\",$(stat -c %s in.$kind),600]" ]
+    "$papilio" convert - - --to obj <in.$kind | "$papilio" compare --json - in.$kind | jq -e '.hausdorff < 1e-3'
+  done
+  grep -q '^-: .* 2400 faces' messages
+  run "$papilio" info - </dev/null
+  [[ $status == 1 && $output == *'standard input: is empty'* ]]
+  run "$papilio" info - <<<'hello'
+  [[ $status == 1 && $output == *'standard input: '*'--from'* ]]
+  run "$papilio" refine . -o elsewhere --from obj
+  [[ $status == 2 && $output == *--from* ]]
+  run script -qec "'$papilio' refine '$coarse' -o -" /dev/null
+  [[ $status == 2 && $output == *'standard output is a terminal'* ]]
+}
+
+@test "what is said against a mesh names its file, and once" {
+  nan_mesh >nan.obj
+  : >empty.drc
+  echo hello >hello.drc
+  "$papilio" convert --exact "$coarse" whole.drc
+  head -c 300 whole.drc >short.drc
+  for file in nan.obj empty.drc hello.drc short.drc; do
+    for command in "refine $file -o out.drc" "refine $file -o out.drc --server $url" "info $file" \
+      "convert $file out.drc" "compare whole.drc $file" "compare $file whole.drc"; do
+      # shellcheck disable=SC2086
+      run "$papilio" $command
+      [ "$status" = 1 ]
+      [[ $output == "papilio: $file"* && $output != *'body'* && $output != *'Send'* ]]
+    done
+  done
+  [ ! -e out.drc ]
+  for where in '' "--server $url"; do
+    # shellcheck disable=SC2086
+    run "$papilio" refine . -o "$BATS_FILE_TMPDIR/refined" $where
+    [ "$status" = 1 ]
+    for file in nan.obj empty.drc hello.drc short.drc; do [ "$(grep -c "$file" <<<"$output")" = 1 ]; done
+  done
+}
+
+@test "a folder run says what it skipped" {
+  mkdir models
+  "$papilio" convert "$coarse" models/a.obj
+  touch models/b.mtl
+  run "$papilio" refine models -o refined --levels 0
+  [[ $status == 0 && $output == *'skipped, not meshes by their extension: 1 file: b.mtl' ]]
+  touch models/{c,d,e,f}.txt $'models/g\e[2J'
+  run "$papilio" refine models -o refined --levels 0 --json
+  [[ $status == 0 && $output == *'6 files: b.mtl, c.txt, d.txt, e.txt, f.txt and 1 more' ]]
+  [ "$("$papilio" refine models -o refined --levels 0 --json 2>messages | jq -c .)" = '{"files":1,"failed":0,"skipped":6}' ]
+  mv models/a.obj $'models/a\e[2J.obj'
+  echo rubbish >$'models/b\e[2J.off'
+  run "$papilio" refine models -o refined
+  [[ $status == 1 && $output == *'b\x1b[2J.off: '* && $output != *$'\e'* ]]
 }
 
 @test "README's curl lines work when they are pasted" {
