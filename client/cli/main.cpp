@@ -1,8 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <map>
 
 #include "client/cli/commands.h"
+#include "client/cli/flag_names.h"
+#include "proto/name_suggestion.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 
@@ -145,8 +149,51 @@ int complain(const std::string& what, ExitStatus status) {
   return status;
 }
 
+std::vector<std::string> flags_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  return names;
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// In the order that CLI11 takes, which is reversed; flags under their known names.
+std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) std::ranges::copy(flags_of(*command), std::back_inserter(names));
+  std::vector<std::string> reversed;
+  for (int i = 1; i < argc; ++i) reversed.push_back(known_flag(argv[i], names));
+  std::ranges::reverse(reversed);
+  return reversed;
+}
+
+/// The program and the command, as they were called.
+std::string called_as(const CLI::App& app) {
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  return called.empty() ? "papilio" : "papilio " + called[0]->get_name();
+}
+
+/// What to say against the first argument that nothing takes, a flag before others; "" where there is none.
+std::string unexpected(const CLI::App& app) {
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  const CLI::App& command = called.empty() ? app : *called[0];
+  std::vector<std::string> left = command.remaining();
+  if (left.empty()) return "";
+  const auto is_flag = [](const std::string& word) { return word.starts_with("--"); };
+  std::ranges::stable_partition(left, is_flag);
+  if (!called.empty() || is_flag(left[0])) return unexpected_argument(left[0], called_as(app), flags_of(command));
+  std::vector<std::string_view> commands;
+  for (const CLI::App* known : commands_of(app)) commands.push_back(known->get_name());
+  const auto meant = proto::suggest_name(left[0], commands);
+  return "There is no command " + proto::quote(left[0]) + ". " +
+         (meant ? "Did you mean " + std::string(*meant) + "?" : "papilio --help lists them.");
+}
+
 int run(int argc, char** argv) {
-  CLI::App app{"papilio: refines triangle meshes where they are curved, visible and large on screen."};
+  CLI::App app{"papilio: refines triangle meshes where they are curved, visible and large on screen.", "papilio"};
   app.set_version_flag("--version", "papilio " PAPILIO_VERSION);
   app.require_subcommand(1);
   add_refine(app);
@@ -156,10 +203,12 @@ int run(int argc, char** argv) {
   add_health(app);
   add_parameters_command(app);
   try {
-    app.parse(argc, argv);
+    app.parse(arguments(app, argc, argv));
     return std::cout.flush() ? success : complain("Could not write all output.", failed);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? success : usage;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    if (const std::string what = unexpected(app); !what.empty()) return complain(what, usage);
+    return complain(std::string(error.what()) + ". " + called_as(app) + " --help lists what it takes.", usage);
   } catch (const UsageError& error) {
     return complain(error.what(), usage);
   } catch (const proto::Problem& problem) {

@@ -169,6 +169,28 @@ END
   [ "$status" = 2 ]
 }
 
+@test "flags take hyphens, underscores and dots alike; a misspelt one is answered with the one meant" {
+  "$papilio" refine "$coarse" -o a.drc --crease_angle 30 --view.edge_pixels=2 --view.eye=0,0,5
+  "$papilio" refine "$coarse" -o b.drc --crease-angle 30 --view.edge-pixels=2 --view-eye 0,0,5
+  cmp a.drc b.drc
+  run "$papilio" refine "$coarse" -o c.drc --tolerence 0.1
+  [ "$status" = 2 ]
+  [ "$output" = 'papilio: papilio refine has no flag --tolerence. Did you mean --tolerance?' ]
+  run "$papilio" refine --jsn
+  [[ $status == 2 && $output == *'Did you mean --json?'* ]]
+  run "$papilio" --verison
+  [[ $status == 2 && $output == *'Did you mean --version?'* ]]
+  run "$papilio" refine "$coarse" --jobs 0
+  [[ $status == 2 && $output == 'papilio: --jobs: '*'papilio refine --help'* ]]
+  run "$papilio" refin "$coarse"
+  [[ $status == 2 && $output == *'Did you mean refine?'* ]]
+  run "$papilio" refine "$coarse" more.drc -o c.drc
+  [[ $status == 2 && $output == *'"more.drc" is not expected after papilio refine.'* ]]
+  run "$papilio" refine "$coarse" -o c.drc --view.eye 1e19,0,0
+  [[ $status == 2 && $output == *'at most 1e+18, not 1e+19'* ]]
+  [ ! -e c.drc ]
+}
+
 @test "without -o the result lies beside the input, and replaces nothing" {
   mkdir deep
   "$papilio" convert "$coarse" deep/in.OBJ
