@@ -55,7 +55,8 @@ BuildReport parse_defects(std::string_view text) {
     const std::string_view name = item.substr(0, item.find('='));
     const auto row = std::ranges::find(table, name, &Row::name);
     if (row == table.end() || name.size() == item.size()) continue;
-    report.*row->count = static_cast<uint32_t>(parse_number(item.substr(name.size() + 1)).value_or(0));
+    const double count = parse_number(item.substr(name.size() + 1)).value_or(0);
+    report.*row->count = static_cast<uint32_t>(std::clamp(count, 0.0, double{UINT32_MAX}));
   }
   return report;
 }

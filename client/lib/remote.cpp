@@ -3,11 +3,15 @@
 #include <httplib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <climits>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
+#include "client/lib/mesh_stream.h"
+#include "proto/draco_reader.h"
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -18,25 +22,32 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* draco_type = "application/x-draco";
-constexpr uint64_t longest_part = 4ULL << 30;
+constexpr uint64_t longest_mesh = 4ULL << 30;
+constexpr uint64_t longest_document = 64 << 10;
+constexpr int ok_status = 200;
 constexpr int busy_status = 429;
 constexpr int most_attempts = 30;
 constexpr uint64_t longest_pause_seconds = 10;
+constexpr const char* who_is_there = "Is papilio-server running there, and is the address right?";
+
+/// The text of a document's field, fit for a terminal; "" where there is none.
+std::string text_of(const json& document, const char* field) {
+  if (!document.is_object() || !document.contains(field) || !document[field].is_string()) return "";
+  return proto::escape_controls(document[field].get<std::string>());
+}
 
 /// The server's problem document as an exception; other answers as they are.
 ServerError error_from(int status, const std::string& body) {
   const json document = json::parse(body, nullptr, false);
-  if (!document.is_object() || !document.contains("detail") || !document["detail"].is_string())
+  std::string text = text_of(document, "detail");
+  if (text.empty())
     return {status, "", "The server answered with status " + std::to_string(status) + " and no explanation."};
-  std::string text = document["detail"];
-  if (document.contains("request_id") && document["request_id"].is_string())
-    text += " (request " + document["request_id"].get<std::string>() + ")";
-  const std::string code = document.contains("code") && document["code"].is_string() ? document["code"] : "";
-  return {status, code, text};
+  if (const std::string id = text_of(document, "request_id"); !id.empty()) text += " (request " + id + ")";
+  return {status, text_of(document, "code"), text};
 }
 
 ServerError no_answer(const std::string& origin, httplib::Error error) {
-  std::string advice = "Is papilio-server running there, and is the address right?";
+  std::string advice = who_is_there;
   if (error == httplib::Error::SSLServerVerification)
     advice = "Its certificate is not of this name, or is not signed by one that is trusted here; --ca names another.";
   if (error == httplib::Error::SSLLoadingCerts)
@@ -55,7 +66,78 @@ httplib::Client connect(const std::string& origin, const RemoteOptions& options)
   return client;
 }
 
-uint64_t count_of(const std::string& header) { return static_cast<uint64_t>(proto::parse_number(header).value_or(0)); }
+/// 0 for what is no count.
+uint64_t count_of(const std::string& header) {
+  constexpr double most = 1e15;
+  return static_cast<uint64_t>(std::clamp(proto::parse_number(header).value_or(0), 0.0, most));
+}
+
+/// Without parameters, in lower case.
+std::string media_type(const httplib::Response& response) {
+  std::string type = response.get_header_value("Content-Type");
+  type.resize(std::min(type.size(), type.find_first_of("; \t")));
+  std::ranges::transform(type, type.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return type;
+}
+
+/// What is wrong with an answer's header; "" where nothing is. Without a length the end of a body cannot be told from
+/// a connection that broke.
+std::string fault_of(const httplib::Response& response, const std::string& type) {
+  const std::string found = media_type(response);
+  if (found != type) return (found.empty() ? "no Content-Type" : proto::quote(found)) + ", not with " + type;
+  const bool has_length = response.has_header("Content-Length") || response.has_header("Transfer-Encoding");
+  return has_length ? "" : "neither Content-Length nor Transfer-Encoding";
+}
+
+/// Sends a request whose answer of status 200 must have the media type `type`, a length, and at most `longest` bytes;
+/// the body of any other answer is not read. Refusals by the server are returned. Throws `ServerError`. Sets the
+/// request's handlers.
+httplib::Response exchange(const std::string& origin, httplib::Client& client, httplib::Request& request,
+                           const std::string& type, uint64_t longest) {
+  std::string refusal;
+  std::string body;
+  int status = 0;
+  request.response_handler = [&](const httplib::Response& response) {
+    status = response.status;
+    if (status == ok_status) refusal = fault_of(response, type);
+    return refusal.empty();
+  };
+  request.content_receiver = [&](const char* data, size_t size, uint64_t, uint64_t) {
+    const uint64_t most = status == ok_status ? longest : longest_document;
+    if (size > most - body.size())
+      refusal = "more than " + std::to_string(most) + " bytes";
+    else
+      body.append(data, size);
+    return refusal.empty();
+  };
+  httplib::Result result = client.send(request);
+  if (!refusal.empty()) throw ServerError(status, "", origin + " answered with " + refusal + ". " + who_is_there);
+  if (!result && status != 0)
+    throw ServerError(
+        status, "",
+        "The answer of " + origin + " broke off after " + std::to_string(body.size()) + " bytes. Try again.");
+  if (!result) throw no_answer(origin, result.error());
+  httplib::Response response = std::move(*result);
+  response.body = std::move(body);
+  return response;
+}
+
+/// Throws `ServerError` unless the body is a Draco mesh with the number of faces that the header declares.
+void check_mesh(const std::string& origin, const httplib::Response& response) {
+  const std::string size = std::to_string(response.body.size());
+  size_t faces = 0;
+  try {
+    faces = proto::read_draco(response.body, own_limits).triangles.size();
+  } catch (const proto::Problem&) {
+    throw ServerError(ok_status, "",
+                      origin + " answered with " + size + " bytes that are no whole Draco mesh. Try again.");
+  }
+  const std::string declared = response.get_header_value("Papilio-Faces");
+  if (faces != count_of(declared))
+    throw ServerError(ok_status, "",
+                      origin + " answered with a mesh of " + std::to_string(faces) + " faces, but Papilio-Faces is " +
+                          proto::quote(declared) + ". Try again.");
+}
 
 /// decode;dur=1.2, refine;dur=3.4, encode;dur=5.6
 double stage_time(const std::string& server_timing, const std::string& stage) {
@@ -74,7 +156,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   proto::Statistics statistics;
   statistics.vertices = count_of(field("Papilio-Vertices"));
   statistics.faces = count_of(field("Papilio-Faces"));
-  statistics.level = static_cast<int>(count_of(field("Papilio-Levels")));
+  statistics.level = static_cast<int>(std::min<uint64_t>(count_of(field("Papilio-Levels")), INT_MAX));
   statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
   statistics.error = proto::parse_number(field("Papilio-Error")).value_or(0);
   statistics.error_pixels = proto::parse_number(field("Papilio-Error-Pixels"));
@@ -99,16 +181,21 @@ Remote::Remote(const std::string& url, RemoteOptions options) : options_(std::mo
 
 proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_, options_);
-  const std::string path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
-  auto answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
-  for (int attempt = 1; attempt < most_attempts && answer && answer->status == busy_status; ++attempt) {
+  httplib::Request request;
+  request.method = "POST";
+  request.path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
+  request.headers = {{"Accept", draco_type}, {"Content-Type", draco_type}};
+  request.body = std::string(draco);
+  const auto ask = [&] { return exchange(origin_, client, request, draco_type, longest_mesh); };
+  httplib::Response answer = ask();
+  for (int attempt = 1; attempt < most_attempts && answer.status == busy_status; ++attempt) {
     std::this_thread::sleep_for(std::chrono::seconds(
-        std::clamp<uint64_t>(count_of(answer->get_header_value("Retry-After")), 1, longest_pause_seconds)));
-    answer = client.Post(path, {{"Accept", draco_type}}, draco.data(), draco.size(), draco_type);
+        std::clamp<uint64_t>(count_of(answer.get_header_value("Retry-After")), 1, longest_pause_seconds)));
+    answer = ask();
   }
-  if (!answer) throw no_answer(origin_, answer.error());
-  if (answer->status != 200) throw error_from(answer->status, answer->body);
-  return {answer->body, statistics_from(answer->headers)};
+  if (answer.status != ok_status) throw error_from(answer.status, answer.body);
+  check_mesh(origin_, answer);
+  return {std::move(answer.body), statistics_from(answer.headers)};
 }
 
 void Remote::refine_levels(std::string_view draco, const proto::Parameters& parameters,
@@ -131,7 +218,7 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
   };
   request.response_handler = [&](const httplib::Response& response) {
     status = response.status;
-    if (status == 200) reader.emplace(response.get_header_value("Content-Type"), longest_part, take_part);
+    if (status == ok_status) reader.emplace(response.get_header_value("Content-Type"), longest_mesh, take_part);
     return true;
   };
   request.content_receiver = [&](const char* data, size_t size, uint64_t, uint64_t) {
@@ -139,14 +226,14 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
       reader->feed({data, size});
     else
       refusal.append(data, size);
-    return true;
+    return refusal.size() <= longest_document;
   };
 
   httplib::Client client = connect(origin_, options_);
   try {
     const auto answer = client.send(request);
     if (!answer) throw no_answer(origin_, answer.error());
-    if (status != 200) throw error_from(status, refusal);
+    if (status != ok_status) throw error_from(status, refusal);
     if (!failure.empty()) throw error_from(status, failure);
     reader->finish();
   } catch (const proto::Problem& problem) {  // of the reader
@@ -159,13 +246,15 @@ std::string Remote::health(Health question) const {
   httplib::Client client = connect(origin_, options_);
   client.set_connection_timeout(longest_seconds);
   client.set_read_timeout(longest_seconds);
-  const auto answer = client.Get(prefix_ + (question == Health::ready ? "/ready" : "/health"));
-  if (!answer) throw no_answer(origin_, answer.error());
-  if (answer->status != 200) throw error_from(answer->status, answer->body);
-  const json document = json::parse(answer->body, nullptr, false);
-  if (!document.is_object() || !document.contains("status") || !document["status"].is_string())
-    throw ServerError(answer->status, "", "What answers at " + origin_ + " is no papilio-server.");
-  return document["status"];
+  httplib::Request request;
+  request.method = "GET";
+  request.path = prefix_ + (question == Health::ready ? "/ready" : "/health");
+  const httplib::Response answer = exchange(origin_, client, request, "application/json", longest_document);
+  if (answer.status != ok_status) throw error_from(answer.status, answer.body);
+  const std::string yes = question == Health::ready ? "ready" : "alive";
+  if (text_of(json::parse(answer.body, nullptr, false), "status") != yes)
+    throw ServerError(answer.status, "", "What answers at " + origin_ + " is no papilio-server. Is the address right?");
+  return yes;
 }
 
 }  // namespace papilio::client

@@ -6,6 +6,7 @@ load helpers
 setup_file() { start_server; }
 teardown_file() { stop_server; }
 setup() { cd "$BATS_TEST_TMPDIR" || return; }
+teardown() { [[ -z ${stub_pid:-} ]] || kill "$stub_pid"; }
 
 # nan_mesh: an OBJ file with a coordinate that is no number.
 nan_mesh() { printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n'; }
@@ -167,6 +168,38 @@ END
   [ "$status" = 1 ]
   run "$papilio"
   [ "$status" = 2 ]
+}
+
+@test "whatever a server answers, the output is a whole mesh or stays as it was" {
+  python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >port 3>&- &
+  stub_pid=$!
+  eventually test -s port
+  stub=http://127.0.0.1:$(cat port)/raw
+  local ok='HTTP/1.1 200 OK\r\n' type='Content-Type: application/x-draco\r\n'
+  printf '%bContent-Type: text/html\r\nContent-Length: 5\r\n\r\nhello' "$ok" >html
+  printf '%b%bContent-Length: 5\r\n\r\nhello' "$ok" "$type" >hello
+  type+='Papilio-Faces: 600\r\n'
+  { printf '%b%bContent-Length: %d\r\n\r\n' "$ok" "$type" "$(stat -c %s "$coarse")" && cat "$coarse"; } >whole
+  head -c -100 whole >cut
+  { printf '%b%b\r\n' "$ok" "$type" && head -c -100 "$coarse"; } >open_ended
+  printf '%bContent-Type: \033[2Jtext\r\n\r\n' "$ok" >escape
+  printf 'HTTP/1.1 500 No\r\n\r\n{"detail": "gone\\u001b[2J"}' >problem
+  for answer in html hello cut open_ended escape problem; do
+    for out in out.drc out.obj; do
+      echo precious >$out
+      run "$papilio" refine "$coarse" -o $out --server "$stub/$answer"
+      [ "$status" = 1 ]
+      [[ $output == papilio:* && $output != *$'\e'* ]]
+      [ "$(cat $out)" = precious ]
+    done
+    run "$papilio" refine "$coarse" -o - --server "$stub/$answer"
+    [[ $status == 1 && $output == papilio:* ]]
+    run "$papilio" health --server "$stub/$answer"
+    [[ $status == 1 && $output == papilio:* && $output != *$'\e'* ]]
+  done
+  [ -z "$(find . -name '*.tmp')" ]
+  "$papilio" refine "$coarse" -o out.drc --server "$stub/whole"
+  cmp out.drc "$coarse"
 }
 
 @test "flags take hyphens, underscores and dots alike; a misspelt one is answered with the one meant" {

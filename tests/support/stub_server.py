@@ -2,6 +2,7 @@
 
 /drop: the first request is dropped without an answer. /v1/meshes/NAME/refined: with an ETag and `Cache-Control: NAME`;
 304 to a matching If-None-Match. The header Count says how many requests there were for this address before.
+/raw/FILE/...: the whole answer is that file in this folder, byte for byte, and the connection is closed after it.
 """
 import collections
 import http.server
@@ -17,6 +18,11 @@ class Handler(http.server.BaseHTTPRequestHandler):
         count = counts[self.path]
         counts[self.path] += 1
         if self.path.startswith("/drop") and count == 0:
+            self.close_connection = True
+            return
+        if self.path.startswith("/raw/"):
+            with open(self.path.split("/")[2], "rb") as answer:
+                self.wfile.write(answer.read())
             self.close_connection = True
             return
         name = self.path.split("/")[3] if self.path.startswith("/v1/meshes/") else None
