@@ -80,7 +80,8 @@ void add_refine(CLI::App& app) {
   command->add_option("--jobs", flags->jobs, "Meshes of a folder refined at once")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  command->add_flag("--json", flags->json, "Statistics as JSON on standard output");
+  command->add_flag("--json", flags->json,
+                    "Statistics as JSON on standard output; on standard error where the mesh goes there");
   add_parameters(*command, *typed, "");
   command->callback([flags, typed, command] {
     flags->parameters = parse_parameters(*command, *typed);

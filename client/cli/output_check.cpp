@@ -21,8 +21,7 @@ Format format_as_called(const MeshPlace& output) {
 
 void check_output(const MeshPlace& output) {
   const fs::path& path = output.path;
-  if (!output.is_standard() && fs::is_directory(path))
-    throw UsageError(path.string() + " is a folder. Name a file in it.");
+  if (!output.is_standard() && is_folder(path)) throw UsageError(path.string() + " is a folder. Name a file in it.");
   const Format format = format_as_called(output);
   if (output.is_standard()) {
     const bool is_text = format == Format::obj || format == Format::off;
@@ -31,7 +30,7 @@ void check_output(const MeshPlace& output) {
     return;
   }
   const fs::path folder = path.parent_path();
-  if (!folder.empty() && !fs::is_directory(folder))
+  if (!folder.empty() && !is_folder(folder))
     throw FileError(path, "cannot be written: there is no folder " + folder.string() + "; make it first");
 }
 

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <system_error>
 #include <thread>
 
 #include "client/cli/refine_mesh.h"
@@ -35,7 +36,8 @@ fs::path path_beside(const MeshPlace& input, std::optional<Format> to) {
   if (!to) (void)format_of(input.path);  // refuses it by its own name
   const std::string extension = to ? "." + std::string(name_of(*to)) : input.path.extension().string();
   const fs::path path = input.path.parent_path() / (input.path.stem().string() + ".refined" + extension);
-  if (fs::exists(path))
+  std::error_code ignored;
+  if (fs::exists(path, ignored))
     throw UsageError(path.string() + " exists already. To replace it, name it: -o " + path.string() + ".");
   return path;
 }
@@ -72,7 +74,7 @@ void refine_command(const RefineFlags& flags) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  if (!flags.input.is_standard() && fs::is_directory(flags.input.path))
+  if (!flags.input.is_standard() && is_folder(flags.input.path))
     refine_folder(flags);
   else
     refine_file(flags);

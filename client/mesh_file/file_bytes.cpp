@@ -141,6 +141,11 @@ std::string read_open(int descriptor, const fs::path& path, uint64_t limit) {
 
 }  // namespace
 
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
 std::string read_bytes(const fs::path& path, uint64_t limit) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open()) throw failure(path, "be opened", errno);

@@ -15,6 +15,9 @@ struct FileError : std::runtime_error {
       : std::runtime_error(path.string() + ": " + what) {}
 };
 
+/// False also where the system does not say: opening the file then says why.
+[[nodiscard]] bool is_folder(const std::filesystem::path& path);
+
 /// The whole file. Throws `FileError` if it is absent, a folder, cannot be read, or holds more than `limit`
 /// bytes; of a larger one no more than `limit` bytes and a little are read. An empty file gives an empty
 /// string.

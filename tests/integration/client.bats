@@ -138,6 +138,13 @@ END
   run "$papilio" refine missing.obj -o out.drc
   [ "$status" = 1 ]
   [[ $output == *missing.obj* ]]
+  long=$(printf 'x%.0s' {1..300}).obj
+  for arguments in "$long -o out.drc" "$long" "$coarse -o $long" "$coarse -o $long/out.drc"; do
+    # shellcheck disable=SC2086
+    run "$papilio" refine $arguments
+    [ "$status" = 1 ]
+    [[ $output == "papilio: $long"*': cannot be '* ]]
+  done
   run "$papilio" refine "$coarse" -o out.xyz
   [ "$status" = 2 ]
   [[ $output == *xyz* ]]
