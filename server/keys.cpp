@@ -2,6 +2,8 @@
 
 #include <openssl/crypto.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -17,10 +19,20 @@ using proto::Problem;
 namespace {
 
 constexpr std::string_view digest_mark = "sha256:";
+constexpr std::array<std::string_view, 6> other_digests{"sha1", "sha224", "sha384", "sha512", "md5", "sha3"};
 constexpr size_t shortest_key = 16;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, size_t line, const std::string& why) {
   throw std::runtime_error("keys: " + file.string() + ":" + std::to_string(line) + ": " + why);
+}
+
+/// Whether a secret in lower case is meant as a digest: it begins with "sha256" or "sha-256", or with the name of
+/// another algorithm and a colon or an equals sign.
+bool is_meant_as_digest(std::string secret) {
+  std::erase_if(secret, [](char c) { return c == '-' || c == '_'; });
+  if (secret.starts_with("sha256")) return true;
+  const std::string_view algorithm = std::string_view(secret).substr(0, secret.find_first_of(":="));
+  return algorithm.size() < secret.size() && std::ranges::find(other_digests, algorithm) != other_digests.end();
 }
 
 /// The key of `Authorization: Bearer KEY`, "" when there is none.
@@ -56,9 +68,11 @@ Keys::List Keys::read(const std::filesystem::path& file) {
     words >> secret >> right >> more;
     if (!more.empty() || (!right.empty() && right != "manage"))
       refuse(file, number, "a line is `NAME KEY` or `NAME KEY manage`");
-    if (secret.starts_with(digest_mark)) {
-      key.digest = lower_case(secret.substr(digest_mark.size()));
-      if (!is_sha256(key.digest)) refuse(file, number, "after sha256: come 64 hexadecimal digits");
+    const std::string lower = lower_case(secret);
+    if (is_meant_as_digest(lower)) {
+      key.digest = lower.starts_with(digest_mark) ? lower.substr(digest_mark.size()) : "";
+      if (!is_sha256(key.digest))
+        refuse(file, number, "the digest of a key is written sha256: and 64 hexadecimal digits");
     } else {
       if (secret.size() < shortest_key)
         refuse(file, number, "a key has at least " + std::to_string(shortest_key) + " characters");

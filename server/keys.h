@@ -14,8 +14,9 @@ namespace papilio::server {
 /// The keys that clients show as `Authorization: Bearer KEY`. Any thread may use it.
 ///
 /// A file has one key a line: a name for the log, the key or `sha256:` and the SHA-256 of the key in hexadecimal, and
-/// `manage` where the key may also delete meshes and read the metrics. Empty lines and lines that begin with # are
-/// passed over. Several keys are valid at once, so that one can be changed for another without a pause.
+/// `manage` where the key may also delete meshes and read the metrics. The case of `sha256:` and of the digits does not
+/// matter; what looks like another digest is refused. Empty lines and lines that begin with # are passed over. Several
+/// keys are valid at once, so that one can be changed for another without a pause.
 ///
 ///     viewer   3f9a...
 ///     operator sha256:9b74c989...   manage

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 
 #include "server/sha256.h"
@@ -73,6 +75,37 @@ TEST_F(KeysTest, SeveralAreValidAtOnceEachWithItsRights) {
                             "Basic 0123456789abcdef", "Bearer 0123456789abcdef0"})
     EXPECT_EQ(outcome(keys, other, Access::use), "unauthorized") << other;
   EXPECT_EQ(outcome(keys, "", Access::open), "");
+}
+
+TEST_F(KeysTest, ADigestMayBeInCapitals) {
+  std::string digest = sha256("fedcba9876543210");
+  std::ranges::transform(digest, digest.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  for (const char* mark : {"sha256:", "SHA256:", "Sha256:"}) {
+    write("one " + (mark + digest) + "\n");
+    const Keys keys(file_);
+    EXPECT_EQ(outcome(keys, "Bearer fedcba9876543210", Access::use), "one") << mark;
+    EXPECT_EQ(outcome(keys, "Bearer " + (mark + digest), Access::use), "unauthorized") << mark;
+  }
+}
+
+TEST_F(KeysTest, AMalformedDigestIsRefusedByLineAndNotTakenAsAKey) {
+  const std::string digest = sha256("fedcba9876543210");
+  for (const std::string& wrong :
+       {"SHA256:" + digest.substr(1), "sha256:" + digest + "0", "SHA256:" + digest.substr(1) + "g", "sha256=" + digest,
+        "sha-256:" + digest, "SHA_256:" + digest, "sha256" + digest, "sha512:" + digest + digest, "MD5:" + digest,
+        "sha1=" + digest, std::string("sha256-n4bQgYhMfWWaL+qgxVrQFaO/TxsrC4Is0V1sFbDwCgg=")}) {
+    write("one 0123456789abcdef\ntwo " + wrong + "\n");
+    EXPECT_NE(refusal().find(":2: the digest of a key is written sha256: and 64 hexadecimal digits"), std::string::npos)
+        << wrong << ": " << refusal();
+  }
+}
+
+TEST_F(KeysTest, AKeyOfHexadecimalDigitsIsAKey) {
+  const std::string key = sha256("anything");  // as `openssl rand -hex 32` makes them
+  for (const std::string& literal : {key, "share:" + key, "md5" + key}) {
+    write("one " + literal + "\n");
+    EXPECT_EQ(outcome(Keys(file_), "Bearer " + literal, Access::use), "one");
+  }
 }
 
 TEST_F(KeysTest, ReloadKeepsTheOldOnesWhenTheNewCannotBeRead) {
