@@ -1,13 +1,15 @@
 #include "server/store/directory_store.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
-#include <random>
+#include <optional>
 #include <stdexcept>
 
 #include "proto/problem.h"
@@ -23,11 +25,8 @@ using proto::Problem;
 
 namespace {
 
-constexpr std::string_view extension = ".drc";
-constexpr std::string_view unfinished = ".part";
 constexpr std::chrono::minutes count_interval{1};
-constexpr int most_counts = 3;                     ///< while meshes come and go; at the last they wait
-constexpr std::chrono::minutes longest_write{10};  ///< what is unfinished for longer was interrupted
+constexpr int most_counts = 3;  ///< while meshes come and go; at the last they wait
 
 /// The operator's log has the reason, the client only what concerns it.
 Problem unavailable(const fs::path& path, const std::string& reason) {
@@ -39,164 +38,126 @@ Problem unavailable(const fs::path& path, const std::string& reason) {
 
 Problem unavailable(const fs::path& path) { return unavailable(path, std::strerror(errno)); }
 
-/// A descriptor that is closed in the end.
-class File {
- public:
-  File(const fs::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0640)) {}
-  ~File() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-  [[nodiscard]] bool sync() const { return ::fsync(fd_) == 0; }
-  [[nodiscard]] bool write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
-      if (written < 0 && errno != EINTR) return false;
-      if (written > 0) bytes.remove_prefix(static_cast<size_t>(written));
-    }
-    return true;
-  }
-
- private:
-  const int fd_;
-};
-
-/// "1234-5678.part"
-std::string part_name() {
-  std::random_device random;
-  return std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(unfinished);
-}
-
-// Whatever else lies below the directory belongs to somebody else.
-
-bool is_part(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  return file.extension() == unfinished && stem.find('-') != std::string::npos &&
-         stem.find_first_not_of("0123456789-") == std::string::npos;
-}
-
-bool is_mesh(const fs::path& file) { return file.extension() == extension && is_sha256(file.stem().string()); }
-
-bool is_stale(const fs::directory_entry& file) {
-  std::error_code error;
-  const auto written = file.last_write_time(error);
-  return !error && fs::file_time_type::clock::now() - written > longest_write;
+/// Waits until the disk has the names in a folder.
+bool sync_folder(const fs::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool is_synced = fd >= 0 && ::fsync(fd) == 0;
+  const int reason = errno;
+  if (fd >= 0) ::close(fd);
+  errno = reason;
+  return is_synced;
 }
 
 }  // namespace
 
-DirectoryStore::DirectoryStore(fs::path directory, uint64_t budget)
-    : directory_(std::move(directory)), budget_(budget) {
+DirectoryStore::DirectoryStore(fs::path directory, uint64_t budget, std::chrono::milliseconds sweep_interval)
+    : files_(std::move(directory)), budget_(budget) {
+  const fs::path& folder = files_.directory();
   std::error_code error;
-  fs::create_directories(directory_, error);
-  const fs::path probe = directory_ / part_name();
-  if (!File(probe, O_WRONLY | O_CREAT | O_EXCL).is_open())
-    throw std::runtime_error("cannot write into the store's directory " + directory_.string() + ": " +
+  fs::create_directories(folder, error);
+  until_ = supported_until(folder);
+  if (!NewFile(folder, until_).is_open())
+    throw std::runtime_error("cannot write into the store's directory " + folder.string() + ": " +
                              std::strerror(errno));
-  fs::remove(probe, error);
-  for (const fs::directory_entry& file : fs::recursive_directory_iterator(directory_))
-    if (is_part(file.path()) && is_stale(file)) fs::remove(file, error);
-  count_files();
+  try {
+    files_.remove_abandoned();
+    count_files();
+  } catch (const fs::filesystem_error& failure) {
+    throw std::runtime_error("cannot read the store's directory " + folder.string() + ": " + failure.code().message());
+  }
+  sweeper_ =
+      std::jthread([this, sweep_interval](const std::stop_token& stop) { sweep_at_intervals(stop, sweep_interval); });
 }
 
-fs::path DirectoryStore::file_of(const std::string& id) const {
-  return directory_ / id.substr(0, 2) / (id + std::string(extension));
+void DirectoryStore::sweep_at_intervals(const std::stop_token& stop, std::chrono::milliseconds interval) {
+  std::mutex mutex;
+  std::condition_variable_any stopping;  // nobody else notifies: the stop itself does
+  std::unique_lock lock(mutex);
+  while (!stopping.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+    try {
+      files_.remove_abandoned();
+    } catch (const std::exception& error) {
+      log_event("error", "store", {{"path", files_.directory().string()}, {"reason", error.what()}});
+    }
+  }
 }
 
 bool DirectoryStore::put(const std::string& id, std::string_view bytes) {
-  if (contains(id)) return false;
-  Room room(*this, bytes.size());
-  write(file_of(id), bytes, room);
+  const fs::path file = files_.file_of(id);
+  const std::optional<uint64_t> there = size_of(file);
+  if (there && file_holds(file, bytes)) return false;
+  if (there) log_event("error", "store", {{"path", file.string()}, {"reason", "the file is damaged; it is replaced"}});
+  Room room(*this, bytes.size() - std::min<uint64_t>(bytes.size(), there.value_or(0)));
+  write(file, bytes, room);
   return true;
 }
 
 void DirectoryStore::write(const fs::path& file, std::string_view bytes, Room& room) {
+  const fs::path folder = file.parent_path();
   std::error_code error;
-  const bool is_new = fs::create_directories(file.parent_path(), error);
-  if (is_new && !File(directory_, O_RDONLY | O_DIRECTORY).sync()) throw unavailable(directory_);
-  const fs::path part = file.parent_path() / part_name();
-  bool written = false;
-  {
-    const File out(part, O_WRONLY | O_CREAT | O_EXCL);
-    written = out.is_open() && out.write(bytes) && out.sync();
-  }
-  if (!written || !publish(part, file, room)) {
-    const int reason = errno;
-    fs::remove(part, error);
-    if (reason == ENOSPC || reason == EDQUOT)
+  const bool is_new = fs::create_directories(folder, error);
+  if (is_new && !sync_folder(files_.directory())) throw unavailable(files_.directory());
+  NewFile written(folder, until_);
+  if (!written.is_open() || !written.write_and_sync(bytes) || !publish(written, file, bytes.size(), room)) {
+    if (errno == ENOSPC || errno == EDQUOT)
       throw Problem(Code::store_full, "The store's disk is full. Delete meshes, or ask the operator for room.");
-    throw unavailable(part, std::strerror(reason));
+    if (errno == ENOTEMPTY || errno == EEXIST)
+      throw unavailable(file, "a folder with files is in the place of a mesh; move it away");
+    throw unavailable(file);
   }
-  if (!File(file.parent_path(), O_RDONLY | O_DIRECTORY).sync()) throw unavailable(file);
+  if (!sync_folder(folder)) throw unavailable(folder);
 }
 
-bool DirectoryStore::publish(const fs::path& part, const fs::path& file, Room& room) {
+bool DirectoryStore::publish(NewFile& written, const fs::path& file, uint64_t bytes, Room& room) {
   const std::lock_guard lock(mutex_);
-  if (::rename(part.c_str(), file.c_str()) != 0) return false;
-  const uint64_t bytes = room.give_up();
-  being_written_ -= bytes;
-  usage_.bytes += bytes;
-  ++usage_.meshes;
+  const std::optional<uint64_t> replaced = size_of(file);
+  if (!written.publish(file)) return false;
+  being_written_ -= room.give_up();
+  usage_.meshes += replaced ? 0 : 1;
+  usage_.bytes += bytes - std::min(usage_.bytes + bytes, replaced.value_or(0));
   ++changes_;
   return true;
 }
 
-bool DirectoryStore::contains(const std::string& id) {
-  const fs::path file = file_of(id);
-  std::error_code error;
-  const bool is_there = fs::exists(file, error);
-  if (error) throw unavailable(file, error.message());
-  return is_there;
+std::optional<uint64_t> DirectoryStore::size_of(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) {
+    if (errno != ENOENT && errno != ENOTDIR) throw unavailable(file);
+    return std::nullopt;
+  }
+  return S_ISREG(status.st_mode) ? std::optional<uint64_t>(status.st_size) : std::nullopt;
 }
 
+bool DirectoryStore::contains(const std::string& id) { return size_of(files_.file_of(id)).has_value(); }
+
 MeshStore::Bytes DirectoryStore::get(const std::string& id) {
-  const fs::path file = file_of(id);
-  errno = 0;
+  const fs::path file = files_.file_of(id);
+  if (!size_of(file)) return nullptr;
   MeshStore::Bytes bytes = read_file(file);
   if (bytes == nullptr) {
     if (errno != ENOENT) throw unavailable(file);
     return nullptr;
   }
   if (sha256(*bytes) == id) return bytes;
+  // It stays: another server may be replacing it at this moment, and what it has put must not be removed.
   log_event("error", "store",
-            {{"path", file.string()}, {"reason", "the content is not what the name says; the file is taken away"}});
-  remove(id);
+            {{"path", file.string()}, {"reason", "the content is not what the name says; send the mesh again"}});
   return nullptr;
 }
 
 bool DirectoryStore::remove(const std::string& id) {
-  const fs::path file = file_of(id);
-  std::error_code error;
-  const uint64_t bytes = fs::file_size(file, error);
-  if (error == std::errc::no_such_file_or_directory) return false;
-  if (error) throw unavailable(file, error.message());
+  const fs::path file = files_.file_of(id);
+  const std::optional<uint64_t> bytes = size_of(file);
+  if (!bytes) return false;
   const std::lock_guard lock(mutex_);
-  if (!fs::remove(file, error)) {
-    if (error) throw unavailable(file, error.message());
+  if (::unlink(file.c_str()) != 0) {
+    if (errno != ENOENT) throw unavailable(file);
     return false;
   }
   usage_.meshes -= std::min<uint64_t>(usage_.meshes, 1);
-  usage_.bytes -= std::min(usage_.bytes, bytes);
+  usage_.bytes -= std::min(usage_.bytes, *bytes);
   ++changes_;
   return true;
-}
-
-MeshStore::Usage DirectoryStore::files() const {
-  Usage counted;
-  std::error_code error;
-  for (auto file = fs::recursive_directory_iterator(directory_, error); file != fs::recursive_directory_iterator();
-       file.increment(error)) {
-    if (error) break;
-    std::error_code gone;
-    const uint64_t bytes = file->is_regular_file(gone) ? file->file_size(gone) : 0;
-    if (gone || !is_mesh(file->path())) continue;
-    ++counted.meshes;
-    counted.bytes += bytes;
-  }
-  return counted;
 }
 
 void DirectoryStore::count_files() {
@@ -205,7 +166,7 @@ void DirectoryStore::count_files() {
     const uint64_t changes = changes_;
     const bool others_wait = count == most_counts;
     if (!others_wait) lock.unlock();
-    const Usage counted = files();
+    const Usage counted = files_.count();
     if (!others_wait) lock.lock();
     if (changes_ != changes) continue;
     usage_ = counted;

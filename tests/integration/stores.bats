@@ -73,6 +73,47 @@ teardown() {
   [ -z "$(find "$store" -name '*.part')" ]
 }
 
+# acknowledged_again: a POST of the coarse mesh stores it, and what was acknowledged is there.
+acknowledged_again() {
+  upload
+  [ "$status" = 201 ] || { echo "status $status"; return 1; }
+  request "$url/v1/meshes/$(coarse_id)"
+  cmp "$body" "$coarse"
+  upload
+  [ "$status" = 200 ]
+}
+
+put_folder_at() {
+  rm "$1"
+  mkdir "$1"
+}
+
+@test "the directory store: a POST replaces what is damaged, and a folder is no mesh" {
+  store=$BATS_TEST_TMPDIR/meshes
+  start_server --store "directory:$store"
+  file=$store/$(coarse_id | cut -c1-2)/$(coarse_id).drc
+  upload
+  for damage in 'truncate -s 700' 'truncate -s 0' 'truncate -s +1' put_folder_at; do
+    $damage "$file"
+    acknowledged_again
+    $damage "$file"
+    request "$url/v1/meshes/$(coarse_id)"
+    expect_problem 404 mesh_not_found
+    acknowledged_again
+  done
+  rm "$file"
+  mkdir "$file"
+  touch "$file/of_others"
+  request "$url/v1/meshes/$(coarse_id)"
+  expect_problem 404 mesh_not_found
+  request "$url/v1/meshes/$(coarse_id)/refined?levels=2"
+  expect_problem 404 mesh_not_found
+  upload
+  expect_problem 503 store_unavailable
+  grep -q "path=\"$file\" reason=\"a folder with files is in the place of a mesh; move it away" "$BATS_FILE_TMPDIR/server.log"
+  [ -e "$file/of_others" ]
+}
+
 @test "kill -9 in the middle of uploads leaves whole meshes only" {
   store=$BATS_TEST_TMPDIR/meshes
   for round in 1 2 3; do
