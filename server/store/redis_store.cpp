@@ -48,6 +48,23 @@ bool has_error(const redisReply& reply, std::string_view kind) {
   return reply.type == REDIS_REPLY_ERROR && std::string_view(reply.str, reply.len).starts_with(kind);
 }
 
+/// Whether the reply is one to the question, be it a refusal: errors of the key (WRONGTYPE) and of its value (OOM) are.
+/// Every other error is about the server or the connection (READONLY, LOADING, NOAUTH, MOVED, too many clients ...).
+bool is_answer(const redisReply& reply) {
+  return reply.type != REDIS_REPLY_ERROR || has_error(reply, "WRONGTYPE") || has_error(reply, "OOM");
+}
+
+/// Whether the server answers no question of a mesh at present, rather than refuses this one.
+bool answers_nothing(const redisReply& reply) {
+  for (const std::string_view kind : {"LOADING", "NOAUTH", "MASTERDOWN", "CLUSTERDOWN", "BUSY"})
+    if (has_error(reply, kind)) return true;
+  return false;
+}
+
+std::string_view text_of(const redisReply& reply) {
+  return reply.str == nullptr ? "an odd answer" : std::string_view(reply.str, reply.len);
+}
+
 }  // namespace
 
 std::optional<RedisAddress> parse_redis_address(std::string_view text) {
@@ -93,27 +110,36 @@ RedisStore::RedisStore(RedisAddress address, uint64_t budget, int seconds)
 RedisStore::~RedisStore() = default;
 
 bool RedisStore::put(const std::string& id, std::string_view bytes) {
-  if (contains(id)) return false;
-  if (used_memory() + bytes.size() > budget_)
+  const std::string key = key_of(id);
+  const uint64_t there = size_of(key);
+  if (there == bytes.size() && get(id) != nullptr) return false;
+  if (there > 0) log_event("error", "store", {{"key", key}, {"reason", "the value is damaged; it is replaced"}});
+  if (used_memory() + bytes.size() > budget_ + there)
     throw Problem(Code::store_full,
                   "The store of " + std::to_string(budget_) +
                       " bytes has no room for this mesh. Delete meshes, or ask the operator for room.");
-  const std::string key = key_of(id);
   const std::string seconds = std::to_string(seconds_);
-  std::vector<std::string_view> words{"SET", key, bytes, "NX"};
+  std::vector<std::string_view> words{"SET", key, bytes};  // replaces what is damaged, of another type too
   if (seconds_ > 0) words.insert(words.end(), {"EX", seconds});
   const Reply reply = ask(words);
   if (has_error(*reply, "OOM"))
     throw Problem(Code::store_full, "The store of meshes is full. Delete meshes, or ask the operator for room.");
-  if (reply->type == REDIS_REPLY_ERROR) throw unavailable({reply->str, reply->len});
-  return reply->type != REDIS_REPLY_NIL;  // nil: another server has added it since
+  if (reply->type != REDIS_REPLY_STATUS) throw unavailable(text_of(*reply));
+  return true;
+}
+
+uint64_t RedisStore::size_of(const std::string& key) {
+  const Reply reply = ask({"STRLEN", key});
+  if (has_error(*reply, "WRONGTYPE")) return 0;
+  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
+  return static_cast<uint64_t>(reply->integer);
 }
 
 bool RedisStore::contains(const std::string& id) {
   const std::string key = key_of(id);
   const std::string seconds = std::to_string(seconds_);
   const Reply reply = seconds_ > 0 ? ask({"EXPIRE", key, seconds}) : ask({"EXISTS", key});
-  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable({reply->str, reply->len});
+  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
   return reply->integer > 0;
 }
 
@@ -122,18 +148,20 @@ MeshStore::Bytes RedisStore::get(const std::string& id) {
   const std::string seconds = std::to_string(seconds_);
   const Reply reply = seconds_ > 0 ? ask({"GETEX", key, "EX", seconds}) : ask({"GET", key});
   if (reply->type == REDIS_REPLY_NIL) return nullptr;
-  if (reply->type != REDIS_REPLY_STRING)
-    throw unavailable(reply->type == REDIS_REPLY_ERROR ? std::string_view(reply->str, reply->len) : "an odd answer");
-  auto bytes = std::make_shared<const std::string>(reply->str, reply->len);
-  if (sha256(*bytes) == id) return bytes;
-  log_event("error", "store", {{"key", key}, {"reason", "the content is not what the key says; it is taken away"}});
-  remove(id);
+  if (reply->type == REDIS_REPLY_STRING) {
+    auto bytes = std::make_shared<const std::string>(reply->str, reply->len);
+    if (sha256(*bytes) == id) return bytes;
+  } else if (!has_error(*reply, "WRONGTYPE")) {
+    throw unavailable(text_of(*reply));
+  }
+  // It stays: another server may be replacing it at this moment, and what it has put must not be removed.
+  log_event("error", "store", {{"key", key}, {"reason", "the content is not what the key says; send the mesh again"}});
   return nullptr;
 }
 
 bool RedisStore::remove(const std::string& id) {
   const Reply reply = ask({"DEL", key_of(id)});
-  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable({reply->str, reply->len});
+  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
   return reply->integer > 0;
 }
 
@@ -219,21 +247,28 @@ RedisStore::Reply RedisStore::ask(const std::vector<std::string_view>& words) {
     errno = 0;
     reply = ask_on(*context, words);
     // Redis closes idle connections, and does so when it is restarted; one that keeps silent is asked only once.
-    const bool was_closed = reply == nullptr && errno != EAGAIN && errno != EWOULDBLOCK;
-    if (was_closed) context = nullptr;
+    const bool is_closed = reply == nullptr && errno != EAGAIN && errno != EWOULDBLOCK;
+    if (is_closed || (reply != nullptr && !is_answer(*reply))) {
+      drop_idle();  // they lead to the same server
+      context = nullptr;
+    }
   }
   if (context == nullptr) {
     context = connect();
     reply = ask_on(*context, words);
   }
   if (reply == nullptr) throw away(context->errstr);
-  // While it loads its data from disk Redis answers, but not what was asked.
-  if (has_error(*reply, "LOADING") || has_error(*reply, "NOAUTH")) throw away({reply->str, reply->len});
+  if (answers_nothing(*reply)) throw away(text_of(*reply));
   const std::lock_guard lock(mutex_);
   is_away_ = false;
   away_until_ = {};
-  idle_.push_back(std::move(context));
+  if (is_answer(*reply)) idle_.push_back(std::move(context));
   return reply;
+}
+
+void RedisStore::drop_idle() {
+  const std::lock_guard lock(mutex_);
+  idle_.clear();
 }
 
 }  // namespace papilio::server

@@ -27,9 +27,10 @@ struct RedisAddress {
 [[nodiscard]] std::optional<RedisAddress> parse_redis_address(std::string_view text);
 
 /// Keeps meshes in Redis, under "papilio:mesh:ID"; several servers share them. Every question has a bound of two
-/// seconds, and so has each step of making a connection. A lost connection is made anew. While Redis is away every
-/// question is answered with store_unavailable at once, but for one at a time that waits to find out, a second after
-/// the last.
+/// seconds, and so has each step of making a connection. A connection that is lost, or that leads to a server which
+/// does not serve (a replica after a failover, say), is made anew, and the name of the host looked up again. While
+/// Redis is away every question is answered with store_unavailable at once, but for one at a time that waits to find
+/// out, a second after the last. A key whose value is not what it says is an absent mesh to `get`; `put` replaces it.
 class RedisStore final : public MeshStore {
  public:
   /// `budget`: no mesh is added that would bring the memory Redis uses past it. `seconds`: a mesh that is not used for
@@ -56,15 +57,19 @@ class RedisStore final : public MeshStore {
   using Context = std::unique_ptr<redisContext, ContextDeleter>;
   using Reply = std::unique_ptr<redisReply, ReplyDeleter>;
 
-  /// One question, with its words; on a connection that turns out to be lost it is asked once more on a new one.
+  /// One question, with its words: one that may be asked twice. Where an idle connection turns out to be lost, or leads
+  /// to the wrong server, it is asked once more on a new one. The reply may be an error.
   Reply ask(const std::vector<std::string_view>& words);
   [[nodiscard]] Context connect();
   [[nodiscard]] Context reach();  ///< connected, but not yet logged in; null or with an error when nobody is there
   [[nodiscard]] static Reply ask_on(redisContext& context, const std::vector<std::string_view>& words);
   [[nodiscard]] Context take_idle();
+  void drop_idle();
   /// Takes note that Redis is away, and gives the words for it.
   [[nodiscard]] proto::Problem away(std::string_view reason);
-  uint64_t used_memory();
+  [[nodiscard]] uint64_t used_memory();
+  /// The size of the key's value; 0 where there is none, or none of bytes.
+  [[nodiscard]] uint64_t size_of(const std::string& key);
 
   const RedisAddress address_;
   const uint64_t budget_;

@@ -7,6 +7,10 @@ load helpers
 teardown() {
   if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then stop_server; fi
   if [[ -n ${redis_pid:-} ]]; then stop_redis; fi
+  if [[ -n ${helper_pids:-} ]]; then
+    kill -TERM "${helper_pids[@]}" 2>/dev/null || true
+    wait "${helper_pids[@]}" || true
+  fi
 }
 
 @test "equal requests in flight are computed once" {
@@ -242,6 +246,100 @@ stop_redis() {
     sleep 0.1
   done
   [ "$status" = 200 ]
+}
+
+@test "Redis: a POST replaces what is damaged or of another type" {
+  start_redis
+  start_server --store "redis://127.0.0.1:$redis_port"
+  key=papilio:mesh:$(coarse_id)
+  upload
+  [ "$status" = 201 ]
+  for damage in "set $key short" "setrange $key 700 x" "append $key x" "lpush $key x"; do
+    ask_redis() { redis-cli -p "$redis_port" "$@" >/dev/null; }
+    [[ $damage != lpush* ]] || ask_redis del "$key"
+    # shellcheck disable=SC2086 # several words
+    ask_redis $damage
+    acknowledged_again
+    [[ $damage != lpush* ]] || ask_redis del "$key"
+    # shellcheck disable=SC2086
+    ask_redis $damage
+    request "$url/v1/meshes/$(coarse_id)"
+    expect_problem 404 mesh_not_found
+    acknowledged_again
+  done
+}
+
+# start_pair: a primary and a replica, and in front of them an address that leads to the one in the file `primary`.
+start_pair() {
+  for name in a b; do
+    redis_port=$(free_port)
+    mkdir "$BATS_TEST_TMPDIR/$name"
+    start_redis --dir "$BATS_TEST_TMPDIR/$name" --appendonly no --repl-diskless-sync-delay 0
+    helper_pids+=("$redis_pid")
+    ports+=("$redis_port")
+  done
+  redis_pid=
+  redis-cli -p "${ports[1]}" replicaof 127.0.0.1 "${ports[0]}" >/dev/null
+  eventually follows "${ports[1]}"
+  echo "${ports[0]}" >"$BATS_TEST_TMPDIR/primary"
+  python3 "$BATS_TEST_DIRNAME/../support/switch_proxy.py" "$BATS_TEST_TMPDIR/primary" >"$BATS_TEST_TMPDIR/proxy" 3>&- &
+  helper_pids+=($!)
+  eventually test -s "$BATS_TEST_TMPDIR/proxy"
+}
+follows() { redis-cli -p "$1" info replication | grep -q '^master_link_status:up'; }
+leads() { redis-cli -p "$1" role | grep -q '^master'; }
+
+# write_until_told NAME FILE: deletes and stores a mesh again and again; NAME.code has the status of the last POST.
+write_until_told() {
+  for _ in {1..3000}; do
+    curl -s --noproxy '*' -o /dev/null -X DELETE "$url/v1/meshes/$(sha256sum <"$2" | cut -d' ' -f1)" || true
+    curl -s --noproxy '*' -o /dev/null -w '%{http_code}' -H "$draco" --data-binary @"$2" "$url/v1/meshes" >"$1.code"
+    [[ ! -e $BATS_TEST_TMPDIR/enough ]] || break
+  done
+}
+
+# is_written_anew: the coarse mesh can be deleted and stored.
+is_written_anew() {
+  request -X DELETE "$url/v1/meshes/$(coarse_id)"
+  [[ $status == 204 || $status == 404 ]] || return 1
+  upload
+  [[ $status == 201 ]]
+}
+
+@test "Redis: after a failover writes come back without a restart, and nothing acknowledged is lost" {
+  start_pair
+  start_server --store "redis://127.0.0.1:$(<"$BATS_TEST_TMPDIR/proxy")"
+  is_written_anew
+  writers=()
+  for bits in 9 10 11; do
+    "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/$bits.drc" --levels 0 --output.position_bits "$bits"
+    write_until_told "$BATS_TEST_TMPDIR/$bits" "$BATS_TEST_TMPDIR/$bits.drc" 3>&- &
+    writers+=($!)
+    helper_pids+=($!)
+  done
+  for next in 1 0; do # a hand-over that waits for the replica
+    redis-cli -p "${ports[1 - next]}" failover to 127.0.0.1 "${ports[next]}" >/dev/null
+    eventually leads "${ports[next]}"
+    echo "${ports[next]}" >"$BATS_TEST_TMPDIR/primary"
+    eventually is_written_anew
+    for _ in {1..5}; do is_written_anew; done
+    eventually follows "${ports[1 - next]}"
+  done
+  touch "$BATS_TEST_TMPDIR/enough"
+  wait "${writers[@]}"
+  for bits in 9 10 11; do
+    grep -q 201 "$BATS_TEST_TMPDIR/$bits.code"
+    request "$url/v1/meshes/$(sha256sum <"$BATS_TEST_TMPDIR/$bits.drc" | cut -d' ' -f1)"
+    cmp "$body" "$BATS_TEST_TMPDIR/$bits.drc"
+  done
+  redis-cli -p "${ports[1]}" replicaof no one >/dev/null # by an operator, with idle connections to the old primary
+  redis-cli -p "${ports[0]}" replicaof 127.0.0.1 "${ports[1]}" >/dev/null
+  upload
+  [[ $status == 200 || $status == 503 ]] # the address still leads to the replica
+  request "$url/v1/meshes/$(coarse_id)"
+  [ "$status" = 200 ] # which answers reads
+  echo "${ports[1]}" >"$BATS_TEST_TMPDIR/primary"
+  eventually is_written_anew
 }
 
 @test "Redis full: refused by our limit and by its own" {
