@@ -185,7 +185,11 @@ bool DirectoryStore::reserve(uint64_t bytes) {
 
 DirectoryStore::Room::Room(DirectoryStore& store, uint64_t bytes) : store_(store), bytes_(bytes) {
   if (store_.reserve(bytes)) return;
-  store_.count_files();
+  try {
+    store_.count_files();
+  } catch (const fs::filesystem_error& error) {
+    throw unavailable(error.path1(), error.code().message());
+  }
   if (!store_.reserve(bytes))
     throw Problem(Code::store_full,
                   "The store of " + std::to_string(store_.budget_) +

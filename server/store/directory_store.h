@@ -35,6 +35,7 @@ class DirectoryStore final : public MeshStore {
  private:
   /// The size of the file of a mesh; none where there is no file. Throws `Problem` where that cannot be told.
   [[nodiscard]] static std::optional<uint64_t> size_of(const std::filesystem::path& file);
+  /// Throws std::filesystem::filesystem_error where the directory cannot be read.
   void count_files();
   /// False when there is no room, or the count is too old to know.
   [[nodiscard]] bool reserve(uint64_t bytes);

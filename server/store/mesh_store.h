@@ -15,11 +15,12 @@ class MeshStore {
   using Bytes = std::shared_ptr<const std::string>;
 
   virtual ~MeshStore() = default;
-  /// Once this has returned the mesh is kept as well as the store can keep it. True when it was not there before.
+  /// Once this has returned the mesh is kept as well as the store can keep it. What is there already is verified, and
+  /// replaced when it is damaged. True when the mesh was not there, or was damaged.
   virtual bool put(const std::string& id, std::string_view bytes) = 0;
   /// Counts as using it.
   virtual bool contains(const std::string& id) = 0;
-  /// Null when there is none.
+  /// Null when there is none, or when it is damaged: the bytes have the SHA-256 that is asked for, always.
   virtual Bytes get(const std::string& id) = 0;
   /// True when it was there.
   virtual bool remove(const std::string& id) = 0;

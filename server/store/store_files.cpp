@@ -26,8 +26,9 @@ MeshStore::Usage StoreFiles::count() {
     const std::string id = file.path().stem().string();
     if (!is_sha256(id) || file.path() != file_of(id)) return;
     std::error_code gone;
-    const uint64_t bytes = file.is_regular_file(gone) ? file.file_size(gone) : 0;
-    if (gone || !file.is_regular_file(gone)) return;
+    if (!file.is_regular_file(gone)) return;
+    const uint64_t bytes = file.file_size(gone);
+    if (gone) return;
     ++counted.meshes;
     counted.bytes += bytes;
   });

@@ -27,7 +27,10 @@ class StoreFolderTest : public testing::Test {
   StoreFolderTest() : folder_(fs::temp_directory_path() / ("papilio-directory-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
   }
-  ~StoreFolderTest() override { fs::remove_all(folder_); }
+  ~StoreFolderTest() override {
+    fs::permissions(folder_, fs::perms::all);
+    fs::remove_all(folder_);
+  }
 
   [[nodiscard]] fs::path file_of(const std::string& id) const { return folder_ / id.substr(0, 2) / (id + ".drc"); }
   static void write(const fs::path& file, const std::string& bytes) {
@@ -180,6 +183,18 @@ TEST_F(StoreFolderTest, ADirectoryThatCannotBeReadIsRefusedInWords) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find(folder_.string() + ": Permission denied"), std::string::npos)
         << error.what();
+  }
+}
+
+TEST_F(StoreFolderTest, ADirectoryThatCanNoLongerBeReadIsUnavailable) {
+  DirectoryStore store(folder_, 1'000);
+  fs::permissions(folder_, static_cast<fs::perms>(0333));
+  const NotRoot user;
+  try {
+    store.put(id_, mesh_);  // larger than the store: it is counted again before it is refused
+    ADD_FAILURE() << "was put";
+  } catch (const Problem& problem) {
+    EXPECT_EQ(problem.code(), Code::store_unavailable);
   }
 }
 
