@@ -20,11 +20,18 @@ class InPlace {
       progress_.poll();
       const int level = find_targets();
       if (level == 0) break;
+      const SplitPlan plan(targets_);
+      const uint64_t faces = count_children(mesh_.topology, plan);
+      if (progress_.ends_before(faces, bytes_per_mesh_face())) {
+        end_at_limit();
+        break;
+      }
       progress_.report(result_.levels, mesh_);
+      progress_.require_room(faces, bytes_per_mesh_face(), level);
       progress_.poll();
-      split_targets(level);
+      split_targets(level, plan);
     }
-    if (!out_of_budget_)
+    if (!out_of_budget_ && !is_at_limit_)
       result_.stop_reason = result_.levels == options_.levels ? StopReason::levels : StopReason::converged;
     result_.mesh = std::move(mesh_);
     return std::move(result_);
@@ -81,11 +88,17 @@ class InPlace {
     result_.error_pixels = left.pixels();
   }
 
-  void split_targets(int level) {
-    const SplitPlan plan(targets_);
-    const uint64_t faces = count_children(mesh_.topology, plan);
-    progress_.require_room(faces, level);
-    progress_.require_memory(faces, bytes_per_face + bytes_per_face_of(mesh_.attributes), level);
+  [[nodiscard]] uint64_t bytes_per_mesh_face() const { return bytes_per_face + bytes_per_face_of(mesh_.attributes); }
+
+  /// Nothing more is split: the error left is that of the mesh as it is.
+  void end_at_limit() {
+    is_at_limit_ = true;
+    result_.stop_reason = StopReason::limits;
+    targets_.assign(mesh_.topology.edge_count(), 0);
+    note_error();
+  }
+
+  void split_targets(int level, const SplitPlan& plan) {
     Array<Vec3f> made;
     made.reserve(plan.count());
     for (uint32_t e = 0; e < targets_.size(); ++e)
@@ -105,6 +118,7 @@ class InPlace {
   EdgeMarks shown_;  ///< by the view
   EdgeMarks targets_;
   bool out_of_budget_ = false;
+  bool is_at_limit_ = false;
 };
 
 }  // namespace

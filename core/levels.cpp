@@ -104,7 +104,7 @@ bool Levels::may_keep(const List<uint8_t>& red) const {
 
 List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
   const HierarchyLevel& level = *levels_.back();
-  if (!level.is_tried_whole() || !progress_.has_plenty(4 * red.size(), bytes_per_face)) return red;
+  if (!level.is_tried_whole() || !progress_.has_room(4 * red.size(), bytes_per_face)) return red;
   const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<double>(std::ranges::count(support, 1));
   if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
@@ -139,7 +139,7 @@ bool Levels::make_whole(const List<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 ||
-      !progress_.has_plenty(4 * red.size(), bytes_per_face))
+      !progress_.has_room(4 * red.size(), bytes_per_face))
     return false;
   const List<uint32_t> held = marked(with_neighbours(parents, red));
   if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
@@ -161,7 +161,7 @@ bool Levels::make_last(const List<uint8_t>& red) {
   const Topology& parents = above.mesh.topology;
   const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      above.trial.made.size() != parents.edge_count() || !progress_.has_plenty(4 * red.size(), bytes))
+      above.trial.made.size() != parents.edge_count() || !progress_.has_room(4 * red.size(), bytes))
     return false;
   const Part part(parents, red);
   const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));

@@ -42,6 +42,9 @@ struct Options {
   uint64_t face_limit = 16'000'000;  ///< a level that would have more faces is refused before it is made
   /// A level whose arrays would take more bytes than this is refused before it is made; 0: no limit.
   uint64_t memory_limit = 0;
+  /// Ends the refinement before a level that would pass `face_limit` or `memory_limit`, with `StopReason::limits`, in
+  /// place of refusing it. Not for uniform refinement.
+  bool stop_at_limits = false;
   bool edges = true;          ///< number the result's edges (mesh.h); whoever only writes its faces out does without
   bool measure_error = true;  ///< find the deviation left (`Result::error`); without it both errors are 0
 };

@@ -26,30 +26,30 @@ class Progress {
   void poll() const {
     if (hooks_.cancelled && hooks_.cancelled()) throw Error(Fault::cancelled, "The caller asked to stop.");
   }
-  /// Throws `Error` result_too_large when a level of so many faces is not allowed.
-  void require_room(uint64_t faces, int level) const {
-    const uint64_t limit = std::min(options_.face_limit, face_count_limit);
-    if (faces > limit)
-      throw Error(Fault::result_too_large, "Level " + std::to_string(level) + " would have " + std::to_string(faces) +
-                                               " faces; the limit is " + std::to_string(limit) +
-                                               ". Ask for fewer levels or refine less of the mesh.");
+  /// Whether a level of so many faces, at so many bytes each, is within the limits.
+  [[nodiscard]] bool has_room(uint64_t faces, uint64_t bytes_per_face) const {
+    return faces <= face_limit() && (options_.memory_limit == 0 || faces <= options_.memory_limit / bytes_per_face);
   }
-  /// Whether so many faces are certain to pass both of the others.
-  [[nodiscard]] bool has_plenty(uint64_t faces, uint64_t bytes_per_face) const {
-    return faces <= std::min(options_.face_limit, face_count_limit) &&
-           (options_.memory_limit == 0 || faces * bytes_per_face <= options_.memory_limit);
+  /// Throws `Error` result_too_large, with the number, when the level passes a limit.
+  void require_room(uint64_t faces, uint64_t bytes_per_face, int level) const {
+    if (has_room(faces, bytes_per_face)) return;
+    const bool are_many = faces > face_limit();
+    throw Error(Fault::result_too_large,
+                "Level " + std::to_string(level) + " would " +
+                    (are_many ? "have " + std::to_string(faces) + " faces; the limit is " + std::to_string(face_limit())
+                              : "take " + mebibytes(faces * bytes_per_face) + " of memory; the limit is " +
+                                    mebibytes(options_.memory_limit)) +
+                    ". Ask for fewer levels or refine less of the mesh.");
   }
-  /// Throws `Error` result_too_large when the level's arrays, so many faces of them, take too much memory.
-  void require_memory(uint64_t faces, uint64_t bytes_per_face, int level) const {
-    const uint64_t bytes = faces * bytes_per_face;
-    if (options_.memory_limit > 0 && bytes > options_.memory_limit)
-      throw Error(Fault::result_too_large, "Level " + std::to_string(level) + " would take " +
-                                               std::to_string(bytes >> 20) + " MiB of memory; the limit is " +
-                                               std::to_string(options_.memory_limit >> 20) +
-                                               " MiB. Ask for fewer levels or refine less of the mesh.");
+  /// Whether the refinement ends before the level, because it passes a limit and the options ask for that.
+  [[nodiscard]] bool ends_before(uint64_t faces, uint64_t bytes_per_face) const {
+    return options_.stop_at_limits && !has_room(faces, bytes_per_face);
   }
 
  private:
+  [[nodiscard]] uint64_t face_limit() const { return std::min(options_.face_limit, face_count_limit); }
+  static std::string mebibytes(uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
   const Options& options_;
   const Hooks& hooks_;
 };

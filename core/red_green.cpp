@@ -38,8 +38,11 @@ class RedGreen {
       if (options_.levels == 0) break;  // weighed for the sake of the error that is reported
       const bool changes = choose();
       if (changes) {
+        const uint64_t faces = count_assembled(choices_);
+        is_at_limit_ = progress_.ends_before(faces, 1);
+        if (is_at_limit_) break;
         progress_.report(result.levels, latest);
-        progress_.require_room(count_assembled(choices_), level);
+        progress_.require_room(faces, 1, level);
         result.levels = level;
         keep();
         if (progress_.wants_levels()) latest = assembled();
@@ -158,16 +161,18 @@ class RedGreen {
     return edges;
   }
 
-  /// With a budget remembers what the result is made of: further levels can make it worse without changing anything
-  /// themselves: what they need most is too much, and the threshold that leaves it out leaves out other edges too.
+  /// Remembers the splits that the result is made of, where a further level may have to be taken back: one that passes
+  /// a limit, or with a budget one that raises the threshold so far that the result has a larger error.
   void keep() {
-    if (options_.max_faces == 0) return;
+    if (!may_take_back()) return;
     kept_.clear();
     for (const LevelChoice& choice : choices_) kept_.push_back(choice.split_edges);
   }
 
+  [[nodiscard]] bool may_take_back() const { return options_.max_faces > 0 || options_.stop_at_limits; }
+
   void bring_back_what_was_kept() {
-    if (options_.max_faces == 0) return;
+    if (!may_take_back()) return;
     for (size_t k = 0; k < choices_.size(); ++k) {
       choices_[k].split_nothing();
       if (k < kept_.size())
@@ -180,22 +185,26 @@ class RedGreen {
     const List<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
     if (red.empty()) return false;
     mark_red(choices_.back(), red);
-    require_room_below(level + 1);
+    if (!has_room_below(level + 1)) return false;
     levels_.deepen(choices_.back().red);
     choices_.push_back(choose_below(choices_.back(), levels_.deepest()));
     return true;
   }
 
-  /// What is held but not in the result is bounded too. What is held for others, too, does not count.
-  void require_room_below(int level) const {
+  /// Whether the level may be made; throws where it passes a limit and the options do not end there. Faces that are
+  /// held but not in the result count too; those held for other requests do not.
+  [[nodiscard]] bool has_room_below(int level) {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
     const uint64_t bytes = bytes_per_face + bytes_per_face_of(choices_[0].level->mesh.attributes);
-    if (progress_.has_plenty(4ULL * mesh.face_count(), bytes)) return;
-    const uint64_t faces = 4 * static_cast<uint64_t>(std::ranges::count(choice.with_children(), 1));
-    progress_.require_room(faces / 4, level);
-    progress_.require_memory(faces, bytes, level);
-    if (faces > face_count_limit) progress_.require_room(faces, level);
+    if (progress_.has_room(4ULL * mesh.face_count(), bytes)) return true;
+    const auto parents = static_cast<uint64_t>(std::ranges::count(choice.with_children(), 1));
+    const bool are_too_many = 4 * parents > face_count_limit;
+    is_at_limit_ = progress_.ends_before(parents, 4 * bytes) || (are_too_many && options_.stop_at_limits);
+    if (is_at_limit_) return false;
+    progress_.require_room(parents, 4 * bytes, level);
+    if (are_too_many) progress_.require_room(4 * parents, bytes, level);
+    return true;
   }
 
   [[nodiscard]] List<uint32_t> faces_to_divide() const {
@@ -239,6 +248,8 @@ class RedGreen {
     }
     if (out_of_budget_)
       result.stop_reason = StopReason::budget;
+    else if (is_at_limit_)
+      result.stop_reason = StopReason::limits;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
     if (progress_.wants_levels())
@@ -258,6 +269,7 @@ class RedGreen {
   float threshold_;
   std::vector<List<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
   bool out_of_budget_ = false;
+  bool is_at_limit_ = false;
 };
 
 }  // namespace

@@ -52,13 +52,13 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
 
 void check_room(uint64_t faces, const Options& options) {
   const Progress progress(options, {});
-  progress.require_room(faces, 0);
+  progress.require_room(faces, 1, 0);
   if (options.max_faces > 0 && faces > options.max_faces)
     throw Error(Fault::result_too_large,
                 "The mesh itself has " + std::to_string(faces) + " faces, more than max_faces, which is " +
                     std::to_string(options.max_faces) + ". Ask for more, or send a coarser mesh.");
   if (!Selection(options, 1).is_uniform()) return;
-  for (int level = 1; level <= options.levels; ++level) progress.require_room(faces *= 4, level);
+  for (int level = 1; level <= options.levels; ++level) progress.require_room(faces *= 4, 1, level);
 }
 
 bool uses_hierarchy(const Options& options) {

@@ -31,6 +31,7 @@ enum class StopReason {
   converged,  ///< no target edge was left (in place: nor does a later level have a higher flatness threshold)
   levels,     ///< all levels asked for were made
   budget,     ///< `max_faces` kept something out
+  limits,     ///< a further level would have passed a limit (`Options::stop_at_limits`)
 };
 
 struct Result {

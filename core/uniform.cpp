@@ -32,8 +32,7 @@ class Uniform {
     for (level_ = 1; level_ <= options_.levels; ++level_) {
       progress_.poll();
       faces_ *= 4;
-      progress_.require_room(faces_, level_);
-      progress_.require_memory(faces_, bytes_per_face + bytes_per_face_of(mesh_.attributes), level_);
+      progress_.require_room(faces_, bytes_per_face + bytes_per_face_of(mesh_.attributes), level_);
       progress_.report(level_ - 1, mesh_);
       make_vertices();
       progress_.poll();

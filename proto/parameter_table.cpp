@@ -1,4 +1,5 @@
 #include <array>
+#include <utility>
 
 #include "proto/parameters.h"
 
@@ -11,6 +12,13 @@ constexpr double any = 1e18;  // coordinate_limit, in decimal to the digit
 
 View& view_of(Parameters& p) { return p.options.view ? *p.options.view : p.options.view.emplace(); }
 View view_of(const Parameters& p) { return p.options.view.value_or(View{}); }
+
+Values unless(bool follows, Values value) { return follows ? Values{} : std::move(value); }
+
+/// Whether the number of levels is the one that stands for none given.
+bool has_default_levels(const Options& options) {
+  return asks_for_error(options) ? options.stop_at_limits : options.levels == Options{}.levels;
+}
 
 Values values(Vec3d v) { return {v.x, v.y, v.z}; }
 Vec3d vector(const Values& v) { return {v[0], v[1], v[2]}; }
@@ -31,8 +39,12 @@ const std::array table{
                   .type = ParameterType::integer,
                   .min = 0,
                   .max = 10,
+                  .default_text = "2; with tolerance or view.error_pixels as many as it takes",
                   .description = "How many times to subdivide; a uniform level multiplies the faces by four",
-                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.levels)}; },
+                  .get =
+                      [](const Parameters& p) {
+                        return unless(has_default_levels(p.options), {static_cast<double>(p.options.levels)});
+                      },
                   .set = [](Parameters& p, const Values& v) { p.options.levels = static_cast<int>(v[0]); }},
     ParameterInfo{.name = "scheme",
                   .type = ParameterType::choice,
@@ -108,26 +120,40 @@ const std::array table{
                   .description = "Free parameter of the ten-point butterfly rule; 0 is the eight-point rule",
                   .get = [](const Parameters& p) { return Values{p.options.w}; },
                   .set = [](Parameters& p, const Values& v) { p.options.w = v[0]; }},
-    ParameterInfo{.name = "view.eye",
-                  .type = ParameterType::numbers,
-                  .least = 3,
-                  .most = 3,
-                  .min = -any,
-                  .max = any,
-                  .unit = "mesh units",
-                  .description = "Where the viewer is; any view parameter turns view-dependence on",
-                  .get = [](const Parameters& p) { return values(view_of(p).eye); },
-                  .set = [](Parameters& p, const Values& v) { view_of(p).eye = vector(v); }},
-    ParameterInfo{.name = "view.target",
-                  .type = ParameterType::numbers,
-                  .least = 3,
-                  .most = 3,
-                  .min = -any,
-                  .max = any,
-                  .unit = "mesh units",
-                  .description = "The point looked at",
-                  .get = [](const Parameters& p) { return values(view_of(p).target); },
-                  .set = [](Parameters& p, const Values& v) { view_of(p).target = vector(v); }},
+    ParameterInfo{
+        .name = "view.eye",
+        .type = ParameterType::numbers,
+        .least = 3,
+        .most = 3,
+        .min = -any,
+        .max = any,
+        .unit = "mesh units",
+        .default_text = "where the whole mesh is in the picture, seen from +z",
+        .description = "Position of the viewer; any view parameter turns view-dependence on. With view.up along "
+                       "z the default is seen from -y",
+        .get = [](const Parameters& p) { return unless(!p.options.view || p.frames_eye, values(view_of(p).eye)); },
+        .set =
+            [](Parameters& p, const Values& v) {
+              view_of(p).eye = vector(v);
+              p.frames_eye = false;
+            }},
+    ParameterInfo{
+        .name = "view.target",
+        .type = ParameterType::numbers,
+        .least = 3,
+        .most = 3,
+        .min = -any,
+        .max = any,
+        .unit = "mesh units",
+        .default_text = "the centre of the mesh's box",
+        .description = "The point looked at",
+        .get =
+            [](const Parameters& p) { return unless(!p.options.view || p.frames_target, values(view_of(p).target)); },
+        .set =
+            [](Parameters& p, const Values& v) {
+              view_of(p).target = vector(v);
+              p.frames_target = false;
+            }},
     ParameterInfo{.name = "view.up",
                   .type = ParameterType::numbers,
                   .least = 3,
@@ -176,8 +202,13 @@ const std::array table{
                   .min = 0,
                   .max = 1e6,
                   .unit = "pixels",
+                  .default_text = "10; 0 with view.error_pixels",
                   .description = "Edges that look shorter than this stay whole; 0 splits them however short",
-                  .get = [](const Parameters& p) { return Values{view_of(p).edge_pixels}; },
+                  .get =
+                      [](const Parameters& p) {
+                        return unless(view_of(p).edge_pixels == default_edge_pixels(view_of(p)),
+                                      {view_of(p).edge_pixels});
+                      },
                   .set = [](Parameters& p, const Values& v) { view_of(p).edge_pixels = v[0]; }},
     ParameterInfo{.name = "view.error_pixels",
                   .type = ParameterType::number,
@@ -185,8 +216,7 @@ const std::array table{
                   .max = 1e6,
                   .unit = "pixels",
                   .default_text = "0: none",
-                  .description = "Like tolerance, as large as it looks from the eye: 0.5 cannot be seen; set "
-                                 "view.edge_pixels=0 with it",
+                  .description = "Like tolerance, measured in pixels of the view: 0.5 cannot be seen",
                   .get = [](const Parameters& p) { return Values{view_of(p).error_pixels}; },
                   .set = [](Parameters& p, const Values& v) { view_of(p).error_pixels = v[0]; }},
     ParameterInfo{.name = "view.lights",

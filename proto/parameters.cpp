@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/framing.h"
 #include "proto/name_suggestion.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -29,8 +30,9 @@ class Reader {
   }
 
   Parameters finish() {
+    follow();
     try {
-      check_options(parameters_.options);
+      check_options(options_for(parameters_, any_box));
     } catch (const Error& error) {
       throw Problem(error);
     }
@@ -42,7 +44,19 @@ class Reader {
   }
 
  private:
-  Parameters parameters_;
+  /// Sets what is left out and follows from other parameters.
+  void follow() {
+    Options& options = parameters_.options;
+    options.stop_at_limits = asks_for_error(options) && !given_.contains("levels");
+    if (options.stop_at_limits) options.levels = most_levels;
+    if (options.view && !given_.contains("view.edge_pixels"))
+      options.view->edge_pixels = default_edge_pixels(*options.view);
+  }
+
+  static constexpr int most_levels = 10;
+  static constexpr Box any_box{{-1, -1, -1}, {1, 1, 1}};
+
+  Parameters parameters_{.options = {}, .output = {}, .frames_eye = true, .frames_target = true};
   std::set<std::string_view> given_;
 };
 
@@ -214,6 +228,20 @@ std::string value_text(const ParameterInfo& info, const std::vector<double>& val
 
 }  // namespace
 
+Options options_for(const Parameters& parameters, const Box& box) {
+  Options options = parameters.options;
+  if (!options.view) return options;
+  if (parameters.frames_target) options.view->target = centre(box);
+  if (parameters.frames_eye) options.view->eye = framing_eye(*options.view, box);
+  return options;
+}
+
+double default_edge_pixels(const View& view) { return view.error_pixels > 0 ? 0 : View{}.edge_pixels; }
+
+bool asks_for_error(const Options& options) {
+  return options.tolerance > 0 || (options.view && options.view->error_pixels > 0);
+}
+
 bool operator==(const Parameters& a, const Parameters& b) {
   return a.options.view.has_value() == b.options.view.has_value() &&
          std::ranges::all_of(parameter_table(), [&](const ParameterInfo& info) { return info.get(a) == info.get(b); });
@@ -241,16 +269,16 @@ Parameters parse_json(std::string_view text) {
 
 QueryFields to_fields(const Parameters& parameters) {
   static const Parameters defaults;
+  constexpr std::string_view view_of_defaults = "view.up";  // stands for a view that has nothing else
+  const auto differs = [&](const ParameterInfo& info) { return info.get(parameters) != info.get(defaults); };
+  const bool has_bare_view =
+      parameters.options.view && std::ranges::none_of(parameter_table(), [&](const ParameterInfo& info) {
+        return info.name.starts_with("view.") && differs(info);
+      });
   QueryFields fields;
-  bool view_shown = false;
-  for (const ParameterInfo& info : parameter_table()) {
-    const std::vector<double> values = info.get(parameters);
-    // A view of defaults is still a view: its eye stands for it.
-    const bool names_view = info.name.starts_with("view.") && parameters.options.view && !view_shown;
-    if (values == info.get(defaults) && !names_view) continue;
-    view_shown = view_shown || info.name.starts_with("view.");
-    fields.emplace_back(info.name, value_text(info, values));
-  }
+  for (const ParameterInfo& info : parameter_table())
+    if (differs(info) || (has_bare_view && info.name == view_of_defaults))
+      fields.emplace_back(info.name, value_text(info, info.get(parameters)));
   return fields;
 }
 
@@ -296,6 +324,7 @@ nlohmann::ordered_json number_json(double value) {
 /// Typed as a request's JSON would be.
 nlohmann::ordered_json default_json(const ParameterInfo& info) {
   const std::vector<double> values = info.get(Parameters{});
+  if (values.empty() && info.type != ParameterType::numbers) return nullptr;
   if (info.type == ParameterType::boolean) return values[0] != 0;
   if (info.type == ParameterType::choice) return info.choices[static_cast<size_t>(values[0])];
   if (info.type != ParameterType::numbers) return number_json(values[0]);

@@ -21,6 +21,8 @@ using QueryFields = std::vector<std::pair<std::string, std::string>>;
 struct Parameters {
   Options options;  ///< `options.view` is set when any view parameter was given
   OutputOptions output;
+  bool frames_eye = false;     ///< view.eye was left out: it follows from the mesh
+  bool frames_target = false;  ///< view.target was left out: it is the centre of the mesh's box
 
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
@@ -39,9 +41,16 @@ struct ParameterInfo {
   std::string_view default_text{};  ///< what stands for the default where its value does not speak for itself, else ""
   std::string_view description{};
   std::vector<std::string_view> choices{};
-  std::vector<double> (*get)(const Parameters&);
+  std::vector<double> (*get)(const Parameters&);  ///< empty for a default that follows from others
   void (*set)(Parameters&, const std::vector<double>&);
 };
+
+/// The options to refine a mesh in this box with.
+[[nodiscard]] Options options_for(const Parameters& parameters, const Box& box);
+/// Whether an error is asked for: by tolerance or by view.error_pixels.
+[[nodiscard]] bool asks_for_error(const Options& options);
+/// `View::edge_pixels` where view.edge_pixels is left out: the paper's 10, or 0 where view.error_pixels decides.
+[[nodiscard]] double default_edge_pixels(const View& view);
 
 /// All parameters, in the order of the documentation.
 [[nodiscard]] std::span<const ParameterInfo> parameter_table();

@@ -15,6 +15,7 @@
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
+#include "proto/unreached.h"
 #include "proto/wire_words.h"
 
 namespace papilio::proto {
@@ -72,34 +73,31 @@ std::string milliseconds_text(double milliseconds) {
   return {text.data(), end};
 }
 
-/// Four digits: more would be noise.
-std::string error_text(double error) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), error, std::chars_format::general, 4).ptr;
-  return {text.data(), end};
-}
-
 }  // namespace
 
 Refinement::Refinement(const Parameters& parameters, const Limits& limits)
-    : options_(parameters.options), output_(parameters.output), most_seconds_(limits.max_compute_seconds) {
+    : output_(parameters.output), most_seconds_(limits.max_compute_seconds) {}
+
+void Refinement::set_options(const Parameters& parameters, const Limits& limits) {
+  options_ = options_for(parameters, bounding_box(coarse().mesh.positions));
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
   options_.edges = false;
+  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
 }
 
 Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
     : Refinement(parameters, limits) {
   Stopwatch watch;
   decoded_ = decode_mesh(draco, limits);
-  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
+  set_options(parameters, limits);
   times_.decode = watch.lap();
 }
 
 Refinement::Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits)
     : Refinement(parameters, limits) {
   prepared_ = std::move(prepared);
-  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
+  set_options(parameters, limits);
 }
 
 EncodedLevel Refinement::run(const RefinementHooks& hooks) {
@@ -179,6 +177,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   made.statistics.stop_reason = result.stop_reason;
   made.statistics.error = result.error;
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
+  made.statistics.unreached = unreached_text(options_, made.statistics);
   if (hooks.on_level) hooks.on_level(made);
   return made;
 }
@@ -192,8 +191,10 @@ void Refinement::require_time() const {
 
 namespace {
 
-constexpr std::array<std::pair<StopReason, std::string_view>, 3> stop_reasons{
-    {{StopReason::converged, "converged"}, {StopReason::levels, "levels"}, {StopReason::budget, "budget"}}};
+constexpr std::array<std::pair<StopReason, std::string_view>, 4> stop_reasons{{{StopReason::converged, "converged"},
+                                                                               {StopReason::levels, "levels"},
+                                                                               {StopReason::budget, "budget"},
+                                                                               {StopReason::limits, "limits"}}};
 
 }  // namespace
 
@@ -215,8 +216,8 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
   };
   if (statistics.stop_reason) {
     headers.emplace_back("Papilio-Stop-Reason", stop_reason_name(*statistics.stop_reason));
-    headers.emplace_back("Papilio-Error", error_text(statistics.error));
-    if (statistics.error_pixels) headers.emplace_back("Papilio-Error-Pixels", error_text(*statistics.error_pixels));
+    headers.emplace_back("Papilio-Error", format_rounded(statistics.error));
+    if (statistics.error_pixels) headers.emplace_back("Papilio-Error-Pixels", format_rounded(*statistics.error_pixels));
   }
   if (const std::string found = defects_text(statistics.found); !found.empty())
     headers.emplace_back("Papilio-Found", found);
@@ -231,9 +232,11 @@ std::string statistics_json(const Statistics& statistics) {
       {"vertices", statistics.vertices}, {"faces", statistics.faces}, {"levels", statistics.level}};
   if (statistics.stop_reason) {
     document["stop_reason"] = stop_reason_name(*statistics.stop_reason);
-    document["error"] = parse_number(error_text(statistics.error)).value();
-    if (statistics.error_pixels) document["error_pixels"] = parse_number(error_text(*statistics.error_pixels)).value();
+    document["error"] = parse_number(format_rounded(statistics.error)).value();
+    if (statistics.error_pixels)
+      document["error_pixels"] = parse_number(format_rounded(*statistics.error_pixels)).value();
   }
+  if (!statistics.unreached.empty()) document["unreached"] = statistics.unreached;
   for (const auto& [name, count] : defects(statistics.found)) document["found"][std::string(name)] = count;
   const auto rounded = [](double milliseconds) { return std::round(milliseconds * 1000) / 1000; };
   document["milliseconds"] = {{"decode", rounded(statistics.times.decode)},

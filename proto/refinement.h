@@ -32,6 +32,7 @@ struct Statistics {
   std::optional<StopReason> stop_reason;  ///< known with the last level, and so are the errors
   double error = 0;                       ///< the largest deviation left, as a share of the coarse mesh's diagonal
   std::optional<double> error_pixels{};   ///< the same in pixels, where there is a view
+  std::string unreached{};                ///< targets that were not reached, in words (unreached.h)
   BuildReport found{};                    ///< in the coarse mesh
   StageTimes times;
 };
@@ -71,6 +72,8 @@ class Refinement {
 
  private:
   Refinement(const Parameters& parameters, const Limits& limits);
+  /// Once the coarse mesh is there. Throws `Problem` where the result is certain to pass a limit.
+  void set_options(const Parameters& parameters, const Limits& limits);
   [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
   /// `times`: what was spent before.
@@ -89,7 +92,7 @@ class Refinement {
   int most_seconds_;
 };
 
-/// "converged", "levels", "budget".
+/// "converged", "levels", "budget", "limits".
 [[nodiscard]] std::string_view stop_reason_name(StopReason reason);
 /// The other way round; nothing for any other text.
 [[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
@@ -97,7 +100,7 @@ class Refinement {
 /// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Found
 /// (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// The same as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, found {...},
+/// The same as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, found {...},
 /// milliseconds {decode, refine, encode}.
 [[nodiscard]] std::string statistics_json(const Statistics& statistics);
 

@@ -25,6 +25,12 @@ std::string format_number(double value) {
   return {text.data(), error == std::errc() ? end : text.data()};
 }
 
+std::string format_rounded(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr;
+  return {text.data(), end};
+}
+
 std::string shorten(std::string_view text) {
   constexpr size_t longest = 80;
   std::string out;

@@ -12,6 +12,9 @@ namespace papilio::proto {
 /// The shortest text that reads back as the same number.
 [[nodiscard]] std::string format_number(double value);
 
+/// The number to four significant digits.
+[[nodiscard]] std::string format_rounded(double value);
+
 /// User text for an error message: cut to 80 bytes, without control characters or broken UTF-8.
 [[nodiscard]] std::string shorten(std::string_view text);
 /// The same in double quotes.

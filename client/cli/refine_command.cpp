@@ -28,6 +28,7 @@ void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output
             << statistics.times.encode << " ms\n";
   if (const std::string found = proto::defects_text(statistics.found); !found.empty())
     std::cerr << proto::escape_controls(flags.input.name()) << ": worked round " << found << '\n';
+  if (!statistics.unreached.empty()) std::cerr << "warning: " << statistics.unreached << '\n';
 }
 
 /// Beside the input: bunny.obj becomes bunny.refined.obj. A file that is there already is not replaced unasked.

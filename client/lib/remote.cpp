@@ -15,6 +15,7 @@
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
+#include "proto/unreached.h"
 
 namespace papilio::client {
 namespace {
@@ -195,7 +196,9 @@ proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Paramete
   }
   if (answer.status != ok_status) throw error_from(answer.status, answer.body);
   check_mesh(origin_, answer);
-  return {std::move(answer.body), statistics_from(answer.headers)};
+  proto::Statistics statistics = statistics_from(answer.headers);
+  statistics.unreached = proto::unreached_text(parameters.options, statistics);
+  return {std::move(answer.body), std::move(statistics)};
 }
 
 void Remote::refine_levels(std::string_view draco, const proto::Parameters& parameters,

@@ -67,6 +67,17 @@ END
   done
 }
 
+@test "a target that the levels do not reach is a warning, here and there" {
+  for where in '' "--server $url"; do
+    # shellcheck disable=SC2086
+    "$papilio" refine "$coarse" -o fine.drc --tolerance 0.0001 --levels 1 $where 2>warnings
+    grep -q '^warning: tolerance=0.0001 is not reached: the error left is 0\.0.* Give more levels than 1' warnings
+    # shellcheck disable=SC2086
+    "$papilio" refine "$coarse" -o fine.drc --tolerance 0.0001 $where 2>warnings
+    if grep warning warnings; then return 1; fi
+  done
+}
+
 @test "the curl answer is the command line's" {
   "$papilio" refine "$coarse" -o here.drc --levels 2 --flatness 0.8,0.9
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"

@@ -70,6 +70,18 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" != "$before" ]
 }
 
+@test "view.error_pixels alone is reached: the eye and the levels follow" {
+  upload
+  request "$url/v1/meshes/$(coarse_id)/refined?view.error_pixels=0.5"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Stop-Reason)" = converged ]
+  [ "$(jq -n "$(header Papilio-Error-Pixels) <= 0.5")" = true ]
+  [ "$(header Papilio-Faces)" -gt 2000 ]
+  request -H 'Accept: multipart/mixed' "$url/v1/meshes/$(coarse_id)/refined?view.error_pixels=0.5&levels=1"
+  grep -aq '"stop_reason": "levels"' "$body"
+  grep -aq '"unreached": "view.error_pixels=0.5 is not reached: the error left is .* Give more levels than 1' "$body"
+}
+
 @test "max_faces is never passed, in no part" {
   for scheme in red-green in-place; do
     request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" \

@@ -68,7 +68,7 @@ TEST(Parameters, CanonicalFormIsOneForEqualParametersAndReadsBack) {
   const Parameters a = parse_query({{"levels", "03"}, {"flatness", "0.90,.5"}, {"view.fov_y", "45"}, {"w", "-0"}});
   const Parameters b = parse_query({{"view.fov_y", "45.0"}, {"flatness", "9e-1,0.5"}, {"levels", "3"}});
   EXPECT_EQ(to_query(a), to_query(b));
-  EXPECT_EQ(to_query(a), "levels=3&flatness=0.9,0.5&view.eye=0,0,3");
+  EXPECT_EQ(to_query(a), "levels=3&flatness=0.9,0.5&view.up=0,1,0");
   EXPECT_EQ(parse_query(to_fields(a)), a);
   const Parameters full = parse_query({{"view.eye", "0.1,-2,1e-7"}, {"view.near", "0.25"}, {"output.speed", "3"}});
   EXPECT_EQ(parse_query(to_fields(full)), full);
@@ -90,6 +90,51 @@ TEST(Parameters, RepeatedFieldsOfAListAreOneList) {
   EXPECT_EQ(twice.parameter, "view.eye");
   EXPECT_EQ(query_refusal({{"view.eye", "0"}, {"view.eye", ""}, {"view.eye", "3"}}).parameter, "view.eye");
   EXPECT_EQ(query_refusal({{"w", "0"}, {"w", "0"}}).detail, "w is given twice; give it once.");
+}
+
+TEST(Parameters, LevelsLeftOutAreAsManyAsAnErrorTakes) {
+  EXPECT_EQ(parse_query({}).options.levels, 2);
+  EXPECT_EQ(parse_query({{"max_faces", "5000"}}).options.levels, 2);
+  for (const QueryFields& error : {QueryFields{{"tolerance", "0.001"}}, {{"view.error_pixels", "0.5"}}}) {
+    const Parameters open = parse_query(error);
+    EXPECT_EQ(open.options.levels, 10);
+    EXPECT_TRUE(open.options.stop_at_limits);
+    EXPECT_EQ(parse_query(to_fields(open)), open);
+    QueryFields bounded_fields = error;
+    bounded_fields.emplace_back("levels", "2");
+    const Parameters bounded = parse_query(bounded_fields);
+    EXPECT_EQ(bounded.options.levels, 2);
+    EXPECT_FALSE(bounded.options.stop_at_limits);
+    EXPECT_EQ(parse_query(to_fields(bounded)), bounded);
+    EXPECT_NE(to_query(open), to_query(bounded));
+  }
+  EXPECT_EQ(to_query(parse_query({{"levels", "2"}})), "");
+}
+
+TEST(Parameters, ErrorPixelsSwitchEdgePixelsOffUnlessGiven) {
+  EXPECT_EQ(parse_query({{"view.fov_y", "30"}}).options.view->edge_pixels, 10);
+  const Parameters by_error = parse_query({{"view.error_pixels", "0.5"}});
+  EXPECT_EQ(by_error.options.view->edge_pixels, 0);
+  EXPECT_EQ(to_query(by_error), to_query(parse_query({{"view.error_pixels", "0.5"}, {"view.edge_pixels", "0"}})));
+  const Parameters both = parse_query({{"view.error_pixels", "0.5"}, {"view.edge_pixels", "10"}});
+  EXPECT_EQ(both.options.view->edge_pixels, 10);
+  EXPECT_EQ(parse_query(to_fields(both)), both);
+}
+
+TEST(Parameters, EyeAndTargetLeftOutFrameTheMesh) {
+  const Box box{{10, 20, 30}, {12, 24, 36}};
+  const View framed = *options_for(parse_query({{"view.error_pixels", "1"}}), box).view;
+  EXPECT_EQ(framed.target, (Vec3d{11, 22, 33}));
+  EXPECT_EQ(framed.eye.x, 11);
+  EXPECT_EQ(framed.eye.y, 22);
+  EXPECT_GT(framed.eye.z, 36);
+  const View from = *options_for(parse_query({{"view.eye", "0,0,3"}}), box).view;
+  EXPECT_EQ(from.eye, (Vec3d{0, 0, 3}));
+  EXPECT_EQ(from.target, (Vec3d{11, 22, 33}));
+  const View at = *options_for(parse_query({{"view.target", "10,20,30"}}), box).view;
+  EXPECT_EQ(at.target, (Vec3d{10, 20, 30}));
+  EXPECT_EQ(at.eye.x, 10);
+  EXPECT_GT(at.eye.z, framed.eye.z - 3) << "the whole box is in the picture from the side of it, too";
 }
 
 TEST(Parameters, EveryRowRoundTripsAndRefusesItsNeighbours) {
@@ -158,7 +203,9 @@ TEST(Parameters, AMisspeltNameIsAnsweredWithTheOneMeant) {
 
 TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {
   EXPECT_EQ(query_refusal({{"view.eye", "1,2,3"}, {"view.target", "1,2,3"}}).parameter, "view.target");
-  EXPECT_EQ(query_refusal({{"view.up", "0,0,1"}}).parameter, "view.up");
+  EXPECT_EQ(query_refusal({{"view.eye", "0,0,3"}, {"view.target", "0,0,0"}, {"view.up", "0,0,1"}}).parameter,
+            "view.up");
+  EXPECT_EQ(query_refusal({{"view.up", "0,0,0"}}).parameter, "view.up");
 }
 
 TEST(Parameters, JsonOfTheWrongShapeIsRefused) {

@@ -100,6 +100,56 @@ TEST(Refinement, WhoSeesTheLevelsMayStop) {
       }
 }
 
+/// Statistics of the refined icosahedron.
+Statistics refined(const QueryFields& fields, const Limits& limits = {}) {
+  return Refinement(coarse(), parse_query(fields), limits).run().statistics;
+}
+
+TEST(Refinement, LevelsLeftOutReachTheError) {
+  for (const char* scheme : {"red-green", "in-place"})
+    for (const char* tolerance : {"0.003", "0.0003"}) {
+      const Statistics made = refined({{"tolerance", tolerance}, {"scheme", scheme}});
+      EXPECT_EQ(made.stop_reason, StopReason::converged) << scheme << tolerance;
+      EXPECT_LE(made.error, std::atof(tolerance));
+      EXPECT_GT(made.level, 2);
+      EXPECT_EQ(made.unreached, "");
+      const Statistics bounded = refined({{"tolerance", tolerance}, {"scheme", scheme}, {"levels", "10"}});
+      EXPECT_EQ(bounded.faces, made.faces);
+    }
+  const Statistics seen = refined({{"view.error_pixels", "0.5"}});
+  EXPECT_EQ(seen.stop_reason, StopReason::converged);
+  EXPECT_LE(seen.error_pixels.value(), 0.5);
+}
+
+TEST(Refinement, TargetThatTheLevelsCannotReachIsSaid) {
+  const Statistics made = refined({{"tolerance", "0.0003"}, {"levels", "1"}});
+  EXPECT_EQ(made.stop_reason, StopReason::levels);
+  EXPECT_GT(made.error, 0.0003);
+  EXPECT_NE(made.unreached.find("tolerance=0.0003 is not reached"), std::string::npos) << made.unreached;
+  EXPECT_NE(made.unreached.find("more levels than 1"), std::string::npos) << made.unreached;
+  const Statistics budget = refined({{"view.error_pixels", "0.1"}, {"max_faces", "100"}});
+  EXPECT_NE(budget.unreached.find("view.error_pixels=0.1 is not reached"), std::string::npos) << budget.unreached;
+  EXPECT_NE(budget.unreached.find("max_faces"), std::string::npos) << budget.unreached;
+}
+
+TEST(Refinement, LevelsLeftOutEndAtTheLimits) {
+  for (const char* scheme : {"red-green", "in-place"})
+    for (const Limits& limits : {Limits{.max_output_faces = 2000}, Limits{.max_compute_bytes = 300 << 10}}) {
+      const QueryFields fields{{"tolerance", "1e-7"}, {"scheme", scheme}};
+      const Statistics made = refined(fields, limits);
+      EXPECT_EQ(made.stop_reason, StopReason::limits) << scheme;
+      EXPECT_LE(made.faces, limits.max_output_faces);
+      EXPECT_GT(made.error, 1e-7);
+      EXPECT_NE(made.unreached.find("limit"), std::string::npos) << made.unreached;
+      // What the last level that fits gives.
+      QueryFields bounded = fields;
+      bounded.emplace_back("levels", std::to_string(made.level));
+      EXPECT_EQ(refined(bounded).faces, made.faces);
+      bounded.back().second = std::to_string(made.level + 1);
+      EXPECT_THROW((void)refined(bounded, limits), Problem);
+    }
+}
+
 TEST(Refinement, CertainOverflowIsRefusedBeforeTheWork) {
   const Parameters parameters = parse_query({{"levels", "10"}});
   try {
@@ -175,7 +225,7 @@ TEST(Refinement, StatisticsAreHeaders) {
   EXPECT_EQ(headers, expected);
   EXPECT_EQ(parse_defects("non_manifold_edges=3, pinched_vertices=1, new=4, odd").non_manifold_edges, 3U);
   EXPECT_EQ(defects_text(parse_defects(defects_text(statistics.found))), defects_text(statistics.found));
-  for (StopReason reason : {StopReason::converged, StopReason::levels, StopReason::budget})
+  for (StopReason reason : {StopReason::converged, StopReason::levels, StopReason::budget, StopReason::limits})
     EXPECT_EQ(stop_reason_named(stop_reason_name(reason)), reason);
   EXPECT_FALSE(stop_reason_named("no"));
 }

@@ -253,6 +253,17 @@ test('the command shown gives the bytes that are on screen', async () => {
   }
 });
 
+test('a target that is not reached is said at the mesh', async () => {
+  const hash = (levels) => `mesh=mug&show=adaptive&levels=${levels}&tolerance=0.0001`;
+  const { page } = await openPage(shared.browser, shared.server.url, { hash: hash(1) });
+  await done(page, ['adaptive']);
+  const note = page.locator('.panel[data-mode=adaptive] .note');
+  assert.match(await note.innerText(), /tolerance=0\.0001 is not reached: the error left is .* more levels than 1/);
+  await page.locator('[id="parameter-levels"]').fill('8');
+  await page.keyboard.press('Tab');
+  await page.waitForFunction(() => document.querySelector('.panel[data-mode=adaptive] .note').textContent === '');
+});
+
 test('a frozen view keeps its refinement while it is looked at from elsewhere', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url, {
     hash: 'mesh=mug&show=view&look=wireframe&levels=3&view.error_pixels=0.5&view.edge_pixels=0',

@@ -55,6 +55,8 @@ export class Panel {
   #retryTimer: ReturnType<typeof setTimeout> | undefined;
   #caption: HTMLElement;
   #note: HTMLElement;
+  /// From whoever asked for the mesh.
+  #givenNote = '';
   #message: HTMLElement;
   #legend: HTMLElement;
   #save: HTMLButtonElement;
@@ -89,7 +91,8 @@ export class Panel {
   /// Asks for the mesh with this query (null: the coarse mesh as it is) unless that is what is shown or on its way. What
   /// is on its way is aborted; what is shown stays until there is better.
   ask(mesh: OpenMesh, query: string | null, note = ''): void {
-    this.#note.textContent = note;
+    this.#givenNote = note;
+    this.#showNote();
     if (this.#asked?.mesh === mesh && this.#asked.query === query) return;
     this.#asked = { mesh, query };
     this.#retries = 0;
@@ -197,7 +200,12 @@ export class Panel {
     this.#caption.textContent = `${shown.faces.toLocaleString('en')} faces`;
     this.element.dataset.faces = String(shown.faces);
     this.#save.hidden = false;
+    this.#showNote();
     this.onChange();
+  }
+
+  #showNote(): void {
+    this.#note.textContent = [this.#givenNote, this.shown?.summary?.unreached ?? ''].join(' ').trim();
   }
 
   #tell(state: 'idle' | 'busy' | 'done' | 'failed', doing = ''): void {

@@ -109,6 +109,6 @@ function inputFor(kind: ParameterKind): HTMLInputElement | HTMLSelectElement {
     input.autocomplete = 'off';
     input.spellcheck = false;
   }
-  input.placeholder = defaultOf(kind) || (kind.default_text ?? '').replace(/:.*/, '');
+  input.placeholder = defaultOf(kind) || (kind.default_text ?? '').replace(/[:;].*/, '');
   return input;
 }

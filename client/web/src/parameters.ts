@@ -62,7 +62,7 @@ function countOf(kind: ParameterKind): string {
   return least === most ? `${least} ${what}` : `${least} to ${most} ${what}`;
 }
 
-/// The default, in the words of the query.
+/// The default, in the words of the query; empty where it follows from other parameters or from the mesh.
 export function defaultOf(kind: ParameterKind): string {
-  return Array.isArray(kind.default) ? kind.default.join(',') : String(kind.default);
+  return Array.isArray(kind.default) ? kind.default.join(',') : String(kind.default ?? '');
 }

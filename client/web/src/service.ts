@@ -47,6 +47,8 @@ export interface Summary {
   stop_reason: string;
   error: number;
   error_pixels?: number;
+  /// Targets that were not reached, in words.
+  unreached?: string;
 }
 
 /// The key that is sent with each request; empty: none.
