@@ -173,7 +173,7 @@ ordered_json headers() {
           {"Papilio-Levels", header("integer", "The last level that changed the mesh")},
           {"Papilio-Stop-Reason",
            {{"description", "Why there is no further level"},
-            {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget"}}}}}},
+            {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget", "limits"}}}}}},
           {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
           {"Papilio-Found", header("string", "Defects of the coarse mesh and how many of each")},
