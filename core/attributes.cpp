@@ -102,15 +102,6 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   return out;
 }
 
-uint64_t bytes_per_face_of(const PointAttributes& attributes) {
-  if (attributes.empty()) return 0;
-  uint64_t components = 0;
-  for (const Attribute& attribute : attributes.attributes) components += attribute.components;
-  const uint64_t faces = attributes.point.size() / 3;
-  const uint64_t numbers = 6 * sizeof(uint32_t);  // the points of the corners, and those made on the edges
-  return numbers + 2 * components * sizeof(double) * attributes.point_count / faces + 1;
-}
-
 List<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const List<uint32_t>& faces,
                             PointAttributes& attributes) {
   List<uint32_t> made(mesh.half_edge_count(), none);

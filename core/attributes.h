@@ -13,9 +13,6 @@ namespace papilio {
 [[nodiscard]] PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
                                                 const std::vector<uint32_t>& corner_point);
 
-/// Bytes that attributes take for each face of a mesh that is refined, while those of the level before are still there.
-[[nodiscard]] uint64_t bytes_per_face_of(const PointAttributes& attributes);
-
 /// Makes the points on the split edges: each the mean of the two at its ends, one for both faces where they agree on
 /// both, else (on a seam) one for each face. Returns [H] the new point on each half-edge of a split edge; `none`
 /// elsewhere, and on faces that are not among `faces`, which are in ascending order.

@@ -23,6 +23,9 @@
 
 namespace papilio {
 
+/// Bytes, at most, of a held face of a level, and of what is computed on it; without attributes.
+inline constexpr uint64_t bytes_per_held_face = 160;
+
 struct HierarchyLevel {
   Mesh mesh;               ///< faces held; where others of the level are missing, edges are EdgeKind::cut
   bool is_whole = false;   ///< all the level's faces are held, with the numbers of the uniform mesh

@@ -1,13 +1,15 @@
 #include "in_place.h"
 
-#include "attributes.h"
+#include <algorithm>
+
 #include "budget.h"
+#include "memory_plan.h"
 #include "split.h"
 
 namespace papilio {
 namespace {
 
-constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
+constexpr uint64_t bytes_per_face = 130;  // of a level's arrays, while those of the level before are still there
 
 class InPlace {
  public:
@@ -16,18 +18,20 @@ class InPlace {
 
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
+    plan_.emplace(mesh_, options_);
     while (true) {
       progress_.poll();
       const int level = find_targets();
       if (level == 0) break;
       const SplitPlan plan(targets_);
       const uint64_t faces = count_children(mesh_.topology, plan);
-      if (progress_.ends_before(faces, bytes_per_mesh_face())) {
+      const uint64_t bytes = std::max(plan_->made(faces, level, bytes_per_face), plan_->given(faces, level));
+      if (progress_.ends_before(faces, bytes)) {
         end_at_limit();
         break;
       }
       progress_.report(result_.levels, mesh_);
-      progress_.require_room(faces, bytes_per_mesh_face(), level);
+      progress_.require_room(faces, bytes, level);
       progress_.poll();
       split_targets(level, plan);
     }
@@ -88,8 +92,6 @@ class InPlace {
     result_.error_pixels = left.pixels();
   }
 
-  [[nodiscard]] uint64_t bytes_per_mesh_face() const { return bytes_per_face + bytes_per_face_of(mesh_.attributes); }
-
   /// Nothing more is split: the error left is that of the mesh as it is.
   void end_at_limit() {
     is_at_limit_ = true;
@@ -111,6 +113,7 @@ class InPlace {
   const Selection& selection_;
   const Progress& progress_;
   Mesh mesh_;
+  std::optional<MemoryPlan> plan_;
   Result result_;
   std::optional<Trial> trial_;
   Region region_;

@@ -12,7 +12,6 @@ namespace {
 
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
 constexpr uint64_t bytes_per_kept_face = 122;
-constexpr uint64_t bytes_per_face = 160;  ///< at most, of a level's arrays and of what is computed on it
 /// All of a level costs about as much as so large a part of it.
 constexpr double part_as_dear_as_all = 0.75;
 /// All of its connectivity, which follows by formula, as much as so large a part's.
@@ -27,7 +26,7 @@ bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
 }  // namespace
 
 Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
-    : options_(options), progress_(progress), smallest_angle_(papilio::smallest_angle(coarse)) {
+    : options_(options), progress_(progress), plan_(coarse, options), smallest_angle_(papilio::smallest_angle(coarse)) {
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
@@ -44,6 +43,7 @@ Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progr
       prepared_(&prepared),
       known_(prepared.kept()),
       levels_{known_[0]},
+      plan_(prepared.coarse(), options),
       to_keep_(1),
       smallest_angle_(prepared.smallest_angle_) {}
 
@@ -104,7 +104,7 @@ bool Levels::may_keep(const List<uint8_t>& red) const {
 
 List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
   const HierarchyLevel& level = *levels_.back();
-  if (!level.is_tried_whole() || !progress_.has_room(4 * red.size(), bytes_per_face)) return red;
+  if (!level.is_tried_whole() || !has_room_for_whole()) return red;
   const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<double>(std::ranges::count(support, 1));
   if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
@@ -138,8 +138,7 @@ void Levels::make(const List<uint8_t>& red) {
 bool Levels::make_whole(const List<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
-  if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 ||
-      !progress_.has_room(4 * red.size(), bytes_per_face))
+  if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 || !has_room_for_whole())
     return false;
   const List<uint32_t> held = marked(with_neighbours(parents, red));
   if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
@@ -159,9 +158,8 @@ bool Levels::make_whole(const List<uint8_t>& red) {
 bool Levels::make_last(const List<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
-  const uint64_t bytes = bytes_per_face + bytes_per_face_of(levels_[0]->mesh.attributes);
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      above.trial.made.size() != parents.edge_count() || !progress_.has_room(4 * red.size(), bytes))
+      above.trial.made.size() != parents.edge_count() || !has_room_for_whole())
     return false;
   const Part part(parents, red);
   const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
@@ -176,6 +174,11 @@ bool Levels::make_last(const List<uint8_t>& red) {
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);
   return true;
+}
+
+bool Levels::has_room_for_whole() const {
+  const uint64_t faces = 4ULL * levels_.back()->mesh.topology.face_count();
+  return progress_.has_room(faces, plan_.made(faces, static_cast<int>(levels_.size()), bytes_per_held_face));
 }
 
 bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hierarchy.h"
+#include "memory_plan.h"
 #include "prepared_mesh.h"
 #include "progress.h"
 
@@ -18,6 +19,7 @@ class Levels {
   /// Those of a prepared mesh, which must outlive this.
   Levels(const PreparedMesh& prepared, const Options& options, const Progress& progress);
 
+  [[nodiscard]] const MemoryPlan& plan() const { return plan_; }
   [[nodiscard]] const std::shared_ptr<const HierarchyLevel>& deepest() const { return levels_.back(); }
   /// Of the coarse mesh, in radians.
   [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
@@ -47,6 +49,8 @@ class Levels {
   /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
   /// done, where that cannot be.
   bool make_last(const List<uint8_t>& red);
+  /// Whether the limits allow all of the next level.
+  [[nodiscard]] bool has_room_for_whole() const;
   /// Whether no level will lie below the one below the deepest.
   [[nodiscard]] bool is_next_last() const;
   /// What a level below the deepest was split from; `held` as in LevelBelow.
@@ -58,8 +62,9 @@ class Levels {
   const Options& options_;
   const Progress& progress_;
   const PreparedMesh* prepared_ = nullptr;
-  KeptLevels known_;        ///< what was kept when the request began
-  KeptLevels levels_;       ///< what it works on
+  KeptLevels known_;   ///< what was kept when the request began
+  KeptLevels levels_;  ///< what it works on
+  MemoryPlan plan_;
   size_t to_keep_ = 0;      ///< how many of these may be kept
   bool has_grown_ = false;  ///< one of those was made
   /// Where the deepest level is made of more than the known one of its depth: [F of the known] the same face in it.

@@ -20,6 +20,12 @@ enum class Scheme {
   in_place,
 };
 
+/// Memory that a caller needs for a level that it is given, beside the level's own: to encode it, say.
+struct OutputBytes {
+  uint64_t face = 0;   ///< bytes a face
+  uint64_t point = 0;  ///< bytes a point of the attributes, or a vertex where there are none
+};
+
 /// What to do. The defaults refine uniformly, two levels.
 struct Options {
   int levels = 2;  ///< 0..10; a uniform level multiplies the faces by four
@@ -40,8 +46,10 @@ struct Options {
   uint64_t max_faces = 0;
   bool simplify_hidden = false;      ///< simplifies what the view does not show, in the result; needs a view
   uint64_t face_limit = 16'000'000;  ///< a level that would have more faces is refused before it is made
-  /// A level whose arrays would take more bytes than this is refused before it is made; 0: no limit.
+  /// A level that would take more bytes than this, while it is made or together with `output`, is refused before it is
+  /// made; 0: no limit.
   uint64_t memory_limit = 0;
+  OutputBytes output{};
   /// Ends the refinement before a level that would pass `face_limit` or `memory_limit`, with `StopReason::limits`, in
   /// place of refusing it. Not for uniform refinement.
   bool stop_at_limits = false;

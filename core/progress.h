@@ -26,24 +26,23 @@ class Progress {
   void poll() const {
     if (hooks_.cancelled && hooks_.cancelled()) throw Error(Fault::cancelled, "The caller asked to stop.");
   }
-  /// Whether a level of so many faces, at so many bytes each, is within the limits.
-  [[nodiscard]] bool has_room(uint64_t faces, uint64_t bytes_per_face) const {
-    return faces <= face_limit() && (options_.memory_limit == 0 || faces <= options_.memory_limit / bytes_per_face);
+  /// Whether a level of so many faces and bytes is within the limits.
+  [[nodiscard]] bool has_room(uint64_t faces, uint64_t bytes) const {
+    return faces <= face_limit() && (options_.memory_limit == 0 || bytes <= options_.memory_limit);
   }
   /// Throws `Error` result_too_large, with the number, when the level passes a limit.
-  void require_room(uint64_t faces, uint64_t bytes_per_face, int level) const {
-    if (has_room(faces, bytes_per_face)) return;
-    const bool are_many = faces > face_limit();
-    throw Error(Fault::result_too_large,
-                "Level " + std::to_string(level) + " would " +
-                    (are_many ? "have " + std::to_string(faces) + " faces; the limit is " + std::to_string(face_limit())
-                              : "take " + mebibytes(faces * bytes_per_face) + " of memory; the limit is " +
-                                    mebibytes(options_.memory_limit)) +
-                    ". Ask for fewer levels or refine less of the mesh.");
+  void require_room(uint64_t faces, uint64_t bytes, int level) const {
+    if (has_room(faces, bytes)) return;
+    const std::string what =
+        faces > face_limit()
+            ? "have " + std::to_string(faces) + " faces; the limit is " + std::to_string(face_limit())
+            : "take " + mebibytes(bytes) + " of memory; the limit is " + mebibytes(options_.memory_limit);
+    throw Error(Fault::result_too_large, "Level " + std::to_string(level) + " would " + what +
+                                             ". Ask for fewer levels or refine less of the mesh.");
   }
   /// Whether the refinement ends before the level, because it passes a limit and the options ask for that.
-  [[nodiscard]] bool ends_before(uint64_t faces, uint64_t bytes_per_face) const {
-    return options_.stop_at_limits && !has_room(faces, bytes_per_face);
+  [[nodiscard]] bool ends_before(uint64_t faces, uint64_t bytes) const {
+    return options_.stop_at_limits && !has_room(faces, bytes);
   }
 
  private:

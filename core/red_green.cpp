@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "assemble.h"
-#include "attributes.h"
 #include "budget.h"
 #include "error_left.h"
 #include "level_choice.h"
@@ -14,7 +13,6 @@ namespace papilio {
 namespace {
 
 constexpr float never = -std::numeric_limits<float>::infinity();
-constexpr uint64_t bytes_per_face = 160;  // of a level's arrays and of what is computed on it
 
 class RedGreen {
  public:
@@ -39,10 +37,11 @@ class RedGreen {
       const bool changes = choose();
       if (changes) {
         const uint64_t faces = count_assembled(choices_);
-        is_at_limit_ = progress_.ends_before(faces, 1);
+        const uint64_t bytes = levels_.plan().given(faces, level);
+        is_at_limit_ = progress_.ends_before(faces, bytes);
         if (is_at_limit_) break;
         progress_.report(result.levels, latest);
-        progress_.require_room(faces, 1, level);
+        progress_.require_room(faces, bytes, level);
         result.levels = level;
         keep();
         if (progress_.wants_levels()) latest = assembled();
@@ -196,14 +195,13 @@ class RedGreen {
   [[nodiscard]] bool has_room_below(int level) {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
-    const uint64_t bytes = bytes_per_face + bytes_per_face_of(choices_[0].level->mesh.attributes);
-    if (progress_.has_room(4ULL * mesh.face_count(), bytes)) return true;
+    const auto bytes = [&](uint64_t faces) { return levels_.plan().made(faces, level, bytes_per_held_face); };
+    if (progress_.has_room(4ULL * mesh.face_count(), bytes(4ULL * mesh.face_count()))) return true;
     const auto parents = static_cast<uint64_t>(std::ranges::count(choice.with_children(), 1));
     const bool are_too_many = 4 * parents > face_count_limit;
-    is_at_limit_ = progress_.ends_before(parents, 4 * bytes) || (are_too_many && options_.stop_at_limits);
+    is_at_limit_ = progress_.ends_before(parents, bytes(4 * parents)) || (are_too_many && options_.stop_at_limits);
     if (is_at_limit_) return false;
-    progress_.require_room(parents, 4 * bytes, level);
-    if (are_too_many) progress_.require_room(4 * parents, bytes, level);
+    progress_.require_room(are_too_many ? 4 * parents : parents, bytes(4 * parents), level);
     return true;
   }
 

@@ -5,6 +5,7 @@
 #include "crease.h"
 #include "in_place.h"
 #include "memory_guard.h"
+#include "memory_plan.h"
 #include "progress.h"
 #include "red_green.h"
 #include "selection.h"
@@ -50,15 +51,15 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
 
 }  // namespace
 
-void check_room(uint64_t faces, const Options& options) {
+void check_room(const Mesh& coarse, const Options& options) {
   const Progress progress(options, {});
-  progress.require_room(faces, 1, 0);
+  const uint64_t faces = coarse.topology.face_count();
+  progress.require_room(faces, MemoryPlan(coarse, options).given(faces, 0), 0);
   if (options.max_faces > 0 && faces > options.max_faces)
     throw Error(Fault::result_too_large,
                 "The mesh itself has " + std::to_string(faces) + " faces, more than max_faces, which is " +
                     std::to_string(options.max_faces) + ". Ask for more, or send a coarser mesh.");
-  if (!Selection(options, 1).is_uniform()) return;
-  for (int level = 1; level <= options.levels; ++level) progress.require_room(faces *= 4, 1, level);
+  if (Selection(options, 1).is_uniform()) require_room_for_uniform(coarse, options, progress);
 }
 
 bool uses_hierarchy(const Options& options) {
@@ -67,7 +68,7 @@ bool uses_hierarchy(const Options& options) {
 
 Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
   check_options(options);
-  check_room(coarse.topology.face_count(), options);
+  check_room(coarse, options);
   return guard_memory([&] {
     const double diagonal = bounding_box(coarse.positions).diagonal();
     number_edges(coarse.topology);
@@ -80,7 +81,7 @@ Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& h
   check_options(options);
   if (!coarse.suits(options))
     throw Error(Fault::bad_option, "The mesh was prepared for another tension, w or crease angle.", "tension");
-  check_room(coarse.coarse().topology.face_count(), options);
+  check_room(coarse.coarse(), options);
   return guard_memory([&] { return run(coarse, bounding_box(coarse.coarse().positions).diagonal(), options, hooks); });
 }
 

@@ -46,9 +46,9 @@ struct Result {
   double error_pixels = 0;  ///< the same in pixels of the view; 0 without one
 };
 
-/// Throws `Error` result_too_large when the result is bound to pass `face_limit` or `max_faces`: before any work is
-/// done.
-void check_room(uint64_t faces, const Options& options);
+/// Throws `Error` result_too_large when the result is bound to pass `face_limit`, `memory_limit` or `max_faces`: before
+/// any work is done.
+void check_room(const Mesh& coarse, const Options& options);
 
 /// Whether a prepared mesh makes this request cheaper: it is neither uniform nor in place.
 [[nodiscard]] bool uses_hierarchy(const Options& options);

@@ -1,9 +1,11 @@
 #include "uniform.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "attributes.h"
 #include "features.h"
+#include "memory_plan.h"
 #include "normals.h"
 #include "split.h"
 #include "split_in_four.h"
@@ -13,7 +15,7 @@
 namespace papilio {
 namespace {
 
-constexpr uint64_t bytes_per_face = 110;  // of a level's arrays, while those of the level before are still there
+constexpr uint64_t bytes_per_face = 70;  // of a level's arrays, while those of the level before are still there
 
 class Uniform {
  public:
@@ -26,13 +28,10 @@ class Uniform {
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
     features_ = find_features(mesh_.topology);
-    faces_ = mesh_.topology.face_count();
     leaves_one_out_ =
         is_plain_ && !options_.edges && mesh_.attributes.empty() && !progress_.wants_levels() && features_.are_rings();
     for (level_ = 1; level_ <= options_.levels; ++level_) {
       progress_.poll();
-      faces_ *= 4;
-      progress_.require_room(faces_, bytes_per_face + bytes_per_face_of(mesh_.attributes), level_);
       progress_.report(level_ - 1, mesh_);
       make_vertices();
       progress_.poll();
@@ -131,7 +130,6 @@ class Uniform {
   const bool is_plain_;          ///< neither tension nor w: vertices follow from the level above, family by family
   bool leaves_one_out_ = false;  ///< and the last level from that two above it: nobody sees the one between
   int level_ = 0;                ///< at hand
-  uint64_t faces_ = 0;           ///< of it
   Mesh mesh_;                    ///< of the level above, with the vertices of this one once they are there
   Topology parents_;             ///< two levels above; where vertices are plain
   Features features_;
@@ -140,7 +138,20 @@ class Uniform {
 
 }  // namespace
 
+void require_room_for_uniform(const Mesh& coarse, const Options& options, const Progress& progress) {
+  const MemoryPlan plan(coarse, options);
+  uint64_t faces = coarse.topology.face_count();
+  for (int level = 1; level <= options.levels; ++level) {
+    // A level that the caller is given may be encoded while the next is made.
+    const uint64_t given_before = progress.wants_levels() ? plan.given(faces, level - 1) : 0;
+    faces *= 4;
+    progress.require_room(
+        faces, std::max(plan.made(faces, level, bytes_per_face) + given_before, plan.given(faces, level)), level);
+  }
+}
+
 Result refine_uniformly(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
+  if (progress.wants_levels()) require_room_for_uniform(coarse, options, progress);  // else check_room() has done it
   return Uniform(options, selection, progress).run(std::move(coarse));
 }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "proto/encoding_memory.h"
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -82,8 +83,9 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   options_ = options_for(parameters, bounding_box(coarse().mesh.positions));
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
+  options_.output = encoding_bytes(coarse().mesh, output_, coarse().attributes);
   options_.edges = false;
-  in_words_of_the_wire([&] { check_room(coarse_faces(), options_); });
+  in_words_of_the_wire([&] { check_room(coarse().mesh, options_); });
 }
 
 Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)

@@ -14,8 +14,8 @@ namespace {
 constexpr uint64_t arena_bytes = 128ULL << 20;  ///< glibc's malloc maps so much at a time for each of 8 arenas a core
 constexpr uint64_t base_bytes = 1ULL << 30;     ///< the program, its libraries
 constexpr uint64_t least_base_bytes = 128ULL << 20;
-/// A level, the levels above it, and what is encoded from it.
-constexpr uint64_t levels_held = 3;
+/// The memory that a refinement may take, and as much again for decoding its mesh and for gaps in the heap.
+constexpr uint64_t compute_shares = 2;
 constexpr uint64_t unlimited_compute_bytes = 8ULL << 30;
 constexpr uint64_t paused_bytes = 256ULL << 20;  ///< what a request makes in its time on the express slot
 
@@ -34,7 +34,7 @@ uint64_t address_space_needed(const Config& config) {
   const auto slots = static_cast<uint64_t>(engine.slots) + 1;  // and the express slot
   const auto paused = static_cast<uint64_t>(Admission::most_paused(engine.queue));
   const uint64_t store = engine.store.address == "memory" ? engine.store.bytes : 0;
-  return base_bytes + stacks(config) + slots * (8 * arena_bytes + levels_held * compute) + paused * paused_bytes +
+  return base_bytes + stacks(config) + slots * (8 * arena_bytes + compute_shares * compute) + paused * paused_bytes +
          2 * config.http.max_held_bytes + store + engine.result_cache_bytes + engine.mesh_cache_bytes + spare_limit;
 }
 

@@ -96,7 +96,7 @@ void add_limits(Settings& settings, Config& config) {
   settings.add("max-compute-seconds", limits.max_compute_seconds, 0, 86400,
                "Longest time of a refinement: 507; 0: no limit");
   settings.add("max-compute-bytes", limits.max_compute_bytes, uint64_t{0}, most_kept,
-               "Most memory of a refinement's level: 507; 0: no limit");
+               "Most memory of a refinement and of its encoding: 507; 0: no limit");
   settings.add("max-memory-bytes", config.max_memory_bytes, uint64_t{0}, most_kept,
                "Address space of the process; 0: what the other settings may need");
   settings.add("slots", config.engine.slots, 0, 1024,

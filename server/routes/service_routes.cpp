@@ -29,7 +29,7 @@ std::vector<NamedLimit> named_limits(const EngineOptions& options) {
       {"max_input_faces", limits.max_input_faces, "Most faces of a mesh sent: 413"},
       {"max_input_vertices", limits.max_input_vertices, "Most vertices of a mesh sent: 413"},
       {"max_output_faces", limits.max_output_faces, "Most faces of any level: 507"},
-      {"max_compute_bytes", limits.max_compute_bytes, "Most memory of a level while it is made: 507; 0: no limit"},
+      {"max_compute_bytes", limits.max_compute_bytes, "Most memory of a refinement and of its encoding: 507; 0: no limit"},
       {"max_compute_seconds", static_cast<uint64_t>(limits.max_compute_seconds),
        "Longest time of a refinement: 507; 0: no limit"},
       {"slots", static_cast<uint64_t>(options.slots), "Requests computed at once"},

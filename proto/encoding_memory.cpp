@@ -1,0 +1,45 @@
+#include "proto/encoding_memory.h"
+
+#include <algorithm>
+
+#include "proto/draco_attributes.h"
+
+namespace papilio::proto {
+namespace {
+
+// Measured on meshes of half a million faces, and rounded up; tests/unit/compute_memory_test.cpp holds them against the
+// memory that a process may have.
+constexpr uint64_t face_bytes = 75;            // corners, their order, positions on the grid and symbols
+constexpr uint64_t seam_face_bytes = 36;       // the surface cut open along an attribute's seams
+constexpr uint64_t attribute_face_bytes = 16;  // which values the corners have
+constexpr uint64_t attribute_point_bytes = 8;  // values of the points
+constexpr uint64_t value_point_bytes = 12;     // order of the values
+constexpr uint64_t component_point_bytes = 8;  // of the attribute that is being written: integers and symbols
+constexpr uint64_t stream_copies = 3;          // while it grows, and when it is handed on
+constexpr uint64_t coded_component_bytes = 2;  // of a component that is predicted, in the stream
+
+/// Bytes of a component as Draco stores it.
+uint64_t size_of(ValueType type) {
+  return with_number(type, [](auto number) { return uint64_t{sizeof number}; });
+}
+
+}  // namespace
+
+OutputBytes encoding_bytes(const Mesh& coarse, const OutputOptions& options, const AttributeEncoding& encoding) {
+  OutputBytes bytes{.face = face_bytes, .point = 0};
+  uint64_t most_components = 0;
+  const auto add = [&](ValueType type, uint64_t components) {
+    const uint64_t in_stream = size_of(type) > sizeof(float) ? size_of(type) : coded_component_bytes;
+    bytes.face += attribute_face_bytes;
+    bytes.point += attribute_point_bytes + components * (size_of(type) + stream_copies * in_stream);
+    most_components = std::max(most_components, components);
+  };
+  for (size_t a = 0; a < encoding.format.attributes.size(); ++a)
+    add(encoding.format.attributes[a].type, coarse.attributes.attributes[a].components);
+  if (!encoding.format.attributes.empty()) bytes.face += seam_face_bytes;
+  if (options.normals) add(ValueType::float32, 3);
+  if (most_components > 0) bytes.point += value_point_bytes + component_point_bytes * most_components;
+  return bytes;
+}
+
+}  // namespace papilio::proto

@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "proto/draco_writer.h"
+#include "proto/problem.h"
+#include "proto/refinement.h"
+#include "server/address_space.h"
+#include "server/heap.h"
+#include "tests/support/charts.h"
+#include "tests/support/shapes.h"
+
+// `max_compute_bytes` is a promise in both directions: what it lets through needs no more, and it lets through what
+// needs half of it. Each case runs in a process of its own that may have just so much memory.
+
+namespace papilio::proto {
+namespace {
+
+using namespace test;
+
+constexpr uint64_t slack = 12 << 20;  ///< for what does not grow with the mesh
+
+enum Outcome : int { fits, refused, runs_out, fails };
+
+uint64_t data_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmData:")) return std::stoull(line.substr(7)) << 10;
+  return 0;
+}
+
+Outcome refine_within(const std::string& draco, const QueryFields& fields, uint64_t limit, uint64_t memory) {
+  const pid_t child = fork();
+  if (child == 0) {
+    server::set_up_heap(1);
+    const rlimit data{data_bytes() + memory + slack, RLIM_INFINITY};
+    setrlimit(RLIMIT_DATA, &data);
+    try {
+      (void)Refinement(draco, parse_query(fields), {.max_compute_bytes = limit}).run();
+      _exit(fits);
+    } catch (const Problem& problem) {
+      _exit(std::string(problem.what()).find("the limit is") != std::string::npos ? refused : runs_out);
+    } catch (const std::bad_alloc&) {
+      _exit(runs_out);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? static_cast<Outcome>(WEXITSTATUS(status)) : fails;
+}
+
+/// The lowest limit, to an eighth, that lets the request through.
+uint64_t lowest_limit(const std::string& draco, const QueryFields& fields) {
+  constexpr uint64_t plenty = uint64_t{8} << 30;
+  uint64_t limit = 32 << 20;
+  while (refine_within(draco, fields, limit, plenty) == refused) limit += limit / 8;
+  return limit;
+}
+
+FormattedMesh with_values(const TriangleMesh& plain, int attributes, uint32_t components, ValueType type) {
+  FormattedMesh mesh;
+  static_cast<TriangleMesh&>(mesh) = plain;
+  for (int a = 0; a < attributes; ++a) {
+    std::vector<double> values;
+    for (size_t i = 0; i < plain.positions.size() * components; ++i)
+      values.push_back(std::round(100 + 90 * std::sin(0.37 * static_cast<double>(i))));
+    add_attribute(mesh, AttributeKind::generic, type, components, values);
+  }
+  return mesh;
+}
+
+std::string encoded(const FormattedMesh& mesh) { return write_draco_exact(mesh, mesh.format); }
+
+struct Case {
+  const char* name;
+  std::string draco;
+  QueryFields fields;
+};
+
+std::vector<Case> cases() {
+  const TriangleMesh plain = torus(16, 16);
+  const std::string positions = write_draco_exact(plain);
+  const QueryFields uniform{{"levels", "5"}};
+  const auto with = [&](const char* name, const char* value) {
+    QueryFields fields = uniform;
+    fields.emplace_back(name, value);
+    return fields;
+  };
+  return {{"positions", positions, uniform},
+          {"slowest", positions, with("output.speed", "0")},
+          {"normals", positions, with("output.normals", "true")},
+          {"w", positions, with("w", "0.05")},
+          {"tolerance", positions, {{"levels", "5"}, {"tolerance", "1e-9"}}},
+          {"in place", positions, {{"levels", "5"}, {"tolerance", "1e-9"}, {"scheme", "in-place"}}},
+          {"four float64", encoded(with_values(plain, 4, 8, ValueType::float64)), uniform},
+          {"sixteen float32", encoded(with_values(plain, 16, 2, ValueType::float32)), uniform},
+          {"one of bytes", encoded(with_values(plain, 1, 32, ValueType::uint8)), uniform},
+          {"charts", encoded(charted_faces(plain)), uniform},
+          {"float64, tolerance",
+           encoded(with_values(plain, 4, 8, ValueType::float64)),
+           {{"levels", "5"}, {"tolerance", "1e-9"}}}};
+}
+
+TEST(ComputeMemory, LimitIsNeitherPassedNorHalfUnused) {
+  if (server::is_sanitized) return;  // there memory is not what it is elsewhere
+  for (const Case& one : cases()) {
+    const uint64_t limit = lowest_limit(one.draco, one.fields);
+    EXPECT_EQ(refine_within(one.draco, one.fields, limit, limit), fits) << one.name << ": " << limit;
+    EXPECT_EQ(refine_within(one.draco, one.fields, limit, (limit - limit / 2) - slack), runs_out)
+        << one.name << ": " << limit;
+  }
+}
+
+TEST(ComputeMemory, UniformRequestIsRefusedBeforeTheWork) {
+  const std::string draco = encoded(with_values(torus(16, 16), 4, 8, ValueType::float64));
+  try {
+    const Refinement refinement(draco, parse_query({{"levels", "7"}}), {.max_compute_bytes = uint64_t{2} << 30});
+    FAIL() << "was not refused";
+  } catch (const Problem& problem) {
+    EXPECT_EQ(problem.code(), Code::result_too_large);
+    EXPECT_NE(std::string(problem.what()).find("of memory; the limit is 2048 MiB"), std::string::npos)
+        << problem.what();
+  }
+}
+
+}  // namespace
+}  // namespace papilio::proto
