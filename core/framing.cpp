@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/trigonometry.h"
 
 namespace papilio {
 namespace {
@@ -25,7 +26,7 @@ Vec3d framing_eye(const View& view, const Box& box) {
   const Vec3d right = (1 / length(sideways)) * sideways;
   const Vec3d above = cross(back, right);
 
-  const double tan_y = std::tan(view.fov_y * std::numbers::pi / 360);
+  const double tan_y = tangent_of_degrees(view.fov_y / 2);
   const double tan_x = tan_y * view.viewport[0] / view.viewport[1];
   const bool is_perspective = view.projection == Projection::perspective;
   double distance = least_distance * box.diagonal();
