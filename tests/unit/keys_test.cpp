@@ -12,7 +12,6 @@
 namespace papilio::server {
 namespace {
 
-using proto::Code;
 using proto::Problem;
 
 /// A request of which only the header is asked.
