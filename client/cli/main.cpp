@@ -184,7 +184,7 @@ std::string unexpected(const CLI::App& app) {
   std::vector<std::string> left = command.remaining();
   if (left.empty()) return "";
   const auto is_flag = [](const std::string& word) { return word.starts_with("--"); };
-  std::ranges::stable_partition(left, is_flag);
+  std::stable_partition(left.begin(), left.end(), is_flag);  // the ranges' form is beyond clang-tidy 14
   if (!called.empty() || is_flag(left[0])) return unexpected_argument(left[0], called_as(app), flags_of(command));
   std::vector<std::string_view> commands;
   for (const CLI::App* known : commands_of(app)) commands.push_back(known->get_name());

@@ -36,7 +36,7 @@ fs::path path_beside(const MeshPlace& input, std::optional<Format> to) {
   if (!to) to = input.format;
   if (!to) (void)format_of(input.path);  // refuses it by its own name
   const std::string extension = to ? "." + std::string(name_of(*to)) : input.path.extension().string();
-  const fs::path path = input.path.parent_path() / (input.path.stem().string() + ".refined" + extension);
+  fs::path path = input.path.parent_path() / (input.path.stem().string() + ".refined" + extension);
   std::error_code ignored;
   if (fs::exists(path, ignored))
     throw UsageError(path.string() + " exists already. To replace it, name it: -o " + path.string() + ".");

@@ -254,7 +254,7 @@ std::string Remote::health(Health question) const {
   request.path = prefix_ + (question == Health::ready ? "/ready" : "/health");
   const httplib::Response answer = exchange(origin_, client, request, "application/json", longest_document);
   if (answer.status != ok_status) throw error_from(answer.status, answer.body);
-  const std::string yes = question == Health::ready ? "ready" : "alive";
+  std::string yes = question == Health::ready ? "ready" : "alive";
   if (text_of(json::parse(answer.body, nullptr, false), "status") != yes)
     throw ServerError(answer.status, "", "What answers at " + origin_ + " is no papilio-server. Is the address right?");
   return yes;
