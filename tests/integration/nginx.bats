@@ -24,7 +24,7 @@ start_proxy() {
   ((EUID != 0)) || as_root=(-g 'user root;') # the workers must get into the test's folder
   for _ in {1..20}; do # nginx takes no port 0
     proxy_port=$((RANDOM % 20000 + 20000))
-    sed -i "s/^listen .*/listen 127.0.0.1:$proxy_port;/" "$folder/conf/nginx/listen.conf"
+    sed -i "s/^listen [0-9.:]*/listen 127.0.0.1:$proxy_port/" "$folder/conf/nginx/listen.conf"
     nginx -p "$folder" -c "$folder/conf/nginx.conf" "${as_root[@]}" >"$folder/access.log" 2>"$folder/error.log" 3>&- &
     proxy_pid=$!
     for _ in {1..100}; do
@@ -143,6 +143,27 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   printf 'POST /slow-body HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\nDRACO' >"$BATS_TEST_TMPDIR/slow"
   exchange "$proxy_port" <"$BATS_TEST_TMPDIR/slow" >"$BATS_TEST_TMPDIR/answer"
   run ! logged slow-body
+}
+
+read_slowly() { # PATH: 100 KB a second for 15 seconds; nginx closes no connection meanwhile
+  python3 -c 'import socket, sys, time
+client = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
+client.sendall(b"GET %s HTTP/1.1\r\nHost: x\r\n\r\n" % sys.argv[2].encode())
+for _ in range(150):
+    time.sleep(0.1)
+    if not client.recv(10000): sys.exit("closed")' "$proxy_port" "$1"
+}
+
+@test "a client that reads slowly but steadily is not cut" {
+  { cat "$coarse" && head -c 20000000 /dev/zero; } >"$BATS_TEST_TMPDIR/large.drc" # no decoder minds what follows
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large.drc" "$url/v1/meshes"
+  local path kept_proxy=$proxy kept_port=$proxy_port kept_pid=$proxy_pid outcome=0
+  path=$(header Location)
+  start_proxy slow 's/send_timeout 30s/send_timeout 5s/'
+  read_slowly "$path" || outcome=$?
+  stop_proxy "$proxy_pid"
+  proxy=$kept_proxy proxy_port=$kept_port proxy_pid=$kept_pid
+  [ "$outcome" = 0 ]
 }
 
 @test "too many requests at once from one address: 429, while another address is served" {
