@@ -9,7 +9,8 @@
 namespace papilio::test {
 
 std::vector<std::vector<uint64_t>> faces_of(std::string_view draco) {
-  const proto::FormattedMesh mesh = proto::read_draco(draco, {.max_input_vertices = 100'000'000});
+  const proto::FormattedMesh mesh =
+      proto::read_draco(draco, {.max_input_faces = 100'000'000, .max_input_vertices = 100'000'000});
   const auto corner = [&](uint32_t point) {
     const Vec3f p = mesh.positions[point];
     std::vector<uint64_t> bits;

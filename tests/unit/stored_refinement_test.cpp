@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <string>
 #include <thread>
+#include <variant>
 
 #include "proto/prepared_mesh.h"
 #include "proto/problem.h"
@@ -66,7 +68,18 @@ TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
   }
 }
 
+/// The answer, or why there is none.
+template <class Coarse>
+std::variant<EncodedLevel, std::string> answer_of(const Coarse& coarse, const Parameters& parameters) {
+  try {
+    return Refinement(coarse, parameters, {}).run();
+  } catch (const Problem& problem) {
+    return problem.what();
+  }
+}
+
 TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
+  int answered = 0;
   constexpr int requests_of_one_mesh = 8;
   for (uint32_t seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
@@ -82,9 +95,18 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
                            .speed = static_cast<int>(random() % 11),
                            .normals = random() % 4 == 0};
       SCOPED_TRACE("seed " + std::to_string(seed) + " request " + std::to_string(request));
-      expect_equal(Refinement(stored, parameters, {}).run(), Refinement(draco, parameters, {}).run());
+      const auto warm = answer_of(stored, parameters);
+      const auto cold = answer_of(draco, parameters);
+      ASSERT_EQ(warm.index(), cold.index());
+      if (const auto* refusal = std::get_if<std::string>(&warm)) {
+        EXPECT_EQ(*refusal, std::get<std::string>(cold));
+        continue;
+      }
+      ++answered;
+      expect_equal(std::get<EncodedLevel>(warm), std::get<EncodedLevel>(cold));
     }
   }
+  EXPECT_GT(answered, 600);
 }
 
 TEST(StoredRefinement, ThreadsShareOneMesh) {
