@@ -36,6 +36,12 @@ clang_stubs() {
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../.." -B "$BATS_TEST_TMPDIR/build" "${options[@]}" \
     -DPAPILIO_TESTS=OFF -DPAPILIO_WEB=OFF -DPAPILIO_DEMO=ON >/dev/null
   ! grep -qi openmesh "$BATS_TEST_TMPDIR/build/CMakeCache.txt"
+  # How much there is to compile is said before it begins; nothing is compiled here.
+  mkdir "$BATS_TEST_TMPDIR/stubs"
+  printf '#!/bin/sh\n' >"$BATS_TEST_TMPDIR/stubs/cmake"
+  chmod +x "$BATS_TEST_TMPDIR/stubs/cmake"
+  run env PATH="$BATS_TEST_TMPDIR/stubs:$PATH" "$support/compile.sh" "$BATS_TEST_TMPDIR/build" papilio papilio-server coarsen
+  [[ $output =~ ^build:\ 1[0-9][0-9]\ steps\ on\ [0-9]+\ cores,\ up\ to\ about\ [0-9]+\ min ]]
 }
 
 @test "the demo with --exit refines a bunny, and does not point to a viewer that is gone" {

@@ -5,7 +5,9 @@ set -euo pipefail
 folder=$1
 shift
 cores=$(nproc)
-steps=$(ninja -C "$folder" -n "$@" | sed -nE 's#^\[[0-9]+/([0-9]+)\].*#\1#p' | tail -n 1)
+# A copy, since a dry run of CMake's own file ends at its rule to make that file again.
+cp "$folder/build.ninja" "$folder/steps.ninja"
+steps=$(ninja -C "$folder" -f steps.ninja -n "$@" | sed -nE 's#^\[[0-9]+/([0-9]+)\].*#\1#p' | tail -n 1)
 if ((${steps:-0} > 20)); then
   printf 'build: %d steps on %d cores, up to about %d min\n' "$steps" "$cores" "$(((steps * 4 / cores + 59) / 60))"
 fi
