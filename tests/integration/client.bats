@@ -325,10 +325,12 @@ END
 
 @test "README's curl lines work when they are pasted" {
   local line count=0
+  "$PAPILIO_BUILD/coarsen" "$PAPILIO_MESHES/cgal/bunny00.off" bunny.obj 600 # as the demo makes it
+  "$papilio" convert bunny.obj bunny.drc
   while read -r line; do
     [[ $line == *http://localhost:8080/* ]]
     line=${line//http:\/\/localhost:8080/$url}
-    line=${line//build\/deps\/meshes/$PAPILIO_MESHES}
+    line=${line//build\/demo/.}
     no_proxy='*' eval "$line"
     count=$((count + 1))
   done < <(grep '^curl ' "$BATS_TEST_DIRNAME/../../README.md")
