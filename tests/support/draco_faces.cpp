@@ -23,9 +23,13 @@ std::vector<std::vector<uint64_t>> faces_of(std::string_view draco) {
   std::vector<std::vector<uint64_t>> faces;
   for (const Triangle& t : mesh.triangles) {
     std::array<std::vector<uint64_t>, 3> face{corner(t[0]), corner(t[1]), corner(t[2])};
-    std::ranges::rotate(face, std::ranges::min_element(face));
+    auto least = face;
+    for (int turn = 0; turn < 2; ++turn) {
+      std::rotate(face.begin(), face.begin() + 1, face.end());
+      least = std::min(least, face);
+    }
     std::vector<uint64_t>& all = faces.emplace_back();
-    for (const std::vector<uint64_t>& values : face) all.insert(all.end(), values.begin(), values.end());
+    for (const std::vector<uint64_t>& values : least) all.insert(all.end(), values.begin(), values.end());
   }
   std::ranges::sort(faces);
   return faces;

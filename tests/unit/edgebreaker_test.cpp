@@ -41,17 +41,17 @@ bool is_manifold(const Mesh& mesh) {
   return pairs.size() == edges && find_pinched(topology).empty() && !is_pillow;
 }
 
-/// Expects libdraco's bytes where the mesh is manifold, and else the faces of libdraco's stream. Returns which it is.
+/// Whether the bytes are libdraco's. Where they are not, expects the mesh not to be manifold, and the faces of
+/// libdraco's stream.
 bool is_the_same(const Mesh& mesh, const OutputOptions& options, const MeshFormat& format = {}) {
   const QuantizationBox box = quantization_box(mesh.positions);
   const std::vector<OutputAttribute> attributes = output_attributes(mesh, options, attribute_encoding(mesh, format));
   const std::string own = edgebreaker::write(mesh, box, options, 3, attributes);
   const std::string libdracos = write_with_libdraco(mesh, box, options, 3, attributes);
-  const bool manifold = is_manifold(mesh);
-  EXPECT_TRUE(manifold ? own == libdracos : faces_of(own) == faces_of(libdracos))
-      << mesh.topology.face_count() << " faces, speed " << options.speed << ", bits " << options.position_bits
-      << (manifold ? "" : ", not manifold");
-  return manifold;
+  if (own == libdracos) return true;
+  EXPECT_TRUE(!is_manifold(mesh) && faces_of(own) == faces_of(libdracos))
+      << mesh.topology.face_count() << " faces, speed " << options.speed << ", bits " << options.position_bits;
+  return false;
 }
 
 TEST(Edgebreaker, IsLibdracosOnShapes) {
@@ -102,13 +102,13 @@ TEST(Edgebreaker, IsLibdracosOnRefinedRealMeshes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint32_t most_faces = 30'000;
 #else
-constexpr uint32_t most_faces = 10'000'000;
+constexpr uint32_t most_faces = 3'000'000;
 #endif
 
 class EdgebreakerAtSpeed : public testing::TestWithParam<int> {};
 
 TEST_P(EdgebreakerAtSpeed, IsLibdracosOnAllRealMeshesInAllLevels) {
-  int manifold = 0;
+  int same = 0;
   int others = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(std::filesystem::path(std::getenv("PAPILIO_MESHES")) / "cgal")) {
@@ -123,11 +123,11 @@ TEST_P(EdgebreakerAtSpeed, IsLibdracosOnAllRealMeshesInAllLevels) {
     const uint32_t most = GetParam() < 2 ? most_faces / 1000 : most_faces;  // libdraco takes long
     for (int level = 0; level <= 3 && mesh.topology.face_count() <= most; ++level) {
       if (level > 0) mesh = refine(std::move(mesh), {.levels = 1}).mesh;
-      ++(is_the_same(mesh, {.position_bits = 11, .speed = GetParam()}) ? manifold : others);
+      ++(is_the_same(mesh, {.position_bits = 11, .speed = GetParam()}) ? same : others);
     }
   }
-  EXPECT_GT(manifold, 8 * others);
-  RecordProperty("manifold", manifold);
+  EXPECT_GT(same, 8 * others);
+  RecordProperty("same", same);
   RecordProperty("others", others);
 }
 
@@ -217,16 +217,12 @@ TEST(Edgebreaker, IsLibdracosWithNewNormals) {
       EXPECT_TRUE(is_the_same(build_mesh(shape), {.speed = speed, .normals = true}));
 }
 
+// Also where several fans meet at a vertex, or two faces have the same vertices.
 TEST(Edgebreaker, IsLibdracosOnEverySmallSurface) {
-  int manifold = 0;
-  int others = 0;
   for (uint32_t triangles = 1; triangles <= 8; ++triangles)
-    for (const TriangleMesh& surface : small_surfaces(triangles)) {
-      const Mesh mesh = build_mesh(surface);
-      for (int speed : {0, 2, 5, 8}) ++(is_the_same(mesh, {.position_bits = 12, .speed = speed}) ? manifold : others);
-    }
-  EXPECT_GT(manifold, 2000);
-  EXPECT_GT(others, 100);
+    for (const TriangleMesh& surface : small_surfaces(triangles))
+      for (int speed : {0, 2, 5, 8})
+        EXPECT_TRUE(is_the_same(build_mesh(surface), {.position_bits = 12, .speed = speed}));
 }
 
 TEST(Edgebreaker, IsLibdracosWithAttributesOfEveryKind) {
@@ -288,7 +284,7 @@ TEST(Edgebreaker, NonManifoldMeshesKeepTheirAttributes) {
     const Mesh mesh = build_mesh(with_attributes(triangles, 1 + random() % 3, random));
     others += is_the_same(refine(mesh, {.levels = i % 2}).mesh, {.speed = i % 11}, every_format()) ? 0 : 1;
   }
-  EXPECT_GT(others, 50);
+  EXPECT_GT(others, 20);
 }
 
 TEST(Edgebreaker, IsStoppedByItsPollAtAnyCall) {
