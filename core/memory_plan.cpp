@@ -23,7 +23,6 @@ bool is_closed(const Mesh& mesh, uint32_t h) {
 MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
     : coarse_faces_(coarse.topology.face_count()),
       coarse_points_(coarse.attributes.empty() ? coarse.topology.vertex_count : coarse.attributes.point_count),
-      open_(0),
       output_(options.output) {
   for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h) open_ += is_closed(coarse, h) ? 0 : 1;
   for (const Attribute& attribute : coarse.attributes.attributes)

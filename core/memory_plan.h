@@ -21,7 +21,7 @@ class MemoryPlan {
 
  private:
   uint64_t coarse_faces_, coarse_points_;
-  uint64_t open_;  ///< half-edges of the coarse mesh at whose edge the next face has other points, or none is
+  uint64_t open_ = 0;  ///< half-edges of the coarse mesh at whose edge the next face has other points, or none is
   uint64_t point_bytes_ = 0;   ///< of a point's values
   uint64_t corner_bytes_ = 0;  ///< of a face's point numbers
   OutputBytes output_;
