@@ -10,7 +10,9 @@ namespace papilio {
 /// What a scheme asks and tells while it works: cancellation, limits, levels. The last level is told by refine().
 class Progress {
  public:
+  /// Both must outlive this.
   Progress(const Options& options, const Hooks& hooks) : options_(options), hooks_(hooks) {}
+  Progress(const Options& options, Hooks&& hooks) = delete;
 
   /// How many may work at once.
   [[nodiscard]] int threads() const { return hooks_.threads; }

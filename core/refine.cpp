@@ -52,7 +52,8 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
 }  // namespace
 
 void check_room(const Mesh& coarse, const Options& options) {
-  const Progress progress(options, {});
+  const Hooks nobody;
+  const Progress progress(options, nobody);
   const uint64_t faces = coarse.topology.face_count();
   progress.require_room(faces, MemoryPlan(coarse, options).given(faces, 0), 0);
   if (options.max_faces > 0 && faces > options.max_faces)
