@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "proto/mesh_format.h"
 
 // Attributes between Draco's meshes and the core. For the reader and the writer only.

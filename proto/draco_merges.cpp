@@ -14,8 +14,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/array.h"
-#include "core/mesh.h"
+#include "papilio/buffer.h"
+#include "papilio/mesh.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {

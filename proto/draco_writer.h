@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "proto/mesh_format.h"
 
 namespace papilio::proto {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/options.h"
+#include "papilio/options.h"
 #include "proto/draco_writer.h"
 
 namespace papilio::proto {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::proto {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 // What the core does not need to know of a mesh's attributes, but whoever writes them back does.
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <optional>
 
-#include "core/normals.h"
+#include "papilio/mesh.h"
 
 namespace papilio::proto {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "core/framing.h"
+#include "papilio/view.h"
 #include "proto/name_suggestion.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -231,7 +231,7 @@ std::string value_text(const ParameterInfo& info, const std::vector<double>& val
 Options options_for(const Parameters& parameters, const Box& box) {
   Options options = parameters.options;
   if (!options.view) return options;
-  if (parameters.frames_target) options.view->target = centre(box);
+  if (parameters.frames_target) options.view->target = box.centre();
   if (parameters.frames_eye) options.view->eye = framing_eye(*options.view, box);
   return options;
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_writer.h"
 
 // The parameters of a refinement, as users name them. One table says all there is to say of each; the query,

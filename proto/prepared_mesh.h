@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/prepared_mesh.h"
+#include "papilio/prepared_mesh.h"
 #include "proto/draco_writer.h"
 #include "proto/limits.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.h"
+#include "papilio/error.h"
 
 namespace papilio::proto {
 

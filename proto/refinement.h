@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/limits.h"
 #include "proto/parameters.h"
 #include "proto/prepared_mesh.h"

@@ -1,6 +1,6 @@
 #include "proto/results_version.h"
 
-#include "core/algorithm_version.h"
+#include "papilio/algorithm_version.h"
 #include "proto/draco_writer.h"
 
 namespace papilio::proto {

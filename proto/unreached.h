@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/options.h"
+#include "papilio/options.h"
 #include "proto/refinement.h"
 
 namespace papilio::proto {

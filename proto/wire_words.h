@@ -2,7 +2,7 @@
 
 #include <new>
 
-#include "core/error.h"
+#include "papilio/error.h"
 #include "proto/problem.h"
 
 namespace papilio::proto {

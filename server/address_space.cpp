@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "core/array.h"
+#include "papilio/buffer.h"
 
 namespace papilio::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "core/array.h"
+#include "papilio/buffer.h"
 
 namespace papilio::server {
 namespace {

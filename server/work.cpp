@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 namespace papilio::server {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/options.h"
+#include "papilio/options.h"
 #include "proto/limits.h"
 
 namespace papilio::server {

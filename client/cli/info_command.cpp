@@ -3,7 +3,7 @@
 
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "proto/findings.h"
 #include "proto/text.h"
 

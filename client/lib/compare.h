@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::client {
 

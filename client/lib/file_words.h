@@ -4,7 +4,7 @@
 
 #include "client/lib/remote.h"
 #include "client/mesh_file/file_bytes.h"
-#include "core/error.h"
+#include "papilio/error.h"
 #include "proto/problem.h"
 
 namespace papilio::client {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "client/mesh_file/mesh_file.h"
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "proto/limits.h"
 #include "proto/mesh_format.h"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/triangle_distance.h"
-#include "core/triangle_mesh.h"
-#include "core/vec3.h"
+#include "papilio/mesh.h"
+#include "papilio/triangle_distance.h"
+#include "papilio/vec3.h"
 
 namespace papilio::client {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/vec3.h"
+#include "papilio/vec3.h"
 
 namespace papilio::client {
 

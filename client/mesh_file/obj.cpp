@@ -11,7 +11,7 @@
 #include "client/mesh_file/formats.h"
 #include "client/mesh_file/polygon.h"
 #include "client/mesh_file/text_scanner.h"
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::client {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::client {
 

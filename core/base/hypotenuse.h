@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "doubled.h"
+#include "base/doubled.h"
 
 namespace papilio {
 

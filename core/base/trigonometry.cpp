@@ -1,9 +1,9 @@
-#include "trigonometry.h"
+#include "base/trigonometry.h"
 
 #include <array>
 #include <cmath>
 
-#include "doubled.h"
+#include "base/doubled.h"
 
 namespace papilio {
 namespace {

@@ -3,17 +3,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "papilio/trigonometry.h"
+
 // Trigonometry of + - x / and roots alone, which every machine rounds alike: the standard library's differs between
 // processors and between libraries. Errors are below 0.55 units in the last place, of arc_cosine() below 1.
 
 namespace papilio {
 
-struct SineCosine {
-  double sine, cosine;
-};
-
-/// Of the angle that is `part` of `whole` full turns. `whole` is in 1..2^48.
-[[nodiscard]] SineCosine sine_and_cosine_of_turn(uint64_t part, uint64_t whole);
 [[nodiscard]] inline double sine_of_turn(uint64_t part, uint64_t whole) {
   return sine_and_cosine_of_turn(part, whole).sine;
 }

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::proto::edgebreaker {
 

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/array.h"
-#include "core/base/logarithm.h"
+#include "papilio/buffer.h"
+#include "proto/edgebreaker/logarithm.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/array.h"
+#include "papilio/buffer.h"
 
 namespace papilio::proto::edgebreaker {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/base/trigonometry.h"
+#include "papilio/trigonometry.h"
 
 namespace papilio::server {
 namespace {

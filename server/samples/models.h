@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 // Stand-ins for the models of the paper's Table 1, which cannot be found: the same counts and topology, made by
 // program. The server's own samples. Lengths in centimetres, z up. Closed, wound counter-clockwise seen from outside,

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "proto/draco_writer.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"

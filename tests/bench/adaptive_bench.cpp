@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <memory>
 
-#include "core/normals.h"
-#include "core/refine.h"
+#include "core/mesh/normals.h"
+#include "papilio/refine.h"
 #include "proto/output_attribute.h"
 #include "proto/refinement.h"
 #include "tests/bench/draco_peer.h"

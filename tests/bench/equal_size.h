@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 // Results of a wanted size: one parameter of the refinement is bisected until the number of faces fits.
 

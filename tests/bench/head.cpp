@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/simplify.h"
 

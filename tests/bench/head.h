@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/triangle_mesh.h"
-#include "core/view.h"
+#include "core/criteria/view_culling.h"
+#include "papilio/mesh.h"
 
 namespace papilio::bench {
 

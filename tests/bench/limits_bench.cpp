@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 

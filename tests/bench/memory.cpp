@@ -7,7 +7,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/openmesh_peer.h"
 #include "tests/bench/report.h"

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::bench {
 

@@ -2,7 +2,7 @@
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 // OpenMesh's ModifiedButterflyT, the fastest other butterfly, in float.
 

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <limits>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/bench/equal_size.h"
 #include "tests/bench/head.h"
 #include "tests/bench/markdown_table.h"

@@ -2,7 +2,7 @@
 #include <iostream>
 #include <optional>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "server/samples/models.h"
 #include "tests/bench/head.h"
 #include "tests/bench/markdown_table.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/edgebreaker/writer.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/soup.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 #include "proto/parameters.h"
 
 namespace papilio::soak {

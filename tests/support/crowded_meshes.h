@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 // Meshes whose faces crowd at one vertex or edge: where work that is quadratic in the valence shows.
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::test {
 

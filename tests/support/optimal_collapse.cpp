@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "tests/support/quadric.h"
 
 namespace papilio::test {

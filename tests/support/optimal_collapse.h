@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::test {
 

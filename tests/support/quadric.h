@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/vec3.h"
+#include "papilio/vec3.h"
 
 namespace papilio::test {
 

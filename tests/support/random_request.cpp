@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "core/base/trigonometry.h"
-#include "core/error.h"
+#include "core/criteria/camera.h"
+#include "papilio/error.h"
 #include "tests/support/shapes.h"
 
 namespace papilio::test {

@@ -2,9 +2,8 @@
 
 #include <random>
 
-#include "core/mesh.h"
-#include "core/options.h"
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
+#include "papilio/options.h"
 
 namespace papilio::test {
 

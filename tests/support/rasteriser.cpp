@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/normals.h"
+#include "core/mesh/normals.h"
 
 namespace papilio::test {
 namespace {

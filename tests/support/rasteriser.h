@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.h"
-#include "core/view.h"
+#include "core/criteria/view_culling.h"
+#include "papilio/mesh.h"
 
 // A small software rasteriser: what a viewer would draw of a mesh, so that tests can compare pictures.
 

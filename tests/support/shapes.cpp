@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 
 namespace papilio::test {
 namespace {

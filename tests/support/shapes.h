@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
 
 // Meshes made by formula, for tests. All are wound counter-clockwise seen from outside.
 

@@ -1,6 +1,6 @@
 #include "tests/support/simplify.h"
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "tests/support/decimation.h"
 
 namespace papilio::test {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 namespace papilio::test {
 

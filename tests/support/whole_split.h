@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/mesh.h"
-#include "core/split_plan.h"
+#include "core/mesh/split_plan.h"
+#include "papilio/mesh.h"
 
 // What tests of the butterfly's rules ask of a whole mesh.
 

@@ -6,7 +6,7 @@
 #include <new>
 #include <string>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "server/admission.h"
 #include "server/cache/lru.h"
 #include "tests/support/shapes.h"

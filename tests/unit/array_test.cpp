@@ -1,4 +1,4 @@
-#include "core/array.h"
+#include "papilio/buffer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/attributes.h"
+#include "core/mesh/attributes.h"
 
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/charts.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"

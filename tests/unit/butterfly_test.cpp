@@ -1,13 +1,13 @@
-#include "core/butterfly.h"
+#include "core/rules/butterfly.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "core/fan.h"
-#include "core/in_place.h"
-#include "core/stencil.h"
+#include "core/mesh/fan.h"
+#include "core/rules/stencil.h"
+#include "core/schemes/in_place.h"
 #include "tests/support/shapes.h"
 #include "tests/support/whole_split.h"
 

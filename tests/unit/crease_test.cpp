@@ -1,12 +1,12 @@
-#include "core/crease.h"
+#include "core/mesh/crease.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/fan.h"
-#include "core/refine.h"
+#include "core/mesh/fan.h"
+#include "papilio/refine.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"

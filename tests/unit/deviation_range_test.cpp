@@ -1,4 +1,4 @@
-#include "core/deviation_range.h"
+#include "core/criteria/deviation_range.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "core/butterfly.h"
-#include "core/deviation.h"
-#include "core/normals.h"
-#include "core/refine.h"
+#include "core/criteria/deviation.h"
+#include "core/mesh/normals.h"
+#include "core/rules/butterfly.h"
+#include "papilio/refine.h"
 #include "tests/support/shapes.h"
 
 // Ranges against the deviations themselves, for good faces and the worst.

@@ -1,4 +1,4 @@
-#include "core/deviation.h"
+#include "core/criteria/deviation.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/triangle_distance.h"
+#include "papilio/triangle_distance.h"
 
 // The short way to the distance from two triangles against the long one, which asks each triangle for itself.
 

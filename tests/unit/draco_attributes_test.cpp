@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/problem.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/problem.h"

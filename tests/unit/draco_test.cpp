@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_header.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"

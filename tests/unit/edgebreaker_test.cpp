@@ -11,7 +11,8 @@
 #include <utility>
 
 #include "client/mesh_file/mesh_file.h"
-#include "core/refine.h"
+#include "core/mesh/connect.h"
+#include "papilio/refine.h"
 #include "proto/edgebreaker/positions.h"
 #include "tests/support/crowded_meshes.h"
 #include "tests/support/draco_faces.h"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "client/mesh_file/mesh_file.h"
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/invariants.h"
 
 // Every mesh of libcgal-demo's data folder, whatever is wrong with it: it is refined without a crack, or refused with

@@ -1,11 +1,11 @@
-#include "core/flatness.h"
+#include "core/criteria/flatness.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/normals.h"
+#include "core/mesh/normals.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {

@@ -1,8 +1,10 @@
-#include "core/framing.h"
+#include "papilio/view.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "core/criteria/camera.h"
 
 namespace papilio {
 namespace {
@@ -42,7 +44,7 @@ TEST(Framing, WholeBoxIsInThePictureAndFillsIt) {
     const auto side = [&] { return static_cast<float>(between(0, 10)); };
     box.max = {box.min.x + side(), box.min.y + side(), box.min.z + side()};
     View view;
-    view.target = centre(box);
+    view.target = box.centre();
     if (round % 3 == 0) view.target = view.target + Vec3d{between(-5, 5), between(-5, 5), between(-5, 5)};
     view.up = {between(-1, 1), between(-1, 1), round % 2 == 0 ? 0 : between(-1, 1)};
     if (round % 5 == 0) view.up = {0, 0, round % 10 == 0 ? 1.0 : -1.0};

@@ -4,7 +4,8 @@
 #include <ctime>
 #include <functional>
 
-#include "core/simplify.h"
+#include "core/criteria/camera.h"
+#include "core/simplify/simplify.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "tests/support/crowded_meshes.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/array.h"
+#include "papilio/buffer.h"
 
 namespace papilio::server {
 namespace {

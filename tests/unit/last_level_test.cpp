@@ -4,14 +4,14 @@
 #include <memory>
 #include <random>
 
-#include "core/features.h"
-#include "core/flatness.h"
-#include "core/hierarchy.h"
-#include "core/level_choice.h"
-#include "core/normals.h"
-#include "core/part.h"
-#include "core/refine.h"
-#include "core/selection.h"
+#include "core/criteria/flatness.h"
+#include "core/criteria/selection.h"
+#include "core/hierarchy/hierarchy.h"
+#include "core/hierarchy/level_choice.h"
+#include "core/mesh/normals.h"
+#include "core/mesh/part.h"
+#include "core/rules/features.h"
+#include "papilio/refine.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "core/levels.h"
+#include "core/hierarchy/levels.h"
 
 #include <gtest/gtest.h>
 

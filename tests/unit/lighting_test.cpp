@@ -1,12 +1,13 @@
-#include "core/lighting.h"
+#include "core/criteria/lighting.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "core/normals.h"
-#include "core/refine.h"
+#include "core/criteria/camera.h"
+#include "core/mesh/normals.h"
+#include "papilio/refine.h"
 #include "tests/support/rasteriser.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"

@@ -1,4 +1,4 @@
-#include "core/base/logarithm.h"
+#include "proto/edgebreaker/logarithm.h"
 
 #include <gtest/gtest.h>
 

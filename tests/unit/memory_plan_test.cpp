@@ -1,8 +1,8 @@
-#include "core/memory_plan.h"
+#include "core/hierarchy/memory_plan.h"
 
 #include <gtest/gtest.h>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/charts.h"
 #include "tests/support/shapes.h"
 

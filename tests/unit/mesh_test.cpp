@@ -1,4 +1,4 @@
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "core/error.h"
+#include "core/mesh/connect.h"
+#include "papilio/error.h"
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 

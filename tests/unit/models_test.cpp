@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/mesh.h"
+#include "papilio/mesh.h"
 #include "tests/support/invariants.h"
 
 namespace papilio {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "tests/support/invariants.h"

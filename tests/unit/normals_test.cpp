@@ -1,4 +1,4 @@
-#include "core/normals.h"
+#include "core/mesh/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "core/four.h"
+#include "core/simd/float4.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {

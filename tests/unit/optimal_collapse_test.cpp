@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "client/lib/compare.h"
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/invariants.h"
 #include "tests/support/quadric.h"
 #include "tests/support/shapes.h"

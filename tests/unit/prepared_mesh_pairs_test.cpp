@@ -6,8 +6,8 @@
 #include <random>
 #include <string>
 
-#include "core/prepared_mesh.h"
-#include "core/refine.h"
+#include "papilio/prepared_mesh.h"
+#include "papilio/refine.h"
 #include "tests/support/random_request.h"
 #include "tests/support/shapes.h"
 

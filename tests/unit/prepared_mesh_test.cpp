@@ -1,4 +1,4 @@
-#include "core/prepared_mesh.h"
+#include "papilio/prepared_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {

@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/algorithm_version.h"
 #include "core/base/trigonometry.h"
-#include "core/four.h"
-#include "core/refine.h"
+#include "core/simd/float4.h"
+#include "papilio/algorithm_version.h"
+#include "papilio/refine.h"
 #include "proto/draco_writer.h"
 #include "proto/parameters.h"
 #include "proto/results_version.h"

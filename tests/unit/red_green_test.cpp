@@ -1,4 +1,4 @@
-#include "core/red_green.h"
+#include "core/schemes/red_green.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <thread>
 #include <tuple>
 
-#include "core/four.h"
-#include "core/refine.h"
+#include "core/simd/float4.h"
+#include "papilio/refine.h"
 #include "server/samples/models.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"

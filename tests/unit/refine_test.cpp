@@ -1,4 +1,4 @@
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "tests/support/invariants.h"
 #include "tests/support/openmesh_oracle.h"
 #include "tests/support/real_mesh.h"

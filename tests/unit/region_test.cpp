@@ -1,4 +1,4 @@
-#include "core/region.h"
+#include "core/mesh/region.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/selection.h"
+#include "core/criteria/selection.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <random>
 
 #include "client/lib/compare.h"
-#include "core/refine.h"
+#include "core/criteria/camera.h"
+#include "papilio/refine.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"

@@ -1,4 +1,4 @@
-#include "core/simplify.h"
+#include "core/simplify/simplify.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,9 @@
 #include <map>
 #include <set>
 
-#include "core/normals.h"
+#include "core/criteria/camera.h"
+#include "core/criteria/view_culling.h"
+#include "core/mesh/normals.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"

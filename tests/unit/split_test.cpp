@@ -1,11 +1,11 @@
-#include "core/split.h"
+#include "core/split/split.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <set>
 
-#include "core/split_pattern.h"
+#include "core/split/split_pattern.h"
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 

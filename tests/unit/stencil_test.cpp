@@ -1,4 +1,4 @@
-#include "core/stencil.h"
+#include "core/rules/stencil.h"
 
 #include <gtest/gtest.h>
 

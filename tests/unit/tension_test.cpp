@@ -1,13 +1,13 @@
-#include "core/tension.h"
+#include "core/rules/tension.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/butterfly.h"
-#include "core/normals.h"
-#include "core/refine.h"
+#include "core/mesh/normals.h"
+#include "core/rules/butterfly.h"
+#include "papilio/refine.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 #include "tests/support/whole_split.h"

@@ -1,4 +1,4 @@
-#include "core/transition.h"
+#include "core/hierarchy/transition.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/selection.h"
+#include "core/criteria/selection.h"
 #include "tests/support/shapes.h"
 
 // Of a level that is made for one request transition faces are judged four at a time in floats, of one that is kept

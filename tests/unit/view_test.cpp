@@ -1,4 +1,4 @@
-#include "core/view.h"
+#include "core/criteria/view_culling.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "core/error.h"
-#include "core/normals.h"
-#include "core/split_in_four.h"
+#include "core/criteria/camera.h"
+#include "core/mesh/normals.h"
+#include "core/split/split_in_four.h"
+#include "papilio/error.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {

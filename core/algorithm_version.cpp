@@ -1,9 +1,0 @@
-#include "algorithm_version.h"
-
-#include <meshoptimizer.h>
-
-namespace papilio {
-
-int simplifier_version() { return MESHOPTIMIZER_VERSION; }
-
-}  // namespace papilio

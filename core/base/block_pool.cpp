@@ -1,0 +1,162 @@
+#include "papilio/buffer.h"
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+#include <array>
+#include <bit>
+#include <mutex>
+
+namespace papilio {
+namespace {
+
+// Under the address sanitizer nothing is kept: it is to see who reads what was given back.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool keeps = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool keeps = false;
+#else
+constexpr bool keeps = true;
+#endif
+#else
+constexpr bool keeps = true;
+#endif
+
+constexpr size_t alignment = 64;
+constexpr size_t huge_page = size_t{1} << 21;
+
+// Sizes come in classes, four to each doubling, so that what one level gives back fits the next request's.
+constexpr unsigned steps = 4;
+constexpr size_t least = 256;
+
+/// The class of a size, and the largest size that is in it.
+struct SizeClass {
+  unsigned index;
+  size_t bytes;
+};
+
+SizeClass class_of(size_t bytes) {
+  if (bytes <= least) return {0, least};
+  const auto doubling = static_cast<unsigned>(std::bit_width(bytes - 1)) - 1;  // 2^doubling < bytes <= 2^(doubling + 1)
+  const size_t step = (size_t{1} << doubling) / steps;
+  const size_t count = (bytes - (size_t{1} << doubling) + step - 1) / step;  // 1 to 4
+  const unsigned first = static_cast<unsigned>(std::bit_width(least)) - 1;
+  return {(doubling - first) * steps + static_cast<unsigned>(count), (size_t{1} << doubling) + count * step};
+}
+
+#if defined(__linux__)
+// Huge pages are asked for a range of addresses, which stays so after the heap has taken it back: what small things
+// then lie in it would come to fill pages of 2 MiB. So large blocks do not lie in the heap.
+constexpr bool maps_large_blocks = keeps;
+
+void* map_block(size_t bytes) {
+  void* mapped = mmap(nullptr, bytes + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  auto* const all = static_cast<std::byte*>(mapped);
+  const size_t before = (huge_page - std::bit_cast<uintptr_t>(all) % huge_page) % huge_page;
+  if (before > 0) (void)munmap(all, before);
+  (void)munmap(all + before + bytes, huge_page - before);
+  (void)madvise(all + before, bytes, MADV_HUGEPAGE);  // where there are none, small pages will do
+  return all + before;
+}
+
+void unmap_block(void* block, size_t bytes) noexcept { (void)munmap(block, bytes); }
+#else
+constexpr bool maps_large_blocks = false;
+void* map_block(size_t) { throw std::bad_alloc(); }
+void unmap_block(void*, size_t) noexcept {}
+#endif
+
+void* new_block(size_t bytes) {
+  if (maps_large_blocks && bytes >= huge_page) return map_block(bytes);
+  return ::operator new(bytes, std::align_val_t(alignment));
+}
+
+void delete_block(void* block, size_t bytes) noexcept {
+  if (maps_large_blocks && bytes >= huge_page)
+    unmap_block(block, bytes);
+  else
+    ::operator delete(block, std::align_val_t(alignment));
+}
+
+/// The blocks kept, each a link to the next of its class.
+class Spares {
+ public:
+  [[nodiscard]] void* take(SizeClass size) noexcept {
+    const std::scoped_lock lock(mutex_);
+    Link* block = first_[size.index];
+    if (block == nullptr) return nullptr;
+    first_[size.index] = block->next;
+    bytes_ -= size.bytes;
+    return block;
+  }
+  /// False where that would be too much.
+  [[nodiscard]] bool keep(void* block, SizeClass size) noexcept {
+    const std::scoped_lock lock(mutex_);
+    if (bytes_ + size.bytes > spare_limit) return false;
+    first_[size.index] = new (block) Link{first_[size.index], size.bytes};
+    bytes_ += size.bytes;
+    return true;
+  }
+  void release() noexcept {
+    std::array<Link*, classes> all{};
+    {
+      const std::scoped_lock lock(mutex_);
+      std::swap(all, first_);
+      bytes_ = 0;
+    }
+    for (Link* block : all)
+      while (block != nullptr) {
+        Link* next = block->next;
+        delete_block(block, block->bytes);
+        block = next;
+      }
+  }
+  [[nodiscard]] size_t bytes() noexcept {
+    const std::scoped_lock lock(mutex_);
+    return bytes_;
+  }
+
+ private:
+  struct Link {
+    Link* next;
+    size_t bytes;
+  };
+  static constexpr size_t classes = size_t{64} * steps;
+
+  std::mutex mutex_;
+  std::array<Link*, classes> first_{};
+  size_t bytes_ = 0;
+};
+
+Spares& spares() {
+  static Spares& all = *new Spares;  // never destroyed: arrays may outlive any static
+  return all;
+}
+
+}  // namespace
+
+void* take_block(size_t bytes) {
+  const SizeClass size = class_of(bytes);
+  if (void* block = keeps ? spares().take(size) : nullptr) return block;
+  try {
+    return new_block(size.bytes);
+  } catch (const std::bad_alloc&) {
+    if (spares().bytes() == 0) throw;
+    release_spare_blocks();
+    return new_block(size.bytes);
+  }
+}
+
+void give_block(void* block, size_t bytes) noexcept {
+  const SizeClass size = class_of(bytes);
+  if (!keeps || !spares().keep(block, size)) delete_block(block, size.bytes);
+}
+
+size_t spare_bytes() noexcept { return spares().bytes(); }
+
+void release_spare_blocks() noexcept { spares().release(); }
+
+}  // namespace papilio

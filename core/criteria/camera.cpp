@@ -1,0 +1,206 @@
+#include "criteria/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/hypotenuse.h"
+#include "base/trigonometry.h"
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+/// The small positive number of section 3.2.2: the sine of the angle by which a face must be turned past
+/// edge-on.
+constexpr double away_epsilon = 1e-3;
+
+bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void require(bool good, const char* option, const char* what) {
+  if (!good) throw Error(Fault::bad_option, what, option);
+}
+
+void check(const View& view) {
+  require(is_finite(view.eye), "view.eye", "The eye must be three finite numbers.");
+  require(is_finite(view.target), "view.target", "The target must be three finite numbers.");
+  require(is_finite(view.up), "view.up", "The up direction must be three finite numbers.");
+  require(view.fov_y > 0 && view.fov_y < 180, "view.fov_y", "The field of view must lie between 0 and 180 degrees.");
+  require(view.viewport[0] > 0 && view.viewport[1] > 0 && std::isfinite(view.viewport[0]) &&
+              std::isfinite(view.viewport[1]),
+          "view.viewport", "The viewport must be two positive numbers of pixels.");
+  require(view.near >= 0 && std::isfinite(view.near), "view.near", "The near plane's distance must not be negative.");
+  require(view.edge_pixels >= 0, "view.edge_pixels", "The length in pixels must not be negative.");
+  require(view.error_pixels >= 0, "view.error_pixels", "The deviation in pixels must not be negative.");
+  for (Vec3d light : view.lights)
+    require(length(light) > 0 && std::isfinite(length(light)), "view.lights",
+            "Each light must be a direction, three finite numbers that are not all zero.");
+}
+
+Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
+
+}  // namespace
+
+Camera::Camera(const View& view) : perspective_(view.projection == Projection::perspective), eye_(view.eye) {
+  check(view);
+  const double distance = length(view.target - view.eye);
+  require(distance > 0 && std::isfinite(distance), "view.target",
+          "The target must be another point than the eye, at a distance that can be computed.");
+  forward_ = unit(view.target - view.eye);
+  require(length(view.up) > 0 && std::isfinite(length(view.up)), "view.up",
+          "The up direction must have a length that can be computed.");
+  const Vec3d sideways = cross(forward_, unit(view.up));
+  require(length(sideways) > 1e-9, "view.up",
+          "The up direction must not point along the line of sight. Choose another up.");
+  right_ = unit(sideways);
+  up_ = cross(right_, forward_);
+  near_ = view.near > 0 ? view.near : 1e-3 * distance;
+
+  const double tan_y = tangent_of_degrees(view.fov_y / 2);
+  const double tan_x = tan_y * view.viewport[0] / view.viewport[1];
+  const double half_height = perspective_ ? tan_y : tan_y * distance;
+  pixels_per_unit_ = view.viewport[1] / (2 * half_height);
+  const auto side = [&](Vec3d direction, double tangent) {
+    if (!perspective_) return Plane{-1.0 * direction, -dot(direction, eye_) - tangent * distance};
+    const Vec3d normal = unit(tangent * forward_ - direction);
+    return Plane{normal, dot(normal, eye_)};
+  };
+  planes_ = {side(right_, tan_x), side(-1.0 * right_, tan_x), side(up_, tan_y), side(-1.0 * up_, tan_y),
+             Plane{forward_, dot(forward_, eye_) + near_}};
+}
+
+bool Camera::is_outside(Vec3d centre, double radius, unsigned planes) const {
+  for (unsigned i = 0; i < planes_.size(); ++i)
+    if ((planes >> i & 1U) != 0 && dot(planes_[i].normal, centre) - planes_[i].offset < -radius) return true;
+  return false;
+}
+
+unsigned Camera::planes_through(const Box& box) const {
+  constexpr double margin = 1e-9;
+  const auto least = [&](const Plane& p) {
+    double sum = -p.offset;
+    double size = std::abs(p.offset);
+    const auto add = [&](double n, double low, double high) {
+      sum += std::min(n * low, n * high);
+      size += std::abs(n) * std::max(std::abs(low), std::abs(high));
+    };
+    add(p.normal.x, box.min.x, box.max.x);
+    add(p.normal.y, box.min.y, box.max.y);
+    add(p.normal.z, box.min.z, box.max.z);
+    return sum - margin * size;
+  };
+  unsigned through = 0;
+  for (unsigned i = 0; i < planes_.size(); ++i) through |= least(planes_[i]) > 0 ? 0U : 1U << i;
+  return through;
+}
+
+double Camera::highest_pixels_per_unit(const Box& box) const {
+  constexpr double rounding = 1 + 1e-9;
+  double depth = -dot(forward_, eye_);
+  const auto add = [&](double n, double low, double high) { depth += std::min(n * low, n * high); };
+  add(forward_.x, box.min.x, box.max.x);
+  add(forward_.y, box.min.y, box.max.y);
+  add(forward_.z, box.min.z, box.max.z);
+  return rounding * pixels_per_unit_at(depth);
+}
+
+/// The sine is compared as a square, without a root.
+bool Camera::is_away(Vec3d point, Vec3d normal) const {
+  const Vec3d sight = perspective_ ? point - eye_ : forward_;
+  const double along = dot(sight, normal);
+  return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
+}
+
+namespace {
+
+/// What is farther is not looked at in floats.
+constexpr double most_in_floats = 1e18;
+
+/// As far from the origin as anything in the box.
+Vec3d farthest_corner(const Box& box) {
+  return {std::max(std::abs(box.min.x), std::abs(box.max.x)), std::max(std::abs(box.min.y), std::abs(box.max.y)),
+          std::max(std::abs(box.min.z), std::abs(box.max.z))};
+}
+
+}  // namespace
+
+Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigned planes)
+    : is_certain_((planes >> near_plane & 1U) == 0) {
+  constexpr float nowhere = std::numeric_limits<float>::max();
+  double farthest = 0;  // plane from the origin
+  for (size_t i = 0; i < 4; ++i) {
+    if (std::abs(camera.planes_[i].offset) > most_in_floats) is_certain_ = false;
+    const Plane plane = is_certain_ && (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
+    normals_.x[i] = static_cast<float>(plane.normal.x);
+    normals_.y[i] = static_cast<float>(plane.normal.y);
+    normals_.z[i] = static_cast<float>(plane.normal.z);
+    offsets_[i] = static_cast<float>(plane.offset);
+    if (plane.offset != -nowhere) farthest = std::max(farthest, std::abs(plane.offset));
+  }
+  margin_ = static_cast<float>(2e-6 * (length(farthest_corner(box)) + farthest));
+}
+
+Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1 : 0) {
+  const Vec3d high = farthest_corner(box);
+  from_ = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
+  // No less than the distance of anything in the box, and than the products above.
+  const double size = length(high) + length(from_);
+  rounding_ = 1e-6 * size;
+  surely_away_ = rounding_ + 1.001 * away_epsilon * size;
+  const bool fits = size < most_in_floats;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  from_in_floats_ = fits ? to_float(from_) : Vec3f{};
+  surely_towards_in_floats_ = fits ? static_cast<float>(-rounding_) : -infinity;
+  surely_away_in_floats_ = fits ? static_cast<float>(surely_away_) : infinity;
+}
+
+double Camera::facing(Vec3d point, Vec3d normal) const {
+  if (!perspective_) return -dot(forward_, normal);
+  const Vec3d sight = point - eye_;
+  const double distance = length(sight);
+  return distance > 0 ? -dot(sight, normal) / distance : 0;
+}
+
+std::array<double, 2> Camera::project(Vec3d relative) const {
+  const double scale = pixels_per_unit_at(dot(forward_, relative));
+  return {scale * dot(right_, relative), scale * dot(up_, relative)};
+}
+
+double Camera::projected_length(Vec3d a, Vec3d b) const {
+  const auto [x, y] = projected_difference(a, b);
+  return hypotenuse(x, y);
+}
+
+/// What is not near the border is decided by squares, without a root; and in perspective by products with both depths,
+/// without a division.
+bool Camera::looks_shorter(Vec3d a, Vec3d b, double pixels) const {
+  constexpr double rounding = 1e-9;
+  const Vec3d from_eye_a = a - eye_;
+  const Vec3d from_eye_b = b - eye_;
+  const double depth_a = dot(forward_, from_eye_a);
+  const double depth_b = dot(forward_, from_eye_b);
+  if (perspective_ && depth_a >= near_ && depth_b >= near_ && pixels_per_unit_ < most_pixels_per_unit * near_) {
+    const double x = depth_b * dot(right_, from_eye_a) - depth_a * dot(right_, from_eye_b);
+    const double y = depth_b * dot(up_, from_eye_a) - depth_a * dot(up_, from_eye_b);
+    const double seen = pixels_per_unit_ * pixels_per_unit_ * (x * x + y * y);
+    const double border = pixels * depth_a * depth_b * (pixels * depth_a * depth_b);
+    if (seen > (1 + rounding) * border) return false;
+    if (seen < (1 - rounding) * border) return true;
+  }
+  return projected_length(a, b) < pixels;
+}
+
+std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {
+  a -= eye_;
+  b -= eye_;
+  const double depth_a = dot(forward_, a);
+  const double depth_b = dot(forward_, b);
+  if (depth_a < near_ && depth_b < near_) return {0, 0};
+  if (depth_a < near_) a += ((near_ - depth_a) / (depth_b - depth_a)) * (b - a);
+  if (depth_b < near_) b += ((near_ - depth_b) / (depth_a - depth_b)) * (a - b);
+  const auto [ax, ay] = project(a);
+  const auto [bx, by] = project(b);
+  return {bx - ax, by - ay};
+}
+
+}  // namespace papilio

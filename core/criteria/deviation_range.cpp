@@ -1,0 +1,120 @@
+#include "criteria/deviation_range.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/index_range.h"
+#include "base/parallel.h"
+#include "simd/float4.h"
+
+namespace papilio {
+namespace {
+
+[[nodiscard, gnu::always_inline]] inline Four rooms_of_four(const Mesh& mesh, const FourNumbers& faces) {
+  constexpr float least_sine = 1e-4F;  // of narrower ones too little is certain
+  constexpr float rounding = 0.99F;
+  const auto corners = [&](uint32_t i) PAPILIO_INLINED {
+    const auto& origin = mesh.topology.origin;
+    return at(mesh.positions,
+              {origin[3 * faces[0] + i], origin[3 * faces[1] + i], origin[3 * faces[2] + i], origin[3 * faces[3] + i]});
+  };
+  const FourVectors a = corners(0);
+  const FourVectors ab = corners(1) - a;
+  const FourVectors ac = corners(2) - a;
+  const FourVectors bc = ac - ab;
+  const FourVectors normal = cross(ab, ac);
+  const Four area_squared = dot(normal, normal);  // of the parallelogram
+  const Four longest_squared = larger(dot(ab, ab), larger(dot(ac, ac), dot(bc, bc)));
+  const auto is_wide =
+      is_usual(longest_squared) & (area_squared > least_sine * least_sine * longest_squared * longest_squared);
+  // A side's middle is half as far from another side as the corner where it ends.
+  const Four squared = is_wide ? area_squared / longest_squared : Four{};
+  return 0.5F * rounding * root(squared);
+}
+
+/// Where what an edge's range is made of lies in its arrays.
+struct Place {
+  Place() = default;
+  [[gnu::always_inline]] Place(const DeviationBounds& of, uint32_t edge)
+      : made(of.tried.before.empty() ? edge : of.tried.before[edge]) {
+    const Topology& mesh = of.mesh.topology;
+    const uint32_t h = mesh.half_edge[edge];
+    a = mesh.origin[h];
+    b = mesh.tip(h);
+    face = Topology::face(h);
+    is_smooth = mesh.kind[edge] == EdgeKind::smooth;
+    twin_face = is_smooth ? Topology::face(mesh.twin[h]) : face;
+  }
+  uint32_t made, a, b, face, twin_face;
+  bool is_smooth;
+};
+
+/// The room on both sides; none on a curve, where the deviation is another.
+[[nodiscard, gnu::always_inline]] inline float room(const DeviationBounds& of, const Place& place) {
+  return place.is_smooth ? std::min(of.rooms[place.face], of.rooms[place.twin_face]) : 0;
+}
+
+[[gnu::always_inline]] inline void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
+  constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
+  const auto points = [place](const Array<Vec3f>& from, uint32_t Place::*which) PAPILIO_INLINED {
+    return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
+  };
+  const FourVectors a = points(of.mesh.positions, &Place::a);
+  const FourVectors along = points(of.mesh.positions, &Place::b) - a;
+  const FourVectors off = points(of.made, &Place::made) - a - 0.5F * along;
+  const Four along_squared = dot(along, along);
+  const Four off_squared = dot(off, off);
+  const Four rooms{room(of, place[0]), room(of, place[1]), room(of, place[2]), room(of, place[3])};
+  const auto are_usual = is_usual(along_squared);
+  const auto has_room = are_usual & (off_squared < rooms * rooms);
+
+  // The foot of the vertex on a face's plane is in the face, or beyond the edge and no other side; then the edge is
+  // nearest.
+  const FourVectors inward = cross(along, off);
+  const Four to_edge = dot(inward, inward) / along_squared;
+  const FourVectors normal = points(of.normals, &Place::face);
+  const FourVectors twin_normal = points(of.normals, &Place::twin_face);
+  const Four height = dot(off, normal);
+  const Four twin_height = dot(off, twin_normal);
+  const Four to_face = dot(inward, normal) >= Four{} ? height * height : to_edge;
+  const Four to_twin_face = dot(inward, twin_normal) <= Four{} ? twin_height * twin_height : to_edge;
+
+  constexpr float smallest = std::numeric_limits<float>::min();
+  const Four distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
+  const Four most_off = sum_of_magnitudes(off);
+  const Four unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
+  const Four least = has_room ? larger(distance - unsure, Four{}) : Four{};
+  const Four most = (are_usual ? distance : most_off) + unsure;
+  for (int i = 0; i < 4; ++i) ranges[i] = {least[i], most[i]};
+}
+
+}  // namespace
+
+Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads) {
+  const uint32_t count = mesh.topology.face_count();
+  const Subset of((count + 3) / 4, fours);
+  Array<float> rooms(count);
+  for_each_part(parts_of(4 * of.size(), threads), of.size(), [&](uint32_t, uint32_t first, uint32_t last) {
+    run_wide([&]() PAPILIO_INLINED {
+      for (uint32_t i = first; i < last; ++i) {
+        const uint32_t most = count - 1;
+        const uint32_t f = 4 * of[i];
+        const Four four = rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
+        for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
+      }
+    });
+  });
+  return rooms;
+}
+
+void DeviationBounds::find(std::span<const uint32_t> edges, DeviationRange* ranges) const {
+  std::array<Place, most_at_once + 3> places;
+  run_wide([&]() PAPILIO_INLINED {
+    for (size_t i = 0; i < edges.size(); ++i) places[i] = Place(*this, edges[i]);
+    for (size_t i = 0; i < 3; ++i) places[edges.size() + i] = places[0];
+    for (size_t i = 0; i < edges.size(); i += 4) find_four(*this, &places[i], ranges + i);
+  });
+}
+
+}  // namespace papilio

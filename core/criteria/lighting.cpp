@@ -1,0 +1,77 @@
+#include "criteria/lighting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "criteria/camera.h"
+#include "mesh/normals.h"
+
+namespace papilio {
+namespace {
+
+constexpr double floor_weight = 0.4;    // what bends may yet turn towards a light
+constexpr double least_contrast = 0.3;  // what is behind is not known: a dark face may stand before a light one
+
+/// Of a face, as one light after the other adds to it, white at most.
+struct Shade {
+  double brightness;  ///< 0..1
+  double slope;       ///< by how much it changes when the normal turns by a small angle, over the angle
+};
+
+Shade shade(const View& view, Vec3d normal) {
+  double sum = 0;
+  Vec3d gradient;
+  for (const Vec3d& light : view.lights) {
+    const Vec3d towards = (1 / length(light)) * light;
+    const double cosine = dot(normal, towards);
+    if (cosine <= 0) continue;
+    sum += cosine;
+    gradient += towards - cosine * normal;
+  }
+  return sum < 1 ? Shade{sum, length(gradient)} : Shade{1, 0};
+}
+
+/// An edge's two faces; the one that there is stands for one that is missing or has no normal.
+struct Sides {
+  Vec3d normal, other;
+  bool is_open;  ///< a face is missing
+};
+
+Sides sides(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  const uint32_t t = mesh.topology.twin[h];
+  const Vec3f normal = normals[Topology::face(h)];
+  const Vec3f other = t == none ? normal : normals[Topology::face(t)];
+  return {to_double(has_normal(normal) ? normal : other), to_double(has_normal(other) ? other : normal), t == none};
+}
+
+}  // namespace
+
+double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance, const View& view,
+                    const Camera& camera) {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  const Vec3d a = to_double(mesh.positions[mesh.topology.origin[h]]);
+  const Vec3d b = to_double(mesh.positions[mesh.topology.tip(h)]);
+  const Vec3d middle = 0.5 * (a + b);
+  const Sides faces = sides(mesh, normals, edge);
+  const Shade one = shade(view, faces.normal);
+  const Shade two = shade(view, faces.other);
+
+  const double change = std::abs(one.brightness - two.brightness);
+  const double slope = 0.5 * (one.slope + two.slope);
+  const double facing =
+      0.5 * (std::max(0.0, camera.facing(middle, faces.normal)) + std::max(0.0, camera.facing(middle, faces.other)));
+  const double shading = 1.3 * (2 * change + slope) * std::sqrt(facing);
+
+  double outline = 0;
+  const bool one_is_away = camera.is_away(middle, faces.normal);
+  if (faces.is_open || one_is_away != camera.is_away(middle, faces.other)) {
+    const double brightness = one_is_away ? two.brightness : one.brightness;
+    const double contrast = least_contrast + (1 - least_contrast) * brightness;
+    const double pixels = distance * camera.pixels_per_unit(middle);
+    outline = 0.8 * contrast * std::sqrt(camera.projected_length(a, b) / std::max(1.0, pixels));
+  }
+  return length(Vec3d{floor_weight, shading, outline});
+}
+
+}  // namespace papilio

@@ -1,0 +1,225 @@
+#include "criteria/selection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "criteria/camera.h"
+#include "criteria/flatness.h"
+#include "criteria/view_culling.h"
+#include "mesh/normals.h"
+#include "rules/butterfly.h"
+#include "rules/tension.h"
+#include "rules/uniform_butterfly.h"
+
+namespace papilio {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float never = -infinity;
+
+/// No less than the number, which is not negative.
+float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
+
+/// Those of all edges for which that can be done; what is made of the others means nothing. [E]
+Array<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
+  const Topology& topology = mesh.topology;
+  Array<Vec3f> made(topology.edge_count());
+  std::optional<Features> found;
+  if (context.features == nullptr) found = find_features(topology);
+  const Features& features = found ? *found : *context.features;
+  if (tension == nullptr && context.part != nullptr)
+    uniform_butterfly_below(*context.parents, *context.part, features, mesh.positions.data(), made.data(),
+                            context.threads);
+  else if (tension == nullptr && context.parents != nullptr)
+    uniform_butterfly_below(*context.parents, &topology, features, mesh.positions.data(), made.data(), context.threads,
+                            context.asked_of);
+  else
+    uniform_butterfly(topology, features, mesh.positions.data(), made.data(), tension, context.threads);
+  return made;
+}
+
+std::optional<TensionField> find_tension(const Topology& mesh, const Array<Vec3f>& normals, const Options& options) {
+  if (options.tension == Tension::off) return std::nullopt;
+  return tension_field(mesh, normals, options.tension);
+}
+
+Array<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  if (context.normals_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
+  return normals_of_fours(mesh, *context.normals_of, context.threads);
+}
+
+}  // namespace
+
+Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
+                           const TrialContext& context) {
+  const Topology& topology = mesh.topology;
+  const std::optional<TensionField> field = find_tension(topology, normals, options);
+  const TensionField* tension = field ? &*field : nullptr;
+  constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
+  if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
+    return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
+  Array<Vec3f> made = make_all_vertices(mesh, tension, context);
+  if (plan.count() == made.size()) return made;
+  Array<Vec3f> planned(plan.count());
+  for (uint32_t e = 0; e < made.size(); ++e)
+    if (plan.is_split(e)) planned[plan.before[e]] = made[e];
+  return planned;
+}
+
+Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const TrialContext& context) {
+  Trial trial{.normals = normals_asked_of(mesh, options, context), .tried = SplitPlan(try_edges)};
+  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, context);
+  return trial;
+}
+
+Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  Trial trial{.normals = normals_asked_of(mesh, options, context)};
+  const std::optional<TensionField> tension = find_tension(mesh.topology, trial.normals, options);
+  trial.made = make_all_vertices(mesh, tension ? &*tension : nullptr, context);
+  trial.is_of_some = context.asked_of != nullptr || context.part != nullptr;
+  return trial;
+}
+
+void Trial::forget() {
+  deviations = Memo<double>(made.size(), unknown);
+  bounds = Memo<float>(made.size(), infinity);
+}
+
+void Trial::prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context) {
+  const bool has_tolerance = options.tolerance > 0 || (options.view && options.view->error_pixels > 0);
+  if (!has_tolerance && options.max_faces == 0) return;
+  forget();
+  if (!has_tolerance) return;
+  rooms = rooms_at_sides(mesh, context.normals_of, context.threads);
+  least = Memo<float>(made.size(), 0);
+}
+
+void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const {
+  const DeviationBounds finder{mesh, normals, rooms, tried, made};
+  std::array<DeviationRange, DeviationBounds::most_at_once + 3> ranges;
+  for (size_t first = 0; first < edges.size(); first += DeviationBounds::most_at_once) {
+    const auto some = edges.subspan(first, std::min(DeviationBounds::most_at_once, edges.size() - first));
+    finder.find(some, ranges.data());
+    for (size_t i = 0; i < some.size(); ++i) {
+      bounds.put(number(some[i]), ranges[i].most);
+      least.put(number(some[i]), ranges[i].least);
+    }
+  }
+}
+
+void Trial::keep_more(const Topology& mesh) {
+  forget();
+  planes = FacePlanes(mesh.face_count(), infinity);
+  products = NormalProducts(mesh.edge_count(), infinity);
+  transitions = Memo<uint32_t>(mesh.face_count(), 0);
+}
+
+double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
+  float known = no_less_than_deviation_at(edge);
+  if (known != infinity) return known;
+  const uint32_t h = mesh.topology.half_edge[edge];
+  known = rounded_up(std::sqrt(squared_distance_to_middle(at(edge), mesh.positions[mesh.topology.origin[h]],
+                                                          mesh.positions[mesh.topology.tip(h)])));
+  if (!bounds.empty()) bounds.put(number(edge), known);
+  return known;
+}
+
+double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
+  if (deviations.empty()) return deviation(mesh, edge, at(edge));
+  const uint32_t i = number(edge);
+  double known = deviations.get(i);
+  if (known == unknown) {
+    deviations.put(i, known = deviation(mesh, edge, made[i]));
+    bounds.put(i, rounded_up(known));
+  }
+  return known;
+}
+
+Selection::Selection(const Options& options, double diagonal)
+    : options_(options),
+      camera_(options.view ? std::optional<Camera>(*options.view) : std::nullopt),
+      measure_(options.tolerance, diagonal, options.view ? &*options.view : nullptr, camera()) {}
+
+bool Selection::is_uniform() const { return options_.flatness.empty() && !options_.view && !is_by_error(); }
+
+bool Selection::is_by_error() const {
+  return options_.tolerance > 0 || options_.max_faces > 0 || (options_.view && options_.view->error_pixels > 0);
+}
+
+double Selection::flatness_of(int level) const {
+  const auto index = static_cast<size_t>(level - 1);
+  return index < options_.flatness.size() ? options_.flatness[index] : options_.flatness.back();
+}
+
+bool Selection::later_level_is_finer(int level) const {
+  if (options_.flatness.empty()) return false;
+  for (int later = level + 1; later <= options_.levels; ++later)
+    if (flatness_of(later) > flatness_of(level)) return true;
+  return false;
+}
+
+EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                           const Region& region) const {
+  if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
+  return region.has_edge;
+}
+
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                            const List<uint32_t>& shared) const {
+  if (!camera_) return {};
+  return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
+}
+
+List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
+  if (options_.flatness.empty()) return region.edges();
+  return marked(find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
+}
+
+List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                 const EdgeMarks& shown) const {
+  List<uint32_t> edges = curved(mesh, trial, level, region);
+  keep_if(edges, [&](uint32_t e) { return shown[e] != 0; });
+  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
+  return edges;
+}
+
+List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                 const EdgesShown& shown, const Box& box, float least) const {
+  List<uint32_t> edges = curved(mesh, trial, level, region);
+  const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
+  if (needed > 0) {
+    if (trial.has_ranges()) trial.find_ranges(mesh, edges);
+    keep_if(edges, [&](uint32_t e) { return trial.no_less_than_deviation_at(e) >= needed; });
+    if (!trial.has_ranges()) keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
+    // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
+    if (!trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
+  }
+  shown.keep_shown(region, edges);
+  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
+  return edges;
+}
+
+List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
+                              float threshold, Reaching reaching) const {
+  List<float> errors(mesh.topology.edge_count(), never);
+  const double scale = highest_pixels_per_unit(box);
+  const bool least_will_do = reaching == Reaching::no_more && trial.has_ranges() && measure_.grows_with_distance();
+  const auto error = [&](uint32_t e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };
+  for (uint32_t e : wanted) {
+    const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
+    errors[e] = measure_.most_error(distance, scale);
+    if (errors[e] < threshold) continue;
+    errors[e] = error(e, distance);
+    if (errors[e] < threshold || is_exact) continue;
+    if (least_will_do) {
+      errors[e] = error(e, trial.no_more_than_deviation_at(e));
+      if (errors[e] >= threshold) continue;
+    }
+    errors[e] = error(e, trial.deviation_at(mesh, e));
+  }
+  return errors;
+}
+
+}  // namespace papilio

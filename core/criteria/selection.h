@@ -1,0 +1,195 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/lazy_values.h"
+#include "criteria/camera.h"
+#include "criteria/deviation.h"
+#include "criteria/deviation_range.h"
+#include "criteria/flatness.h"
+#include "criteria/view_culling.h"
+#include "mesh/part.h"
+#include "mesh/region.h"
+#include "papilio/options.h"
+#include "rules/features.h"
+
+// Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
+
+namespace papilio {
+
+/// What is known of a mesh that is tried: all of it may be left out.
+struct TrialContext {
+  const Features* features = nullptr;  ///< its; with `part`, the parents'
+  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
+  /// Those of the parents of whose children normals are asked; null: all.
+  const List<uint32_t>* normals_of = nullptr;
+  const List<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
+  const Part* part = nullptr;                ///< of the parents that it was split from (split_part_in_four); null: all
+  int threads = 1;                           ///< at most so many work on it
+};
+
+/// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
+/// in `tried` would have: T of them.
+struct Trial {
+  Array<Vec3f> normals{};     ///< [F]
+  SplitPlan tried{};          ///< the edges whose new vertices were computed; of none: see `made`
+  Array<Vec3f> made{};        ///< [T]; where `tried` is of none [E], of which only what could be computed counts
+  bool is_of_some = false;    ///< where `tried` is of none: whether only some were asked for
+  Memo<double> deviations{};  ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
+  Memo<float> bounds{};       ///< [T] no less than these; infinity where nothing is known; empty as above
+  Memo<float> least{};        ///< [T] no more than these; 0 where nothing is known; empty without rooms
+  Array<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
+
+  FacePlanes planes{};           ///< (view.h)
+  NormalProducts products{};     ///< (flatness.h)
+  Memo<uint32_t> transitions{};  ///< [F] (transition.h)
+
+  static constexpr int unknown = -1;
+  /// Makes room for what is found out about what was made; nothing is known yet.
+  void forget();
+  /// Makes room for what is found out, and for what only later requests gain by: planes, products and transitions.
+  void keep_more(const Topology& mesh);
+  /// The number of a tried edge's vertex in `made`.
+  [[nodiscard]] uint32_t number(uint32_t edge) const { return tried.before.empty() ? edge : tried.before[edge]; }
+  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[number(edge)]; }
+  /// That of a tried edge. `mesh` is the one tried.
+  [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, and cheap: the deviation itself where somebody has asked for it.
+  struct KnownDeviation {
+    double distance;
+    bool is_exact;
+  };
+  [[nodiscard]] KnownDeviation known_deviation_at(const Mesh& mesh, uint32_t edge) const {
+    const double known = deviations.get(number(edge));
+    return known != unknown ? KnownDeviation{known, true} : KnownDeviation{most_deviation_at(mesh, edge), false};
+  }
+  /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
+  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
+  /// Never less than that, of what is known already; infinity where nothing is.
+  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const {
+    return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(number(edge));
+  }
+  /// Never more than that, of what is known already.
+  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(number(edge)); }
+  /// Makes room for what the options ask of deviations: none where they hold them against nothing. Where against a
+  /// tolerance, has ranges found (deviation_range.h). Not for what is kept: where more views are to come the deviations
+  /// themselves serve all of them.
+  void prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context);
+  [[nodiscard]] bool has_ranges() const { return !rooms.empty(); }
+  /// Of these edges, which were tried.
+  void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
+};
+
+/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
+[[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
+                                         const SplitPlan& plan, const TrialContext& context = {});
+/// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
+[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
+                              const TrialContext& context = {});
+/// Computes those of all edges for which that can be done, without telling which they are, and makes no room for what
+/// is found out about them: for one request alone. Not with w.
+[[nodiscard]] Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context);
+
+class Selection {
+ public:
+  /// `diagonal` of the coarse mesh's box. The options must outlive this.
+  Selection(const Options& options, double diagonal);
+  Selection(const Selection&) = delete;
+  Selection& operator=(const Selection&) = delete;
+
+  /// No criterion: every edge is split.
+  [[nodiscard]] bool is_uniform() const;
+  /// Errors decide, not only yes and no: there is a tolerance or a budget.
+  [[nodiscard]] bool is_by_error() const;
+  /// What an edge's error must reach for it to be split.
+  [[nodiscard]] float threshold() const { return measure_.threshold(); }
+  [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
+  /// No less than the view has anywhere in the box; 0 without one.
+  [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
+    return camera_ ? camera_->highest_pixels_per_unit(box) : 0;
+  }
+
+  /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
+  /// edges (view.h), `box` of the vertices. [E]
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                                const Region& region) const;
+  /// The same, edge by edge. `shared`: the half-edges at shared edges.
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+                                 const List<uint32_t>& shared) const;
+  /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
+  /// is the one to be made, from 1; `shown` as above. In ascending order.
+  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                      const EdgeMarks& shown) const;
+
+  /// The same, of the edges whose error (below) may be `least` or more.
+  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                      const EdgesShown& shown, const Box& box, float least) const;
+
+  /// What errors that reach a threshold are to be: where more is done with them than to compare them with it, exact.
+  enum class Reaching { exact, no_more };
+  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Those below `threshold` may
+  /// come out larger, those that reach it smaller if they may be `no_more`, but on their side of it: they cost less.
+  /// `box` of the vertices. [E]
+  [[nodiscard]] List<float> errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
+                                   float threshold, Reaching reaching = Reaching::exact) const;
+
+  /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
+  [[nodiscard]] bool later_level_is_finer(int level) const;
+
+ private:
+  friend class ErrorLeft;
+  /// The region's edges that flatness wants split, with growth; all of them without it.
+  [[nodiscard]] List<uint32_t> curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
+  [[nodiscard]] double flatness_of(int level) const;
+
+  const Options& options_;
+  std::optional<Camera> camera_;
+  ErrorMeasure measure_;
+};
+
+/// Collects the largest deviation left, for the result.
+class ErrorLeft {
+ public:
+  explicit ErrorLeft(const Selection& selection) : measure_(&selection.measure_) {}
+  /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
+  /// `highest_pixels_per_unit`.
+  void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
+    if (!may_grow_by(share * trial.most_deviation_at(mesh, edge), scale)) return;
+    const double distance = share * trial.deviation_at(mesh, edge);
+    if (!may_grow_by(distance, scale)) return;
+    distance_ = std::max(distance_, distance);
+    pixels_ = std::max(pixels_, measure_->pixels(mesh, edge, distance));
+  }
+  /// A deviation without a view.
+  void add_distance(double distance) { distance_ = std::max(distance_, distance); }
+  [[nodiscard]] double distance() const { return distance_; }
+  /// Whether a deviation of at most that may be the largest.
+  [[nodiscard]] bool may_grow_by(double most, double scale) const {
+    return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
+  }
+  /// The same of a deviation at the edge, whose own scale is taken.
+  [[nodiscard]] bool may_grow_at(const Mesh& mesh, uint32_t edge, double most) const {
+    return may_grow_by_distance(most) || may_grow_by_pixels(measure_->pixels(mesh, edge, most));
+  }
+  /// A smaller deviation is not the largest. `scale` as above.
+  [[nodiscard]] double least_that_matters(double scale) const {
+    return scale > 0 ? std::min(distance_, pixels_ / scale) : distance_;
+  }
+  [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
+  [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
+  [[nodiscard]] double error() const { return measure_->diagonal() > 0 ? distance_ / measure_->diagonal() : 0; }
+  [[nodiscard]] double pixels() const { return pixels_; }
+
+ private:
+  const ErrorMeasure* measure_;
+  double distance_ = 0;
+  double pixels_ = 0;
+};
+
+/// What is left of a deviation where a smooth surface is split once more.
+inline constexpr double split_leaves = 0.25;
+
+}  // namespace papilio

@@ -1,0 +1,393 @@
+#include "hierarchy/assemble.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "hierarchy/transition.h"
+#include "mesh/attributes.h"
+#include "mesh/connect.h"
+#include "mesh/four_children.h"
+#include "split/split_in_four.h"
+
+namespace papilio {
+namespace {
+
+/// A level, and what becomes of its faces. Levels lie in an array: the one below is behind.
+struct AssembledLevel {
+  const LevelChoice* choice;
+  const Topology* mesh;
+  bool has_below;
+  const uint32_t* edge;        ///< [H] of the mesh
+  const uint8_t* is_split;     ///< [E]
+  const uint8_t* mask;         ///< [F] (LevelChoice); null where it is not known
+  Array<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
+
+  /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
+  /// what becomes of it.
+  struct Fate {
+    uint32_t first;           ///< the first half-edge in the result of the faces that it is cut into,
+    const SplitPattern* cut;  ///< in this way; null: its children are in the result
+  };
+  List<uint32_t> shown;
+  List<Fate> fates;
+
+  [[nodiscard]] bool is_divided(uint32_t f) const { return has_below && choice->red[f] != 0; }
+  /// The first child of a divided face.
+  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].choice->level->first_child_of(f); }
+};
+
+/// The edges that are split. In order are already those that were wanted; behind them lie those that these need.
+List<uint32_t> split_in_order(const LevelChoice& choice) {
+  constexpr ptrdiff_t few = 64;  // one of so many edges: more cost less to find than to sort
+  List<uint32_t> numbers = choice.split_edges;
+  const auto behind = std::ranges::is_sorted_until(numbers);
+  if (few * (numbers.end() - behind) > static_cast<ptrdiff_t>(choice.split.size())) return marked(choice.split);
+  std::sort(behind, numbers.end());
+  std::inplace_merge(numbers.begin(), behind, numbers.end());
+  return numbers;
+}
+
+/// Goes through the levels' faces, and writes down what is in the result. Each edge of the result has a number, its
+/// slot, which both faces at it know, whatever level they are of: in it the one that comes first leaves its half-edge,
+/// and the one that comes second finds its twin there.
+class Assembler {
+ public:
+  Assembler(std::span<const LevelChoice> levels, double most_cosine)
+      : most_cosine_(most_cosine), coarse_(levels[0].level->mesh) {
+    const Topology& coarse = coarse_.topology;
+    uint32_t vertices = coarse.vertex_count;
+    size_t divided = 0;  // faces, at most
+    for (const LevelChoice& choice : levels) {
+      vertices += static_cast<uint32_t>(choice.split_edges.size());
+      if (&choice != levels.data()) divided += choice.region.faces.size() / 4;
+    }
+    Topology& topology = out_.topology;
+    topology.vertex_count = vertices;
+    topology.pinched = coarse.pinched;
+    topology.darts = coarse.darts;
+    const uint32_t half_edges = 3 * static_cast<uint32_t>(count_assembled(levels));
+    topology.origin.resize(half_edges);
+    topology.twin.resize(size_t{half_edges} + 1);
+    nobody_ = half_edges;
+    origin_ = topology.origin.data();
+    twin_ = topology.twin.data();
+    add_vertices(levels);
+    // Two for each vertex, as if each were of an edge that is split; behind these those of the coarse edges, and three
+    // for each face that is divided.
+    first_coarse_ = 2 * vertices;
+    next_inner_ = first_coarse_ + coarse.edge_count();
+    slots_.assign(next_inner_ + 3 * divided, nobody_);
+  }
+
+  Mesh run(bool with_edges) {
+    const Topology& coarse = coarse_.topology;
+    for (uint32_t f = 0; f < coarse.face_count(); ++f) {
+      const uint32_t* edge = &coarse.edge[size_t{3} * f];
+      const OfSides side{first_coarse_ + edge[0], first_coarse_ + edge[1], first_coarse_ + edge[2]};
+      place(levels_[0], f, mask_of(levels_[0], f), &coarse.origin[size_t{3} * f], side.data());
+    }
+    out_.topology.origin.resize(half_edge_count_);
+    out_.topology.twin.resize(half_edge_count_);
+    for (const OnCurve& on : on_curves_)
+      if (on.kind != EdgeKind::crease) out_.topology.twin[on.half_edge] = none;
+    if (with_edges) number_edges();
+    if (!coarse_.attributes.empty()) make_points();
+    return std::move(out_);
+  }
+
+ private:
+  /// A half-edge of the result that lies on a curve.
+  struct OnCurve {
+    uint32_t half_edge;
+    EdgeKind kind;
+  };
+
+  void add_vertices(std::span<const LevelChoice> levels) {
+    out_.positions.resize(out_.topology.vertex_count);
+    std::ranges::copy(coarse_.positions, out_.positions.begin());
+    uint32_t vertex = coarse_.topology.vertex_count;
+    levels_.reserve(levels.size());
+    has_curves_or_points_ = !levels[0].level->features.curve_half_edges.empty() || !coarse_.attributes.empty();
+    for (const LevelChoice& choice : levels) {
+      const Topology& mesh = choice.level->mesh.topology;
+      AssembledLevel& level = levels_.emplace_back();
+      level.choice = &choice;
+      level.mesh = &mesh;
+      level.has_below = levels_.size() < levels.size();
+      level.edge = mesh.edge.data();
+      level.is_split = choice.split.data();
+      level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
+      level.new_vertex.resize(mesh.edge_count());
+      for (uint32_t e : split_in_order(choice)) {
+        out_.positions[vertex] = choice.level->trial.at(e);
+        level.new_vertex[e] = vertex++;
+      }
+    }
+  }
+
+  /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side`
+  /// [3]: the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what
+  /// becomes of it is then foreseen better.)
+  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner,
+                                    const uint32_t* side) {
+    if (mask == 0)
+      place_whole(level, f, corner, side);
+    else if (mask != 7)
+      cut_in_part(level, f, mask, corner, side);
+    else if (level.is_divided(f))
+      place_children(level, f, corner);
+    else  // what has children as support only is cut into the same four
+      cut_in_four(level, f, corner);
+  }
+
+  void place_whole(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
+    const uint32_t made = half_edge_count_;
+    put(origin_ + made, corner[0], corner[1], corner[2]);
+    put(twin_ + made, meet(side[0], made), meet(side[1], made + 1), meet(side[2], made + 2));
+    end_face(level, f, split_pattern(0, false));
+  }
+
+  [[gnu::noinline]] void place_children(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
+    if (!coarse_.attributes.empty()) remember(level, f, nullptr);
+    const OfSides middle = middles(level, f);
+    AssembledLevel& below = (&level)[1];
+    const uint32_t child = level.child(f);
+    std::array<uint32_t, 12> corners;
+    put_corners_of_four({corner[0], corner[1], corner[2]}, middle, corners.data());
+    const FourMasks masks = masks_of_four(below, child);
+    if (masks == all_in_four && !below.has_below && !has_curves_or_points_) {
+      cut_in_sixteen(below, child, corners.data());
+      return;
+    }
+    const Halves half = halves(corner, middle);
+    std::array<uint32_t, 12> sides;
+    put_edges_of_four(half.first, half.second, next_inner_, sides.data());
+    next_inner_ += 3;
+    place(below, child, masks[0], corners.data(), sides.data());
+    place(below, child + 1, masks[1], &corners[3], &sides[3]);
+    place(below, child + 2, masks[2], &corners[6], &sides[6]);
+    place(below, child + 3, masks[3], &corners[9], &sides[9]);
+  }
+
+  /// Of the four children of a face: bit i is set where edge i is split.
+  using FourMasks = std::array<uint8_t, 4>;
+  static constexpr FourMasks all_in_four{7, 7, 7, 7};
+  [[nodiscard]] static uint8_t mask_of(const AssembledLevel& level, uint32_t f) {
+    if (level.mask != nullptr) return level.mask[f];
+    const uint32_t* edge = &level.edge[size_t{3} * f];
+    return static_cast<uint8_t>(level.is_split[edge[0]] | level.is_split[edge[1]] << 1U |
+                                level.is_split[edge[2]] << 2U);
+  }
+  [[nodiscard]] static FourMasks masks_of_four(const AssembledLevel& level, uint32_t child) {
+    if (level.mask != nullptr) {
+      const uint8_t* mask = level.mask + child;
+      return {mask[0], mask[1], mask[2], mask[3]};
+    }
+    return {mask_of(level, child), mask_of(level, child + 1), mask_of(level, child + 2), mask_of(level, child + 3)};
+  }
+
+  void cut_in_four(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
+    const uint32_t made = half_edge_count_;
+    const OfSides middle = middles(level, f);
+    const Halves half = halves(corner, middle);
+    put_corners_of_four({corner[0], corner[1], corner[2]}, middle, origin_ + made);
+    const OfSides against_first{meet(half.first[0], made), meet(half.first[1], made + 4),
+                                meet(half.first[2], made + 8)};
+    const OfSides against_second{meet(half.second[0], made + 3), meet(half.second[1], made + 7),
+                                 meet(half.second[2], made + 2)};
+    put_twins_of_four(made, against_first, against_second, twin_ + made);
+    end_face(level, f, split_pattern(7, false));
+  }
+
+  /// The four children of a face, each of which is cut in four: they know each other without having met. `corners` [12]
+  void cut_in_sixteen(const AssembledLevel& level, uint32_t child, const uint32_t* corners) {
+    const uint32_t made = half_edge_count_;
+    const uint32_t last = made + 36;  // of the child in the middle; its side i is side i + 1 of child i
+    std::array<OfSides, 4> middle;
+    for (uint32_t c = 0; c < 4; ++c) middle[c] = middles(level, child + c);
+    for (uint32_t c = 0; c < 4; ++c)
+      put_corners_of_four({corners[3 * c], corners[3 * c + 1], corners[3 * c + 2]}, middle[c], origin_ + made + 12 * c);
+    const auto of_child = [&](uint32_t c) { return halves(corners + 3 * c, middle[c]); };
+    const Halves half0 = of_child(0);
+    const Halves half1 = of_child(1);
+    const Halves half2 = of_child(2);
+    const uint32_t one = made + 12;
+    const uint32_t two = made + 24;
+    put_twins_of_four(made, {meet(half0.first[0], made), last + 2, meet(half0.first[2], made + 8)},
+                      {meet(half0.second[0], made + 3), last + 8, meet(half0.second[2], made + 2)}, twin_ + made);
+    put_twins_of_four(one, {meet(half1.first[0], one), meet(half1.first[1], one + 4), last + 3},
+                      {meet(half1.second[0], one + 3), meet(half1.second[1], one + 7), last}, twin_ + one);
+    put_twins_of_four(two, {last + 7, meet(half2.first[1], two + 4), meet(half2.first[2], two + 8)},
+                      {last + 4, meet(half2.second[1], two + 7), meet(half2.second[2], two + 2)}, twin_ + two);
+    put_twins_of_four(last, {one + 2, two + 3, made + 7}, {one + 8, two, made + 4}, twin_ + last);
+    half_edge_count_ += 48;
+  }
+
+  /// A face with one or two sides split, seen from the first of these, which runs from corner a to b.
+  struct CutFace {
+    CutFace(const AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
+      const uint8_t* number = &turned[first_target[mask]];
+      a = corners[number[0]];
+      b = corners[number[1]];
+      c = corners[number[2]];
+      side_bc = sides[number[1]];
+      side_ca = sides[number[2]];
+      on_ab = level.new_vertex[level.edge[3 * f + number[0]]];
+      edge_bc = level.edge[3 * f + number[1]];
+    }
+    uint32_t a, b, c;
+    uint32_t side_bc, side_ca;  ///< slots
+    uint32_t on_ab;             ///< the vertex there
+    uint32_t edge_bc;           ///< of the level
+  };
+
+  /// With one or two sides split.
+  void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
+    const uint8_t pattern = choose_transition(*level.choice, f, mask, most_cosine_);
+    const CutFace face(level, f, mask, corner, side);
+    if (has_two_targets(mask))
+      cut_in_three(level, face, pattern % 2 != 0);
+    else
+      cut_in_two(face);
+    end_face(level, f, transition_pattern(pattern));
+  }
+
+  /// The pieces, here and below, are those of split_pattern.cpp, in their order.
+  void cut_in_two(const CutFace& face) {
+    const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
+    const uint32_t made = half_edge_count_;
+    const uint32_t first = first_half(on_ab, a, b);
+    put(origin_ + made, a, on_ab, c, on_ab, b, c);
+    put(twin_ + made, meet(first, made), made + 5, meet(side_ca, made + 2),  //
+        meet(first ^ 1, made + 3), meet(side_bc, made + 4), made + 1);
+  }
+
+  /// Which of the two diagonals it is nobody can guess: so without branches.
+  void cut_in_three(const AssembledLevel& level, const CutFace& face, bool second_diagonal) {
+    const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
+    const uint32_t made = half_edge_count_;
+    const uint32_t on_bc = level.new_vertex[edge_bc];
+    const uint32_t first_of_ab = first_half(on_ab, a, b);
+    const uint32_t first_of_bc = first_half(on_bc, b, c);
+    const uint32_t all = second_diagonal ? ~0U : 0U;
+    const auto choose = [all](uint32_t first, uint32_t second) { return (second & all) | (first & ~all); };
+    put(origin_ + made, on_ab, b, on_bc, a, on_ab, choose(on_bc, c), choose(a, on_ab), on_bc, c);
+    const uint32_t against_ca = meet(side_ca, made + choose(8, 5));
+    put(twin_ + made, meet(first_of_ab ^ 1, made), meet(first_of_bc, made + 1), made + choose(4, 6),  //
+        meet(first_of_ab, made + 3), made + choose(2, 8), choose(made + 6, against_ca),               //
+        made + choose(5, 2), meet(first_of_bc ^ 1, made + 7), choose(against_ca, made + 4));
+  }
+
+  /// The vertices in the middles of a face's sides; of those that are split.
+  [[nodiscard]] static OfSides middles(const AssembledLevel& level, uint32_t f) {
+    const uint32_t* edge = &level.edge[size_t{3} * f];
+    return {level.new_vertex[edge[0]], level.new_vertex[edge[1]], level.new_vertex[edge[2]]};
+  }
+
+  /// The slots of the halves of sides that are split.
+  struct Halves {
+    OfSides first, second;
+  };
+  /// The one at `from` of a side with this middle; the other is beside it. The half at the lower vertex comes first: so
+  /// both faces at a side agree.
+  [[nodiscard]] static uint32_t first_half(uint32_t middle, uint32_t from, uint32_t to) {
+    return 2 * middle + (from > to ? 1 : 0);
+  }
+  [[nodiscard]] static Halves halves(const uint32_t* corner, const OfSides& middle) {
+    const OfSides first{first_half(middle[0], corner[0], corner[1]), first_half(middle[1], corner[1], corner[2]),
+                        first_half(middle[2], corner[2], corner[0])};
+    return {first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}};
+  }
+
+  /// Leaves a half-edge in a slot, and returns what was there: its twin, if that came before. That one learns of it.
+  uint32_t meet(uint32_t slot, uint32_t half_edge) {
+    const uint32_t other = slots_[slot];
+    slots_[slot] = half_edge;
+    twin_[other] = half_edge;
+    return other;
+  }
+
+  /// A face was cut in this way.
+  void end_face(AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+    if (has_curves_or_points_) [[unlikely]]
+      remember_more(level, f, cut);
+    half_edge_count_ += 3U * cut.children;
+  }
+
+  void remember_more(AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+    if (!coarse_.attributes.empty()) remember(level, f, &cut);
+    find_curves(level, f, cut);
+  }
+  void remember(AssembledLevel& level, uint32_t f, const SplitPattern* cut) const {
+    level.shown.push_back(f);
+    level.fates.push_back({half_edge_count_, cut});
+  }
+
+  void find_curves(const AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+    for (uint32_t c = 0; c < 3U * cut.children; ++c) {
+      if (!cut.is_outside(c)) continue;
+      const EdgeKind kind = level.mesh->kind[level.edge[3 * f + cut.edge[c] / 2]];
+      if (kind != EdgeKind::smooth) on_curves_.push_back({half_edge_count_ + c, kind});
+    }
+  }
+
+  void number_edges() {
+    Topology& mesh = out_.topology;
+    std::vector<uint32_t> darts = std::move(mesh.darts);
+    papilio::number_edges(mesh);
+    mesh.darts = std::move(darts);
+    for (const OnCurve& on : on_curves_)
+      if (on.kind == EdgeKind::crease) mesh.kind[mesh.edge[on.half_edge]] = EdgeKind::crease;
+  }
+
+  /// Top down: the points of each shown face's corners.
+  void make_points() {
+    out_.attributes = coarse_.attributes;
+    Array<uint32_t> result(half_edge_count_);
+    for (const AssembledLevel& level : levels_) {
+      const List<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
+      const Array<uint32_t> corners = std::move(out_.attributes.point);
+      const auto point = [&](uint32_t f, uint8_t corner) {
+        return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
+      };
+      out_.attributes.point.assign(level.has_below ? (&level)[1].mesh->half_edge_count() : 0, none);
+      for (size_t i = 0; i < level.shown.size(); ++i) {
+        const uint32_t f = level.shown[i];
+        const auto& [first, cut_in_result] = level.fates[i];
+        const bool divided = cut_in_result == nullptr;
+        const SplitPattern& cut = divided ? split_pattern(7, false) : *cut_in_result;
+        uint32_t* out = divided ? &out_.attributes.point[3 * size_t{level.child(f)}] : &result[first];
+        for (uint32_t c = 0; c < 3U * cut.children; ++c) out[c] = point(f, cut.corner[c / 3][c % 3]);
+      }
+    }
+    out_.attributes.point = std::move(result);
+  }
+
+  double most_cosine_;
+  const Mesh& coarse_;
+  std::vector<AssembledLevel> levels_;
+  bool has_curves_or_points_ = false;
+  uint32_t half_edge_count_ = 0;  ///< so far
+  uint32_t *origin_, *twin_;      ///< of the result
+  List<uint32_t> slots_;          ///< half-edges of the result, or `nobody_`
+  uint32_t first_coarse_, next_inner_;
+  uint32_t nobody_;  ///< a half-edge behind the result's
+  List<OnCurve> on_curves_;
+  Mesh out_;
+};
+
+}  // namespace
+
+uint64_t count_assembled(std::span<const LevelChoice> levels) {
+  // A split edge may only be one all of whose faces are in the result: each of them becomes one more.
+  uint64_t faces = levels[0].region.faces.size();
+  for (const LevelChoice& choice : levels) faces += choice.count_faces_of_split();
+  return faces;
+}
+
+Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges) {
+  return Assembler(levels, most_cosine).run(with_edges);
+}
+
+}  // namespace papilio

@@ -1,0 +1,67 @@
+#include "hierarchy/grow_level.h"
+
+#include "mesh/normals.h"
+
+namespace papilio {
+namespace {
+
+Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const List<uint32_t>& moved) {
+  Array<Vec3f> normals(mesh.topology.face_count());
+  List<uint8_t> is_known(normals.size(), 0);
+  for (uint32_t f = 0; f < moved.size(); ++f) {
+    normals[moved[f]] = known[f];
+    is_known[moved[f]] = 1;
+  }
+  for (uint32_t f = 0; f < normals.size(); ++f)
+    if (is_known[f] == 0) normals[f] = face_normal(mesh, f);
+  return normals;
+}
+
+/// The same for what is known of planes and products.
+void keep_known(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved, const Trial& trial) {
+  const Topology& before = known.mesh.topology;
+  for (uint32_t f = 0; f < moved.size(); ++f) {
+    trial.planes.put(moved[f], known.trial.planes.get(f));
+    for (uint32_t i = 0; i < 3; ++i)
+      trial.products.put(mesh.edge[3 * moved[f] + i], known.trial.products.get(before.edge[3 * f + i]));
+  }
+}
+
+/// For each edge of the level the number of its vertex among those that the known level has made; `none`. [E]
+List<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved) {
+  List<uint32_t> rank(mesh.edge_count(), none);
+  for (uint32_t h = 0; h < known.mesh.topology.half_edge_count(); ++h) {
+    const uint32_t e = known.mesh.topology.edge[h];
+    if (known.trial.tried.is_split(e)) rank[mesh.edge[3 * moved[h / 3] + h % 3]] = known.trial.tried.before[e];
+  }
+  return rank;
+}
+
+}  // namespace
+
+void try_grown_level(HierarchyLevel& level, const Options& options, const HierarchyLevel& known,
+                     const List<uint32_t>& moved) {
+  const List<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
+  EdgeMarks marks = complete_edges(level);
+  Trial& trial = level.trial;
+  trial = {.normals = grown_normals(level.mesh, known.trial.normals, moved), .tried = SplitPlan(marks)};
+  for (uint32_t e = 0; e < marks.size(); ++e)
+    if (rank[e] != none) marks[e] = 0;
+  const SplitPlan rest(marks);
+  const Array<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
+
+  trial.made.resize(trial.tried.count());
+  trial.keep_more(level.mesh.topology);
+  keep_known(level.mesh.topology, known, moved, trial);
+  for (uint32_t e = 0; e < marks.size(); ++e) {
+    if (!trial.tried.is_split(e)) continue;
+    const uint32_t at = trial.tried.before[e];
+    trial.made[at] = rank[e] == none ? made[rest.before[e]] : known.trial.made[rank[e]];
+    if (rank[e] == none) continue;
+    trial.deviations.put(at, known.trial.deviations.get(rank[e]));
+    trial.bounds.put(at, known.trial.bounds.get(rank[e]));
+  }
+  for (uint32_t f = 0; f < moved.size(); ++f) trial.transitions.put(moved[f], known.trial.transitions.get(f));
+}
+
+}  // namespace papilio

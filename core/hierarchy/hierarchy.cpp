@@ -1,0 +1,283 @@
+#include "hierarchy/hierarchy.h"
+
+#include <algorithm>
+
+#include "mesh/ranks.h"
+#include "mesh/region.h"
+#include "simd/vec3fa.h"
+#include "split/split_in_four.h"
+
+namespace papilio {
+namespace {
+
+/// Splits faces in four, leaving the other faces out.
+class LevelMaker {
+ public:
+  LevelMaker(const HierarchyLevel& above, const List<uint8_t>& red)
+      : above_(above),
+        mesh_(above.mesh.topology),
+        faces_(with_neighbours(mesh_, red)),
+        edges_(used_by_faces(mesh_.edge, mesh_.edge_count())),
+        vertices_(used_by_faces(mesh_.origin, mesh_.vertex_count)) {}
+
+  LevelBelow run(int threads) {
+    Topology part = held_part();
+    below_.mesh.topology = split_in_four(part, threads);
+    make_vertices();
+    below_.parent = faces_.numbers();
+    below_.child.assign(mesh_.face_count(), none);
+    for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
+    for (uint32_t h : above_.shared)
+      if (faces_.has(Topology::face(h))) {
+        below_.shared.push_back(first_half(in_part(h)));
+        below_.shared.push_back(second_half(in_part(h)));
+      }
+    carry_features();
+    return {std::move(below_), std::move(part)};
+  }
+
+ private:
+  /// Marks what the half-edges of the faces have in `of` [H].
+  [[nodiscard]] List<uint8_t> used_by_faces(const Array<uint32_t>& of, uint32_t count) const {
+    List<uint8_t> used(count, 0);
+    uint8_t* marks = used.data();  // not read again at each mark
+    const uint32_t* of_half_edge = of.data();
+    for (uint32_t f : faces_.numbers())
+      for (uint32_t i = 0; i < 3; ++i) marks[of_half_edge[3 * f + i]] = 1;
+    return used;
+  }
+
+  /// The faces that get children, as a mesh of their own; where others are missing, edges are cut.
+  [[nodiscard]] Topology held_part() const {
+    Topology part;
+    part.vertex_count = vertices_.count();
+    const size_t half_edges = size_t{3} * faces_.count();
+    part.origin.resize(half_edges);
+    part.twin.resize(half_edges);
+    part.edge.resize(half_edges);
+    part.half_edge.resize(edges_.count());
+    part.kind.resize(edges_.count());
+    uint32_t at = 0;
+    for (uint32_t f : faces_.numbers())
+      for (uint32_t i = 0; i < 3; ++i, ++at) {
+        const uint32_t h = 3 * f + i;
+        part.origin[at] = vertices_[mesh_.origin[h]];
+        part.edge[at] = edges_[mesh_.edge[h]];
+        part.twin[at] = in_part_or_none(mesh_.twin[h]);
+      }
+    name_half_edges(part);
+    const auto carry = [&](const std::vector<uint32_t>& list, std::vector<uint32_t>& out) {
+      for (uint32_t v : list)
+        if (vertices_.has(v)) out.push_back(vertices_[v]);
+    };
+    carry(mesh_.pinched, part.pinched);
+    carry(mesh_.darts, part.darts);
+    return part;
+  }
+
+  /// Edges name the half-edges that they name where everything is held, if those are; else another one.
+  void name_half_edges(Topology& part) const {
+    for (uint32_t e = 0; e < edges_.count(); ++e) {
+      const uint32_t h = mesh_.half_edge[edges_.numbers()[e]];
+      const uint32_t t = mesh_.twin[h];
+      const uint32_t one = in_part_or_none(h);
+      const uint32_t other = in_part_or_none(t);
+      part.half_edge[e] = one != none ? one : other;
+      part.kind[e] = t != none && (one == none || other == none) ? EdgeKind::cut : mesh_.kind[edges_.numbers()[e]];
+    }
+    for (uint32_t h : above_.shared)
+      if (faces_.has(Topology::face(h)) && part.half_edge[edges_[mesh_.edge[h]]] == none)
+        part.half_edge[edges_[mesh_.edge[h]]] = in_part(h);
+  }
+
+  void make_vertices() {
+    const uint32_t count = below_.mesh.topology.vertex_count;
+    below_.mesh.positions.resize(count);
+    below_.complete.assign(count + 1, 1);  // one more, for what is not held
+    uint32_t at = 0;
+    for (uint32_t v : vertices_.numbers()) {
+      below_.mesh.positions[at] = above_.mesh.positions[v];
+      below_.complete[at++] = above_.complete[v];
+    }
+    for (uint32_t e : edges_.numbers()) below_.mesh.positions[at++] = above_.trial.at(e);
+    for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
+      if (faces_.has(f)) continue;
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        below_.complete[std::min(vertices_[mesh_.origin[h]], count)] = 0;
+        below_.complete[edges_.has(mesh_.edge[h]) ? new_vertex(mesh_.edge[h]) : count] = 0;
+      }
+    }
+    below_.complete.pop_back();
+  }
+
+  /// What descend() makes of the features, of what is held.
+  void carry_features() {
+    const Features& above = above_.features;
+    Features& out = below_.features;
+    out.level = above.level + 1;
+    out.has_darts = above.has_darts;
+    for (size_t i = 0; i < above.fan_count(); ++i) {
+      const uint32_t centre = above.centre[i];
+      if (!vertices_.has(centre) || below_.complete[vertices_[centre]] == 0) continue;
+      for (const Features::Spoke& spoke : above.spokes_of(i))
+        out.spokes.push_back({first_half(in_part(spoke.half_edge)),
+                              2 * edges_[spoke.edge] + (centre > spoke.tip ? 1 : 0), new_vertex(spoke.edge)});
+      out.first_spoke.push_back(static_cast<uint32_t>(out.spokes.size()));
+      out.centre.push_back(vertices_[centre]);
+      out.is_closed.push_back(above.is_closed[i]);
+    }
+    const Topology& below = below_.mesh.topology;
+    for (uint32_t h : above.curve_half_edges) {
+      if (!faces_.has(Topology::face(h))) continue;
+      if (below.kind[below.edge[first_half(in_part(h))]] == EdgeKind::cut) continue;  // a crease: its other face is not
+      for (uint32_t half : {first_half(in_part(h)), second_half(in_part(h))}) out.curve_half_edges.push_back(half);
+    }
+  }
+
+  /// Numbers in the part that is held.
+  [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
+  [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
+    const uint32_t face = faces_[h == none ? 0 : Topology::face(h)];  // no branch: what is held nobody can guess
+    const bool is_held = (h != none) & (face != none);
+    static_assert(none == ~0U);
+    return (3 * face + h % 3) | (is_held ? 0U : none);
+  }
+  [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
+
+  const HierarchyLevel& above_;
+  const Topology& mesh_;
+  const Ranks faces_, edges_, vertices_;
+  HierarchyLevel below_;
+};
+
+}  // namespace
+
+bool HierarchyLevel::is_complete(uint32_t edge) const {
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return complete[mesh.topology.origin[h]] != 0 && complete[mesh.topology.tip(h)] != 0;
+}
+
+uint64_t HierarchyLevel::bytes() const {
+  const auto size = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
+  const Topology& t = mesh.topology;
+  uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
+                   size(complete, parent, child, red, shared, longest) +
+                   size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
+  for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.transitions.bytes() +
+           trial.planes.bytes() + trial.products.bytes();
+  bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
+  return bytes;
+}
+
+HierarchyLevel coarsest_level(Mesh mesh) {
+  HierarchyLevel level;
+  level.is_whole = true;
+  level.complete.assign(mesh.topology.vertex_count, 1);
+  if (std::ranges::find(mesh.topology.kind, EdgeKind::shared) != mesh.topology.kind.end())
+    for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+      if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
+  level.box = bounding_box(mesh.positions);
+  level.features = find_features(mesh.topology);
+  level.mesh = std::move(mesh);
+  return level;
+}
+
+EdgeMarks edges_below_red(const HierarchyLevel& level) {
+  if (level.is_whole) return complete_edges(level);
+  const Topology& mesh = level.mesh.topology;
+  EdgeMarks marks(mesh.edge_count(), 0);
+  for (const uint8_t is_red : {1, 0})  // first those of red faces, then without those of the others
+    for (uint32_t i = 0; i < mesh.face_count() / 4; ++i)
+      if (level.red[level.parent_of(4 * i)] == is_red)
+        for (uint32_t h = 12 * i; h < 12 * i + 12; ++h) marks[mesh.edge[h]] = is_red;
+  return marks;
+}
+
+EdgeMarks complete_edges(const HierarchyLevel& level) {
+  EdgeMarks marks(level.mesh.topology.edge_count(), 1);
+  if (level.is_whole) return marks;
+  for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = level.is_complete(e) ? 1 : 0;
+  return marks;
+}
+
+List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
+  List<uint8_t> touched(mesh.vertex_count, 0);
+  for (uint32_t f : marked(faces))
+    for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] = 1;
+  List<uint8_t> marks(faces.size());
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const uint32_t* corner = &mesh.origin[size_t{3} * f];
+    marks[f] = touched[corner[0]] | touched[corner[1]] | touched[corner[2]];
+  }
+  return marks;
+}
+
+namespace {
+
+/// The level below a mesh all of whose edges were tried, its vertices numbered as split_in_four() does it.
+HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) {
+  HierarchyLevel below;
+  below.mesh.positions.reserve(topology.vertex_count);
+  below.mesh.positions = level.mesh.positions;
+  below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
+  below.mesh.topology = std::move(topology);
+  return below;
+}
+
+}  // namespace
+
+HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
+  HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
+  below.features = level.features;
+  descend(below.features, level.mesh.topology.vertex_count);
+  below.is_whole = true;
+  below.complete.assign(below.mesh.topology.vertex_count, 1);
+  for (uint32_t parent : level.shared)
+    for (uint32_t half : {first_half(parent), second_half(parent)}) below.shared.push_back(half);
+  below.red = std::move(red);
+  below.box = bounding_box(below.mesh.positions);
+  return below;
+}
+
+LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
+  if (level.is_tried_whole() && std::ranges::find(red, 0) == red.end())
+    return {refine_whole_level(level, std::move(red), threads), {}};
+  LevelBelow below = LevelMaker(level, red).run(threads);
+  below.level.red = std::move(red);
+  below.level.box = bounding_box(below.level.mesh.positions);
+  return below;
+}
+
+namespace {
+
+/// The box of the level above and the new vertices of these of its edges.
+Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edges) {
+  const auto& [min, max] = above.box;
+  Lanes least{{min.x, min.y, min.z, 0}};
+  Lanes most{{max.x, max.y, max.z, 0}};
+  for (uint32_t e : edges) {
+    const Lanes p = widen(above.trial.made[above.trial.number(e)]);
+    least = lesser(p, least);
+    most = larger(p, most);
+  }
+  Box box;
+  store(least, box.min);
+  store(most, box.max);
+  return box;
+}
+
+}  // namespace
+
+HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
+  HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
+  below.parent = part.faces.numbers();
+  below.parent.push_back(none);
+  below.child.resize(red.size());
+  for (uint32_t f = 0; f < red.size(); ++f) below.child[f] = 4 * part.faces[f];
+  below.red = std::move(red);
+  below.box = box_with_new_vertices(level, part.edges.numbers());
+  return below;
+}
+
+}  // namespace papilio

@@ -1,0 +1,228 @@
+#include "hierarchy/levels.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "criteria/view_culling.h"
+#include "hierarchy/grow_level.h"
+#include "hierarchy/transition.h"
+#include "mesh/attributes.h"
+
+namespace papilio {
+namespace {
+
+/// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
+constexpr uint64_t bytes_per_kept_face = 122;
+/// All of a level costs about as much as so large a part of it.
+constexpr double part_as_dear_as_all = 0.75;
+/// All of its connectivity, which follows by formula, as much as so large a part's.
+constexpr double part_as_dear_as_formula = 0.45;
+/// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
+constexpr double part_as_dear_as_all_kept = 1.0 / 3;
+
+bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
+  return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
+}
+
+}  // namespace
+
+Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
+    : options_(options), progress_(progress), plan_(coarse, options), smallest_angle_(papilio::smallest_angle(coarse)) {
+  auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
+  progress_.poll();
+  if (options.view) level->longest = longest_edges(level->mesh);
+  const TrialContext context{.features = &level->features, .threads = progress.threads()};
+  level->trial = options.w == 0 ? try_everything(level->mesh, options, context)
+                                : try_split(level->mesh, options, complete_edges(*level), context);
+  level->trial.prepare_errors(level->mesh, options, context);
+  levels_.push_back(std::move(level));
+}
+
+Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progress& progress)
+    : options_(options),
+      progress_(progress),
+      prepared_(&prepared.state()),
+      known_(prepared_->kept()),
+      levels_{known_[0]},
+      plan_(prepared.coarse(), options),
+      to_keep_(1),
+      smallest_angle_(prepared_->smallest_angle()) {}
+
+void Levels::deepen(const List<uint8_t>& red) {
+  const size_t depth = levels_.size();
+  if (depth < known_.size()) {
+    const std::shared_ptr<const HierarchyLevel> known = known_[depth];
+    if (moved_.empty() && covers(known->red, red)) {
+      levels_.push_back(known);
+      ++to_keep_;
+      return;
+    }
+    if (make_with_known(*known, with_margin(red)) || make_with_known(*known, red)) return;
+    known_.resize(depth);  // this one takes its place
+  }
+  make(red);
+}
+
+bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
+  for (uint32_t f = 0; f < known.red.size(); ++f)
+    if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
+  if (!may_keep(red)) return false;
+  LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
+  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
+  List<uint32_t> moved(known.mesh.topology.face_count());
+  for (uint32_t f = 0; f < moved.size(); ++f) {
+    const uint32_t parent = known.parent_of(f);
+    moved[f] = level->first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
+  }
+  moved_ = std::move(moved);
+  progress_.poll();
+  level->longest = longest_edges_below(parents_of(*level, below.parents), level->mesh.positions);
+  try_grown_level(*level, options_, known, moved_);
+  add_kept(level);
+  return true;
+}
+
+List<uint8_t> Levels::with_margin(const List<uint8_t>& red) const {
+  const HierarchyLevel& level = *levels_.back();
+  const Topology& mesh = level.mesh.topology;
+  List<uint8_t> wide = with_neighbours(mesh, red);
+  if (levels_.size() == 1) return wide;
+  const EdgeMarks may_split = edges_below_red(level);
+  for (uint32_t f = 0; f < wide.size(); ++f) {
+    const uint32_t* edge = &mesh.edge[size_t{3} * f];
+    if (red[f] == 0 && (may_split[edge[0]] & may_split[edge[1]] & may_split[edge[2]]) == 0) wide[f] = 0;
+  }
+  return wide;
+}
+
+bool Levels::may_keep(const List<uint8_t>& red) const {
+  if (prepared_ == nullptr || to_keep_ < levels_.size()) return false;
+  const List<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
+  uint64_t bytes = 4 * bytes_per_kept_face * static_cast<uint64_t>(std::ranges::count(support, 1));
+  for (const auto& level : levels_) bytes += level->bytes();
+  return bytes <= prepared_->budget();
+}
+
+List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
+  const HierarchyLevel& level = *levels_.back();
+  if (!level.is_tried_whole() || !has_room_for_whole()) return red;
+  const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
+  const auto held = static_cast<double>(std::ranges::count(support, 1));
+  if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
+  return red;
+}
+
+void Levels::make(const List<uint8_t>& red) {
+  if (prepared_ == nullptr && (make_last(red) || make_whole(red))) return;
+  List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
+                                            : or_everything(with_margin(red), part_as_dear_as_all_kept);
+  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
+  const bool is_kept = may_keep(more);
+  if (prepared_ != nullptr && !is_kept && make_last(red)) return;
+  LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
+  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
+  progress_.poll();
+  const Topology& parents = parents_of(*level, below.parents);
+  if (is_kept || options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
+  if (is_kept) {
+    TrialContext context{.features = &level->features, .threads = progress_.threads()};
+    if (level->is_whole) context.parents = &parents;
+    level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
+    level->trial.keep_more(level->mesh.topology);
+    add_kept(level);
+  } else {
+    try_for_once(*level, parents);
+    levels_.push_back(level);
+  }
+}
+
+bool Levels::make_whole(const List<uint8_t>& red) {
+  const HierarchyLevel& above = *levels_.back();
+  const Topology& parents = above.mesh.topology;
+  if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 || !has_room_for_whole())
+    return false;
+  const List<uint32_t> held = marked(with_neighbours(parents, red));
+  if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
+  const auto level = std::make_shared<HierarchyLevel>(refine_whole_level(above, red, progress_.threads()));
+  progress_.poll();
+  if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
+  const List<uint32_t> below_red = marked(red);
+  TrialContext context{
+      .features = &level->features, .parents = &parents, .normals_of = &below_red, .threads = progress_.threads()};
+  if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
+  level->trial = try_everything(level->mesh, options_, context);
+  level->trial.prepare_errors(level->mesh, options_, context);
+  levels_.push_back(level);
+  return true;
+}
+
+bool Levels::make_last(const List<uint8_t>& red) {
+  const HierarchyLevel& above = *levels_.back();
+  const Topology& parents = above.mesh.topology;
+  if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
+      above.trial.made.size() != parents.edge_count() || !has_room_for_whole())
+    return false;
+  const Part part(parents, red);
+  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
+  progress_.poll();
+  if (options_.view) {
+    const List<uint32_t> round_them = marked(with_neighbours(parents, red));
+    level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
+  }
+  const TrialContext context{
+      .features = &above.features, .parents = &parents, .part = &part, .threads = progress_.threads()};
+  level->trial = try_everything(level->mesh, options_, context);
+  level->trial.prepare_errors(level->mesh, options_, context);
+  levels_.push_back(level);
+  return true;
+}
+
+bool Levels::has_room_for_whole() const {
+  const uint64_t faces = 4ULL * levels_.back()->mesh.topology.face_count();
+  return progress_.has_room(faces, plan_.made(faces, static_cast<int>(levels_.size()), bytes_per_held_face));
+}
+
+bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }
+
+const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& held) const {
+  return level.is_whole ? levels_.back()->mesh.topology : held;
+}
+
+void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
+  constexpr size_t one_as_dear_as = 4;  // of all, family by family
+  TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
+  List<uint32_t> below_red;  // fours of faces
+  bool are_few = false;
+  if (!level.is_whole) {
+    below_red.resize(level.parent.size());
+    std::iota(below_red.begin(), below_red.end(), 0U);
+    keep_if(below_red, [&](uint32_t i) { return level.red[level.parent[i]] != 0; });
+    context.normals_of = &below_red;
+    if (is_next_last()) {
+      are_few = one_as_dear_as * below_red.size() < level.parent.size();
+      context.asked_of = &below_red;
+    }
+  }
+  if (are_few || options_.w != 0)
+    level.trial = try_split(level.mesh, options_,
+                            context.asked_of == nullptr ? complete_edges(level) : edges_below_red(level), context);
+  else
+    level.trial = try_everything(level.mesh, options_, context);
+  level.trial.prepare_errors(level.mesh, options_, context);
+}
+
+void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
+  levels_.push_back(std::move(level));
+  ++to_keep_;
+  has_grown_ = true;
+}
+
+void Levels::hand_back() {
+  if (!has_grown_) return;
+  while (!moved_.empty() && levels_.size() < known_.size())
+    if (!make_with_known(*known_[levels_.size()], List<uint8_t>(levels_.back()->mesh.topology.face_count(), 0))) break;
+  levels_.resize(to_keep_);
+  prepared_->keep(std::move(levels_));
+}
+
+}  // namespace papilio

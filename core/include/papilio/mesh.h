@@ -1,0 +1,151 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "papilio/buffer.h"
+#include "papilio/vec3.h"
+
+// The half-edge mesh that every step of the core works on: flat arrays, no pointers, no hash once it is
+// built.
+//
+// Face f owns half-edges 3f, 3f+1, 3f+2; half-edge h runs from origin(h) to origin(next(h)) with the face on
+// its left (counter-clockwise seen from outside). Vertices are positions: points that share one are one
+// vertex. A vertex may carry several fans of faces (a pinched vertex); rules that look at a vertex's ring
+// walk the fan of the half-edge at hand, so each fan is a vertex of its own to them.
+
+namespace papilio {
+
+/// Three indices into a position array, counter-clockwise seen from outside.
+using Triangle = std::array<uint32_t, 3>;
+
+/// Values that go with the points: texture coordinates, normals, colours, anything. They are interpolated linearly.
+struct Attribute {
+  uint32_t components = 1;
+  bool unit_length = false;    ///< brought back to length one after interpolation: normals
+  std::vector<double> values;  ///< [points * components], point by point
+
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+
+/// Triangles as files and streams carry them: what goes into the core and what comes out. Nothing is promised
+/// of it: there may be repeated positions, unused ones, degenerate faces. Points that share a position but not their
+/// attributes are a seam.
+struct TriangleMesh {
+  Array<Vec3f> positions;  ///< [points]
+  Array<Triangle> triangles;
+  std::vector<Attribute> attributes{};
+
+  friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
+};
+
+inline constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+
+/// What an edge is to the subdivision rules. All but `smooth` are curves: rings end there, and the edge
+/// itself is split by the rule along the curve.
+enum class EdgeKind : uint8_t {
+  smooth,    ///< two faces, wound alike
+  boundary,  ///< one face
+  shared,    ///< three faces or more, or two wound against each other: a boundary of every face at it
+  crease,    ///< two faces, kept sharp
+  cut,       ///< faces of the uniform mesh are missing here: the border of what a red-green level holds (hierarchy.h)
+};
+
+/// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices. Edges may be left out: then `edge`,
+/// `half_edge` and `kind` are empty.
+struct Topology {
+  uint32_t vertex_count = 0;
+  Array<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
+  Array<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
+  Array<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
+  Array<uint32_t> half_edge;  ///< [E] one half-edge of each edge
+  Array<EdgeKind> kind;       ///< [E]
+  /// Vertices of the coarse mesh with more than one fan, in ascending order. (Vertices that arise on shared edges have
+  /// several too; rules find those by their curves.)
+  std::vector<uint32_t> pinched;
+  /// Vertices inside the surface at which a single crease ends, in ascending order. To the rules they are vertices
+  /// without a crease.
+  std::vector<uint32_t> darts;
+
+  [[nodiscard]] bool has_edges() const { return edge.size() == origin.size(); }
+  [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }
+  [[nodiscard]] uint32_t edge_count() const { return static_cast<uint32_t>(half_edge.size()); }
+  [[nodiscard]] uint32_t half_edge_count() const { return static_cast<uint32_t>(origin.size()); }
+
+  static uint32_t face(uint32_t h) { return h / 3; }
+  static uint32_t next(uint32_t h) { return h + 1 - (h % 3 == 2 ? 3U : 0U); }
+  static uint32_t previous(uint32_t h) { return h - 1 + (h % 3 == 0 ? 3U : 0U); }
+  [[nodiscard]] uint32_t tip(uint32_t h) const { return origin[next(h)]; }
+  /// The vertex of h's face that h does not touch.
+  [[nodiscard]] uint32_t apex(uint32_t h) const { return origin[previous(h)]; }
+  [[nodiscard]] bool is_curve(uint32_t h) const { return kind[edge[h]] != EdgeKind::smooth; }
+  /// Vertices less edges plus faces.
+  [[nodiscard]] int64_t euler_characteristic() const {
+    return int64_t{vertex_count} - int64_t{edge_count()} + int64_t{face_count()};
+  }
+};
+
+/// Attributes of a mesh. A point is a vertex together with its values; where charts meet, one vertex is several points,
+/// and positions do not open.
+struct PointAttributes {
+  Array<uint32_t> point;              ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
+  uint32_t point_count = 0;           ///< P
+  std::vector<Attribute> attributes;  ///< values [P * components] each
+
+  [[nodiscard]] bool empty() const { return attributes.empty(); }
+};
+
+/// A mesh: connectivity and one position a vertex, and attributes if it has any.
+struct Mesh {
+  Topology topology;
+  Array<Vec3f> positions;  ///< [V]
+  PointAttributes attributes{};
+
+  /// Copies the faces and positions out; with attributes, points in place of vertices. Of a mesh that is not needed any
+  /// more positions need no copy.
+  [[nodiscard]] TriangleMesh triangles() const&;
+  [[nodiscard]] TriangleMesh triangles() &&;
+};
+
+/// What was found in the triangles, and what was done about it.
+struct BuildReport {
+  uint32_t welded_points = 0;     ///< points dropped because an earlier one has the same position
+  uint32_t isolated_points = 0;   ///< positions that no face uses, dropped
+  uint32_t degenerate_faces = 0;  ///< faces with two equal positions, dropped
+  uint32_t repeated_faces = 0;    ///< faces with the vertices and orientation of an earlier one, dropped
+  uint32_t boundary_edges = 0;
+  uint32_t non_manifold_edges = 0;  ///< edges with three faces or more
+  uint32_t misoriented_edges = 0;   ///< edges whose two faces run along them in the same direction
+  uint32_t pinched_vertices = 0;    ///< vertices at which several fans of faces touch
+};
+
+/// Largest magnitude of a coordinate, so that no later sum or square overflows.
+inline constexpr float coordinate_limit = 1e18F;
+
+/// Most faces that any level may have: half-edges are counted in 32 bits.
+inline constexpr uint64_t face_count_limit = 1ULL << 30;
+
+/// Builds the mesh: welds points of equal position (to the bit, but -0 = 0), numbers vertices in the order in
+/// which the faces name them, drops what cannot be refined and counts it. Face order is kept. O(n log n) at
+/// worst. Throws `Error`: index_out_of_range, not_finite (NaN, infinite or beyond `coordinate_limit`),
+/// no_faces, out_of_memory.
+[[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr);
+
+/// An axis-parallel box. Of no points: `min` above `max`.
+struct Box {
+  Vec3f min, max;
+  [[nodiscard]] double diagonal() const;
+  [[nodiscard]] Vec3d centre() const;
+  /// The largest magnitude of any; 0 of no points.
+  [[nodiscard]] float largest_coordinate() const;
+};
+[[nodiscard]] Box bounding_box(std::span<const Vec3f> positions);
+
+/// Unit normal of each vertex [V]: its faces' normals weighted by area; (0, 0, 1) where they cancel out or
+/// there are none.
+[[nodiscard]] Array<Vec3f> vertex_normals(const Mesh& mesh);
+
+}  // namespace papilio

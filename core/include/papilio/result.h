@@ -1,0 +1,33 @@
+#pragma once
+
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// One level as it is made; valid during the callback only.
+struct Level {
+  int level;         ///< 0 is the coarse mesh; levels that change nothing, before one that does, are left out
+  const Mesh& mesh;  ///< with or without edges, where `Options::edges` is off
+  bool last;         ///< no further level will come
+};
+
+enum class StopReason {
+  converged,  ///< no target edge was left (in place: nor does a later level have a higher flatness threshold)
+  levels,     ///< all levels asked for were made
+  budget,     ///< `max_faces` kept something out
+  limits,     ///< a further level would have passed a limit (`Options::stop_at_limits`)
+};
+
+struct Result {
+  Mesh mesh;       ///< with edges if `Options::edges`
+  int levels = 0;  ///< the last level that changed the mesh
+  StopReason stop_reason = StopReason::levels;
+  /// The largest deviation left: the distance by which the surface would still move at an edge that was not split, as a
+  /// share of the coarse mesh's diagonal. Where there is a view, of what it shows. For edges of the last level, which
+  /// are not tried, a quarter of the deviation at the edges they come from: what a smooth surface does. 0 without
+  /// `Options::measure_error`.
+  double error = 0;
+  double error_pixels = 0;  ///< the same in pixels of the view; 0 without one
+};
+
+}  // namespace papilio

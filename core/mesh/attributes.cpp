@@ -1,0 +1,126 @@
+#include "mesh/attributes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+void check(const TriangleMesh& input) {
+  for (size_t a = 0; a < input.attributes.size(); ++a) {
+    const Attribute& attribute = input.attributes[a];
+    if (attribute.values.size() != input.positions.size() * attribute.components)
+      throw Error(Fault::index_out_of_range,
+                  "Attribute " + std::to_string(a) + " has not as many values as the mesh has points.");
+    if (!std::ranges::all_of(attribute.values, [](double v) { return std::isfinite(v); }))
+      throw Error(Fault::not_finite, "Attribute " + std::to_string(a) +
+                                         " (the first besides positions is 0) has a value that is NaN or infinite. "
+                                         "Repair the mesh, or leave the attribute out.");
+  }
+}
+
+std::span<const double> values_of(const Attribute& attribute, uint32_t point) {
+  return {attribute.values.data() + size_t{point} * attribute.components, attribute.components};
+}
+
+/// -1, 0 or 1: the values of two points in order.
+int compare(const std::vector<Attribute>& attributes, uint32_t p, uint32_t q) {
+  for (const Attribute& attribute : attributes) {
+    const auto a = values_of(attribute, p);
+    const auto b = values_of(attribute, q);
+    for (size_t i = 0; i < a.size(); ++i)
+      if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
+  }
+  return 0;
+}
+
+/// For each point of the input the lowest of its vertex with equal values; points that no corner names keep `none`.
+List<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& mesh,
+                                  const std::vector<uint32_t>& corner_point) {
+  List<uint32_t> vertex(input.positions.size(), none);
+  List<uint32_t> points;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    const uint32_t p = corner_point[h];
+    if (vertex[p] == none) points.push_back(p);
+    vertex[p] = mesh.origin[h];
+  }
+  std::ranges::sort(points, [&](uint32_t p, uint32_t q) {
+    if (vertex[p] != vertex[q]) return vertex[p] < vertex[q];
+    const int order = compare(input.attributes, p, q);
+    return order != 0 ? order < 0 : p < q;
+  });
+  List<uint32_t> same(input.positions.size(), none);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const uint32_t p = points[i];
+    const bool repeats =
+        i > 0 && vertex[points[i - 1]] == vertex[p] && compare(input.attributes, points[i - 1], p) == 0;
+    same[p] = repeats ? same[points[i - 1]] : p;
+  }
+  return same;
+}
+
+void append_mean(Attribute& attribute, uint32_t p, uint32_t q) {
+  const size_t begin = attribute.values.size();
+  double size = 0;
+  for (uint32_t i = 0; i < attribute.components; ++i) {
+    const double mean = 0.5 * values_of(attribute, p)[i] + 0.5 * values_of(attribute, q)[i];  // the sum may overflow
+    attribute.values.push_back(mean);
+    size += mean * mean;
+  }
+  if (!attribute.unit_length || size == 0) return;
+  for (uint32_t i = 0; i < attribute.components; ++i) attribute.values[begin + i] /= std::sqrt(size);
+}
+
+}  // namespace
+
+PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
+                                  const std::vector<uint32_t>& corner_point) {
+  check(input);
+  PointAttributes out;
+  if (input.attributes.empty()) return out;
+  const List<uint32_t> same = merge_equal_points(input, mesh, corner_point);
+  for (const Attribute& attribute : input.attributes)
+    out.attributes.push_back({attribute.components, attribute.unit_length, {}});
+
+  List<uint32_t> number(input.positions.size(), none);
+  out.point.reserve(corner_point.size());
+  for (uint32_t p : corner_point) {
+    uint32_t& n = number[same[p]];
+    if (n == none) {
+      n = out.point_count++;
+      for (size_t a = 0; a < out.attributes.size(); ++a) {
+        const auto values = values_of(input.attributes[a], p);
+        out.attributes[a].values.insert(out.attributes[a].values.end(), values.begin(), values.end());
+      }
+    }
+    out.point.push_back(n);
+  }
+  return out;
+}
+
+List<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const List<uint32_t>& faces,
+                            PointAttributes& attributes) {
+  List<uint32_t> made(mesh.half_edge_count(), none);
+  const Array<uint32_t>& point = attributes.point;
+  const auto split_half_edge = [&](uint32_t h) {
+    if (split[mesh.edge[h]] == 0) return;
+    const uint32_t p = point[h];
+    const uint32_t q = point[Topology::next(h)];
+    const uint32_t t = mesh.twin[h];
+    if (t != none && t < h && made[t] != none && point[Topology::next(t)] == p && point[t] == q) {
+      made[h] = made[t];
+      return;
+    }
+    made[h] = attributes.point_count++;
+    for (Attribute& attribute : attributes.attributes) append_mean(attribute, p, q);
+  };
+  for (uint32_t f : faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) split_half_edge(h);
+  return made;
+}
+
+}  // namespace papilio

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/split_plan.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// The attributes of a mesh built from `input`: corner_point [H] names the input's point at each half-edge's origin.
+/// Points of one vertex with equal values become one point, so that only true seams remain. Empty where the input has
+/// no attributes. Throws `Error`: not_finite (a value), index_out_of_range (not one value a point).
+[[nodiscard]] PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
+                                                const std::vector<uint32_t>& corner_point);
+
+/// Makes the points on the split edges: each the mean of the two at its ends, one for both faces where they agree on
+/// both, else (on a seam) one for each face. Returns [H] the new point on each half-edge of a split edge; `none`
+/// elsewhere, and on faces that are not among `faces`, which are in ascending order.
+[[nodiscard]] List<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const List<uint32_t>& faces,
+                                          PointAttributes& attributes);
+
+}  // namespace papilio

@@ -1,0 +1,70 @@
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "mesh/attributes.h"
+#include "mesh/connect.h"
+#include "mesh/weld.h"
+#include "papilio/error.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+namespace {
+
+void check(const TriangleMesh& input) {
+  const size_t points = input.positions.size();
+  if (points >= none) throw Error(Fault::index_out_of_range, "The mesh has more points than 32 bits can number.");
+  if (input.triangles.size() > face_count_limit)
+    throw Error(Fault::result_too_large, "The mesh has more than 2^30 faces. Use fewer.");
+  for (size_t f = 0; f < input.triangles.size(); ++f)
+    for (uint32_t p : input.triangles[f])
+      if (p >= points)
+        throw Error(Fault::index_out_of_range, "Face " + std::to_string(f) + " names point " + std::to_string(p) +
+                                                   ", but there are only " + std::to_string(points) + " points.");
+  for (size_t p = 0; p < points; ++p) {
+    const Vec3f v = input.positions[p];
+    const auto usable = [](float c) { return std::abs(c) <= coordinate_limit; };  // false for NaN
+    if (!usable(v.x) || !usable(v.y) || !usable(v.z))
+      throw Error(Fault::not_finite, "Point " + std::to_string(p) +
+                                         " has a coordinate that is NaN, infinite or beyond 1e18. Repair or rescale "
+                                         "the mesh.");
+  }
+}
+
+Mesh build(const TriangleMesh& input, BuildReport* report) {
+  check(input);
+  BuildReport found;
+  Mesh mesh;
+  Topology& topology = mesh.topology;
+  std::vector<uint32_t> corner_point;
+  topology.origin = weld(input, mesh.positions, found, corner_point);
+  topology.vertex_count = static_cast<uint32_t>(mesh.positions.size());
+
+  if (topology.origin.empty()) {
+    throw Error(Fault::no_faces, input.triangles.empty()
+                                     ? "The mesh has no faces. Use a triangle mesh."
+                                     : "Every face of the mesh has two corners in one place, so there is no surface "
+                                       "to refine. Check the mesh's scale and precision.");
+  }
+  connect(topology, corner_point, found);
+  topology.pinched = find_pinched(topology);
+  mesh.attributes = gather_attributes(input, topology, corner_point);
+  found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
+  if (report != nullptr) *report = found;
+  return mesh;
+}
+
+}  // namespace
+
+Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
+  try {
+    return build(input, report);
+  } catch (const std::bad_alloc&) {
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
+  } catch (const std::length_error&) {
+    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
+  }
+}
+
+}  // namespace papilio

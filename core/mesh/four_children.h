@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+// The four children of a face all of whose edges are split (split_in_four.h): their twelve half-edges, three a child.
+
+namespace papilio {
+
+/// The child half-edge that leaves the same vertex as half-edge h and runs to the middle of its edge.
+[[nodiscard]] constexpr uint32_t first_half(uint32_t h) { return 4 * h; }
+
+/// The child half-edge from the middle of half-edge h's edge to h's tip.
+[[nodiscard]] constexpr uint32_t second_half(uint32_t h) {
+  // Of child i + 1, in place i: 12 f + 3 (i + 1 mod 3) + i, which is 4 h but for this.
+  return h % 3 == 2 ? 4 * h - 6 : 4 * h + 3;
+}
+
+using OfSides = std::array<uint32_t, 3>;  ///< one number a side of the parent, side i running from its corner i
+
+/// One after the other: built in an array first and then copied, they are waited for.
+template <class... Numbers>
+void put(uint32_t* at, Numbers... numbers) {
+  ((*at++ = numbers), ...);
+}
+
+/// Their corners, from the parent's and the middles of its sides.
+inline void put_corners_of_four(const OfSides& corner, const OfSides& middle, uint32_t* to) {
+  put(to, corner[0], middle[0], middle[2],  //
+      middle[0], corner[1], middle[1],      //
+      middle[2], middle[1], corner[2],      //
+      middle[0], middle[1], middle[2]);
+}
+
+/// Their twins, from what runs against the first and second halves of the sides; `base` is their first half-edge.
+inline void put_twins_of_four(uint32_t base, const OfSides& against_first, const OfSides& against_second,
+                              uint32_t* to) {
+  put(to, against_first[0], base + 11, against_second[2],  //
+      against_second[0], against_first[1], base + 9,       //
+      base + 10, against_second[1], against_first[2],      //
+      base + 5, base + 6, base + 1);
+}
+
+/// Their edges, from the halves of the sides; the inner ones begin at `inner`.
+inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint32_t inner, uint32_t* to) {
+  put(to, first[0], inner, second[2],  //
+      second[0], first[1], inner + 1,  //
+      inner + 2, second[1], first[2],  //
+      inner + 1, inner + 2, inner);
+}
+
+/// One number a side, in a register; the fourth means nothing.
+using SidesAtOnce = uint32_t __attribute__((vector_size(16)));
+[[nodiscard]] inline SidesAtOnce at_once(const OfSides& sides) { return SidesAtOnce{sides[0], sides[1], sides[2], 0}; }
+/// Of an array that has room behind its end (array.h): four are read.
+[[nodiscard]] inline SidesAtOnce read_at_once(const uint32_t* sides) {
+  SidesAtOnce read;
+  std::memcpy(&read, sides, sizeof(read));
+  return read;
+}
+
+/// The same as above, from registers.
+inline void put_corners_of_four(SidesAtOnce corner, SidesAtOnce middle, uint32_t* to) {
+  const std::array<SidesAtOnce, 3> rows{__builtin_shufflevector(corner, middle, 0, 4, 6, 4),
+                                        __builtin_shufflevector(corner, middle, 1, 5, 6, 5),
+                                        __builtin_shufflevector(corner, middle, 2, 4, 5, 6)};
+  std::memcpy(to, rows.data(), sizeof(rows));
+}
+/// What twins and edges have in common: numbers that belong to the first and second halves of the sides; inside, those
+/// of the outer children, of child 0, 1 and 2, and those of the one in the middle.
+inline void put_sides_of_four(SidesAtOnce first, SidesAtOnce second, SidesAtOnce inside, SidesAtOnce of_middle,
+                              uint32_t* to) {
+  const std::array<SidesAtOnce, 3> rows{
+      __builtin_shufflevector(__builtin_shufflevector(first, inside, 0, 4, 0, 4), second, 0, 1, 6, 4),
+      __builtin_shufflevector(__builtin_shufflevector(first, inside, 1, 5, 1, 5),
+                              __builtin_shufflevector(inside, second, 2, 5, 2, 5), 0, 1, 4, 5),
+      __builtin_shufflevector(__builtin_shufflevector(first, of_middle, 2, 4, 2, 4), of_middle, 0, 1, 5, 6)};
+  std::memcpy(to, rows.data(), sizeof(rows));
+}
+inline void put_twins_of_four(uint32_t base, SidesAtOnce against_first, SidesAtOnce against_second, uint32_t* to) {
+  constexpr SidesAtOnce inside{11, 9, 10, 0}, of_middle{5, 6, 1, 0};
+  put_sides_of_four(against_first, against_second, base + inside, base + of_middle, to);
+}
+inline void put_edges_of_four(SidesAtOnce first, SidesAtOnce second, uint32_t inner, uint32_t* to) {
+  constexpr SidesAtOnce inside{0, 1, 2, 0}, of_middle{1, 2, 0, 0};
+  put_sides_of_four(first, second, inner + inside, inner + of_middle, to);
+}
+
+/// The six vertices of the four, from their corners [12]: the parent's, and then the middles of its sides.
+[[nodiscard]] inline std::array<uint32_t, 6> vertices_of_four(const uint32_t* corner) {
+  return {corner[0], corner[4], corner[8], corner[9], corner[10], corner[11]};
+}
+
+/// Calls visit(half-edge, from, to) for each of their nine edges: which of the twelve half-edges runs there, and
+/// between which of the six vertices. Written out, so that all of it is known when this is compiled.
+template <class Visit>
+[[gnu::always_inline]] inline void visit_edges_of_four(const Visit& visit) {
+  visit(0, 0, 3);
+  visit(3, 3, 1);
+  visit(4, 1, 4);
+  visit(7, 4, 2);
+  visit(8, 2, 5);
+  visit(2, 5, 0);
+  visit(9, 3, 4);
+  visit(10, 4, 5);
+  visit(11, 5, 3);
+}
+
+}  // namespace papilio

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "mesh/ranks.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Some of a mesh's faces and the edges at them, numbered closely. All other faces count as one more, the last, and so
+/// do all other edges: whoever follows a twin out of the part comes to a face that is there, but means nothing.
+struct Part {
+  /// The faces marked. [F]
+  Part(const Topology& mesh, const List<uint8_t>& marks);
+
+  Ranks faces, edges;
+
+  [[nodiscard]] uint32_t other_face() const { return faces.count(); }
+  [[nodiscard]] uint32_t other_edge() const { return edges.count(); }
+};
+
+/// The numbers that faces and edges go by where all of a mesh is meant: their own.
+class OwnNumbers {
+ public:
+  explicit OwnNumbers(uint32_t edge_count) : edge_count_(edge_count) {}
+  [[nodiscard]] uint32_t face(uint32_t f) const { return f; }
+  [[nodiscard]] uint32_t half_edge(uint32_t h) const { return h; }
+  [[nodiscard]] uint32_t edge(uint32_t e) const { return e; }
+  [[nodiscard]] uint32_t edge_count() const { return edge_count_; }
+
+ private:
+  uint32_t edge_count_;
+};
+
+/// Those where a part is meant, which must outlive this.
+class PartNumbers {
+ public:
+  explicit PartNumbers(const Part& part) : part_(&part) {}
+  [[nodiscard]] uint32_t face(uint32_t f) const { return part_->faces[f]; }
+  [[nodiscard]] uint32_t half_edge(uint32_t h) const { return 3 * face(Topology::face(h)) + h % 3; }
+  [[nodiscard]] uint32_t edge(uint32_t e) const { return part_->edges[e]; }
+  [[nodiscard]] uint32_t edge_count() const { return part_->other_edge() + 1; }
+
+ private:
+  const Part* part_;
+};
+
+}  // namespace papilio

@@ -1,0 +1,349 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "base/trigonometry.h"
+#include "mesh/curve.h"
+#include "mesh/fan.h"
+#include "rules/child_stencil.h"
+#include "rules/edge_accumulator.h"
+#include "rules/stencil.h"
+#include "rules/tensed_rules.h"
+#include "rules/tension.h"
+#include "simd/vec3fa.h"
+
+namespace papilio {
+
+/// Weights of irregular interior vertices, converted once.
+template <class Real>
+class InteriorWeights {
+ public:
+  explicit InteriorWeights() {
+    for (uint32_t k = 2; k < stencil::harmonic_valence; ++k) {
+      const stencil::Interior exact = stencil::interior(k);
+      centre_[k] = static_cast<Real>(exact.centre);
+      for (uint32_t j = 0; j < k; ++j) ring_[k][j] = static_cast<Real>(exact.ring[j]);
+    }
+  }
+  [[nodiscard]] Real centre(uint32_t valence) const { return centre_[valence]; }
+  [[nodiscard]] const Real* ring(uint32_t valence) const { return ring_[valence].data(); }
+
+ private:
+  std::array<Real, stencil::harmonic_valence> centre_{};
+  std::array<std::array<Real, stencil::harmonic_valence>, stencil::harmonic_valence> ring_{};
+};
+
+template <class Real>
+inline const InteriorWeights<Real> interior_weights;
+
+/// The points of the rule for a closed fan that is not regular: its centre and its ring, the vertices ring(0),
+/// ring(1), .. The valence is below `stencil::harmonic_valence`; one that is known when this is compiled is faster.
+template <class Real, uint32_t known_valence = 0>
+class InteriorRing {
+ public:
+  template <class Ring>
+  InteriorRing(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring)
+      : valence_(valence),
+        weights_(interior_weights<Real>.ring(valence)),
+        centre_(interior_weights<Real>.centre(valence) * widen(positions[centre])) {
+    for (uint32_t j = 0; j < this->valence(); ++j)
+      points_[j] = points_[this->valence() + j] = widen(positions[ring(j)]);
+  }
+  [[nodiscard]] Vec3T<Real> split(uint32_t spoke) const {
+    Wide<Real> sum = centre_;
+    for (uint32_t j = 0; j < valence(); ++j) sum += weights_[j] * points_[spoke + j];
+    Vec3T<Real> q;
+    store(sum, q);
+    return q;
+  }
+
+ private:
+  [[nodiscard]] uint32_t valence() const { return known_valence != 0 ? known_valence : valence_; }
+
+  uint32_t valence_;
+  const Real* weights_;
+  Wide<Real> centre_;
+  std::array<Wide<Real>, size_t{2} * (known_valence != 0 ? known_valence : stencil::harmonic_valence)> points_;
+};
+
+/// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th. Arguments as above.
+template <class Real, class Ring, class Add>
+void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring, const Add& add) {
+  const auto split = [&]<uint32_t known_valence>(std::integral_constant<uint32_t, known_valence> /*of*/) {
+    const InteriorRing<Real, known_valence> points(positions, centre, valence, ring);
+    for (uint32_t i = 0; i < (known_valence != 0 ? known_valence : valence); ++i) add(i, points.split(i));
+  };
+  switch (valence) {
+    case 3:
+      return split(std::integral_constant<uint32_t, 3>());
+    case 4:
+      return split(std::integral_constant<uint32_t, 4>());
+    case 5:
+      return split(std::integral_constant<uint32_t, 5>());
+    case 7:
+      return split(std::integral_constant<uint32_t, 7>());
+    case 8:
+      return split(std::integral_constant<uint32_t, 8>());
+    case 9:
+      return split(std::integral_constant<uint32_t, 9>());
+    default:
+      return split(std::integral_constant<uint32_t, 0>());
+  }
+}
+
+/// The eight-point rule where every edge is split, for four faces at once (family.h): each position is loaded once, and
+/// the edges between the four are done. `positions` are those of the faces' level.
+template <class Real>
+class FamilyRule {
+ public:
+  explicit FamilyRule(const Vec3T<Real>* positions) : p_(positions) {}
+
+  /// Adds what the family of face `parent` knows of its edges: for each of its four faces what
+  /// `ButterflyRules::add_face_shares` adds, to the bit.
+  template <class Shares>
+  void add_shares(uint32_t parent, const Family& family, Shares& shares) const {
+    std::array<Wide<Real>, 3> corner, middle, across_first, across_second;
+    for (uint32_t i = 0; i < 3; ++i) {
+      corner[i] = widen(p_[family.corner[i]]);
+      middle[i] = widen(p_[family.middle[i]]);
+      across_first[i] = widen(p_[family.across_first[i]]);
+      across_second[i] = widen(p_[family.across_second[i]]);
+    }
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t next = (i + 1) % 3;
+      const uint32_t before = (i + 2) % 3;
+      // Child i has the corners corner[i], middle[i] and middle[before].
+      const Wide<Real>& wing = middle[next];  // across its inner side
+      shares.add(parent, family.twin[i], family.first_half(i),
+                 share_(corner[i], middle[i], middle[before], wing, across_second[before]));
+      shares.add(parent, family.twin[before], family.second_half(before),
+                 share_(middle[before], corner[i], middle[i], across_first[i], wing));
+      shares.set(family.inner_edge(i),
+                 share_(middle[i], middle[before], corner[i], across_second[before], across_first[i]) +
+                     share_(middle[before], middle[i], wing, corner[next], corner[before]));
+    }
+  }
+
+ private:
+  const Vec3T<Real>* p_;
+  stencil::FaceShare<Real> share_{};
+};
+
+/// The rules of one level: the new vertex of an edge from the positions round it. Which rule holds where is told in
+/// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both
+/// half-edges of an edge give the same.
+template <class Real>
+class ButterflyRules {
+  using Point = Vec3T<Real>;
+
+ public:
+  /// `positions` [V] and the others must outlive this; `tension` may be null.
+  ButterflyRules(const Topology& topology, const Point* positions, Real w, const TensionField* tension)
+      : mesh_(topology), p_(positions), w_(w), share_(w) {
+    if (tension != nullptr) tensed_.emplace(topology, positions, *tension);
+  }
+
+  /// An irregular fan's opinion on each of its spokes that lie inside the surface: calls add(spoke, position) for those
+  /// of them that wants(spoke).
+  template <class Wants, class Add>
+  void split_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
+    if (fan.closed && fan.valence() < stencil::harmonic_valence)
+      split_interior_spokes(fan, wants, add);
+    else if (fan.closed)
+      split_interior_spokes_by_harmonics(fan, add);
+    else
+      split_curve_spokes(fan, add);
+  }
+
+  /// Whether all of a closed fan's hinges count whole, so that its rule is the plain one: without tension they do.
+  template <class Spokes, class EdgeOf>
+  [[nodiscard]] bool are_whole(const Spokes& spokes, const EdgeOf& edge_of) const {
+    return !tensed_ ||
+           std::ranges::all_of(spokes, [&](const auto& spoke) { return tensed_->is_whole(edge_of(spoke)); });
+  }
+
+  [[nodiscard]] Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
+    const uint32_t h = mesh_.half_edge[e];
+    const Point a = p_[mesh_.origin[h]];
+    const Point b = p_[mesh_.tip(h)];
+    const auto beyond = [&](uint32_t vertex, Point end, Point other) {
+      return vertex == none ? Real(2) * end - other : p_[vertex];
+    };
+    const Point before = beyond(curves.before(h), a, b);
+    const Point after = beyond(curves.after(h), b, a);
+    if (tensed_) return tensed_->along_curve(before, a, b, after);
+    return stencil::Curve<Real>::end * (a + b) + stencil::Curve<Real>::next * (before + after);
+  }
+
+  /// Both ends regular: which row applies depends on the sides on which a curve touches them.
+  [[nodiscard]] Point regular(uint32_t h) const {
+    const uint32_t t = mesh_.twin[h];
+    if (!tensed_) return regular(h, t);
+    if (touches_curve(h, t)) return tensed_->scaled(h, regular(h, t));
+    const Point q = tensed_->interior_interior(h, t);
+    return w_ == 0 ? q : q + tensed_->least_factor(h) * (interior_interior(h, t) - eight_points(h, t));
+  }
+
+  /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge.
+  [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
+
+  /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
+  /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in face_shares.h.
+  template <class Shares>
+  void add_face_shares(uint32_t f, Shares& shares) const {
+    const uint32_t* corner = &mesh_.origin[size_t{3} * f];
+    const uint32_t* twin = &mesh_.twin[size_t{3} * f];
+    const uint32_t* edge = &mesh_.edge[size_t{3} * f];
+    const std::array<Wide<Real>, 3> p{wide(corner[0]), wide(corner[1]), wide(corner[2])};
+    const std::array<Wide<Real>, 3> wing{wide(mesh_.apex(twin[0])), wide(mesh_.apex(twin[1])),
+                                         wide(mesh_.apex(twin[2]))};
+    if (tensed_) {
+      tensed_->add_face_shares(f, p, wing, shares);
+      return;
+    }
+    shares.add(f, twin[0], edge[0], share_(p[0], p[1], p[2], wing[1], wing[2]));
+    shares.add(f, twin[1], edge[1], share_(p[1], p[2], p[0], wing[2], wing[0]));
+    shares.add(f, twin[2], edge[2], share_(p[2], p[0], p[1], wing[0], wing[1]));
+  }
+
+ private:
+  template <class Wants, class Add>
+  void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
+    const uint32_t k = fan.valence();
+    const InteriorRing<Real> points(p_, fan.centre, k, [&](uint32_t j) { return fan.ring[j]; });
+    const Real* s = interior_weights<Real>.ring(k);
+    const bool is_plain = k == 2 || are_whole(fan.spokes, [&](uint32_t spoke) { return mesh_.edge[spoke]; });
+    for (uint32_t i = 0; i < k; ++i)
+      if (wants(fan.spokes[i])) add(fan.spokes[i], is_plain ? points.split(i) : tensed_->interior_spoke(fan, s, i));
+  }
+
+  template <class Add>
+  void split_interior_spokes_by_harmonics(const Fan& fan, const Add& add) const {
+    const uint32_t k = fan.valence();
+    const std::vector<SineCosine> angles = sines_and_cosines_of_turn(k, k);
+    const auto twice = [&](uint32_t j) { return angles[2 * j < k ? 2 * j : 2 * j - k]; };
+    Vec3d sum, c1, s1, c2, s2;
+    for (uint32_t j = 0; j < k; ++j) {
+      const Vec3d p = widen(p_[fan.ring[j]]);
+      sum += p;
+      c1 += angles[j].cosine * p;
+      s1 += angles[j].sine * p;
+      c2 += twice(j).cosine * p;
+      s2 += twice(j).sine * p;
+    }
+    const Vec3d constant = stencil::interior_centre * widen(p_[fan.centre]) + (stencil::harmonic_0 / k) * sum;
+    const Real factor = tensed_ ? tensed_->least_factor(fan) : Real(1);
+    for (uint32_t i = 0; i < k; ++i) {
+      const Vec3d first = angles[i].cosine * c1 + angles[i].sine * s1;
+      const Vec3d second = twice(i).cosine * c2 + twice(i).sine * s2;
+      const Point q = narrow(constant + (stencil::harmonic_1 / k) * first + (stencil::harmonic_2 / k) * second);
+      add(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q, factor) : q);
+    }
+  }
+
+  template <class Add>
+  void split_curve_spokes(const Fan& fan, const Add& add) const {
+    const uint32_t k = fan.valence();
+    if (k < 2) return;  // none lies inside
+    const stencil::CurveRule rules(k);
+    Vec3d sum_1, sum_2;
+    for (uint32_t j = 1; j < k; ++j) {
+      const Vec3d p = widen(p_[fan.ring[j]]);
+      sum_1 += rules.sine(j) * p;
+      sum_2 += rules.sine(2 * j) * p;
+    }
+    const Vec3d across = widen(p_[fan.ring[0]]) - widen(p_[fan.ring[k]]);
+    for (uint32_t i = 1; i < k; ++i) {
+      const stencil::CurveSpoke rule = rules.spoke(i);
+      const Point q =
+          narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 + rule.sine_2 * sum_2);
+      add(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q) : q);
+    }
+  }
+
+  [[nodiscard]] bool touches_curve(uint32_t h, uint32_t t) const {
+    return mesh_.is_curve(Topology::previous(h)) || mesh_.is_curve(Topology::next(h)) ||
+           mesh_.is_curve(Topology::next(t)) || mesh_.is_curve(Topology::previous(t));
+  }
+
+  [[nodiscard]] Point regular(uint32_t h, uint32_t t) const {
+    const bool a_left = mesh_.is_curve(Topology::previous(h));
+    const bool b_left = mesh_.is_curve(Topology::next(h));
+    const bool a_right = mesh_.is_curve(Topology::next(t));
+    const bool b_right = mesh_.is_curve(Topology::previous(t));
+    const bool a_curve = a_left || a_right;
+    const bool b_curve = b_left || b_right;
+    if (!a_curve && !b_curve) return interior_interior(h, t);
+    if (!a_curve) return b_left ? interior_curve_left(h, t) : interior_curve_right(h, t);
+    // The edge reversed lies between the same two vertices with its sides swapped.
+    if (!b_curve) return a_right ? interior_curve_left(t, h) : interior_curve_right(t, h);
+    if (a_left && b_left) return curve_curve(h, t);
+    if (a_right && b_right) return curve_curve(t, h);
+    return Real(0.5) * (p_[mesh_.origin[h]] + p_[mesh_.origin[t]]);
+  }
+
+  /// The vertex across the edge of h from h's face.
+  [[nodiscard]] Point wing(uint32_t h) const { return p_[mesh_.apex(mesh_.twin[h])]; }
+  [[nodiscard]] Point at(uint32_t vertex) const { return p_[vertex]; }
+
+  [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
+    const Point q = eight_points(h, t, share_);
+    return w_ == 0 ? q : q + share_.far * (far_point(h) + far_point(t));
+  }
+  [[nodiscard]] Point eight_points(uint32_t h, uint32_t t,
+                                   const stencil::FaceShare<Real>& share = stencil::FaceShare<Real>()) const {
+    return sum(face_share(h, t, share), face_share(t, h, share));
+  }
+  [[nodiscard]] Point face_share(uint32_t h, uint32_t t, const stencil::FaceShare<Real>& share) const {
+    return share(at(mesh_.origin[h]), at(mesh_.origin[t]), at(mesh_.apex(h)), wing(Topology::next(h)),
+                 wing(Topology::previous(h)));
+  }
+
+  /// The vertex opposite to h's tip in the ring of its (regular) origin.
+  [[nodiscard]] Point far_point(uint32_t h) const {
+    for (int step = 0; step < 3; ++step) h = mesh_.twin[Topology::previous(h)];
+    return at(mesh_.tip(h));
+  }
+
+  /// A = origin(h) interior, B on a curve that runs along the left face.
+  [[nodiscard]] Point interior_curve_left(uint32_t h, uint32_t t) const {
+    return interior_curve(h, mesh_.apex(h), mesh_.apex(t), wing(Topology::previous(h)), wing(Topology::next(t)),
+                          wing(Topology::previous(t)));
+  }
+  /// The same with the curve along the right face.
+  [[nodiscard]] Point interior_curve_right(uint32_t h, uint32_t t) const {
+    return interior_curve(h, mesh_.apex(t), mesh_.apex(h), wing(Topology::next(t)), wing(Topology::previous(h)),
+                          wing(Topology::next(h)));
+  }
+  [[nodiscard]] Point interior_curve(uint32_t h, uint32_t p, uint32_t q, Point wing_ap, Point wing_aq,
+                                     Point b_next) const {
+    using Row = stencil::InteriorCurve<Real>;
+    return Row::a * at(mesh_.origin[h]) + Row::b * at(mesh_.tip(h)) + Row::p * at(p) + Row::q * at(q) +
+           Row::b_next * b_next + Row::wing_ap * wing_ap + Row::wing_aq * wing_aq;
+  }
+
+  /// Curves along both edges of the left face; the stencil lies on the right.
+  [[nodiscard]] Point curve_curve(uint32_t h, uint32_t t) const {
+    using Row = stencil::CurveCurve<Real>;
+    return Row::end * (at(mesh_.origin[h]) + at(mesh_.origin[t])) + Row::apex * at(mesh_.apex(t)) +
+           Row::wing * (wing(Topology::next(t)) + wing(Topology::previous(t)));
+  }
+
+  [[nodiscard]] Wide<Real> wide(uint32_t vertex) const { return papilio::widen(p_[vertex]); }
+  static Point sum(Point one, Point other) { return one + other; }
+  static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
+  static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
+
+  const Topology& mesh_;
+  const Point* p_;
+  Real w_;
+  stencil::FaceShare<Real> share_;
+  std::optional<TensedRules<Real>> tensed_;
+};
+
+}  // namespace papilio

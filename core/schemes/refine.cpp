@@ -1,0 +1,90 @@
+#include "papilio/refine.h"
+
+#include <string>
+
+#include "base/memory_guard.h"
+#include "criteria/selection.h"
+#include "hierarchy/memory_plan.h"
+#include "hierarchy/progress.h"
+#include "mesh/connect.h"
+#include "mesh/crease.h"
+#include "schemes/in_place.h"
+#include "schemes/red_green.h"
+#include "schemes/uniform.h"
+#include "simplify/simplify.h"
+
+namespace papilio {
+namespace {
+
+/// The mesh, with its creases marked, as the schemes take it: their own, or a prepared one.
+Levels levels_of(Mesh&& mesh, const Options& options, const Progress& progress) {
+  return {std::move(mesh), options, progress};
+}
+Levels levels_of(const PreparedMesh& prepared, const Options& options, const Progress& progress) {
+  return {prepared, options, progress};
+}
+Mesh mesh_of(Mesh&& mesh) { return std::move(mesh); }
+Mesh mesh_of(const PreparedMesh& prepared) { return prepared.coarse(); }
+
+template <class Coarse>
+Result run_scheme(Coarse&& coarse, const Options& options, const Selection& selection, const Progress& progress) {
+  if (selection.is_uniform() && options.levels > 0)
+    return refine_uniformly(mesh_of(std::forward<Coarse>(coarse)), options, selection, progress);
+  if (options.scheme == Scheme::in_place)
+    return refine_in_place(mesh_of(std::forward<Coarse>(coarse)), options, selection, progress);
+  return refine_red_green(levels_of(std::forward<Coarse>(coarse), options, progress), options, selection, progress);
+}
+
+template <class Coarse>
+Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks& hooks) {
+  const Selection selection(options, diagonal);
+  const Progress progress(options, hooks);
+  Result result = run_scheme(std::forward<Coarse>(coarse), options, selection, progress);
+  if (options.simplify_hidden) {
+    progress.poll();
+    result.mesh =
+        simplify_hidden(std::move(result.mesh), *selection.camera(), default_hidden_error, [&] { progress.poll(); });
+  }
+  if (!options.edges) forget_edges(result.mesh.topology);
+  progress.report_last(result.levels, result.mesh);
+  return result;
+}
+
+}  // namespace
+
+void check_room(const Mesh& coarse, const Options& options) {
+  const Hooks nobody;
+  const Progress progress(options, nobody);
+  const uint64_t faces = coarse.topology.face_count();
+  progress.require_room(faces, MemoryPlan(coarse, options).given(faces, 0), 0);
+  if (options.max_faces > 0 && faces > options.max_faces)
+    throw Error(Fault::result_too_large,
+                "The mesh itself has " + std::to_string(faces) + " faces, more than max_faces, which is " +
+                    std::to_string(options.max_faces) + ". Ask for more, or send a coarser mesh.");
+  if (Selection(options, 1).is_uniform()) require_room_for_uniform(coarse, options, progress);
+}
+
+bool uses_hierarchy(const Options& options) {
+  return options.scheme == Scheme::red_green && (options.levels == 0 || !Selection(options, 1).is_uniform());
+}
+
+Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
+  check_options(options);
+  check_room(coarse, options);
+  return guard_memory([&] {
+    const double diagonal = bounding_box(coarse.positions).diagonal();
+    number_edges(coarse.topology);
+    mark_creases(coarse, options.crease_angle);
+    return run(std::move(coarse), diagonal, options, hooks);
+  });
+}
+
+Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& hooks) {
+  check_options(options);
+  if (!coarse.suits(options))
+    throw Error(Fault::bad_option, "The mesh was prepared for another tension, w or crease angle.", "tension");
+  check_room(coarse.coarse(), options);
+  return guard_memory([&] { return run(coarse, bounding_box(coarse.coarse().positions).diagonal(), options, hooks); });
+}
+
+}  // namespace papilio

@@ -1,0 +1,154 @@
+#include "simplify/simplify.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "criteria/camera.h"
+#include "mesh/connect.h"
+#include "mesh/normals.h"
+#include "simplify/collapse.h"
+#include "simplify/simplify_check.h"
+
+namespace papilio {
+namespace {
+
+/// Attempts with one error; then it is a quarter, so many times. At the default error four were the most seen.
+constexpr int max_attempts = 10;
+constexpr int max_errors = 3;
+/// How far round a fault vertices are locked for the next attempt. (2 leaves up to half as many faces again.)
+constexpr uint32_t first_lock_rings = 1;
+constexpr uint32_t last_lock_rings = 64;
+
+/// Whether the edge of half-edge h, with a face on either side, has other points in one than in the other.
+bool is_seam(const Mesh& mesh, uint32_t h) {
+  const Array<uint32_t>& point = corner_points(mesh);
+  const uint32_t t = mesh.topology.twin[h];
+  return point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t];
+}
+
+/// The vertices [V] that must stay, where they are and in use: also all at which meshoptimizer would see a border.
+std::vector<bool> find_locked(const Mesh& mesh, const std::vector<bool>& hidden) {
+  const Topology& topology = mesh.topology;
+  std::vector<bool> locked(topology.vertex_count);
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
+    if (!hidden[Topology::face(h)] || topology.is_curve(h) || is_seam(mesh, h))
+      locked[topology.origin[h]] = locked[topology.tip(h)] = true;
+  for (uint32_t v : topology.pinched) locked[v] = true;
+  return locked;
+}
+
+/// Where something went wrong, and how often.
+class Trouble {
+ public:
+  Trouble(const Topology& mesh, const std::function<void()>& poll)
+      : mesh_(mesh), poll_(poll), reach_(mesh.vertex_count, 0) {}
+
+  /// Locks the faults and what is within a few edges of each: twice as many each time that a vertex turns up again.
+  void lock(std::vector<uint32_t> faults, std::vector<bool>& locked) {
+    std::ranges::sort(faults);
+    faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
+    std::vector<uint32_t> rings(mesh_.vertex_count, 0);  // how far the lock still goes from here, and one
+    uint32_t most = 0;
+    for (uint32_t v : faults) {
+      reach_[v] = reach_[v] == 0 ? first_lock_rings : std::min<uint32_t>(2 * reach_[v], last_lock_rings);
+      rings[v] = reach_[v] + 1;
+      most = std::max(most, reach_[v]);
+    }
+    for (uint32_t ring = 0; ring < most; ++ring) {
+      poll_();
+      for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
+        uint32_t& a = rings[mesh_.origin[h]];
+        uint32_t& b = rings[mesh_.tip(h)];
+        if (a > b + 1) b = a - 1;
+        if (b > a + 1) a = b - 1;
+      }
+    }
+    for (uint32_t v = 0; v < mesh_.vertex_count; ++v)
+      if (rings[v] > 0) locked[v] = true;
+  }
+
+ private:
+  const Topology& mesh_;
+  const std::function<void()>& poll_;
+  std::vector<uint32_t> reach_;  ///< [V] rings locked round it the last time
+};
+
+/// Attempts until one does no damage: round each fault everything is locked the next time. Nothing when all fail.
+std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hidden, const std::vector<bool>& to_lock,
+                                  double error, const std::function<void()>& poll) {
+  const Collapser collapser(mesh, hidden, poll);
+  for (int k = 0; k < max_errors; ++k, error /= 4) {
+    std::vector<bool> locked = to_lock;
+    Trouble trouble(mesh.topology, poll);
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
+      Collapsed result = collapser.run(locked, error);
+      poll();
+      std::vector<uint32_t> faults = find_faults(mesh, result, poll);
+      poll();
+      if (faults.empty()) {
+        // Without any fault to be seen, a handle may have gone: a smaller error keeps it.
+        if (result.mesh.topology.euler_characteristic() != mesh.topology.euler_characteristic()) break;
+        return result;
+      }
+      trouble.lock(std::move(faults), locked);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Makes creases smooth and returns them.
+std::vector<uint32_t> unmark_creases(Topology& mesh) {
+  std::vector<uint32_t> creases;
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+    if (mesh.kind[e] != EdgeKind::crease) continue;
+    mesh.kind[e] = EdgeKind::smooth;
+    creases.push_back(e);
+  }
+  return creases;
+}
+
+/// Makes the creases of the mesh before creases again, and its darts darts. False when one is not there.
+bool restore_creases(const Topology& before, const std::vector<uint32_t>& creases, Collapsed& after) {
+  Topology& mesh = after.mesh.topology;
+  using Ends = std::array<uint32_t, 2>;
+  const auto ends = [](const Topology& in, uint32_t e) {
+    const uint32_t h = in.half_edge[e];
+    return Ends{std::min(in.origin[h], in.tip(h)), std::max(in.origin[h], in.tip(h))};
+  };
+  std::vector<Ends> wanted;
+  wanted.reserve(creases.size());
+  for (uint32_t e : creases) wanted.push_back(ends(before, e));
+  std::ranges::sort(wanted);
+  size_t found = 0;
+  for (uint32_t e = 0; e < mesh.edge_count() && !wanted.empty(); ++e) {
+    const auto [a, b] = ends(mesh, e);
+    if (!std::ranges::binary_search(wanted, Ends{after.vertex[a], after.vertex[b]})) continue;
+    mesh.kind[e] = EdgeKind::crease;
+    ++found;
+  }
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v)
+    if (std::ranges::binary_search(before.darts, after.vertex[v])) mesh.darts.push_back(v);
+  return found == wanted.size();
+}
+
+}  // namespace
+
+Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error, const std::function<void()>& poll) {
+  const std::vector<bool> hidden = hidden_faces(mesh, face_normals(mesh), camera);
+  if (std::ranges::find(hidden, true) == hidden.end() || bounding_box(mesh.positions).diagonal() == 0) return mesh;
+  const std::vector<bool> to_lock = find_locked(mesh, hidden);
+
+  // What `connect_faces` would make of the faces at hand, so that before and after compare.
+  const std::vector<uint32_t> creases = unmark_creases(mesh.topology);
+  const std::vector<uint32_t> pinched = std::exchange(mesh.topology.pinched, find_pinched(mesh.topology));
+  std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error, poll ? poll : std::function<void()>([] {}));
+  if (result && restore_creases(mesh.topology, creases, *result)) return std::move(result->mesh);
+
+  for (uint32_t e : creases) mesh.topology.kind[e] = EdgeKind::crease;
+  mesh.topology.pinched = pinched;
+  return mesh;
+}
+
+}  // namespace papilio

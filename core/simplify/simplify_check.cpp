@@ -1,0 +1,114 @@
+#include "simplify/simplify_check.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <numeric>
+
+#include "mesh/normals.h"
+
+namespace papilio {
+namespace {
+
+using Edge = std::array<uint32_t, 2>;
+
+/// Half-edges without twin as (origin, tip), sorted, in the numbering that `number` gives.
+template <class Number>
+std::vector<Edge> open_half_edges(const Topology& mesh, const Number& number) {
+  std::vector<Edge> open;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+    if (mesh.twin[h] == none) open.push_back({number(mesh.origin[h]), number(mesh.tip(h))});
+  std::ranges::sort(open);
+  return open;
+}
+
+template <class Number>
+std::vector<uint32_t> pinched_vertices(const Topology& mesh, const Number& number) {
+  std::vector<uint32_t> pinched;
+  for (uint32_t v : mesh.pinched) pinched.push_back(number(v));
+  return pinched;
+}
+
+/// Whether the face has two edges in common with a neighbour, and so lies on it.
+bool is_folded(const Topology& mesh, uint32_t face) {
+  const auto neighbour = [&](uint32_t h) { return mesh.twin[h] == none ? none : Topology::face(mesh.twin[h]); };
+  const Triangle n{neighbour(3 * face), neighbour(3 * face + 1), neighbour(3 * face + 2)};
+  return (n[0] != none && (n[0] == n[1] || n[0] == n[2])) || (n[1] != none && n[1] == n[2]);
+}
+
+/// Faces, from their lowest vertex on and sorted, that have no normal, are folded, or are flipped: turned against the
+/// surface before at each corner.
+template <class Number>
+std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Array<Vec3f>& vertex_normals) {
+  const Topology& topology = mesh.topology;
+  const Array<Vec3f> normals = face_normals(mesh);
+  std::vector<Triangle> bad;
+  for (uint32_t f = 0; f < topology.face_count(); ++f) {
+    Triangle t{};
+    for (uint32_t i = 0; i < 3; ++i) t[i] = number(topology.origin[3 * f + i]);
+    const bool flipped = std::ranges::all_of(t, [&](uint32_t v) { return dot(normals[f], vertex_normals[v]) < 0; });
+    if (has_normal(normals[f]) && !flipped && !is_folded(topology, f)) continue;
+    std::rotate(t.begin(), std::ranges::min_element(t), t.end());
+    bad.push_back(t);
+  }
+  std::ranges::sort(bad);
+  return bad;
+}
+
+/// One vertex of each component of which nothing is left.
+std::vector<uint32_t> lost_components(const Topology& before, const std::vector<uint32_t>& kept) {
+  std::vector<uint32_t> root(before.vertex_count);
+  std::iota(root.begin(), root.end(), 0U);
+  const auto find = [&](uint32_t v) {
+    for (; root[v] != v; v = root[v]) root[v] = root[root[v]];
+    return v;
+  };
+  for (uint32_t h = 0; h < before.half_edge_count(); ++h) {
+    const uint32_t a = find(before.origin[h]);
+    const uint32_t b = find(before.tip(h));
+    root[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<bool> alive(before.vertex_count);
+  for (uint32_t v : kept) alive[find(v)] = true;
+  std::vector<uint32_t> lost;
+  for (uint32_t v = 0; v < before.vertex_count; ++v)
+    if (root[v] == v && !alive[v]) lost.push_back(v);
+  return lost;
+}
+
+void append(std::vector<uint32_t>& faults, uint32_t vertex) { faults.push_back(vertex); }
+
+template <size_t N>
+void append(std::vector<uint32_t>& faults, const std::array<uint32_t, N>& vertices) {
+  faults.insert(faults.end(), vertices.begin(), vertices.end());
+}
+
+/// Appends what is in one of two sorted lists only.
+template <class Item>
+void append_difference(const std::vector<Item>& before, const std::vector<Item>& after, std::vector<uint32_t>& faults) {
+  std::vector<Item> difference;
+  std::ranges::set_symmetric_difference(before, after, std::back_inserter(difference));
+  for (const Item& item : difference) append(faults, item);
+}
+
+}  // namespace
+
+std::vector<uint32_t> find_faults(const Mesh& before, const Collapsed& after, const std::function<void()>& poll) {
+  const auto same = [](uint32_t v) { return v; };
+  const auto old = [&](uint32_t v) { return after.vertex[v]; };
+  std::vector<uint32_t> faults = lost_components(before.topology, after.vertex);
+  poll();
+  append_difference(open_half_edges(before.topology, same), open_half_edges(after.mesh.topology, old), faults);
+  append_difference(pinched_vertices(before.topology, same), pinched_vertices(after.mesh.topology, old), faults);
+  poll();
+
+  const Array<Vec3f> normals = vertex_normals(before);
+  poll();
+  const std::vector<Triangle> bad_before = bad_faces(before, same, normals);
+  poll();
+  for (const Triangle& face : bad_faces(after.mesh, old, normals))
+    if (!std::ranges::binary_search(bad_before, face)) append(faults, face);
+  return faults;
+}
+
+}  // namespace papilio

@@ -1,0 +1,134 @@
+#include "split/split.h"
+
+#include "mesh/attributes.h"
+#include "mesh/region.h"
+#include "split/split_pattern.h"
+
+namespace papilio {
+namespace {
+
+class Splitter {
+ public:
+  Splitter(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions)
+      : mesh_(mesh), plan_(plan), positions_(positions) {}
+
+  Topology run(PointAttributes& attributes) {
+    choose_patterns();
+    const uint32_t faces = first_child_.back();
+    child_.vertex_count = mesh_.vertex_count + plan_.count();
+    child_.pinched = mesh_.pinched;
+    child_.darts = mesh_.darts;
+    child_.origin.resize(size_t{3} * faces);
+    child_.twin.resize(size_t{3} * faces);
+    child_.edge.resize(size_t{3} * faces);
+    const uint32_t edges = inner_edge_base() + (faces - mesh_.face_count());
+    child_.half_edge.resize(edges);
+    child_.kind.assign(edges, EdgeKind::smooth);
+    for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
+      const uint32_t base = e + plan_.before[e];
+      child_.kind[base] = mesh_.kind[e];
+      if (plan_.is_split(e)) child_.kind[base + 1] = mesh_.kind[e];
+    }
+    for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
+    if (!attributes.empty()) split_corners(attributes);
+    return std::move(child_);
+  }
+
+ private:
+  void choose_patterns() {
+    const uint32_t faces = mesh_.face_count();
+    pattern_.resize(faces);
+    first_child_.resize(faces + 1);
+    uint32_t child = 0;
+    for (uint32_t f = 0; f < faces; ++f) {
+      const unsigned mask = split_mask(mesh_, plan_, f);
+      const auto corner = [&](uint32_t i) {
+        const uint32_t v = mesh_.origin[3 * f + i];
+        return CornerPoint{v, positions_[v]};
+      };
+      const auto middle = [&](uint32_t i) { return positions_[new_vertex(3 * f + i)]; };
+      pattern_[f] = &split_pattern(mask, prefers_second_diagonal(mask, corner, middle));
+      first_child_[f] = child;
+      child += pattern_[f]->children;
+    }
+    first_child_[faces] = child;
+  }
+
+  [[nodiscard]] uint32_t new_vertex(uint32_t h) const { return mesh_.vertex_count + plan_.before[mesh_.edge[h]]; }
+
+  [[nodiscard]] uint32_t inner_edge_base() const { return mesh_.edge_count() + plan_.count(); }
+
+  /// Edge of the next level that is the first (0) or second (1) half of parent half-edge h, or the whole of
+  /// it. The half at the lower vertex comes first, whichever way h runs.
+  [[nodiscard]] uint32_t outer_edge(uint32_t h, uint32_t half) const {
+    const uint32_t e = mesh_.edge[h];
+    const uint32_t base = e + plan_.before[e];
+    if (!plan_.is_split(e)) return base;
+    return base + (mesh_.origin[h] < mesh_.tip(h) ? half : 1 - half);
+  }
+
+  /// Half-edge of the next level that runs against the first or second half of parent half-edge h, or the
+  /// whole of it.
+  [[nodiscard]] uint32_t outer_twin(uint32_t h, uint32_t half) const {
+    const uint32_t t = mesh_.twin[h];
+    if (t == none) return none;
+    const uint32_t half_of_twin = plan_.is_split(mesh_.edge[h]) ? 1 - half : 0;
+    return 3 * first_child_[Topology::face(t)] + pattern_[Topology::face(t)]->outer[2 * (t % 3) + half_of_twin];
+  }
+
+  void split_face(uint32_t f) {
+    const SplitPattern& pattern = *pattern_[f];
+    const uint32_t base = 3 * first_child_[f];
+    const uint32_t inner_edges = inner_edge_base() + (first_child_[f] - f);
+    for (uint32_t c = 0; c < 3U * pattern.children; ++c) {
+      const uint32_t h = base + c;
+      const uint8_t corner = pattern.corner[c / 3][c % 3];
+      child_.origin[h] = corner < 3 ? mesh_.origin[3 * f + corner] : new_vertex(3 * f + corner - 3);
+      if (pattern.inner_twin[c] != SplitPattern::outside) {
+        child_.twin[h] = base + pattern.inner_twin[c];
+        child_.edge[h] = inner_edges + pattern.edge[c];
+      } else {
+        const uint32_t parent = 3 * f + pattern.edge[c] / 2;
+        child_.twin[h] = outer_twin(parent, pattern.edge[c] % 2);
+        child_.edge[h] = outer_edge(parent, pattern.edge[c] % 2);
+      }
+      child_.half_edge[child_.edge[h]] = h;
+    }
+  }
+
+  void split_corners(PointAttributes& attributes) const {
+    const Region all = whole_region(mesh_);
+    EdgeMarks targets(mesh_.edge_count());
+    for (uint32_t e = 0; e < targets.size(); ++e) targets[e] = plan_.is_split(e) ? 1 : 0;
+    const List<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
+    Array<uint32_t> point(child_.half_edge_count());
+    for (uint32_t f = 0; f < mesh_.face_count(); ++f)
+      for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
+        const uint8_t corner = pattern_[f]->corner[c / 3][c % 3];
+        point[3 * first_child_[f] + c] = corner < 3 ? attributes.point[3 * f + corner] : made[3 * f + corner - 3];
+      }
+    attributes.point = std::move(point);
+  }
+
+  const Topology& mesh_;
+  const SplitPlan& plan_;
+  const Array<Vec3f>& positions_;
+  std::vector<const SplitPattern*> pattern_;  ///< [F]
+  List<uint32_t> first_child_;                ///< [F + 1]
+  Topology child_;
+};
+
+}  // namespace
+
+uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
+  uint64_t children = mesh.face_count();
+  for (uint32_t e : mesh.edge) children += plan.is_split(e) ? 1 : 0;
+  return children;
+}
+
+Topology split(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions,
+               PointAttributes& attributes) {
+  return Splitter(mesh, plan, positions).run(attributes);
+}
+
+}  // namespace papilio
