@@ -228,7 +228,7 @@ class Follower {
 
   uint32_t symbols_;
   std::vector<Event> events_;
-  List<End> ends_;                                 ///< [vertices] of the boundary
+  Buffer<End> ends_;                               ///< [vertices] of the boundary
   std::vector<uint32_t> active_;                   ///< edges
   std::unordered_map<uint32_t, uint32_t> joined_;  ///< edges that events join to split symbols
   uint32_t at_ = 0;

@@ -91,14 +91,14 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
   FormattedMesh out;
-  out.positions.resize(mesh->num_points());
+  out.positions.resize_for_overwrite(mesh->num_points());
   for (draco::PointIndex p(0); p < mesh->num_points(); ++p) {
     const draco::AttributeValueIndex value = attribute.mapped_index(p);
     if (value.value() >= attribute.size())
       throw Problem(Code::mesh_unusable, "The mesh has a point without a position. Encode it again.");
     attribute.GetValue(value, &out.positions[p.value()]);
   }
-  out.triangles.resize(mesh->num_faces());
+  out.triangles.resize_for_overwrite(mesh->num_faces());
   for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {
     for (int corner = 0; corner < 3; ++corner) {
       const uint32_t p = mesh->face(f)[corner].value();

@@ -36,7 +36,7 @@ AttributeEncoding::Grid grid_of(const Attribute& attribute) {
 
 }  // namespace
 
-QuantizationBox quantization_box(const Array<Vec3f>& coarse) {
+QuantizationBox quantization_box(const Buffer<Vec3f>& coarse) {
   const Box box = bounding_box(coarse);
   const Vec3d low = to_double(box.min);
   const Vec3d size = to_double(box.max) - low;

@@ -20,7 +20,7 @@ struct QuantizationBox {
 /// The bounding box's longest side, padded by an eighth on both sides since the surface swells, round the
 /// box's centre. (What swells further still is encoded right: Draco's grid goes on beyond the cube.)
 /// Throws `Problem` mesh_unusable for a mesh smaller than 1e-30.
-[[nodiscard]] QuantizationBox quantization_box(const Array<Vec3f>& coarse);
+[[nodiscard]] QuantizationBox quantization_box(const Buffer<Vec3f>& coarse);
 
 /// How the attributes of a mesh are written. As with positions the grids come from the coarse mesh alone: values
 /// between its own are all that interpolation makes.

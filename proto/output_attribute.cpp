@@ -53,7 +53,7 @@ uint32_t id_for_normals(const MeshFormat& format) {
 }
 
 OutputAttribute new_normals(const Mesh& mesh, const MeshFormat& format) {
-  const Array<Vec3f> normals = vertex_normals(mesh);
+  const Buffer<Vec3f> normals = vertex_normals(mesh);
   OutputAttribute output{.format = {.kind = AttributeKind::normal, .id = id_for_normals(format)},
                          .coding = Coding::octahedral,
                          .bits = normal_bits};

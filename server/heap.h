@@ -12,8 +12,8 @@
 namespace papilio::server {
 
 /// Makes threads share as many arenas as requests compute at once, and keep what is freed for the next request; where
-/// `new` finds no memory, the core's spare blocks (array.h) are given back before it fails. Call before there are
-/// threads.
+/// `new` finds no memory, the core's spare blocks (papilio/buffer.h) are given back before it fails. Call before there
+/// are threads.
 void set_up_heap(int slots);
 
 /// Gives what requests have freed back to the system: once there are no more of them, and now and then while they come,

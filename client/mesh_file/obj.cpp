@@ -31,9 +31,9 @@ struct Corner {
 
 /// What the file lists, before points are made of it.
 struct Lists {
-  Array<Vec3f> positions, textures, normals;
+  Buffer<Vec3f> positions, textures, normals;
   std::vector<Corner> corners;
-  Array<Triangle> triangles;  ///< of numbers of corners
+  Buffer<Triangle> triangles;  ///< of numbers of corners
 };
 
 uint32_t from_zero(int64_t index, size_t so_far) {
@@ -101,7 +101,7 @@ Lists parse_lists(std::string_view bytes) {
 }
 
 /// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
-bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Array<Vec3f>& listed, const char* what) {
+bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Buffer<Vec3f>& listed, const char* what) {
   bool used = false;
   for (Corner& corner : corners) {
     if (listed.empty()) corner.*member = none;
@@ -133,7 +133,7 @@ std::vector<Corner> make_points(const Lists& lists, std::vector<uint32_t>& point
 }
 
 void add_attribute(proto::FormattedMesh& mesh, AttributeKind kind, uint32_t components,
-                   const std::vector<Corner>& points, uint32_t Corner::*member, const Array<Vec3f>& listed) {
+                   const std::vector<Corner>& points, uint32_t Corner::*member, const Buffer<Vec3f>& listed) {
   Attribute& attribute = mesh.attributes.emplace_back();
   attribute.components = components;
   attribute.unit_length = kind == AttributeKind::normal;

@@ -15,15 +15,15 @@ namespace {
 using proto::AttributeKind;
 
 /// The numbers of the first attribute of this kind, three a point, a missing third one zero; empty if there is none.
-Array<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& format, AttributeKind kind,
-                            uint32_t& components) {
+Buffer<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& format, AttributeKind kind,
+                             uint32_t& components) {
   for (size_t a = 0; a < format.attributes.size(); ++a) {
     const Attribute& attribute = mesh.attributes[a];
     components = attribute.components;
     if (format.attributes[a].kind != kind || components > 3 || (kind == AttributeKind::normal && components != 3))
       continue;
     const double unit = proto::one_of(format.attributes[a]);
-    Array<Vec3f> found(mesh.positions.size());
+    auto found = Buffer<Vec3f>::for_overwrite(mesh.positions.size());
     for (size_t p = 0; p < found.size(); ++p) {
       std::array<float, 3> numbers{};
       for (uint32_t i = 0; i < components; ++i)
@@ -36,7 +36,7 @@ Array<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& f
 }
 
 /// Leaves the different ones among `values`, in order; gives the place of each.
-std::vector<uint32_t> drop_repeated(Array<Vec3f>& values) {
+std::vector<uint32_t> drop_repeated(Buffer<Vec3f>& values) {
   const auto bits = [&](uint32_t p) {  // which have an order, also where a value is NaN
     return std::array{std::bit_cast<uint32_t>(values[p].x), std::bit_cast<uint32_t>(values[p].y),
                       std::bit_cast<uint32_t>(values[p].z)};
@@ -56,7 +56,7 @@ std::vector<uint32_t> drop_repeated(Array<Vec3f>& values) {
       place[p] = place[place[p]];
     }
   }
-  values.resize(kept);
+  values.resize_for_overwrite(kept);
   return place;
 }
 
@@ -65,9 +65,9 @@ std::vector<uint32_t> drop_repeated(Array<Vec3f>& values) {
 std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format) {
   uint32_t texture_components = 0;
   uint32_t normal_components = 0;
-  Array<Vec3f> textures = find_attribute(mesh, format, AttributeKind::tex_coord, texture_components);
-  Array<Vec3f> normals = find_attribute(mesh, format, AttributeKind::normal, normal_components);
-  Array<Vec3f> positions = mesh.positions;
+  Buffer<Vec3f> textures = find_attribute(mesh, format, AttributeKind::tex_coord, texture_components);
+  Buffer<Vec3f> normals = find_attribute(mesh, format, AttributeKind::normal, normal_components);
+  Buffer<Vec3f> positions = mesh.positions;
   std::vector<uint32_t> position(positions.size());
   std::iota(position.begin(), position.end(), 0);
   // Points apart in their attributes alone are one vertex, which does not come apart where the file is read again.

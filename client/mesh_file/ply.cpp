@@ -133,7 +133,7 @@ void read_vertices(PlyNumbers& numbers, const PlyElement& element, proto::Format
   attributes.move_to(mesh);
 }
 
-void read_faces(PlyNumbers& numbers, const PlyElement& element, Array<Triangle>& triangles) {
+void read_faces(PlyNumbers& numbers, const PlyElement& element, Buffer<Triangle>& triangles) {
   const auto indices = element.find({"vertex_indices", "vertex_index"});
   if (!indices) throw ParseError("has faces without vertex_indices");
   std::vector<double> values;

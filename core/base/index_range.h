@@ -6,15 +6,16 @@
 
 namespace papilio {
 
-/// Which of a mesh's faces, say, something is done with: all, or those in a list, which is in ascending order and must
+/// Indices of the elements that a loop visits: all of them, or those of a list, which is in ascending order and must
 /// outlive this.
-class Subset {
+class IndexRange {
  public:
   /// The numbers 0 to count - 1.
-  explicit Subset(uint32_t count) : size_(count) {}
-  explicit Subset(const List<uint32_t>& some) : some_(some.data()), size_(static_cast<uint32_t>(some.size())) {}
+  explicit IndexRange(uint32_t count) : size_(count) {}
+  explicit IndexRange(const Buffer<uint32_t>& some) : some_(some.data()), size_(static_cast<uint32_t>(some.size())) {}
   /// Those in the list, or all where there is none.
-  Subset(uint32_t count, const List<uint32_t>* some) : Subset(some == nullptr ? Subset(count) : Subset(*some)) {}
+  IndexRange(uint32_t count, const Buffer<uint32_t>* some)
+      : IndexRange(some == nullptr ? IndexRange(count) : IndexRange(*some)) {}
 
   [[nodiscard]] uint32_t size() const { return size_; }
   [[nodiscard]] uint32_t operator[](uint32_t i) const { return some_ == nullptr ? i : some_[i]; }

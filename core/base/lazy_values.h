@@ -7,14 +7,14 @@
 
 namespace papilio {
 
-/// Numbers that follow from what they belong to, each computed when somebody asks for it first. Any number of threads
-/// may ask at once: at worst several compute the same.
+/// Lazily computed per-element values. Any number of threads may read and write at once: at worst several compute the
+/// same value.
 template <class Number>
-class Memo {
+class LazyValues {
  public:
-  Memo() = default;
-  /// `unknown` stands for what was not computed yet.
-  Memo(size_t count, Number unknown) : numbers_(count, unknown) {}
+  LazyValues() = default;
+  /// `unknown` stands for a value that was not computed yet.
+  LazyValues(size_t count, Number unknown) : numbers_(count, unknown) {}
 
   [[nodiscard]] Number get(size_t i) const {
     return std::atomic_ref<Number>(numbers_[i]).load(std::memory_order_relaxed);
@@ -26,7 +26,7 @@ class Memo {
   [[nodiscard]] size_t bytes() const { return numbers_.capacity() * sizeof(Number); }
 
  private:
-  mutable List<Number> numbers_;
+  mutable Buffer<Number> numbers_;
 };
 
 }  // namespace papilio

@@ -16,8 +16,8 @@ struct WeighedEdge {
   uint32_t faces;  ///< how many faces there are at the edge
 };
 /// Appends the region's edges whose error [E] is `least` or more.
-void append_edges(const Topology& mesh, const Region& region, const List<float>& errors, float least,
-                  List<WeighedEdge>& edges);
+void append_edges(const Topology& mesh, const Region& region, const Buffer<float>& errors, float least,
+                  Buffer<WeighedEdge>& edges);
 
 /// The least threshold, not below `least`, at which no more than `budget` faces come of the `faces` that are there
 /// already: each edge with an error of at least the threshold adds as many as it has faces. Infinite when nothing

@@ -75,14 +75,15 @@ class Camera::QuickAway {
     return along < -rounding_ ? Answer::no : along > surely_away_ ? Answer::yes : Answer::unsure;
   }
   struct FourAnswers {
-    FourBits no, yes;
+    Mask4 no, yes;
   };
   /// The same of four, in floats. Nothing is decided where a float could not hold what the eye is away.
-  [[nodiscard]] FourAnswers operator()(const FourVectors& normals, Four planes) const {
-    const Four along = static_cast<float>(perspective_) * planes -
-                       (from_in_floats_.x * normals.x + from_in_floats_.y * normals.y + from_in_floats_.z * normals.z);
-    const FourBits no = along < surely_towards_in_floats_;
-    const FourBits yes = along > surely_away_in_floats_;
+  [[nodiscard]] FourAnswers operator()(const Vec3x4& normals, Float4 planes) const {
+    const Float4 along =
+        static_cast<float>(perspective_) * planes -
+        (from_in_floats_.x * normals.x + from_in_floats_.y * normals.y + from_in_floats_.z * normals.z);
+    const Mask4 no = along < surely_towards_in_floats_;
+    const Mask4 yes = along > surely_away_in_floats_;
     return {no, yes};
   }
 
@@ -100,14 +101,14 @@ class Camera::QuickOutside {
   QuickOutside(const Camera& camera, const Box& box, unsigned planes);
   [[nodiscard]] Answer operator()(Vec3f centre, float radius) const {
     if (!is_certain_) return Answer::unsure;
-    const Four distance = centre.x * normals_.x + centre.y * normals_.y + centre.z * normals_.z - offsets_;
+    const Float4 distance = centre.x * normals_.x + centre.y * normals_.y + centre.z * normals_.z - offsets_;
     if (!is_any(distance < margin_ - radius)) return Answer::no;
     return is_any(distance < -margin_ - radius) ? Answer::yes : Answer::unsure;
   }
 
  private:
-  FourVectors normals_;  ///< of the sides; zero where a plane is not in the set, and the offset is far below
-  Four offsets_;
+  Vec3x4 normals_;  ///< of the sides; zero where a plane is not in the set, and the offset is far below
+  Float4 offsets_;
   float margin_;  ///< more than rounding makes of a distance
   bool is_certain_;
 };

@@ -118,7 +118,7 @@ double ErrorMeasure::least_deviation(float error, double scale) const {
   return rounding * error * std::max(tolerated_, tolerated_pixels_ / scale);
 }
 
-float ErrorMeasure::error(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance) const {
+float ErrorMeasure::error(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
   double seen = pixels(mesh, edge, distance);

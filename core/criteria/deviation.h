@@ -42,7 +42,7 @@ class ErrorMeasure {
 
   [[nodiscard]] float threshold() const { return threshold_; }
   /// The number, for a deviation at the edge. `normals` [F].
-  [[nodiscard]] float error(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance) const;
+  [[nodiscard]] float error(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance) const;
   /// No less than the error of an edge with no more than this deviation, where nothing is seen larger than at `scale`
   /// pixels a unit. What lights make of it is not bounded: infinite with them.
   [[nodiscard]] float most_error(double distance, double scale) const;

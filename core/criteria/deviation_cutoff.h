@@ -2,12 +2,12 @@
 
 namespace papilio {
 
-/// Up to which distance from its edge's middle, which is on the surface, a new vertex is too near for its deviation
-/// (deviation.h) to be the largest: found in floats, where that is certain.
-class TooNear {
+/// The distance from its edge's middle, which is on the surface, up to which a new vertex cannot have the largest
+/// deviation (deviation.h). Computed in floats, and low enough for that to be certain.
+class DeviationCutoff {
  public:
   /// Of a mesh with no larger coordinate, whatever its sign.
-  explicit TooNear(float largest_coordinate) : rounding_(share_that_rounds * largest_coordinate) {}
+  explicit DeviationCutoff(float largest_coordinate) : rounding_(share_that_rounds * largest_coordinate) {}
 
   /// Deviations below this one are not the largest.
   void raise(double deviation) {

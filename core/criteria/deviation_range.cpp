@@ -6,12 +6,13 @@
 
 #include "base/index_range.h"
 #include "base/parallel.h"
+#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
 namespace {
 
-[[nodiscard, gnu::always_inline]] inline Four rooms_of_four(const Mesh& mesh, const FourNumbers& faces) {
+[[nodiscard, gnu::always_inline]] inline Float4 rooms_of_four(const Mesh& mesh, const Index4& faces) {
   constexpr float least_sine = 1e-4F;  // of narrower ones too little is certain
   constexpr float rounding = 0.99F;
   const auto corners = [&](uint32_t i) PAPILIO_INLINED {
@@ -19,17 +20,17 @@ namespace {
     return at(mesh.positions,
               {origin[3 * faces[0] + i], origin[3 * faces[1] + i], origin[3 * faces[2] + i], origin[3 * faces[3] + i]});
   };
-  const FourVectors a = corners(0);
-  const FourVectors ab = corners(1) - a;
-  const FourVectors ac = corners(2) - a;
-  const FourVectors bc = ac - ab;
-  const FourVectors normal = cross(ab, ac);
-  const Four area_squared = dot(normal, normal);  // of the parallelogram
-  const Four longest_squared = larger(dot(ab, ab), larger(dot(ac, ac), dot(bc, bc)));
+  const Vec3x4 a = corners(0);
+  const Vec3x4 ab = corners(1) - a;
+  const Vec3x4 ac = corners(2) - a;
+  const Vec3x4 bc = ac - ab;
+  const Vec3x4 normal = cross(ab, ac);
+  const Float4 area_squared = dot(normal, normal);  // of the parallelogram
+  const Float4 longest_squared = larger(dot(ab, ab), larger(dot(ac, ac), dot(bc, bc)));
   const auto is_wide =
       is_usual(longest_squared) & (area_squared > least_sine * least_sine * longest_squared * longest_squared);
   // A side's middle is half as far from another side as the corner where it ends.
-  const Four squared = is_wide ? area_squared / longest_squared : Four{};
+  const Float4 squared = is_wide ? area_squared / longest_squared : Float4{};
   return 0.5F * rounding * root(squared);
 }
 
@@ -57,50 +58,51 @@ struct Place {
 
 [[gnu::always_inline]] inline void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
   constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
-  const auto points = [place](const Array<Vec3f>& from, uint32_t Place::*which) PAPILIO_INLINED {
+  const auto points = [place](const Buffer<Vec3f>& from, uint32_t Place::*which) PAPILIO_INLINED {
     return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
   };
-  const FourVectors a = points(of.mesh.positions, &Place::a);
-  const FourVectors along = points(of.mesh.positions, &Place::b) - a;
-  const FourVectors off = points(of.made, &Place::made) - a - 0.5F * along;
-  const Four along_squared = dot(along, along);
-  const Four off_squared = dot(off, off);
-  const Four rooms{room(of, place[0]), room(of, place[1]), room(of, place[2]), room(of, place[3])};
+  const Vec3x4 a = points(of.mesh.positions, &Place::a);
+  const Vec3x4 along = points(of.mesh.positions, &Place::b) - a;
+  const Vec3x4 off = points(of.made, &Place::made) - a - 0.5F * along;
+  const Float4 along_squared = dot(along, along);
+  const Float4 off_squared = dot(off, off);
+  const Float4 rooms{room(of, place[0]), room(of, place[1]), room(of, place[2]), room(of, place[3])};
   const auto are_usual = is_usual(along_squared);
   const auto has_room = are_usual & (off_squared < rooms * rooms);
 
   // The foot of the vertex on a face's plane is in the face, or beyond the edge and no other side; then the edge is
   // nearest.
-  const FourVectors inward = cross(along, off);
-  const Four to_edge = dot(inward, inward) / along_squared;
-  const FourVectors normal = points(of.normals, &Place::face);
-  const FourVectors twin_normal = points(of.normals, &Place::twin_face);
-  const Four height = dot(off, normal);
-  const Four twin_height = dot(off, twin_normal);
-  const Four to_face = dot(inward, normal) >= Four{} ? height * height : to_edge;
-  const Four to_twin_face = dot(inward, twin_normal) <= Four{} ? twin_height * twin_height : to_edge;
+  const Vec3x4 inward = cross(along, off);
+  const Float4 to_edge = dot(inward, inward) / along_squared;
+  const Vec3x4 normal = points(of.normals, &Place::face);
+  const Vec3x4 twin_normal = points(of.normals, &Place::twin_face);
+  const Float4 height = dot(off, normal);
+  const Float4 twin_height = dot(off, twin_normal);
+  const Float4 to_face = dot(inward, normal) >= Float4{} ? height * height : to_edge;
+  const Float4 to_twin_face = dot(inward, twin_normal) <= Float4{} ? twin_height * twin_height : to_edge;
 
   constexpr float smallest = std::numeric_limits<float>::min();
-  const Four distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
-  const Four most_off = sum_of_magnitudes(off);
-  const Four unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
-  const Four least = has_room ? larger(distance - unsure, Four{}) : Four{};
-  const Four most = (are_usual ? distance : most_off) + unsure;
+  const Float4 distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
+  const Float4 most_off = sum_of_magnitudes(off);
+  const Float4 unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
+  const Float4 least = has_room ? larger(distance - unsure, Float4{}) : Float4{};
+  const Float4 most = (are_usual ? distance : most_off) + unsure;
   for (int i = 0; i < 4; ++i) ranges[i] = {least[i], most[i]};
 }
 
 }  // namespace
 
-Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads) {
+Buffer<float> rooms_at_sides(const Mesh& mesh, const Buffer<uint32_t>* fours, int threads) {
   const uint32_t count = mesh.topology.face_count();
-  const Subset of((count + 3) / 4, fours);
-  Array<float> rooms(count);
+  const IndexRange of((count + 3) / 4, fours);
+  auto rooms = Buffer<float>::for_overwrite(count);
   for_each_part(parts_of(4 * of.size(), threads), of.size(), [&](uint32_t, uint32_t first, uint32_t last) {
     run_wide([&]() PAPILIO_INLINED {
       for (uint32_t i = first; i < last; ++i) {
         const uint32_t most = count - 1;
         const uint32_t f = 4 * of[i];
-        const Four four = rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
+        const Float4 four =
+            rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
         for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
       }
     });

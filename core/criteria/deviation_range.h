@@ -13,7 +13,7 @@ namespace papilio {
 /// For each face [F] how far the other two sides are at least from the middle of each side; 0 where the face is too
 /// narrow for that to be certain. In the mesh's unit. Where faces come by fours (split_in_four.h), only some may be
 /// asked about, by number; the others mean nothing then. Up to so many threads work on it.
-[[nodiscard]] Array<float> rooms_at_sides(const Mesh& mesh, const List<uint32_t>* fours, int threads);
+[[nodiscard]] Buffer<float> rooms_at_sides(const Mesh& mesh, const Buffer<uint32_t>* fours, int threads);
 
 struct DeviationRange {
   float least, most;
@@ -22,10 +22,10 @@ struct DeviationRange {
 /// What is known of a mesh and the new vertices of its edges: all must outlive this.
 struct DeviationBounds {
   const Mesh& mesh;
-  const Array<Vec3f>& normals;  ///< [F], of faces that have room
-  const Array<float>& rooms;    ///< [F] as above
-  const SplitPlan& tried;       ///< of none: all edges
-  const Array<Vec3f>& made;     ///< [tried.count()]
+  const Buffer<Vec3f>& normals;  ///< [F], of faces that have room
+  const Buffer<float>& rooms;    ///< [F] as above
+  const SplitPlan& tried;        ///< of none: all edges
+  const Buffer<Vec3f>& made;     ///< [tried.count()]
 
   /// Writes the ranges of the edges, which were tried; of one to `most_at_once`, and there must be room for three more.
   /// Mostly both ends are within a few millionths of how far the vertex is from the midpoint. Where the deviation is

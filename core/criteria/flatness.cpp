@@ -9,6 +9,7 @@
 #include "mesh/curve.h"
 #include "mesh/four_children.h"
 #include "mesh/normals.h"
+#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -40,12 +41,11 @@ bool turns(const Mesh& mesh, const CurveNeighbours& curves, uint32_t h, double t
   return after != none && cosine_of_turn(a, b, mesh.positions[after]) < threshold - product_rounding;
 }
 
-[[nodiscard, gnu::always_inline]] inline FourBits have_normals(const FourVectors& one, const FourVectors& other) {
+[[nodiscard, gnu::always_inline]] inline Mask4 have_normals(const Vec3x4& one, const Vec3x4& other) {
   return ((one.x != 0) | (one.y != 0) | (one.z != 0)) & ((other.x != 0) | (other.y != 0) | (other.z != 0));
 }
 /// Between four faces and four others, by their normals.
-[[nodiscard, gnu::always_inline]] inline FourBits are_curved(const FourVectors& one, const FourVectors& other,
-                                                             float least) {
+[[nodiscard, gnu::always_inline]] inline Mask4 are_curved(const Vec3x4& one, const Vec3x4& other, float least) {
   return (dot(one, other) < least) & have_normals(one, other);
 }
 
@@ -59,7 +59,7 @@ struct CurvedMarker {
   uint8_t spread;                     ///< 1 to mark the other edges of a face at one, too; else 0
 
   /// What the four children of faces mark; `faces` has all of these.
-  [[gnu::always_inline]] void mark_fours(const List<uint32_t>& faces) const {
+  [[gnu::always_inline]] void mark_fours(const Buffer<uint32_t>& faces) const {
     constexpr size_t ahead = 48;  // faces until what is asked for is there
     const uint32_t* first = faces.data();
     const size_t count = faces.size();
@@ -78,22 +78,22 @@ struct CurvedMarker {
   [[gnu::always_inline]] void mark_four(uint32_t first) const {
     const uint32_t* twin = &twin_of[size_t{3} * first];
     const uint32_t* edge = &edge_of[size_t{3} * first];
-    const FourVectors own = at(normals, {first, first + 1, first + 2, first + 3});
+    const Vec3x4 own = at(normals, {first, first + 1, first + 2, first + 3});
     // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
     const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) PAPILIO_INLINED {
       const uint32_t last = Topology::face(twin[h2]);
       return at(normals, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
     };
     constexpr std::array<std::array<uint8_t, 3>, 3> half_edges{{{0, 3, 7}, {2, 4, 8}, {11, 9, 10}}};
-    const FourVectors across_one = across(0, 3, 7);
-    const FourVectors across_other = across(2, 4, 8);
-    const FourVectors inner = splat<3>(own);
-    const Four of_one_side = dot(own, across_one);
-    const Four of_other_side = dot(own, across_other);
-    const Four of_inside = dot(own, inner);
-    FourBits one_side = of_one_side < least;
-    FourBits other_side = of_other_side < least;
-    FourBits inside = of_inside < least;
+    const Vec3x4 across_one = across(0, 3, 7);
+    const Vec3x4 across_other = across(2, 4, 8);
+    const Vec3x4 inner = splat<3>(own);
+    const Float4 of_one_side = dot(own, across_one);
+    const Float4 of_other_side = dot(own, across_other);
+    const Float4 of_inside = dot(own, inner);
+    Mask4 one_side = of_one_side < least;
+    Mask4 other_side = of_other_side < least;
+    Mask4 inside = of_inside < least;
     // Without a normal a product is 0; else it hardly is.
     if (is_any((of_one_side == 0) | (of_other_side == 0) | (of_inside == 0))) [[unlikely]] {
       one_side &= have_normals(own, across_one);
@@ -118,9 +118,8 @@ struct CurvedMarker {
   [[gnu::always_inline]] void mark(uint32_t f) const {
     const uint32_t* twin = &twin_of[size_t{3} * f];
     const uint32_t* edge = &edge_of[size_t{3} * f];
-    const FourVectors others =
-        at(normals, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
-    const FourBits curved = are_curved(splat<3>(others), others, least);
+    const Vec3x4 others = at(normals, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
+    const Mask4 curved = are_curved(splat<3>(others), others, least);
     std::array<uint8_t, 3> of_edge{};
     for (uint32_t i = 0; i < 3; ++i) of_edge[i] = static_cast<uint8_t>(curved[i] & has_edge[edge[i]]);
     const uint8_t of_face = (of_edge[0] | of_edge[1] | of_edge[2]) & spread;
@@ -131,7 +130,7 @@ struct CurvedMarker {
 /// Which of a region's edges are not flat.
 class CurvedFinder {
  public:
-  CurvedFinder(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold)
+  CurvedFinder(const Mesh& mesh, const Buffer<Vec3f>& normals, const NormalProducts& products, double threshold)
       : mesh_(mesh),
         topology_(mesh.topology),
         normals_(normals),
@@ -153,7 +152,7 @@ class CurvedFinder {
   /// Face by face, as they lie in memory: each asks about all its edges, which costs less than finding out which it has
   /// asked about before. [E]
   [[nodiscard]] EdgeMarks by_faces(const Region& region) {
-    Array<uint8_t> found(topology_.edge_count());
+    auto found = Buffer<uint8_t>::for_overwrite(topology_.edge_count());
     for (uint32_t f : region.faces) look_at(f, found.data());
     EdgeMarks marks(found.size(), 0);
     for (size_t e = 0; e < marks.size(); ++e) marks[e] = found[e] & region.has_edge[e];
@@ -187,15 +186,14 @@ class CurvedFinder {
       for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = is_curved(edge[i]) ? 1 : 0;
       return;
     }
-    const FourBits curved = are_curved_at(f);
+    const Mask4 curved = are_curved_at(f);
     for (uint32_t i = 0; i < 3; ++i) found[edge[i]] = curved[i] & 1;
   }
 
   /// Of the three smooth edges of a face; the fourth means nothing.
-  [[nodiscard, gnu::always_inline]] FourBits are_curved_at(uint32_t f) const {
+  [[nodiscard, gnu::always_inline]] Mask4 are_curved_at(uint32_t f) const {
     const uint32_t* twin = &topology_.twin[size_t{3} * f];
-    const FourVectors others =
-        at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
+    const Vec3x4 others = at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
     return are_curved(splat<3>(others), others, least_in_floats_);
   }
 
@@ -221,7 +219,7 @@ class CurvedFinder {
 
   const Mesh& mesh_;
   const Topology& topology_;
-  const Array<Vec3f>& normals_;
+  const Buffer<Vec3f>& normals_;
   const NormalProducts& products_;
   double threshold_, least_;
   float least_in_floats_ = no_less_than(least_);  ///< a float is below both or none
@@ -239,8 +237,8 @@ void grow_over_faces(const Topology& mesh, const Region& region, EdgeMarks& mark
 }
 
 void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& marks) {
-  List<uint8_t> touched(mesh.vertex_count, 0);
-  const List<uint32_t> edges = region.edges();
+  Buffer<uint8_t> touched(mesh.vertex_count, 0);
+  const Buffer<uint32_t> edges = region.edges();
   for (uint32_t e : edges) {
     touched[mesh.origin[mesh.half_edge[e]]] |= marks[e];
     touched[mesh.tip(mesh.half_edge[e])] |= marks[e];
@@ -250,7 +248,7 @@ void grow_over_vertices(const Topology& mesh, const Region& region, EdgeMarks& m
 
 }  // namespace
 
-EdgeMarks find_curved(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products, double threshold,
+EdgeMarks find_curved(const Mesh& mesh, const Buffer<Vec3f>& normals, const NormalProducts& products, double threshold,
                       const Region& region) {
   CurvedFinder finder(mesh, normals, products, threshold);
   if (!products.empty()) return finder.by_edges(region);
@@ -262,7 +260,7 @@ void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& 
   if (growth == Growth::vertices) grow_over_vertices(mesh, region, marks);
 }
 
-EdgeMarks find_curved_and_grow(const Mesh& mesh, const Array<Vec3f>& normals, const NormalProducts& products,
+EdgeMarks find_curved_and_grow(const Mesh& mesh, const Buffer<Vec3f>& normals, const NormalProducts& products,
                                double threshold, Growth growth, const Region& region) {
   if (products.empty() && !region.has_curves && growth == Growth::faces)
     return CurvedFinder(mesh, normals, products, threshold).by_faces(region, true);

@@ -37,7 +37,7 @@ struct Sides {
   bool is_open;  ///< a face is missing
 };
 
-Sides sides(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge) {
+Sides sides(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge) {
   const uint32_t h = mesh.topology.half_edge[edge];
   const uint32_t t = mesh.topology.twin[h];
   const Vec3f normal = normals[Topology::face(h)];
@@ -47,7 +47,7 @@ Sides sides(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge) {
 
 }  // namespace
 
-double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance, const View& view,
+double light_weight(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance, const View& view,
                     const Camera& camera) {
   const uint32_t h = mesh.topology.half_edge[edge];
   const Vec3d a = to_double(mesh.positions[mesh.topology.origin[h]]);

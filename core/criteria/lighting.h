@@ -24,7 +24,7 @@ namespace papilio {
 /// on six meshes; on seven others, too, pictures are better by 0.8 dB on average than without lights.
 ///
 /// `normals` [F]. Always positive and finite; how long the lights' vectors are does not matter.
-[[nodiscard]] double light_weight(const Mesh& mesh, const Array<Vec3f>& normals, uint32_t edge, double distance,
+[[nodiscard]] double light_weight(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance,
                                   const View& view, const Camera& camera);
 
 }  // namespace papilio

@@ -23,9 +23,9 @@ constexpr float never = -infinity;
 float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
 /// Those of all edges for which that can be done; what is made of the others means nothing. [E]
-Array<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
+Buffer<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
   const Topology& topology = mesh.topology;
-  Array<Vec3f> made(topology.edge_count());
+  auto made = Buffer<Vec3f>::for_overwrite(topology.edge_count());
   std::optional<Features> found;
   if (context.features == nullptr) found = find_features(topology);
   const Features& features = found ? *found : *context.features;
@@ -40,29 +40,29 @@ Array<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, co
   return made;
 }
 
-std::optional<TensionField> find_tension(const Topology& mesh, const Array<Vec3f>& normals, const Options& options) {
+std::optional<TensionField> find_tension(const Topology& mesh, const Buffer<Vec3f>& normals, const Options& options) {
   if (options.tension == Tension::off) return std::nullopt;
   return tension_field(mesh, normals, options.tension);
 }
 
-Array<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
+Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
   if (context.normals_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
   return normals_of_fours(mesh, *context.normals_of, context.threads);
 }
 
 }  // namespace
 
-Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options, const SplitPlan& plan,
-                           const TrialContext& context) {
+Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
+                            const SplitPlan& plan, const TrialContext& context) {
   const Topology& topology = mesh.topology;
   const std::optional<TensionField> field = find_tension(topology, normals, options);
   const TensionField* tension = field ? &*field : nullptr;
   constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
   if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
     return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
-  Array<Vec3f> made = make_all_vertices(mesh, tension, context);
+  Buffer<Vec3f> made = make_all_vertices(mesh, tension, context);
   if (plan.count() == made.size()) return made;
-  Array<Vec3f> planned(plan.count());
+  auto planned = Buffer<Vec3f>::for_overwrite(plan.count());
   for (uint32_t e = 0; e < made.size(); ++e)
     if (plan.is_split(e)) planned[plan.before[e]] = made[e];
   return planned;
@@ -83,8 +83,8 @@ Trial try_everything(const Mesh& mesh, const Options& options, const TrialContex
 }
 
 void Trial::forget() {
-  deviations = Memo<double>(made.size(), unknown);
-  bounds = Memo<float>(made.size(), infinity);
+  deviations = LazyValues<double>(made.size(), unknown);
+  bounds = LazyValues<float>(made.size(), infinity);
 }
 
 void Trial::prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context) {
@@ -93,7 +93,7 @@ void Trial::prepare_errors(const Mesh& mesh, const Options& options, const Trial
   forget();
   if (!has_tolerance) return;
   rooms = rooms_at_sides(mesh, context.normals_of, context.threads);
-  least = Memo<float>(made.size(), 0);
+  least = LazyValues<float>(made.size(), 0);
 }
 
 void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const {
@@ -113,7 +113,7 @@ void Trial::keep_more(const Topology& mesh) {
   forget();
   planes = FacePlanes(mesh.face_count(), infinity);
   products = NormalProducts(mesh.edge_count(), infinity);
-  transitions = Memo<uint32_t>(mesh.face_count(), 0);
+  transitions = LazyValues<uint32_t>(mesh.face_count(), 0);
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
@@ -160,34 +160,34 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                            const Region& region) const {
   if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
   return region.has_edge;
 }
 
-EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
-                            const List<uint32_t>& shared) const {
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
+                            const Buffer<uint32_t>& shared) const {
   if (!camera_) return {};
   return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
 }
 
-List<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
+Buffer<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
   if (options_.flatness.empty()) return region.edges();
   return marked(find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
 }
 
-List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                 const EdgeMarks& shown) const {
-  List<uint32_t> edges = curved(mesh, trial, level, region);
+Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                   const EdgeMarks& shown) const {
+  Buffer<uint32_t> edges = curved(mesh, trial, level, region);
   keep_if(edges, [&](uint32_t e) { return shown[e] != 0; });
   if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
   return edges;
 }
 
-List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                 const EdgesShown& shown, const Box& box, float least) const {
-  List<uint32_t> edges = curved(mesh, trial, level, region);
+Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                   const EdgesShown& shown, const Box& box, float least) const {
+  Buffer<uint32_t> edges = curved(mesh, trial, level, region);
   const double needed = is_by_error() ? measure_.least_deviation(least, highest_pixels_per_unit(box)) : 0;
   if (needed > 0) {
     if (trial.has_ranges()) trial.find_ranges(mesh, edges);
@@ -201,9 +201,9 @@ List<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level
   return edges;
 }
 
-List<float> Selection::errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
-                              float threshold, Reaching reaching) const {
-  List<float> errors(mesh.topology.edge_count(), never);
+Buffer<float> Selection::errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& wanted, const Box& box,
+                                float threshold, Reaching reaching) const {
+  Buffer<float> errors(mesh.topology.edge_count(), never);
   const double scale = highest_pixels_per_unit(box);
   const bool least_will_do = reaching == Reaching::no_more && trial.has_ranges() && measure_.grows_with_distance();
   const auto error = [&](uint32_t e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };

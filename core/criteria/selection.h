@@ -25,27 +25,28 @@ struct TrialContext {
   const Features* features = nullptr;  ///< its; with `part`, the parents'
   const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
   /// Those of the parents of whose children normals are asked; null: all.
-  const List<uint32_t>* normals_of = nullptr;
-  const List<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
-  const Part* part = nullptr;                ///< of the parents that it was split from (split_part_in_four); null: all
-  int threads = 1;                           ///< at most so many work on it
+  const Buffer<uint32_t>* normals_of = nullptr;
+  const Buffer<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
+  const Part* part = nullptr;  ///< of the parents that it was split from (split_part_in_four); null: all
+  int threads = 1;             ///< at most so many work on it
 };
 
 /// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
 /// in `tried` would have: T of them.
 struct Trial {
-  Array<Vec3f> normals{};     ///< [F]
-  SplitPlan tried{};          ///< the edges whose new vertices were computed; of none: see `made`
-  Array<Vec3f> made{};        ///< [T]; where `tried` is of none [E], of which only what could be computed counts
-  bool is_of_some = false;    ///< where `tried` is of none: whether only some were asked for
-  Memo<double> deviations{};  ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
-  Memo<float> bounds{};       ///< [T] no less than these; infinity where nothing is known; empty as above
-  Memo<float> least{};        ///< [T] no more than these; 0 where nothing is known; empty without rooms
-  Array<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
+  Buffer<Vec3f> normals{};  ///< [F]
+  SplitPlan tried{};        ///< the edges whose new vertices were computed; of none: see `made`
+  Buffer<Vec3f> made{};     ///< [T]; where `tried` is of none [E], of which only what could be computed counts
+  bool is_of_some = false;  ///< where `tried` is of none: whether only some were asked for
+  LazyValues<double>
+      deviations{};            ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
+  LazyValues<float> bounds{};  ///< [T] no less than these; infinity where nothing is known; empty as above
+  LazyValues<float> least{};   ///< [T] no more than these; 0 where nothing is known; empty without rooms
+  Buffer<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
 
-  FacePlanes planes{};           ///< (view.h)
-  NormalProducts products{};     ///< (flatness.h)
-  Memo<uint32_t> transitions{};  ///< [F] (transition.h)
+  FacePlanes planes{};                 ///< (view_culling.h)
+  NormalProducts products{};           ///< (flatness.h)
+  LazyValues<uint32_t> transitions{};  ///< [F] (transition.h)
 
   static constexpr int unknown = -1;
   /// Makes room for what is found out about what was made; nothing is known yet.
@@ -84,8 +85,8 @@ struct Trial {
 };
 
 /// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
-[[nodiscard]] Array<Vec3f> make_vertices(const Mesh& mesh, const Array<Vec3f>& normals, const Options& options,
-                                         const SplitPlan& plan, const TrialContext& context = {});
+[[nodiscard]] Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
+                                          const SplitPlan& plan, const TrialContext& context = {});
 /// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
                               const TrialContext& context = {});
@@ -113,28 +114,28 @@ class Selection {
   }
 
   /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
-  /// edges (view.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
+  /// edges (view_culling.h), `box` of the vertices. [E]
+  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                                 const Region& region) const;
   /// The same, edge by edge. `shared`: the half-edges at shared edges.
-  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const List<double>& longest, const Box& box,
-                                 const List<uint32_t>& shared) const;
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
+                                 const Buffer<uint32_t>& shared) const;
   /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
   /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                      const EdgeMarks& shown) const;
+  [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgeMarks& shown) const;
 
   /// The same, of the edges whose error (below) may be `least` or more.
-  [[nodiscard]] List<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                      const EdgesShown& shown, const Box& box, float least) const;
+  [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                        const EdgesShown& shown, const Box& box, float least) const;
 
   /// What errors that reach a threshold are to be: where more is done with them than to compare them with it, exact.
   enum class Reaching { exact, no_more };
   /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Those below `threshold` may
   /// come out larger, those that reach it smaller if they may be `no_more`, but on their side of it: they cost less.
   /// `box` of the vertices. [E]
-  [[nodiscard]] List<float> errors(const Mesh& mesh, const Trial& trial, const List<uint32_t>& wanted, const Box& box,
-                                   float threshold, Reaching reaching = Reaching::exact) const;
+  [[nodiscard]] Buffer<float> errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& wanted,
+                                     const Box& box, float threshold, Reaching reaching = Reaching::exact) const;
 
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;
@@ -142,7 +143,7 @@ class Selection {
  private:
   friend class ErrorLeft;
   /// The region's edges that flatness wants split, with growth; all of them without it.
-  [[nodiscard]] List<uint32_t> curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
+  [[nodiscard]] Buffer<uint32_t> curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;

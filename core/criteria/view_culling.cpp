@@ -19,7 +19,7 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const List<double>& longest,
+  Sight(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes, const Buffer<double>& longest,
         const Box& box, const Camera& camera)
       : mesh_(mesh),
         normals_(normals),
@@ -40,14 +40,14 @@ class Sight {
   /// before all vertices were looked at.
   void of_four(uint32_t first, uint8_t* sights) const {
     const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh_.topology.origin[size_t{3} * first]);
-    std::array<Lanes, 6> p;
+    std::array<Vec3fa, 6> p;
     std::array<uint8_t, 6> in;
     for (uint32_t i = 0; i < 6; ++i) {
       p[i] = widen(mesh_.positions[vertex[i]]);
       in[i] = inside_[vertex[i]];
     }
-    const FourVectors normals = at(normals_, {first, first + 1, first + 2, first + 3});
-    const FourVectors centroids =
+    const Vec3x4 normals = at(normals_, {first, first + 1, first + 2, first + 3});
+    const Vec3x4 centroids =
         (1.0F / 3) * transposed(p[0] + p[3] + p[5], p[3] + p[1] + p[4], p[5] + p[4] + p[2], p[3] + p[4] + p[5]);
     const auto [are_towards, are_away] = quick_(normals, dot(normals, centroids));
     auto is_away = std::bit_cast<std::array<uint32_t, 4>>(are_away);
@@ -104,20 +104,20 @@ class Sight {
   }
 
   const Mesh& mesh_;
-  const Array<Vec3f>& normals_;
+  const Buffer<Vec3f>& normals_;
   const FacePlanes& planes_;
-  const List<double>& longest_;
+  const Buffer<double>& longest_;
   const Camera& camera_;
   const Camera::QuickAway quick_;
   const unsigned through_;  ///< the planes that some of the mesh may be outside of
   const Camera::QuickOutside quick_outside_;
-  List<uint8_t> inside_;  ///< [V] is_inside, or 0, or unknown; empty where all are and nobody has looked
+  Buffer<uint8_t> inside_;  ///< [V] is_inside, or 0, or unknown; empty where all are and nobody has looked
 };
 
 }  // namespace
 
-std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera) {
-  const List<double> longest = longest_edges(mesh);
+std::vector<bool> hidden_faces(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera) {
+  const Buffer<double> longest = longest_edges(mesh);
   const FacePlanes none_kept;
   Sight sight(mesh, normals, none_kept, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
@@ -125,9 +125,9 @@ std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, co
   return hidden;
 }
 
-List<double> longest_edges(const Mesh& mesh) {
+Buffer<double> longest_edges(const Mesh& mesh) {
   const Topology& topology = mesh.topology;
-  List<double> longest(topology.vertex_count, 0);
+  Buffer<double> longest(topology.vertex_count, 0);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t a = topology.origin[topology.half_edge[e]];
     const uint32_t b = topology.tip(topology.half_edge[e]);
@@ -140,9 +140,10 @@ List<double> longest_edges(const Mesh& mesh) {
   return longest;
 }
 
-List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions, const List<uint32_t>* faces) {
-  const Subset of(parents.face_count(), faces);
-  List<double> longest(positions.size(), 0);
+Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions,
+                                   const Buffer<uint32_t>* faces) {
+  const IndexRange of(parents.face_count(), faces);
+  Buffer<double> longest(positions.size(), 0);
   for (uint32_t k = 0; k < of.size(); ++k) {
     const uint32_t* corner = &parents.origin[size_t{3} * of[k]];
     const uint32_t* edge = &parents.edge[size_t{3} * of[k]];
@@ -164,11 +165,11 @@ List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& po
   return longest;
 }
 
-EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                      const List<double>& longest, const Box& box, const Camera& camera, const Region& region) {
+EdgeMarks edges_shown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
+                      const Buffer<double>& longest, const Box& box, const Camera& camera, const Region& region) {
   const Topology& topology = mesh.topology;
   Sight sight(mesh, normals, planes, longest, box, camera);
-  List<uint8_t> seen_by(topology.edge_count(), 0);
+  Buffer<uint8_t> seen_by(topology.edge_count(), 0);
   for (uint32_t f : region.faces) {
     const uint8_t of_face = sight.of_face(f);
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) seen_by[topology.edge[h]] |= of_face;
@@ -181,7 +182,7 @@ EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FaceP
 /// What was found of faces already.
 class EdgesShown::Memory {
  public:
-  Memory(const Mesh& mesh, Sight sight, const List<uint32_t>& shared)
+  Memory(const Mesh& mesh, Sight sight, const Buffer<uint32_t>& shared)
       : mesh_(mesh.topology), sight_(std::move(sight)), of_face_(mesh_.face_count(), unknown) {
     if (shared.empty()) return;
     of_shared_.assign(mesh_.edge_count(), 0);
@@ -196,7 +197,7 @@ class EdgesShown::Memory {
   }
 
   /// The faces are all those at the edges.
-  void keep_shown_once_all_are_looked_at(const Region& region, List<uint32_t>& edges) {
+  void keep_shown_once_all_are_looked_at(const Region& region, Buffer<uint32_t>& edges) {
     look_at(region);
     keep_if(edges, [this, has_shared = !of_shared_.empty()](uint32_t e) {
       const uint32_t h = mesh_.half_edge[e];
@@ -209,7 +210,7 @@ class EdgesShown::Memory {
  private:
   static constexpr uint8_t unknown = 255;
   void look_at(const Region& region) {
-    const List<uint32_t>& faces = region.faces;
+    const Buffer<uint32_t>& faces = region.faces;
     const bool are_many = faces.size() > mesh_.vertex_count;
     if (are_many) sight_.look_at_vertices();
     if (are_many && region.is_in_fours && sight_.forgets_planes())
@@ -224,13 +225,14 @@ class EdgesShown::Memory {
 
   const Topology& mesh_;
   Sight sight_;
-  List<uint8_t> of_face_;    ///< [F] or unknown
-  List<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
+  Buffer<uint8_t> of_face_;    ///< [F] or unknown
+  Buffer<uint8_t> of_shared_;  ///< [E] of shared edges' faces together; empty where there are none
 };
 
 EdgesShown::EdgesShown() = default;
-EdgesShown::EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                       const List<double>& longest, const Box& box, const Camera& camera, const List<uint32_t>& shared)
+EdgesShown::EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
+                       const Buffer<double>& longest, const Box& box, const Camera& camera,
+                       const Buffer<uint32_t>& shared)
     : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, planes, longest, box, camera), shared)) {}
 EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
 EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;
@@ -238,7 +240,7 @@ EdgesShown::~EdgesShown() = default;
 
 bool EdgesShown::operator[](uint32_t edge) const { return memory_ == nullptr || memory_->is_shown(edge); }
 
-void EdgesShown::keep_shown(const Region& region, List<uint32_t>& edges) const {
+void EdgesShown::keep_shown(const Region& region, Buffer<uint32_t>& edges) const {
   if (memory_ == nullptr) return;
   Memory& memory = *memory_;
   constexpr size_t many = 3;  // so many for four faces: about every second edge
@@ -255,12 +257,12 @@ bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double ed
                                to_double(mesh.positions[mesh.topology.tip(h)]), edge_pixels);
 }
 
-void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, List<uint32_t>& edges) {
+void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges) {
   if (edge_pixels == 0) return;
   keep_if(edges, [&](uint32_t e) { return looks_long(mesh, e, camera, edge_pixels); });
 }
 
-void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,
+void cull_by_view(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks) {
   const EdgeMarks shown = edges_shown(mesh, normals, {}, longest_edges(mesh), bounding_box(mesh.positions), camera,
                                       whole_region(mesh.topology));

@@ -13,25 +13,25 @@ namespace papilio {
 
 /// Of each face [F] the product of its unit normal with its centroid, infinity where it was not asked for yet. May be
 /// empty: then nothing is kept.
-using FacePlanes = Memo<float>;
+using FacePlanes = LazyValues<float>;
 
 /// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
-[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera);
+[[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera);
 
 /// The length of each vertex's longest edge. [V]
-[[nodiscard]] List<double> longest_edges(const Mesh& mesh);
+[[nodiscard]] Buffer<double> longest_edges(const Mesh& mesh);
 /// The same of the level below `parents` (split_in_four.h), from its positions; of the edges of some faces' children
 /// alone, if `faces` is not null.
-[[nodiscard]] List<double> longest_edges_below(const Topology& parents, const Array<Vec3f>& positions,
-                                               const List<uint32_t>* faces = nullptr);
+[[nodiscard]] Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions,
+                                                 const Buffer<uint32_t>* faces = nullptr);
 
 /// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
 /// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
 /// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
 /// longest [V], marks [E].
-[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes,
-                                    const List<double>& longest, const Box& box, const Camera& camera,
+[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
+                                    const Buffer<double>& longest, const Box& box, const Camera& camera,
                                     const Region& region);
 
 /// The same, edge by edge: a face is looked at when one of its edges is asked for. What it is made of must outlive it.
@@ -40,8 +40,8 @@ class EdgesShown {
   /// All edges are.
   EdgesShown();
   /// Shapes as above; `shared`: the half-edges at shared edges.
-  EdgesShown(const Mesh& mesh, const Array<Vec3f>& normals, const FacePlanes& planes, const List<double>& longest,
-             const Box& box, const Camera& camera, const List<uint32_t>& shared);
+  EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes, const Buffer<double>& longest,
+             const Box& box, const Camera& camera, const Buffer<uint32_t>& shared);
   EdgesShown(EdgesShown&& other) noexcept;
   EdgesShown& operator=(EdgesShown&& other) noexcept;
   EdgesShown(const EdgesShown&) = delete;
@@ -50,7 +50,7 @@ class EdgesShown {
 
   [[nodiscard]] bool operator[](uint32_t edge) const;
   /// Keeps those edges of the list that are; they are the region's.
-  void keep_shown(const Region& region, List<uint32_t>& edges) const;
+  void keep_shown(const Region& region, Buffer<uint32_t>& edges) const;
 
  private:
   class Memory;
@@ -61,11 +61,11 @@ class EdgesShown {
 [[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
 
 /// Keeps those edges of the list that do.
-void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, List<uint32_t>& edges);
+void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges);
 
 /// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
 /// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
-void cull_by_view(const Mesh& mesh, const Array<Vec3f>& normals, const Camera& camera, double edge_pixels,
+void cull_by_view(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera, double edge_pixels,
                   EdgeMarks& marks);
 
 }  // namespace papilio

@@ -18,10 +18,10 @@ struct AssembledLevel {
   const LevelChoice* choice;
   const Topology* mesh;
   bool has_below;
-  const uint32_t* edge;        ///< [H] of the mesh
-  const uint8_t* is_split;     ///< [E]
-  const uint8_t* mask;         ///< [F] (LevelChoice); null where it is not known
-  Array<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
+  const uint32_t* edge;         ///< [H] of the mesh
+  const uint8_t* is_split;      ///< [E]
+  const uint8_t* mask;          ///< [F] (LevelChoice); null where it is not known
+  Buffer<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
 
   /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
   /// what becomes of it.
@@ -29,8 +29,8 @@ struct AssembledLevel {
     uint32_t first;           ///< the first half-edge in the result of the faces that it is cut into,
     const SplitPattern* cut;  ///< in this way; null: its children are in the result
   };
-  List<uint32_t> shown;
-  List<Fate> fates;
+  Buffer<uint32_t> shown;
+  Buffer<Fate> fates;
 
   [[nodiscard]] bool is_divided(uint32_t f) const { return has_below && choice->red[f] != 0; }
   /// The first child of a divided face.
@@ -38,9 +38,9 @@ struct AssembledLevel {
 };
 
 /// The edges that are split. In order are already those that were wanted; behind them lie those that these need.
-List<uint32_t> split_in_order(const LevelChoice& choice) {
+Buffer<uint32_t> split_in_order(const LevelChoice& choice) {
   constexpr ptrdiff_t few = 64;  // one of so many edges: more cost less to find than to sort
-  List<uint32_t> numbers = choice.split_edges;
+  Buffer<uint32_t> numbers = choice.split_edges;
   const auto behind = std::ranges::is_sorted_until(numbers);
   if (few * (numbers.end() - behind) > static_cast<ptrdiff_t>(choice.split.size())) return marked(choice.split);
   std::sort(behind, numbers.end());
@@ -67,8 +67,8 @@ class Assembler {
     topology.pinched = coarse.pinched;
     topology.darts = coarse.darts;
     const uint32_t half_edges = 3 * static_cast<uint32_t>(count_assembled(levels));
-    topology.origin.resize(half_edges);
-    topology.twin.resize(size_t{half_edges} + 1);
+    topology.origin.resize_for_overwrite(half_edges);
+    topology.twin.resize_for_overwrite(size_t{half_edges} + 1);
     nobody_ = half_edges;
     origin_ = topology.origin.data();
     twin_ = topology.twin.data();
@@ -87,8 +87,8 @@ class Assembler {
       const OfSides side{first_coarse_ + edge[0], first_coarse_ + edge[1], first_coarse_ + edge[2]};
       place(levels_[0], f, mask_of(levels_[0], f), &coarse.origin[size_t{3} * f], side.data());
     }
-    out_.topology.origin.resize(half_edge_count_);
-    out_.topology.twin.resize(half_edge_count_);
+    out_.topology.origin.resize_for_overwrite(half_edge_count_);
+    out_.topology.twin.resize_for_overwrite(half_edge_count_);
     for (const OnCurve& on : on_curves_)
       if (on.kind != EdgeKind::crease) out_.topology.twin[on.half_edge] = none;
     if (with_edges) number_edges();
@@ -104,7 +104,7 @@ class Assembler {
   };
 
   void add_vertices(std::span<const LevelChoice> levels) {
-    out_.positions.resize(out_.topology.vertex_count);
+    out_.positions.resize_for_overwrite(out_.topology.vertex_count);
     std::ranges::copy(coarse_.positions, out_.positions.begin());
     uint32_t vertex = coarse_.topology.vertex_count;
     levels_.reserve(levels.size());
@@ -118,7 +118,7 @@ class Assembler {
       level.edge = mesh.edge.data();
       level.is_split = choice.split.data();
       level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
-      level.new_vertex.resize(mesh.edge_count());
+      level.new_vertex.resize_for_overwrite(mesh.edge_count());
       for (uint32_t e : split_in_order(choice)) {
         out_.positions[vertex] = choice.level->trial.at(e);
         level.new_vertex[e] = vertex++;
@@ -344,10 +344,10 @@ class Assembler {
   /// Top down: the points of each shown face's corners.
   void make_points() {
     out_.attributes = coarse_.attributes;
-    Array<uint32_t> result(half_edge_count_);
+    auto result = Buffer<uint32_t>::for_overwrite(half_edge_count_);
     for (const AssembledLevel& level : levels_) {
-      const List<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
-      const Array<uint32_t> corners = std::move(out_.attributes.point);
+      const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
+      const Buffer<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };
@@ -370,10 +370,10 @@ class Assembler {
   bool has_curves_or_points_ = false;
   uint32_t half_edge_count_ = 0;  ///< so far
   uint32_t *origin_, *twin_;      ///< of the result
-  List<uint32_t> slots_;          ///< half-edges of the result, or `nobody_`
+  Buffer<uint32_t> slots_;        ///< half-edges of the result, or `nobody_`
   uint32_t first_coarse_, next_inner_;
   uint32_t nobody_;  ///< a half-edge behind the result's
-  List<OnCurve> on_curves_;
+  Buffer<OnCurve> on_curves_;
   Mesh out_;
 };
 

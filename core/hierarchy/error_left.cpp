@@ -8,6 +8,7 @@
 
 #include "criteria/deviation_cutoff.h"
 #include "mesh/four_children.h"
+#include "simd/dispatch.h"
 #include "simd/float4.h"
 #include "simd/vec3fa.h"
 #include "split/split_pattern.h"
@@ -45,7 +46,7 @@ class ErrorFinder {
       reached_.assign(mesh_of(0).face_count(), 1);
       return;
     }
-    List<uint8_t> below(mesh_of(k).face_count(), 0);
+    Buffer<uint8_t> below(mesh_of(k).face_count(), 0);
     for (size_t i = 0; i < choice.region.faces.size(); i += 4) {
       const uint32_t f = choice.region.faces[i];
       const uint32_t parent = choice.level->parent_of(f);
@@ -77,7 +78,7 @@ class ErrorFinder {
     } else {
       float too_little = surely_too_little(k);
       // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
-      List<uint32_t> edges = choice.region.edges();
+      Buffer<uint32_t> edges = choice.region.edges();
       if (trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
       for (uint32_t e : edges) {
         if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
@@ -115,16 +116,16 @@ class ErrorFinder {
       return;
     }
     FarFinder far(*this, k);
-    const List<uint32_t>& faces = levels_[k].region.faces;
+    const Buffer<uint32_t>& faces = levels_[k].region.faces;
     run_wide([&]() PAPILIO_INLINED {
       for (size_t i = 0; i < faces.size(); i += 4) {
         if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
         const uint32_t h = 3 * faces[i];
         const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
-        std::array<Lanes, 6> at;
+        std::array<Vec3fa, 6> at;
         for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
         const uint32_t* edge = &mesh.edge[h];
-        Lanes farthest{};
+        Vec3fa farthest{};
         visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) PAPILIO_INLINED {
           farthest = larger(far.weighed(edge[half_edge], at[from], at[to]), farthest);
         });
@@ -157,24 +158,24 @@ class ErrorFinder {
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
-    [[nodiscard, gnu::always_inline]] Lanes position(uint32_t vertex) const { return widen(positions_[vertex]); }
+    [[nodiscard, gnu::always_inline]] Vec3fa position(uint32_t vertex) const { return widen(positions_[vertex]); }
     /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
     /// where the edge does not. (What is read of such an edge may not even be a number.)
-    [[nodiscard, gnu::always_inline]] Lanes weighed(uint32_t e, Lanes from, Lanes to) const {
-      const Lanes off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
+    [[nodiscard, gnu::always_inline]] Vec3fa weighed(uint32_t e, Vec3fa from, Vec3fa to) const {
+      const Vec3fa off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
       return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
     }
     /// Of the largest of each direction of some edges: whether all of these are too little to matter.
-    [[nodiscard, gnu::always_inline]] bool is_too_near(Lanes farthest) const {
+    [[nodiscard, gnu::always_inline]] bool is_too_near(Vec3fa farthest) const {
       return farthest.v[0] + farthest.v[1] + farthest.v[2] <= too_near_.squared();
     }
-    void look_at(uint32_t e, Lanes from, Lanes to) {
-      const Lanes parts = weighed(e, from, to);
+    void look_at(uint32_t e, Vec3fa from, Vec3fa to) {
+      const Vec3fa parts = weighed(e, from, to);
       if (parts.v[0] + parts.v[1] + parts.v[2] > too_near_.squared()) [[unlikely]]
         add(e);
     }
     /// At the nine edges of the four children of a face, of their 12 half-edges' and between their vertices.
-    [[gnu::noinline]] void look_at_four(const uint32_t* edge, const std::array<Lanes, 6>& at) {
+    [[gnu::noinline]] void look_at_four(const uint32_t* edge, const std::array<Vec3fa, 6>& at) {
       visit_edges_of_four(
           [&](uint32_t half_edge, uint32_t from, uint32_t to) { look_at(edge[half_edge], at[from], at[to]); });
     }
@@ -199,7 +200,7 @@ class ErrorFinder {
     const Vec3f *positions_, *made_;
     const uint32_t* number_;              ///< of an edge's vertex; null: its own
     std::array<float, 4> share_squared_;  ///< by whether the edge may be split (2), and whether it is (1)
-    TooNear too_near_;
+    DeviationCutoff too_near_;
   };
 
   /// Of the last level nothing below was judged.
@@ -217,14 +218,14 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     if (choice.level->trial.bounds.empty()) return;  // add_far did it
     has_children_ = choice.with_children();
-    List<uint32_t> faces = choice.faces_at_split();
+    Buffer<uint32_t> faces = choice.faces_at_split();
     keep_if(faces, [&](uint32_t f) {
       const bool has_children = has_children_[f] != 0;
       const bool is_whole_or_cut = choice.split_mask(f) != 7;
       const bool is_reached = reached_[f] != 0;
       return is_reached & (!has_children | is_whole_or_cut);
     });
-    List<uint32_t> sides(3 * faces.size());
+    Buffer<uint32_t> sides(3 * faces.size());
     for (size_t i = 0; i < faces.size(); ++i)
       for (uint32_t c = 0; c < 3; ++c) sides[3 * i + c] = 3 * faces[i] + c;
     const Topology& mesh = mesh_of(k);
@@ -297,9 +298,9 @@ class ErrorFinder {
   }
 
   std::span<const LevelChoice> levels_;
-  List<double> scales_;         ///< [level] the highest pixels per unit
-  List<uint8_t> has_children_;  ///< [F] of a level of which splits are looked at
-  List<uint8_t> reached_;       ///< [F] of the level at hand: whether all faces above are divided
+  Buffer<double> scales_;         ///< [level] the highest pixels per unit
+  Buffer<uint8_t> has_children_;  ///< [F] of a level of which splits are looked at
+  Buffer<uint8_t> reached_;       ///< [F] of the level at hand: whether all faces above are divided
   ErrorLeft left_;
 };
 

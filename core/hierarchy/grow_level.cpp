@@ -5,9 +5,9 @@
 namespace papilio {
 namespace {
 
-Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const List<uint32_t>& moved) {
-  Array<Vec3f> normals(mesh.topology.face_count());
-  List<uint8_t> is_known(normals.size(), 0);
+Buffer<Vec3f> grown_normals(const Mesh& mesh, const Buffer<Vec3f>& known, const Buffer<uint32_t>& moved) {
+  auto normals = Buffer<Vec3f>::for_overwrite(mesh.topology.face_count());
+  Buffer<uint8_t> is_known(normals.size(), 0);
   for (uint32_t f = 0; f < moved.size(); ++f) {
     normals[moved[f]] = known[f];
     is_known[moved[f]] = 1;
@@ -18,7 +18,7 @@ Array<Vec3f> grown_normals(const Mesh& mesh, const Array<Vec3f>& known, const Li
 }
 
 /// The same for what is known of planes and products.
-void keep_known(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved, const Trial& trial) {
+void keep_known(const Topology& mesh, const HierarchyLevel& known, const Buffer<uint32_t>& moved, const Trial& trial) {
   const Topology& before = known.mesh.topology;
   for (uint32_t f = 0; f < moved.size(); ++f) {
     trial.planes.put(moved[f], known.trial.planes.get(f));
@@ -28,8 +28,8 @@ void keep_known(const Topology& mesh, const HierarchyLevel& known, const List<ui
 }
 
 /// For each edge of the level the number of its vertex among those that the known level has made; `none`. [E]
-List<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known, const List<uint32_t>& moved) {
-  List<uint32_t> rank(mesh.edge_count(), none);
+Buffer<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known, const Buffer<uint32_t>& moved) {
+  Buffer<uint32_t> rank(mesh.edge_count(), none);
   for (uint32_t h = 0; h < known.mesh.topology.half_edge_count(); ++h) {
     const uint32_t e = known.mesh.topology.edge[h];
     if (known.trial.tried.is_split(e)) rank[mesh.edge[3 * moved[h / 3] + h % 3]] = known.trial.tried.before[e];
@@ -40,17 +40,17 @@ List<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& k
 }  // namespace
 
 void try_grown_level(HierarchyLevel& level, const Options& options, const HierarchyLevel& known,
-                     const List<uint32_t>& moved) {
-  const List<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
+                     const Buffer<uint32_t>& moved) {
+  const Buffer<uint32_t> rank = find_known_vertices(level.mesh.topology, known, moved);
   EdgeMarks marks = complete_edges(level);
   Trial& trial = level.trial;
   trial = {.normals = grown_normals(level.mesh, known.trial.normals, moved), .tried = SplitPlan(marks)};
   for (uint32_t e = 0; e < marks.size(); ++e)
     if (rank[e] != none) marks[e] = 0;
   const SplitPlan rest(marks);
-  const Array<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
+  const Buffer<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
 
-  trial.made.resize(trial.tried.count());
+  trial.made.resize_for_overwrite(trial.tried.count());
   trial.keep_more(level.mesh.topology);
   keep_known(level.mesh.topology, known, moved, trial);
   for (uint32_t e = 0; e < marks.size(); ++e) {

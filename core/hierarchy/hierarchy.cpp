@@ -13,7 +13,7 @@ namespace {
 /// Splits faces in four, leaving the other faces out.
 class LevelMaker {
  public:
-  LevelMaker(const HierarchyLevel& above, const List<uint8_t>& red)
+  LevelMaker(const HierarchyLevel& above, const Buffer<uint8_t>& red)
       : above_(above),
         mesh_(above.mesh.topology),
         faces_(with_neighbours(mesh_, red)),
@@ -38,8 +38,8 @@ class LevelMaker {
 
  private:
   /// Marks what the half-edges of the faces have in `of` [H].
-  [[nodiscard]] List<uint8_t> used_by_faces(const Array<uint32_t>& of, uint32_t count) const {
-    List<uint8_t> used(count, 0);
+  [[nodiscard]] Buffer<uint8_t> used_by_faces(const Buffer<uint32_t>& of, uint32_t count) const {
+    Buffer<uint8_t> used(count, 0);
     uint8_t* marks = used.data();  // not read again at each mark
     const uint32_t* of_half_edge = of.data();
     for (uint32_t f : faces_.numbers())
@@ -52,11 +52,11 @@ class LevelMaker {
     Topology part;
     part.vertex_count = vertices_.count();
     const size_t half_edges = size_t{3} * faces_.count();
-    part.origin.resize(half_edges);
-    part.twin.resize(half_edges);
-    part.edge.resize(half_edges);
-    part.half_edge.resize(edges_.count());
-    part.kind.resize(edges_.count());
+    part.origin.resize_for_overwrite(half_edges);
+    part.twin.resize_for_overwrite(half_edges);
+    part.edge.resize_for_overwrite(half_edges);
+    part.half_edge.resize_for_overwrite(edges_.count());
+    part.kind.resize_for_overwrite(edges_.count());
     uint32_t at = 0;
     for (uint32_t f : faces_.numbers())
       for (uint32_t i = 0; i < 3; ++i, ++at) {
@@ -92,7 +92,7 @@ class LevelMaker {
 
   void make_vertices() {
     const uint32_t count = below_.mesh.topology.vertex_count;
-    below_.mesh.positions.resize(count);
+    below_.mesh.positions.resize_for_overwrite(count);
     below_.complete.assign(count + 1, 1);  // one more, for what is not held
     uint32_t at = 0;
     for (uint32_t v : vertices_.numbers()) {
@@ -201,11 +201,11 @@ EdgeMarks complete_edges(const HierarchyLevel& level) {
   return marks;
 }
 
-List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces) {
-  List<uint8_t> touched(mesh.vertex_count, 0);
+Buffer<uint8_t> with_neighbours(const Topology& mesh, const Buffer<uint8_t>& faces) {
+  Buffer<uint8_t> touched(mesh.vertex_count, 0);
   for (uint32_t f : marked(faces))
     for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] = 1;
-  List<uint8_t> marks(faces.size());
+  Buffer<uint8_t> marks(faces.size());
   for (uint32_t f = 0; f < faces.size(); ++f) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
     marks[f] = touched[corner[0]] | touched[corner[1]] | touched[corner[2]];
@@ -227,7 +227,7 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
 
 }  // namespace
 
-HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
+HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads) {
   HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
   below.features = level.features;
   descend(below.features, level.mesh.topology.vertex_count);
@@ -240,7 +240,7 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red
   return below;
 }
 
-LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads) {
+LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads) {
   if (level.is_tried_whole() && std::ranges::find(red, 0) == red.end())
     return {refine_whole_level(level, std::move(red), threads), {}};
   LevelBelow below = LevelMaker(level, red).run(threads);
@@ -252,12 +252,12 @@ LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int thre
 namespace {
 
 /// The box of the level above and the new vertices of these of its edges.
-Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edges) {
+Box box_with_new_vertices(const HierarchyLevel& above, const Buffer<uint32_t>& edges) {
   const auto& [min, max] = above.box;
-  Lanes least{{min.x, min.y, min.z, 0}};
-  Lanes most{{max.x, max.y, max.z, 0}};
+  Vec3fa least{{min.x, min.y, min.z, 0}};
+  Vec3fa most{{max.x, max.y, max.z, 0}};
   for (uint32_t e : edges) {
-    const Lanes p = widen(above.trial.made[above.trial.number(e)]);
+    const Vec3fa p = widen(above.trial.made[above.trial.number(e)]);
     least = lesser(p, least);
     most = larger(p, most);
   }
@@ -269,7 +269,7 @@ Box box_with_new_vertices(const HierarchyLevel& above, const List<uint32_t>& edg
 
 }  // namespace
 
-HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part, int threads) {
+HierarchyLevel refine_last_level(const HierarchyLevel& level, Buffer<uint8_t> red, const Part& part, int threads) {
   HierarchyLevel below = level_by_formula(level, split_part_in_four(level.mesh.topology, part, threads));
   below.parent = part.faces.numbers();
   below.parent.push_back(none);

@@ -27,18 +27,18 @@ namespace papilio {
 inline constexpr uint64_t bytes_per_held_face = 160;
 
 struct HierarchyLevel {
-  Mesh mesh;               ///< faces held; where others of the level are missing, edges are EdgeKind::cut
-  bool is_whole = false;   ///< all the level's faces are held, with the numbers of the uniform mesh
-  Features features;       ///< of the vertices that are complete
-  List<uint8_t> complete;  ///< [V] whether all the level's faces at the vertex are held
-  List<uint32_t> parent;   ///< [F / 4] the face above of children 4i to 4i + 3, `none` of others; empty where it is i
-  List<uint32_t> child;    ///< [F of the level above] first of the face's four children here; empty as above. Of others
+  Mesh mesh;                 ///< faces held; where others of the level are missing, edges are EdgeKind::cut
+  bool is_whole = false;     ///< all the level's faces are held, with the numbers of the uniform mesh
+  Features features;         ///< of the vertices that are complete
+  Buffer<uint8_t> complete;  ///< [V] whether all the level's faces at the vertex are held
+  Buffer<uint32_t> parent;   ///< [F / 4] the face above of children 4i to 4i + 3, `none` of others; empty where it is i
+  Buffer<uint32_t> child;  ///< [F of the level above] first of the face's four children here; empty as above. Of others
                            ///< `none`, or in a last level the four that stand for them
-  List<uint8_t> red;       ///< [F of the level above] whose children are held with the rings round them
-  List<uint32_t> shared;   ///< the half-edges at shared edges
-  Trial trial;             ///< what splitting its edges would give, where tried
-  List<double> longest;    ///< [V] edges (view.h); empty where no view asked
-  Box box{};               ///< of the vertices
+  Buffer<uint8_t> red;     ///< [F of the level above] whose children are held with the rings round them
+  Buffer<uint32_t> shared;  ///< the half-edges at shared edges
+  Trial trial;              ///< what splitting its edges would give, where tried
+  Buffer<double> longest;   ///< [V] edges (view_culling.h); empty where no view asked
+  Box box{};                ///< of the vertices
 
   /// The face above, not of level 0.
   [[nodiscard]] uint32_t parent_of(uint32_t face) const { return parent.empty() ? face / 4 : parent[face / 4]; }
@@ -63,7 +63,7 @@ struct HierarchyLevel {
 [[nodiscard]] EdgeMarks complete_edges(const HierarchyLevel& level);
 
 /// The faces that share a vertex with a marked one, themselves included. Marks [F].
-[[nodiscard]] List<uint8_t> with_neighbours(const Topology& mesh, const List<uint8_t>& faces);
+[[nodiscard]] Buffer<uint8_t> with_neighbours(const Topology& mesh, const Buffer<uint8_t>& faces);
 
 struct LevelBelow {
   HierarchyLevel level;
@@ -74,17 +74,17 @@ struct LevelBelow {
 
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// must have been tried. Up to so many threads work on it.
-[[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
+[[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads = 1);
 
 /// Makes all of the next level, with `red` [F] as refine_level() has it. The level must be whole, and all of its edges
 /// tried.
-[[nodiscard]] HierarchyLevel refine_whole_level(const HierarchyLevel& level, List<uint8_t> red, int threads = 1);
+[[nodiscard]] HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads = 1);
 
 /// Makes the next level where no other comes below it: it holds the children of the red faces and nothing else but four
 /// faces that stand for all the others of the level (split_part_in_four). Its vertices are those of the whole level. So
 /// nothing has to be cut, and `features` and `complete` are left out, which only a further level would need. Of a level
 /// whose features are rings; `part`: what is red.
-[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, List<uint8_t> red, const Part& part,
+[[nodiscard]] HierarchyLevel refine_last_level(const HierarchyLevel& level, Buffer<uint8_t> red, const Part& part,
                                                int threads = 1);
 
 }  // namespace papilio

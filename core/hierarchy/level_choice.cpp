@@ -6,8 +6,8 @@ namespace papilio {
 namespace {
 
 /// The children of faces of the level above.
-List<uint32_t> children_of(const List<uint32_t>& parents, const HierarchyLevel& level) {
-  List<uint32_t> faces(4 * parents.size());
+Buffer<uint32_t> children_of(const Buffer<uint32_t>& parents, const HierarchyLevel& level) {
+  Buffer<uint32_t> faces(4 * parents.size());
   uint32_t* to = faces.data();
   for (uint32_t f : parents) {
     const uint32_t first = level.first_child_of(f);
@@ -17,9 +17,9 @@ List<uint32_t> children_of(const List<uint32_t>& parents, const HierarchyLevel& 
 }
 
 /// The edges all of whose faces are in the region, which lies below level 0. [E]
-EdgeMarks edges_of(const HierarchyLevel& level, const List<uint32_t>& faces) {
+EdgeMarks edges_of(const HierarchyLevel& level, const Buffer<uint32_t>& faces) {
   const Topology& mesh = level.mesh.topology;
-  List<uint8_t> is_in(mesh.face_count() / 4 + 1, 0);  // children come by four; the last stands for no face at all
+  Buffer<uint8_t> is_in(mesh.face_count() / 4 + 1, 0);  // children come by four; the last stands for no face at all
   for (size_t i = 0; i < faces.size(); i += 4) is_in[faces[i] / 4] = 1;
   is_in.back() = 1;
   EdgeMarks marks(mesh.edge_count(), 0);
@@ -62,7 +62,7 @@ bool LevelChoice::has_many_split() const {
 void LevelChoice::find_masks() {
   masks.clear();
   if (!has_many_split()) return;
-  Array<uint8_t> found(level->mesh.topology.face_count());
+  auto found = Buffer<uint8_t>::for_overwrite(level->mesh.topology.face_count());
   const uint32_t* edge = level->mesh.topology.edge.data();
   const uint8_t* is_split = split.data();
   for (uint32_t f : region.faces)
@@ -81,29 +81,30 @@ void LevelChoice::add_to_masks(uint32_t edge) {
       if (mesh.edge[other] == edge) add(other);
 }
 
-Array<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
+Buffer<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
   const auto is_in_part = [](unsigned mask) { return (mask + 1) % 8 > 1; };
-  const auto find = [&](const List<uint32_t>& faces) {
-    Array<PartlySplit> found(faces.size() + 1);  // what is not wanted is written, and then replaced
+  const auto find = [&](const Buffer<uint32_t>& faces) {
+    auto found =
+        Buffer<PartlySplit>::for_overwrite(faces.size() + 1);  // what is not wanted is written, and then replaced
     size_t known = 0;
     for (uint32_t f : faces) {
       found[known] = {f, split_mask(f)};
       known += is_in_part(found[known].mask) ? 1 : 0;
     }
-    found.resize(known);
+    found.resize_for_overwrite(known);
     return found;
   };
   return has_many_split() ? find(region.faces) : find(faces_at_split());
 }
 
-List<uint32_t> LevelChoice::faces_at_split() const {
+Buffer<uint32_t> LevelChoice::faces_at_split() const {
   if (has_many_split()) {
-    List<uint32_t> faces = region.faces;
+    Buffer<uint32_t> faces = region.faces;
     keep_if(faces, [this](uint32_t f) { return split_mask(f) != 0; });
     return faces;
   }
   const Topology& mesh = level->mesh.topology;
-  List<uint8_t> marks(mesh.face_count(), 0);
+  Buffer<uint8_t> marks(mesh.face_count(), 0);
   for (uint32_t e : split_edges) {
     const uint32_t h = mesh.half_edge[e];
     marks[Topology::face(h)] = 1;
@@ -113,9 +114,9 @@ List<uint32_t> LevelChoice::faces_at_split() const {
   return marked(marks);
 }
 
-List<uint8_t> LevelChoice::with_children() const {
+Buffer<uint8_t> LevelChoice::with_children() const {
   const Topology& mesh = level->mesh.topology;
-  return red.empty() ? List<uint8_t>(mesh.face_count(), 0) : with_neighbours(mesh, red);
+  return red.empty() ? Buffer<uint8_t>(mesh.face_count(), 0) : with_neighbours(mesh, red);
 }
 
 LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
@@ -129,7 +130,7 @@ LevelChoice choose_coarsest(std::shared_ptr<const HierarchyLevel> level) {
 
 LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const HierarchyLevel> level) {
   LevelChoice choice;
-  List<uint32_t> red = above.region.faces;
+  Buffer<uint32_t> red = above.region.faces;
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
   choice.region.is_in_fours = true;
   choice.region.has_curves = !level->features.curve_half_edges.empty();
@@ -140,7 +141,7 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   return choice;
 }
 
-void mark_red(LevelChoice& choice, const List<uint32_t>& faces) {
+void mark_red(LevelChoice& choice, const Buffer<uint32_t>& faces) {
   const Topology& mesh = choice.level->mesh.topology;
   choice.red.assign(mesh.face_count(), 0);
   for (uint32_t f : faces) choice.red[f] = 1;

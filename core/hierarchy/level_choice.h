@@ -18,13 +18,13 @@ struct LevelChoice {
   EdgesShown shown;  ///< those of them that the view shows
   /// [E] how much the edge wants to be split: its own error, or the error of what lies below and needs it split; minus
   /// infinity where nothing wants it. Empty where errors do not decide.
-  List<float> error;
-  List<uint32_t> candidates;   ///< the edges whose error reaches the least threshold; else all that are wanted
-  EdgeMarks split;             ///< [E] what is split for the result
-  List<uint32_t> split_edges;  ///< the same as a list
-  Array<uint8_t> masks;        ///< [F] split_mask() of the region's faces, where find_masks() found it; else empty
-  List<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
-  List<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
+  Buffer<float> error;
+  Buffer<uint32_t> candidates;   ///< the edges whose error reaches the least threshold; else all that are wanted
+  EdgeMarks split;               ///< [E] what is split for the result
+  Buffer<uint32_t> split_edges;  ///< the same as a list
+  Buffer<uint8_t> masks;         ///< [F] split_mask() of the region's faces, where find_masks() found it; else empty
+  Buffer<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
+  Buffer<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
 
   /// Bit i is set where edge i of the face is split.
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
@@ -39,7 +39,7 @@ struct LevelChoice {
     if (!masks.empty()) add_to_masks(edge);
   }
   /// Where nothing is split yet: these, no edge twice.
-  void split_first(List<uint32_t> edges) {
+  void split_first(Buffer<uint32_t> edges) {
     for (uint32_t e : edges) split[e] = 1;
     split_edges = std::move(edges);
     masks.clear();
@@ -55,13 +55,13 @@ struct LevelChoice {
   /// How many faces there are at all edges that are split together. Edges of the region have all their faces there.
   [[nodiscard]] uint64_t count_faces_of_split() const;
   /// The faces at edges that are split, in ascending order.
-  [[nodiscard]] List<uint32_t> faces_at_split() const;
+  [[nodiscard]] Buffer<uint32_t> faces_at_split() const;
   struct PartlySplit {
     uint32_t face;
     unsigned mask;  ///< of its edges, as above
   };
   /// Those of them of which not all edges are.
-  [[nodiscard]] Array<PartlySplit> faces_split_in_part() const;
+  [[nodiscard]] Buffer<PartlySplit> faces_split_in_part() const;
   /// Calls `visit(parent, edges)` for each face of the level above whose children are in the region, which lies below
   /// level 0, with the 12 edges of its children's half-edges.
   template <class Visit>
@@ -78,7 +78,7 @@ struct LevelChoice {
   }
   /// The faces whose children the next level holds for this request: red ones, and their neighbours as support. None
   /// where there is no next level. [F]
-  [[nodiscard]] List<uint8_t> with_children() const;
+  [[nodiscard]] Buffer<uint8_t> with_children() const;
 
  private:
   [[nodiscard]] bool has_many_split() const;
@@ -91,6 +91,6 @@ struct LevelChoice {
 [[nodiscard]] LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const HierarchyLevel> level);
 
 /// Marks faces of the choice's region as those whose children the next choice is made of.
-void mark_red(LevelChoice& choice, const List<uint32_t>& faces);
+void mark_red(LevelChoice& choice, const Buffer<uint32_t>& faces);
 
 }  // namespace papilio

@@ -20,7 +20,7 @@ constexpr double part_as_dear_as_formula = 0.45;
 /// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
 constexpr double part_as_dear_as_all_kept = 1.0 / 3;
 
-bool covers(const List<uint8_t>& known, const List<uint8_t>& red) {
+bool covers(const Buffer<uint8_t>& known, const Buffer<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
 }
 
@@ -48,7 +48,7 @@ Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progr
       to_keep_(1),
       smallest_angle_(prepared_->smallest_angle()) {}
 
-void Levels::deepen(const List<uint8_t>& red) {
+void Levels::deepen(const Buffer<uint8_t>& red) {
   const size_t depth = levels_.size();
   if (depth < known_.size()) {
     const std::shared_ptr<const HierarchyLevel> known = known_[depth];
@@ -63,13 +63,13 @@ void Levels::deepen(const List<uint8_t>& red) {
   make(red);
 }
 
-bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
+bool Levels::make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red) {
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
   LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
-  List<uint32_t> moved(known.mesh.topology.face_count());
+  Buffer<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent_of(f);
     moved[f] = level->first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
@@ -82,10 +82,10 @@ bool Levels::make_with_known(const HierarchyLevel& known, List<uint8_t> red) {
   return true;
 }
 
-List<uint8_t> Levels::with_margin(const List<uint8_t>& red) const {
+Buffer<uint8_t> Levels::with_margin(const Buffer<uint8_t>& red) const {
   const HierarchyLevel& level = *levels_.back();
   const Topology& mesh = level.mesh.topology;
-  List<uint8_t> wide = with_neighbours(mesh, red);
+  Buffer<uint8_t> wide = with_neighbours(mesh, red);
   if (levels_.size() == 1) return wide;
   const EdgeMarks may_split = edges_below_red(level);
   for (uint32_t f = 0; f < wide.size(); ++f) {
@@ -95,27 +95,27 @@ List<uint8_t> Levels::with_margin(const List<uint8_t>& red) const {
   return wide;
 }
 
-bool Levels::may_keep(const List<uint8_t>& red) const {
+bool Levels::may_keep(const Buffer<uint8_t>& red) const {
   if (prepared_ == nullptr || to_keep_ < levels_.size()) return false;
-  const List<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
+  const Buffer<uint8_t> support = with_neighbours(levels_.back()->mesh.topology, red);
   uint64_t bytes = 4 * bytes_per_kept_face * static_cast<uint64_t>(std::ranges::count(support, 1));
   for (const auto& level : levels_) bytes += level->bytes();
   return bytes <= prepared_->budget();
 }
 
-List<uint8_t> Levels::or_everything(List<uint8_t> red, double as_dear) const {
+Buffer<uint8_t> Levels::or_everything(Buffer<uint8_t> red, double as_dear) const {
   const HierarchyLevel& level = *levels_.back();
   if (!level.is_tried_whole() || !has_room_for_whole()) return red;
-  const List<uint8_t> support = with_neighbours(level.mesh.topology, red);
+  const Buffer<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<double>(std::ranges::count(support, 1));
   if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
   return red;
 }
 
-void Levels::make(const List<uint8_t>& red) {
+void Levels::make(const Buffer<uint8_t>& red) {
   if (prepared_ == nullptr && (make_last(red) || make_whole(red))) return;
-  List<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
-                                            : or_everything(with_margin(red), part_as_dear_as_all_kept);
+  Buffer<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
+                                              : or_everything(with_margin(red), part_as_dear_as_all_kept);
   if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
   const bool is_kept = may_keep(more);
   if (prepared_ != nullptr && !is_kept && make_last(red)) return;
@@ -136,17 +136,17 @@ void Levels::make(const List<uint8_t>& red) {
   }
 }
 
-bool Levels::make_whole(const List<uint8_t>& red) {
+bool Levels::make_whole(const Buffer<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 || !has_room_for_whole())
     return false;
-  const List<uint32_t> held = marked(with_neighbours(parents, red));
+  const Buffer<uint32_t> held = marked(with_neighbours(parents, red));
   if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
   const auto level = std::make_shared<HierarchyLevel>(refine_whole_level(above, red, progress_.threads()));
   progress_.poll();
   if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
-  const List<uint32_t> below_red = marked(red);
+  const Buffer<uint32_t> below_red = marked(red);
   TrialContext context{
       .features = &level->features, .parents = &parents, .normals_of = &below_red, .threads = progress_.threads()};
   if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
@@ -156,7 +156,7 @@ bool Levels::make_whole(const List<uint8_t>& red) {
   return true;
 }
 
-bool Levels::make_last(const List<uint8_t>& red) {
+bool Levels::make_last(const Buffer<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
@@ -166,7 +166,7 @@ bool Levels::make_last(const List<uint8_t>& red) {
   const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
   progress_.poll();
   if (options_.view) {
-    const List<uint32_t> round_them = marked(with_neighbours(parents, red));
+    const Buffer<uint32_t> round_them = marked(with_neighbours(parents, red));
     level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
   }
   const TrialContext context{
@@ -191,7 +191,7 @@ const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& 
 void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
   constexpr size_t one_as_dear_as = 4;  // of all, family by family
   TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
-  List<uint32_t> below_red;  // fours of faces
+  Buffer<uint32_t> below_red;  // fours of faces
   bool are_few = false;
   if (!level.is_whole) {
     below_red.resize(level.parent.size());
@@ -220,7 +220,8 @@ void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
 void Levels::hand_back() {
   if (!has_grown_) return;
   while (!moved_.empty() && levels_.size() < known_.size())
-    if (!make_with_known(*known_[levels_.size()], List<uint8_t>(levels_.back()->mesh.topology.face_count(), 0))) break;
+    if (!make_with_known(*known_[levels_.size()], Buffer<uint8_t>(levels_.back()->mesh.topology.face_count(), 0)))
+      break;
   levels_.resize(to_keep_);
   prepared_->keep(std::move(levels_));
 }

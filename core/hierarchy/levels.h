@@ -26,7 +26,7 @@ class Levels {
 
   /// Adds a level that holds the children of the deepest one's faces marked `red` [F], and maybe others; its edges are
   /// tried. Throws `Error` cancelled.
-  void deepen(const List<uint8_t>& red);
+  void deepen(const Buffer<uint8_t>& red);
 
   /// Gives what was made to the prepared mesh, if there is one.
   void hand_back();
@@ -34,21 +34,21 @@ class Levels {
  private:
   /// Adds a level for the children of these faces and of all that the known level of its depth has; false, and nothing
   /// is done, where that is more than may be kept.
-  bool make_with_known(const HierarchyLevel& known, List<uint8_t> red);
-  [[nodiscard]] bool may_keep(const List<uint8_t>& red) const;
+  bool make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red);
+  [[nodiscard]] bool may_keep(const Buffer<uint8_t>& red) const;
   /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
   /// next view, from a little further on, finds what it needs.
-  [[nodiscard]] List<uint8_t> with_margin(const List<uint8_t>& red) const;
+  [[nodiscard]] Buffer<uint8_t> with_margin(const Buffer<uint8_t>& red) const;
   /// All faces of the deepest level if it is whole and so large a part of them would be held: then all cost less. Else
   /// those marked.
-  [[nodiscard]] List<uint8_t> or_everything(List<uint8_t> red, double as_dear) const;
-  void make(const List<uint8_t>& red);
+  [[nodiscard]] Buffer<uint8_t> or_everything(Buffer<uint8_t> red, double as_dear) const;
+  void make(const Buffer<uint8_t>& red);
   /// The same where it costs less to make all of the level, of which then only that is tried which may be asked for;
   /// false, and nothing is done, where that is not so.
-  bool make_whole(const List<uint8_t>& red);
+  bool make_whole(const Buffer<uint8_t>& red);
   /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
   /// done, where that cannot be.
-  bool make_last(const List<uint8_t>& red);
+  bool make_last(const Buffer<uint8_t>& red);
   /// Whether the limits allow all of the next level.
   [[nodiscard]] bool has_room_for_whole() const;
   /// Whether no level will lie below the one below the deepest.
@@ -68,7 +68,7 @@ class Levels {
   size_t to_keep_ = 0;      ///< how many of these may be kept
   bool has_grown_ = false;  ///< one of those was made
   /// Where the deepest level is made of more than the known one of its depth: [F of the known] the same face in it.
-  List<uint32_t> moved_;
+  Buffer<uint32_t> moved_;
   double smallest_angle_;
 };
 

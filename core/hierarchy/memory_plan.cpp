@@ -14,7 +14,7 @@ bool is_closed(const Mesh& mesh, uint32_t h) {
   const uint32_t twin = mesh.topology.twin[h];
   if (twin == none) return false;
   if (mesh.attributes.empty()) return true;
-  const Array<uint32_t>& point = mesh.attributes.point;
+  const Buffer<uint32_t>& point = mesh.attributes.point;
   return point[h] == point[Topology::next(twin)] && point[Topology::next(h)] == point[twin];
 }
 

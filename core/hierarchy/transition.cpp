@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/trigonometry.h"
+#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -105,7 +106,7 @@ uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double
 
 /// What is known of the face, or found out now.
 uint32_t find_in(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
-  const Memo<uint32_t>& transitions = level.trial.transitions;
+  const LazyValues<uint32_t>& transitions = level.trial.transitions;
   if (transitions.empty()) return judge(level, face, mask, most_cosine);
   const unsigned shift = shift_of(mask);
   const uint32_t known = transitions.get(face);
@@ -125,28 +126,28 @@ class FourJudge {
   /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
   [[nodiscard, gnu::always_inline]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits,
                                                                  bool has_two) const {
-    const std::array<FourNumbers, 3> side = sides(splits);
-    const FourVectors a = corners(side[0]);
-    const FourVectors b = corners(side[1]);
-    const FourVectors c = corners(side[2]);
-    const FourVectors on_ab = middles(side[0]);
-    const Four first_half = squared_length(on_ab - a);
-    const Four second_half = squared_length(b - on_ab);
-    const Four across = squared_length(c - on_ab);
-    const Four ab = squared_length(b - a);
-    const Four bc = squared_length(c - b);
-    const Four ca = squared_length(a - c);
-    const Four beside_a = squared_cosine(first_half, across, ca);
+    const std::array<Index4, 3> side = sides(splits);
+    const Vec3x4 a = corners(side[0]);
+    const Vec3x4 b = corners(side[1]);
+    const Vec3x4 c = corners(side[2]);
+    const Vec3x4 on_ab = middles(side[0]);
+    const Float4 first_half = squared_length(on_ab - a);
+    const Float4 second_half = squared_length(b - on_ab);
+    const Float4 across = squared_length(c - on_ab);
+    const Float4 ab = squared_length(b - a);
+    const Float4 bc = squared_length(c - b);
+    const Float4 ca = squared_length(a - c);
+    const Float4 beside_a = squared_cosine(first_half, across, ca);
     auto are_usual =
         is_usual(ab) & is_usual(bc) & is_usual(ca) & is_usual(first_half) & is_usual(second_half) & is_usual(across);
-    Four first{}, second{};
+    Float4 first{}, second{};
     if (has_two) {
-      const FourVectors on_bc = middles(side[1]);
-      const Four from_b = squared_length(on_bc - b);
-      const Four to_c = squared_length(c - on_bc);
-      const Four between = squared_length(on_bc - on_ab);
-      const Four other_across = squared_length(on_bc - a);
-      const Four tip = squared_cosine(second_half, from_b, between);
+      const Vec3x4 on_bc = middles(side[1]);
+      const Float4 from_b = squared_length(on_bc - b);
+      const Float4 to_c = squared_length(c - on_bc);
+      const Float4 between = squared_length(on_bc - on_ab);
+      const Float4 other_across = squared_length(on_bc - a);
+      const Float4 tip = squared_cosine(second_half, from_b, between);
       are_usual &= is_usual(from_b) & is_usual(to_c) & is_usual(between) & is_usual(other_across);
       first = larger(tip,
                      larger(squared_cosine(first_half, between, other_across), squared_cosine(other_across, to_c, ca)));
@@ -154,15 +155,15 @@ class FourJudge {
     } else {
       first = second = larger(beside_a, squared_cosine(second_half, bc, across));
     }
-    const Four cosine = lesser(first, second);
-    const Four own = squared_cosine(ab, bc, ca);
-    const Four most = Four{} + most_;
+    const Float4 cosine = lesser(first, second);
+    const Float4 own = squared_cosine(ab, bc, ca);
+    const Float4 most = Float4{} + most_;
     const auto prefers_first = is_surely_less(first, second);
     const auto prefers_second = is_surely_less(second, first);
     const auto is_sliver = is_surely_less(most, cosine) & is_surely_less(own, most);
     const auto is_none = is_surely_less(cosine, most) | is_surely_less(most, own);
     auto are_certain = are_usual & (is_sliver | is_none);
-    FourBits found = (FourBits{} + int{Transition::is_known}) | (is_sliver & int{Transition::has_sliver});
+    Mask4 found = (Mask4{} + int{Transition::is_known}) | (is_sliver & int{Transition::has_sliver});
     if (has_two) {
       are_certain &= prefers_first | prefers_second;
       found |= prefers_second & int{Transition::second_diagonal};
@@ -173,14 +174,14 @@ class FourJudge {
   /// Whether the squared cosine of the smallest angle may be larger than `most`, of each of four faces from `first` on.
   [[nodiscard]] static std::array<bool, 4> may_have_larger(const Mesh& mesh, uint32_t first, double most) {
     const uint32_t* corner = &mesh.topology.origin[size_t{3} * first];
-    const FourVectors a = at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]});
-    const FourVectors b = at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]});
-    const FourVectors c = at(mesh.positions, {corner[2], corner[5], corner[8], corner[11]});
-    const Four ab = squared_length(b - a);
-    const Four bc = squared_length(c - b);
-    const Four ca = squared_length(a - c);
+    const Vec3x4 a = at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]});
+    const Vec3x4 b = at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]});
+    const Vec3x4 c = at(mesh.positions, {corner[2], corner[5], corner[8], corner[11]});
+    const Float4 ab = squared_length(b - a);
+    const Float4 bc = squared_length(c - b);
+    const Float4 ca = squared_length(a - c);
     const auto are_less = is_usual(ab) & is_usual(bc) & is_usual(ca) &
-                          is_surely_less(squared_cosine(ab, bc, ca), Four{} + static_cast<float>(most));
+                          is_surely_less(squared_cosine(ab, bc, ca), Float4{} + static_cast<float>(most));
     if (is_all(are_less)) [[likely]]
       return {};
     return {are_less[0] == 0, are_less[1] == 0, are_less[2] == 0, are_less[3] == 0};
@@ -198,21 +199,21 @@ class FourJudge {
 
  private:
   /// Of two numbers as squared_cosine() gives them, with more room than rounding takes.
-  [[nodiscard, gnu::always_inline]] static FourBits is_surely_less(Four a, Four b) { return a < (1 - 2e-5F) * b; }
-  [[nodiscard, gnu::always_inline]] static Four squared_length(const FourVectors& a) { return dot(a, a); }
+  [[nodiscard, gnu::always_inline]] static Mask4 is_surely_less(Float4 a, Float4 b) { return a < (1 - 2e-5F) * b; }
+  [[nodiscard, gnu::always_inline]] static Float4 squared_length(const Vec3x4& a) { return dot(a, a); }
   /// squared_cosine_of_smallest_angle(), of usual numbers.
-  [[nodiscard, gnu::always_inline]] static Four squared_cosine(Four a, Four b, Four c) {
-    const Four shorter = lesser(a, b);
-    const Four shortest = lesser(shorter, c);
-    const Four one = larger(a, b);
-    const Four other = larger(shorter, c);
-    const Four twice_product = one + other - shortest;
+  [[nodiscard, gnu::always_inline]] static Float4 squared_cosine(Float4 a, Float4 b, Float4 c) {
+    const Float4 shorter = lesser(a, b);
+    const Float4 shortest = lesser(shorter, c);
+    const Float4 one = larger(a, b);
+    const Float4 other = larger(shorter, c);
+    const Float4 twice_product = one + other - shortest;
     return 0.25F * twice_product * twice_product / (one * other);
   }
 
   /// The half-edges of the faces, [i] of each the i-th from the first that is split.
-  [[nodiscard, gnu::always_inline]] static std::array<FourNumbers, 3> sides(const std::array<Split, 4>& splits) {
-    std::array<FourNumbers, 3> side;
+  [[nodiscard, gnu::always_inline]] static std::array<Index4, 3> sides(const std::array<Split, 4>& splits) {
+    std::array<Index4, 3> side;
     for (size_t k = 0; k < 4; ++k) {
       const uint8_t* first = &turned[first_target[splits[k].mask]];
       for (size_t i = 0; i < 3; ++i) side[i][k] = 3 * splits[k].face + first[i];
@@ -220,12 +221,12 @@ class FourJudge {
     return side;
   }
   /// Where these half-edges of the four faces begin.
-  [[nodiscard, gnu::always_inline]] FourVectors corners(const FourNumbers& h) const {
+  [[nodiscard, gnu::always_inline]] Vec3x4 corners(const Index4& h) const {
     const auto& origin = mesh_.origin;
     return at(level_.mesh.positions, {origin[h[0]], origin[h[1]], origin[h[2]], origin[h[3]]});
   }
   /// The new vertices on them.
-  [[nodiscard, gnu::always_inline]] FourVectors middles(const FourNumbers& h) const {
+  [[nodiscard, gnu::always_inline]] Vec3x4 middles(const Index4& h) const {
     const auto number = [&](uint32_t half_edge) { return level_.trial.number(mesh_.edge[half_edge]); };
     return at(level_.trial.made, {number(h[0]), number(h[1]), number(h[2]), number(h[3])});
   }
@@ -242,7 +243,7 @@ class SliverFinder {
       : choice_(choice), level_(*choice.level), judge_four_(level_, most_cosine), most_cosine_(most_cosine) {}
 
   /// In ascending order.
-  List<uint32_t> run() {
+  Buffer<uint32_t> run() {
     for (const auto& [f, mask] : choice_.faces_split_in_part()) {
       const uint32_t known = Transition::known(choice_, f, mask);
       if (known == 0)
@@ -301,7 +302,7 @@ class SliverFinder {
   const FourJudge judge_four_;
   double most_cosine_;
   std::array<Waiting, 2> waiting_;  ///< those with one split edge, and those with two
-  List<uint32_t> with_sliver_;
+  Buffer<uint32_t> with_sliver_;
 };
 
 }  // namespace
@@ -342,14 +343,14 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
   };
   choice.find_masks();
   // The order decides where dividing one makes a sliver of another.
-  List<uint32_t> faces;
+  Buffer<uint32_t> faces;
   if (level.trial.planes.empty()) {
     if (choice.transitions.empty()) choice.transitions.assign(mesh.face_count(), 0);
     faces = SliverFinder(choice, most_cosine).run();
   } else {
     for (const auto& split : choice.faces_split_in_part()) faces.push_back(split.face);
   }
-  std::erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
+  erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();
     faces.pop_back();

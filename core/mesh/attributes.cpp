@@ -39,10 +39,10 @@ int compare(const std::vector<Attribute>& attributes, uint32_t p, uint32_t q) {
 }
 
 /// For each point of the input the lowest of its vertex with equal values; points that no corner names keep `none`.
-List<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& mesh,
-                                  const std::vector<uint32_t>& corner_point) {
-  List<uint32_t> vertex(input.positions.size(), none);
-  List<uint32_t> points;
+Buffer<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& mesh,
+                                    const std::vector<uint32_t>& corner_point) {
+  Buffer<uint32_t> vertex(input.positions.size(), none);
+  Buffer<uint32_t> points;
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
     const uint32_t p = corner_point[h];
     if (vertex[p] == none) points.push_back(p);
@@ -53,7 +53,7 @@ List<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& mes
     const int order = compare(input.attributes, p, q);
     return order != 0 ? order < 0 : p < q;
   });
-  List<uint32_t> same(input.positions.size(), none);
+  Buffer<uint32_t> same(input.positions.size(), none);
   for (size_t i = 0; i < points.size(); ++i) {
     const uint32_t p = points[i];
     const bool repeats =
@@ -82,11 +82,11 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   check(input);
   PointAttributes out;
   if (input.attributes.empty()) return out;
-  const List<uint32_t> same = merge_equal_points(input, mesh, corner_point);
+  const Buffer<uint32_t> same = merge_equal_points(input, mesh, corner_point);
   for (const Attribute& attribute : input.attributes)
     out.attributes.push_back({attribute.components, attribute.unit_length, {}});
 
-  List<uint32_t> number(input.positions.size(), none);
+  Buffer<uint32_t> number(input.positions.size(), none);
   out.point.reserve(corner_point.size());
   for (uint32_t p : corner_point) {
     uint32_t& n = number[same[p]];
@@ -102,10 +102,10 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   return out;
 }
 
-List<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const List<uint32_t>& faces,
-                            PointAttributes& attributes) {
-  List<uint32_t> made(mesh.half_edge_count(), none);
-  const Array<uint32_t>& point = attributes.point;
+Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const Buffer<uint32_t>& faces,
+                              PointAttributes& attributes) {
+  Buffer<uint32_t> made(mesh.half_edge_count(), none);
+  const Buffer<uint32_t>& point = attributes.point;
   const auto split_half_edge = [&](uint32_t h) {
     if (split[mesh.edge[h]] == 0) return;
     const uint32_t p = point[h];

@@ -16,7 +16,7 @@ namespace papilio {
 /// Makes the points on the split edges: each the mean of the two at its ends, one for both faces where they agree on
 /// both, else (on a seam) one for each face. Returns [H] the new point on each half-edge of a split edge; `none`
 /// elsewhere, and on faces that are not among `faces`, which are in ascending order.
-[[nodiscard]] List<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const List<uint32_t>& faces,
-                                          PointAttributes& attributes);
+[[nodiscard]] Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const Buffer<uint32_t>& faces,
+                                            PointAttributes& attributes);
 
 }  // namespace papilio

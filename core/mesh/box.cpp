@@ -10,8 +10,8 @@ Box bounding_box(std::span<const Vec3f> positions) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   if (positions.empty()) return box;
-  Lanes least{Lanes::Register{} + infinity};
-  Lanes most{Lanes::Register{} - infinity};
+  Vec3fa least{Vec3fa::Register{} + infinity};
+  Vec3fa most{Vec3fa::Register{} - infinity};
   for (const Vec3f& p : positions.first(positions.size() - 1)) {  // four floats are read
     least = lesser(widen(p), least);
     most = larger(widen(p), most);

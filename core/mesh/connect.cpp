@@ -8,8 +8,8 @@ namespace {
 
 /// Half-edges sorted into edges: a run of half-edges between the same two vertices each.
 struct EdgeRuns {
-  Array<uint32_t> half_edges;  ///< [H] ordered by lower vertex, then higher vertex, then half-edge
-  Array<uint32_t> starts;      ///< where each run starts; one more at the end
+  Buffer<uint32_t> half_edges;  ///< [H] ordered by lower vertex, then higher vertex, then half-edge
+  Buffer<uint32_t> starts;      ///< where each run starts; one more at the end
 };
 
 /// A half-edge and the higher of its vertices, to be sorted by both.
@@ -37,7 +37,7 @@ void sort_ends(EdgeEnd* first, EdgeEnd* last) {
 
 EdgeRuns sort_into_edges(const Topology& mesh) {
   const uint32_t count = mesh.half_edge_count();
-  Array<uint32_t> bucket(size_t{mesh.vertex_count} + 1, 0);  // of each lower vertex: where it ends, once it is filled
+  Buffer<uint32_t> bucket(size_t{mesh.vertex_count} + 1, 0);  // of each lower vertex: where it ends, once it is filled
   const auto for_each_half_edge = [&](const auto& visit) {
     for (uint32_t first = 0; first < count; first += 3) {
       const uint32_t* v = &mesh.origin[first];
@@ -48,12 +48,12 @@ EdgeRuns sort_into_edges(const Topology& mesh) {
   };
   for_each_half_edge([&](uint32_t, uint32_t a, uint32_t b) { ++bucket[std::min(a, b) + 1]; });
   for (uint32_t v = 0; v < mesh.vertex_count; ++v) bucket[v + 1] += bucket[v];
-  Array<EdgeEnd> ends(count);
+  auto ends = Buffer<EdgeEnd>::for_overwrite(count);
   for_each_half_edge([&](uint32_t h, uint32_t a, uint32_t b) { ends[bucket[std::min(a, b)]++] = {std::max(a, b), h}; });
 
   EdgeRuns runs;
-  runs.half_edges.resize(count);
-  runs.starts.resize(size_t{count} + 1);
+  runs.half_edges.resize_for_overwrite(count);
+  runs.starts.resize_for_overwrite(size_t{count} + 1);
   uint32_t* start = runs.starts.data();
   uint32_t begin = 0;
   for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -69,7 +69,7 @@ EdgeRuns sort_into_edges(const Topology& mesh) {
     begin = end;
   }
   *start++ = count;
-  runs.starts.resize(static_cast<size_t>(start - runs.starts.data()));
+  runs.starts.resize_for_overwrite(static_cast<size_t>(start - runs.starts.data()));
   return runs;
 }
 
@@ -113,7 +113,7 @@ uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs, std::vector<u
     if (!corner_point.empty()) std::copy_n(corner_point.begin() + 3 * f, 3, corner_point.begin() + 3 * kept);
     ++kept;
   }
-  mesh.origin.resize(size_t{3} * kept);
+  mesh.origin.resize_for_overwrite(size_t{3} * kept);
   if (!corner_point.empty()) corner_point.resize(mesh.origin.size());
   return dropped;
 }
@@ -127,8 +127,8 @@ class Connector {
     const uint32_t count = mesh_.half_edge_count();
     mesh_.twin.assign(count, none);
     find_twins();
-    mesh_.edge.resize(count);
-    mesh_.half_edge.resize(runs_.starts.size() - 1);
+    mesh_.edge.resize_for_overwrite(count);
+    mesh_.half_edge.resize_for_overwrite(runs_.starts.size() - 1);
     mesh_.kind.assign(mesh_.half_edge.size(), EdgeKind::smooth);
     uint32_t edges = 0;
     for (uint32_t h = 0; h < count; ++h) {
@@ -178,7 +178,7 @@ class Connector {
   Topology& mesh_;
   const EdgeRuns& runs_;
   BuildReport& report_;
-  Array<uint32_t> curve_;  ///< [H] of an edge without twins, at its first half-edge: its run; empty if there is none
+  Buffer<uint32_t> curve_;  ///< [H] of an edge without twins, at its first half-edge: its run; empty if there is none
 };
 
 /// The same in one pass, where every edge has one face, or two that are wound alike, as most meshes have it: edges that
@@ -190,14 +190,14 @@ class ManifoldConnector {
 
   bool run(BuildReport& report) {
     const uint32_t count = mesh_.half_edge_count();
-    mesh_.twin.resize(count);
-    mesh_.edge.resize(count);
-    mesh_.half_edge.resize(count);
-    known_.resize(count);
+    mesh_.twin.resize_for_overwrite(count);
+    mesh_.edge.resize_for_overwrite(count);
+    mesh_.half_edge.resize_for_overwrite(count);
+    known_.resize_for_overwrite(count);
     for (uint32_t first = 0; first < count; first += 3)
       for (uint32_t h = first; h < first + 3; ++h)
         if (!add(h, mesh_.origin[h], mesh_.origin[h == first + 2 ? first : h + 1])) return false;
-    mesh_.half_edge.resize(edges_);
+    mesh_.half_edge.resize_for_overwrite(edges_);
     mesh_.kind.assign(edges_, EdgeKind::smooth);
     if (2 * size_t{edges_} == count) return true;
     for (uint32_t e = 0; e < edges_; ++e) {
@@ -241,8 +241,8 @@ class ManifoldConnector {
   }
 
   Topology& mesh_;
-  Array<uint32_t> first_at_;  ///< [V] an edge of which this is the lower vertex; `none`
-  Array<Known> known_;        ///< [E]
+  Buffer<uint32_t> first_at_;  ///< [V] an edge of which this is the lower vertex; `none`
+  Buffer<Known> known_;        ///< [E]
   uint32_t edges_ = 0;
 };
 
@@ -263,7 +263,7 @@ uint32_t fan_size(const Topology& mesh, uint32_t h) {
 
 void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& report) {
   if (ManifoldConnector(mesh).run(report)) return;
-  for (Array<uint32_t>* of_edges : {&mesh.twin, &mesh.edge, &mesh.half_edge}) of_edges->clear();
+  for (Buffer<uint32_t>* of_edges : {&mesh.twin, &mesh.edge, &mesh.half_edge}) of_edges->clear();
   EdgeRuns runs = sort_into_edges(mesh);
   report.repeated_faces = drop_repeated_faces(mesh, runs, corner_point);
   if (report.repeated_faces > 0) runs = sort_into_edges(mesh);
@@ -271,8 +271,8 @@ void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& r
 }
 
 std::vector<uint32_t> find_pinched(const Topology& mesh) {
-  Array<uint32_t> corners(mesh.vertex_count, 0);
-  Array<uint32_t> last(mesh.vertex_count);
+  Buffer<uint32_t> corners(mesh.vertex_count, 0);
+  auto last = Buffer<uint32_t>::for_overwrite(mesh.vertex_count);
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
     ++corners[mesh.origin[h]];
     last[mesh.origin[h]] = h;
@@ -316,7 +316,7 @@ void forget_edges(Topology& mesh) {
   mesh.kind = {};
 }
 
-Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count) {
+Topology connect_faces(Buffer<uint32_t> origin, uint32_t vertex_count) {
   Topology mesh;
   mesh.origin = std::move(origin);
   mesh.vertex_count = vertex_count;

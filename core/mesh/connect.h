@@ -14,7 +14,7 @@ void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& r
 
 /// Connects faces [3F corners] that already are as `build_mesh` leaves them: no repeats, no equal corners, every vertex
 /// used. Makes no creases and no darts. O(n log n) at worst.
-[[nodiscard]] Topology connect_faces(Array<uint32_t> origin, uint32_t vertex_count);
+[[nodiscard]] Topology connect_faces(Buffer<uint32_t> origin, uint32_t vertex_count);
 
 /// Numbers the edges where they were left out. Makes no creases and no darts. O(n log n) at worst.
 void number_edges(Topology& mesh);

@@ -28,7 +28,7 @@ void mark_creases(Mesh& mesh, double degrees) {
   if (degrees >= 180) return;
   Topology& topology = mesh.topology;
   const double least_product = cosine_of_degrees(degrees) - product_rounding;
-  const Array<Vec3f> normals = face_normals(mesh);
+  const Buffer<Vec3f> normals = face_normals(mesh);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     if (topology.kind[e] != EdgeKind::smooth) continue;
     const uint32_t h = topology.half_edge[e];

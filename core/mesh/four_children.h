@@ -53,7 +53,7 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
 /// One number a side, in a register; the fourth means nothing.
 using SidesAtOnce = uint32_t __attribute__((vector_size(16)));
 [[nodiscard]] inline SidesAtOnce at_once(const OfSides& sides) { return SidesAtOnce{sides[0], sides[1], sides[2], 0}; }
-/// Of an array that has room behind its end (array.h): four are read.
+/// Of an array that has room behind its end (papilio/buffer.h): four are read.
 [[nodiscard]] inline SidesAtOnce read_at_once(const uint32_t* sides) {
   SidesAtOnce read;
   std::memcpy(&read, sides, sizeof(read));

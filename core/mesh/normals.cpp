@@ -5,6 +5,8 @@
 
 #include "base/index_range.h"
 #include "base/parallel.h"
+#include "simd/dispatch.h"
+#include "simd/double4.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -63,42 +65,37 @@ void write_four_normals(const Mesh& mesh, uint32_t f, Vec3f* normals) {
 }
 
 /// Those of some fours of faces, by number: of faces 4i to 4i + 3.
-void write_fours(const Mesh& mesh, const Subset& fours, uint32_t first, uint32_t last, Array<Vec3f>& normals) {
+void write_fours(const Mesh& mesh, const IndexRange& fours, uint32_t first, uint32_t last, Buffer<Vec3f>& normals) {
   for (uint32_t i = first; i < last; ++i) write_four_normals(mesh, 4 * fours[i], &normals[size_t{4} * fours[i]]);
 }
 
 #if defined(__x86_64__)
-using Doubles = double __attribute__((vector_size(32)));
-
-[[PAPILIO_AVX2, gnu::always_inline]] inline void find_four_roots(const Doubles& of, Doubles& roots) {
-  roots = _mm256_sqrt_pd(of);
+[[PAPILIO_AVX2, gnu::always_inline]] inline Vectors<Double4> in_double(const Vec3x4& p) {
+  return {to_double4(p.x), to_double4(p.y), to_double4(p.z)};
 }
-[[PAPILIO_AVX2, gnu::always_inline]] inline Vectors<Doubles> in_double(const FourVectors& p) {
-  return {_mm256_cvtps_pd(p.x), _mm256_cvtps_pd(p.y), _mm256_cvtps_pd(p.z)};
-}
-[[PAPILIO_AVX2, gnu::always_inline]] inline FourVectors in_float(const Vectors<Doubles>& p) {
-  return {_mm256_cvtpd_ps(p.x), _mm256_cvtpd_ps(p.y), _mm256_cvtpd_ps(p.z)};
+[[PAPILIO_AVX2, gnu::always_inline]] inline Vec3x4 in_float(const Vectors<Double4>& p) {
+  return {to_float4(p.x), to_float4(p.y), to_float4(p.z)};
 }
 
 [[PAPILIO_AVX2, gnu::always_inline]] inline void write_four_normals_with_avx2(const Mesh& mesh, uint32_t f,
                                                                               Vec3f* normals) {
   const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
-  const Vectors<Doubles> a = in_double(at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]}));
-  const Vectors<Doubles> b = in_double(at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]}));
-  const Vectors<Doubles> c = in_double(at(mesh.positions, {corner[2], corner[5], corner[8], corner[11]}));
-  const std::array<Lanes, 4> rows = transposed(in_float(cross(b - a, c - a).unit(find_four_roots)));
+  const Vectors<Double4> a = in_double(at(mesh.positions, {corner[0], corner[3], corner[6], corner[9]}));
+  const Vectors<Double4> b = in_double(at(mesh.positions, {corner[1], corner[4], corner[7], corner[10]}));
+  const Vectors<Double4> c = in_double(at(mesh.positions, {corner[2], corner[5], corner[8], corner[11]}));
+  const std::array<Vec3fa, 4> rows = transposed(in_float(cross(b - a, c - a).unit(find_roots)));
   for (uint32_t i = 0; i < 4; ++i) store(rows[i], normals[i]);
 }
 
 /// What write_fours() writes.
-[[PAPILIO_AVX2]] void write_fours_with_avx2(const Mesh& mesh, const Subset& fours, uint32_t first, uint32_t last,
-                                            Array<Vec3f>& normals) {
+[[PAPILIO_AVX2]] void write_fours_with_avx2(const Mesh& mesh, const IndexRange& fours, uint32_t first, uint32_t last,
+                                            Buffer<Vec3f>& normals) {
   for (uint32_t i = first; i < last; ++i)
     write_four_normals_with_avx2(mesh, 4 * fours[i], &normals[size_t{4} * fours[i]]);
 }
 #endif
 
-void write_all(const Mesh& mesh, const Subset& fours, int threads, Array<Vec3f>& normals) {
+void write_all(const Mesh& mesh, const IndexRange& fours, int threads, Buffer<Vec3f>& normals) {
   auto* write = &write_fours;
 #if defined(__x86_64__)
   if (has_avx2()) write = &write_fours_with_avx2;
@@ -115,27 +112,27 @@ Vec3f face_normal(const Mesh& mesh, uint32_t face) {
   return size > 0 ? to_float((1 / size) * n) : Vec3f{};
 }
 
-Array<Vec3f> face_normals(const Mesh& mesh, int threads) {
+Buffer<Vec3f> face_normals(const Mesh& mesh, int threads) {
   const uint32_t count = mesh.topology.face_count();
-  Array<Vec3f> normals(count);
-  write_all(mesh, Subset(count / 4), threads, normals);
+  auto normals = Buffer<Vec3f>::for_overwrite(count);
+  write_all(mesh, IndexRange(count / 4), threads, normals);
   for (uint32_t f = count / 4 * 4; f < count; ++f) normals[f] = face_normal(mesh, f);
   return normals;
 }
 
-Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint32_t>& fours, int threads) {
-  Array<Vec3f> normals(mesh.topology.face_count());
-  write_all(mesh, Subset(fours), threads, normals);
+Buffer<Vec3f> normals_of_fours(const Mesh& mesh, const Buffer<uint32_t>& fours, int threads) {
+  auto normals = Buffer<Vec3f>::for_overwrite(mesh.topology.face_count());
+  write_all(mesh, IndexRange(fours), threads, normals);
   return normals;
 }
 
-Array<Vec3f> vertex_normals(const Mesh& mesh) {
-  Array<Vec3d> sums(mesh.topology.vertex_count, Vec3d{});
+Buffer<Vec3f> vertex_normals(const Mesh& mesh) {
+  Buffer<Vec3d> sums(mesh.topology.vertex_count, Vec3d{});
   for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d n = area_normal(mesh, f);
     for (uint32_t i = 0; i < 3; ++i) sums[mesh.topology.origin[3 * f + i]] += n;
   }
-  Array<Vec3f> normals(sums.size());
+  auto normals = Buffer<Vec3f>::for_overwrite(sums.size());
   for (size_t v = 0; v < sums.size(); ++v) {
     const double size = length(sums[v]);
     normals[v] = size > 0 ? to_float((1 / size) * sums[v]) : Vec3f{0, 0, 1};

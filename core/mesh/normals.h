@@ -8,11 +8,11 @@ namespace papilio {
 
 /// Unit normal of each face [F]; zero for a face without area, which has none. Computed in double, so that
 /// neither tiny nor large meshes lose theirs. Up to so many threads work on it.
-[[nodiscard]] Array<Vec3f> face_normals(const Mesh& mesh, int threads = 1);
+[[nodiscard]] Buffer<Vec3f> face_normals(const Mesh& mesh, int threads = 1);
 
 /// The same where faces come by fours (split_in_four.h): of some fours, by number. [F], of which the others mean
 /// nothing.
-[[nodiscard]] Array<Vec3f> normals_of_fours(const Mesh& mesh, const List<uint32_t>& fours, int threads = 1);
+[[nodiscard]] Buffer<Vec3f> normals_of_fours(const Mesh& mesh, const Buffer<uint32_t>& fours, int threads = 1);
 
 /// That of one face.
 [[nodiscard]] Vec3f face_normal(const Mesh& mesh, uint32_t face);

@@ -3,8 +3,8 @@
 namespace papilio {
 namespace {
 
-List<uint8_t> edges_at(const Topology& mesh, const List<uint32_t>& faces) {
-  List<uint8_t> marks(mesh.edge_count(), 0);
+Buffer<uint8_t> edges_at(const Topology& mesh, const Buffer<uint32_t>& faces) {
+  Buffer<uint8_t> marks(mesh.edge_count(), 0);
   for (uint32_t f : faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) marks[mesh.edge[h]] = 1;
   return marks;
@@ -12,7 +12,7 @@ List<uint8_t> edges_at(const Topology& mesh, const List<uint32_t>& faces) {
 
 }  // namespace
 
-Part::Part(const Topology& mesh, const List<uint8_t>& marks)
+Part::Part(const Topology& mesh, const Buffer<uint8_t>& marks)
     : faces(marks, Ranks::Others::alike), edges(edges_at(mesh, faces.numbers()), Ranks::Others::alike) {}
 
 }  // namespace papilio

@@ -9,7 +9,7 @@ namespace papilio {
 /// do all other edges: whoever follows a twin out of the part comes to a face that is there, but means nothing.
 struct Part {
   /// The faces marked. [F]
-  Part(const Topology& mesh, const List<uint8_t>& marks);
+  Part(const Topology& mesh, const Buffer<uint8_t>& marks);
 
   Ranks faces, edges;
 

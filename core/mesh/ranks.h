@@ -12,7 +12,7 @@ class Ranks {
   /// What the others get: no number (`none`), or all the same, the one behind the last.
   enum class Others { without, alike };
 
-  explicit Ranks(const List<uint8_t>& marks, Others others = Others::without)
+  explicit Ranks(const Buffer<uint8_t>& marks, Others others = Others::without)
       : numbers_(marked(marks)), rank_(marks.size(), others == Others::alike ? count() : none) {
     for (uint32_t i = 0; i < numbers_.size(); ++i) rank_[numbers_[i]] = i;
   }
@@ -20,11 +20,11 @@ class Ranks {
   [[nodiscard]] bool has(uint32_t i) const { return rank_[i] < count(); }
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(numbers_.size()); }
   /// What is marked.
-  [[nodiscard]] const List<uint32_t>& numbers() const { return numbers_; }
+  [[nodiscard]] const Buffer<uint32_t>& numbers() const { return numbers_; }
 
  private:
-  List<uint32_t> numbers_;
-  List<uint32_t> rank_;
+  Buffer<uint32_t> numbers_;
+  Buffer<uint32_t> rank_;
 };
 
 }  // namespace papilio

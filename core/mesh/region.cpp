@@ -10,12 +10,12 @@
 namespace papilio {
 
 Region whole_region(const Topology& mesh) {
-  Region region{List<uint32_t>(mesh.face_count()), EdgeMarks(mesh.edge_count(), 1)};
+  Region region{Buffer<uint32_t>(mesh.face_count()), EdgeMarks(mesh.edge_count(), 1)};
   std::iota(region.faces.begin(), region.faces.end(), 0U);
   return region;
 }
 
-List<uint32_t> Region::edges() const { return marked(has_edge); }
+Buffer<uint32_t> Region::edges() const { return marked(has_edge); }
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr size_t words_a_block = 8;
 constexpr size_t block = words_a_block * sizeof(Word);
 
 /// Block by block, as bytes hold what is in one, and many bytes are added at once.
-size_t count_marked(const List<uint8_t>& marks) {
+size_t count_marked(const Buffer<uint8_t>& marks) {
   size_t count = 0;
   for (size_t first = 0; first < marks.size(); first += block) {
     uint8_t in_block = 0;
@@ -65,9 +65,9 @@ uint32_t bits_of_four(const uint8_t* marks) {
 
 }  // namespace
 
-List<uint32_t> marked(const List<uint8_t>& marks) {
+Buffer<uint32_t> marked(const Buffer<uint8_t>& marks) {
   const size_t count = count_marked(marks);
-  List<uint32_t> numbers(count + 4);  // more than needed: what is not marked is written, and then replaced
+  Buffer<uint32_t> numbers(count + 4);  // more than needed: what is not marked is written, and then replaced
   size_t known = 0;
   const uint8_t* const is_marked = marks.data();  // not read again at each
   uint32_t* const all = numbers.data();

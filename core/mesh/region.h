@@ -9,14 +9,14 @@ namespace papilio {
 
 /// Part of a mesh, so that work on it costs in proportion to the part.
 struct Region {
-  List<uint32_t> faces;  ///< in ascending order
-  EdgeMarks has_edge;    ///< [E] marks its edges: all faces at each of them are among `faces`
+  Buffer<uint32_t> faces;  ///< in ascending order
+  EdgeMarks has_edge;      ///< [E] marks its edges: all faces at each of them are among `faces`
   /// Faces come by four, the children of one face (four_children.h): 4i to 4i + 3.
   bool is_in_fours = false;
   bool has_curves = true;  ///< false only if none of its edges is on one
 
   /// Its edges in ascending order, found anew at each call.
-  [[nodiscard]] List<uint32_t> edges() const;
+  [[nodiscard]] Buffer<uint32_t> edges() const;
 };
 
 /// All of the mesh.
@@ -24,7 +24,7 @@ struct Region {
 
 /// Keeps of a list what `is_wanted`, in its order. Nobody can guess which those are: so without branches.
 template <class IsWanted>
-void keep_if(List<uint32_t>& numbers, const IsWanted& is_wanted) {
+void keep_if(Buffer<uint32_t>& numbers, const IsWanted& is_wanted) {
   size_t kept = 0;
   for (uint32_t number : numbers) {
     numbers[kept] = number;
@@ -34,6 +34,6 @@ void keep_if(List<uint32_t>& numbers, const IsWanted& is_wanted) {
 }
 
 /// The numbers of what is marked, in ascending order. Marks are 0 or 1.
-[[nodiscard]] List<uint32_t> marked(const List<uint8_t>& marks);
+[[nodiscard]] Buffer<uint32_t> marked(const Buffer<uint8_t>& marks);
 
 }  // namespace papilio

@@ -8,12 +8,12 @@
 namespace papilio {
 
 /// One mark an edge: not 0 where the edge is a target, to be split. Shape [E].
-using EdgeMarks = List<uint8_t>;
+using EdgeMarks = Buffer<uint8_t>;
 
 /// The target edges, numbered: edge e is split when before[e + 1] != before[e], and its new vertex is
 /// vertex_count + before[e] of the next level.
 struct SplitPlan {
-  List<uint32_t> before;  ///< [E + 1] how many target edges come before each edge
+  Buffer<uint32_t> before;  ///< [E + 1] how many target edges come before each edge
 
   SplitPlan() = default;  ///< of no edges
   explicit SplitPlan(const EdgeMarks& marks) : before(marks.size() + 1) {

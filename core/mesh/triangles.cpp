@@ -5,8 +5,8 @@
 namespace papilio {
 namespace {
 
-Array<Triangle> in_threes(const Array<uint32_t>& corners) {
-  Array<Triangle> triangles(corners.size() / 3);
+Buffer<Triangle> in_threes(const Buffer<uint32_t>& corners) {
+  auto triangles = Buffer<Triangle>::for_overwrite(corners.size() / 3);
   static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
   if (!corners.empty()) std::memcpy(triangles.data(), corners.data(), corners.size() * sizeof(uint32_t));
   return triangles;
@@ -14,7 +14,7 @@ Array<Triangle> in_threes(const Array<uint32_t>& corners) {
 
 TriangleMesh points_and_triangles(const Mesh& mesh) {
   const PointAttributes& points = mesh.attributes;
-  TriangleMesh out{Array<Vec3f>(points.point_count), in_threes(points.point), points.attributes};
+  TriangleMesh out{Buffer<Vec3f>::for_overwrite(points.point_count), in_threes(points.point), points.attributes};
   for (uint32_t h = 0; h < points.point.size(); ++h)
     out.positions[points.point[h]] = mesh.positions[mesh.topology.origin[h]];
   return out;

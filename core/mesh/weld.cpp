@@ -16,7 +16,7 @@ uint64_t hash_seed() {
 /// Finds a point of equal position among those already seen: open addressing, at most half full.
 class PositionTable {
  public:
-  explicit PositionTable(const Array<Vec3f>& points)
+  explicit PositionTable(const Buffer<Vec3f>& points)
       : points_(points), mask_(std::bit_ceil(2 * points.size() + 2) - 1), slots_(mask_ + 1, none), seed_(hash_seed()) {}
 
   /// The first point seen with p's position: p itself when there was none.
@@ -41,27 +41,27 @@ class PositionTable {
     return mix(mix(seed_ ^ (bits(p.x) | bits(p.y) << 32)) + bits(p.z) * 0x9e3779b97f4a7c15ULL);
   }
 
-  const Array<Vec3f>& points_;
+  const Buffer<Vec3f>& points_;
   size_t mask_;
-  Array<uint32_t> slots_;
+  Buffer<uint32_t> slots_;
   uint64_t seed_;
 };
 
 }  // namespace
 
-Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildReport& report,
-                     std::vector<uint32_t>& corner_point) {
+Buffer<uint32_t> weld(const TriangleMesh& input, Buffer<Vec3f>& positions, BuildReport& report,
+                      std::vector<uint32_t>& corner_point) {
   const auto point_count = static_cast<uint32_t>(input.positions.size());
-  Array<uint32_t> first(point_count);
+  auto first = Buffer<uint32_t>::for_overwrite(point_count);
   PositionTable table(input.positions);
   for (uint32_t p = 0; p < point_count; ++p) {
     first[p] = table.first_at(p);
     report.welded_points += first[p] == p ? 0 : 1;
   }
 
-  Array<uint32_t> vertex(point_count, none);
-  Array<uint32_t> corners(3 * input.triangles.size());
-  positions.resize(point_count);
+  Buffer<uint32_t> vertex(point_count, none);
+  auto corners = Buffer<uint32_t>::for_overwrite(3 * input.triangles.size());
+  positions.resize_for_overwrite(point_count);
   uint32_t* corner = corners.data();
   uint32_t vertices = 0;
   for (const Triangle& t : input.triangles) {
@@ -79,8 +79,8 @@ Array<uint32_t> weld(const TriangleMesh& input, Array<Vec3f>& positions, BuildRe
       *corner++ = vertex[point];
     }
   }
-  corners.resize(static_cast<size_t>(corner - corners.data()));
-  positions.resize(vertices);
+  corners.resize_for_overwrite(static_cast<size_t>(corner - corners.data()));
+  positions.resize_for_overwrite(vertices);
   report.isolated_points = point_count - report.welded_points - vertices;
   return corners;
 }

@@ -11,15 +11,15 @@ class Butterfly {
   using Point = Vec3T<Real>;
 
  public:
-  Butterfly(const Topology& topology, const Array<Point>& positions, const SplitPlan& plan, Real w,
+  Butterfly(const Topology& topology, const Buffer<Point>& positions, const SplitPlan& plan, Real w,
             const TensionField* tension)
       : mesh_(topology),
         plan_(plan),
         rules_(topology, positions.data(), w, tension),
-        out_(plan.count()),
+        out_(Buffer<Point>::for_overwrite(plan.count())),
         irregular_ends_(plan.count(), 0) {}
 
-  Array<Point> run() {
+  Buffer<Point> run() {
     split_at_irregular_vertices();
     const CurveNeighbours curves(mesh_);
     for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
@@ -57,19 +57,19 @@ class Butterfly {
   const Topology& mesh_;
   const SplitPlan& plan_;
   ButterflyRules<Real> rules_;
-  Array<Point> out_;
-  Array<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
+  Buffer<Point> out_;
+  Buffer<uint8_t> irregular_ends_;  ///< [plan.count()] opinions already in `out_`: 0, 1 or 2
 };
 
 }  // namespace
 
 template <class Real>
-Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions, const SplitPlan& plan,
-                             Real w, const TensionField* tension) {
+Buffer<Vec3T<Real>> butterfly(const Topology& topology, const Buffer<Vec3T<Real>>& positions, const SplitPlan& plan,
+                              Real w, const TensionField* tension) {
   return Butterfly<Real>(topology, positions, plan, w, tension).run();
 }
 
-template Array<Vec3f> butterfly(const Topology&, const Array<Vec3f>&, const SplitPlan&, float, const TensionField*);
-template Array<Vec3d> butterfly(const Topology&, const Array<Vec3d>&, const SplitPlan&, double, const TensionField*);
+template Buffer<Vec3f> butterfly(const Topology&, const Buffer<Vec3f>&, const SplitPlan&, float, const TensionField*);
+template Buffer<Vec3d> butterfly(const Topology&, const Buffer<Vec3d>&, const SplitPlan&, double, const TensionField*);
 
 }  // namespace papilio

@@ -16,7 +16,7 @@ namespace papilio {
 /// also on which half-edge of the ring has the lowest number). O(F + total valence). Instantiated for float
 /// (the product) and double (checking the arithmetic).
 template <class Real>
-[[nodiscard]] Array<Vec3T<Real>> butterfly(const Topology& topology, const Array<Vec3T<Real>>& positions,
-                                           const SplitPlan& plan, Real w = 0, const TensionField* tension = nullptr);
+[[nodiscard]] Buffer<Vec3T<Real>> butterfly(const Topology& topology, const Buffer<Vec3T<Real>>& positions,
+                                            const SplitPlan& plan, Real w = 0, const TensionField* tension = nullptr);
 
 }  // namespace papilio

@@ -96,8 +96,8 @@ void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence,
   }
 }
 
-/// The eight-point rule where every edge is split, for four faces at once (family.h): each position is loaded once, and
-/// the edges between the four are done. `positions` are those of the faces' level.
+/// The eight-point rule where every edge is split, for four faces at once (child_stencil.h): each position is loaded
+/// once, and the edges between the four are done. `positions` are those of the faces' level.
 template <class Real>
 class FamilyRule {
  public:
@@ -106,7 +106,7 @@ class FamilyRule {
   /// Adds what the family of face `parent` knows of its edges: for each of its four faces what
   /// `ButterflyRules::add_face_shares` adds, to the bit.
   template <class Shares>
-  void add_shares(uint32_t parent, const Family& family, Shares& shares) const {
+  void add_shares(uint32_t parent, const ChildStencil& family, Shares& shares) const {
     std::array<Wide<Real>, 3> corner, middle, across_first, across_second;
     for (uint32_t i = 0; i < 3; ++i) {
       corner[i] = widen(p_[family.corner[i]]);
@@ -193,7 +193,7 @@ class ButterflyRules {
   [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
 
   /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
-  /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in face_shares.h.
+  /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in edge_accumulator.h.
   template <class Shares>
   void add_face_shares(uint32_t f, Shares& shares) const {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];

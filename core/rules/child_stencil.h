@@ -16,11 +16,12 @@ namespace papilio {
 ///       /    \  3  /   \           across_first[i]: the vertex across the first half of side i, at corner i;
 ///      /  0   \   /  1  \          across_second[i]: the one across its second half.
 /// corner 0 -- middle 0 -- corner 1
-class Family {
+class ChildStencil {
  public:
-  Family(const Topology& parents, uint32_t parent) : Family(parents, parent, OwnNumbers(parents.edge_count())) {}
+  ChildStencil(const Topology& parents, uint32_t parent)
+      : ChildStencil(parents, parent, OwnNumbers(parents.edge_count())) {}
   template <class Numbers>
-  Family(const Topology& parents, uint32_t parent, const Numbers& numbers)
+  ChildStencil(const Topology& parents, uint32_t parent, const Numbers& numbers)
       : first_inner_(2 * numbers.edge_count() + 3 * numbers.face(parent)) {
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * parent + i;

@@ -7,10 +7,10 @@
 
 namespace papilio {
 
-/// Sums of what the two faces of each edge know of its new vertex. The lower face writes, the upper one adds: so faces
-/// must come in ascending order.
+/// Sums the contributions of both faces to the new vertex of each edge. The lower face writes, the upper one adds: so
+/// faces must come in ascending order.
 template <class Real>
-struct FaceShares {
+struct EdgeAccumulator {
   Vec3T<Real>* sums;  ///< [E]
 
   /// Of a half-edge of the face, and its edge.
@@ -21,13 +21,14 @@ struct FaceShares {
   void set(uint32_t edge, const Wide<Real>& sum) const { store(sum, sums[edge]); }
 };
 
-/// The same where faces come in ranges, in any order or at once, for those of a face which has neighbours in an earlier
-/// range: what it adds to theirs waits until all ranges are through. So a sum is the same to the bit however the faces
-/// are cut into ranges.
+/// Sums contributions of one range of faces, where ranges come in any order or at once. Contributions to edges of an
+/// earlier range are deferred until all ranges are through. So a sum is the same to the bit however the faces are cut
+/// into ranges.
 template <class Real>
-class LateFaceShares {
+class DeferredEdgeAccumulator {
  public:
-  LateFaceShares(FaceShares<Real> shares, uint32_t first_face) : shares_(shares), first_half_edge_(3 * first_face) {}
+  DeferredEdgeAccumulator(EdgeAccumulator<Real> shares, uint32_t first_face)
+      : shares_(shares), first_half_edge_(3 * first_face) {}
 
   [[nodiscard]] bool is_early(uint32_t twin) const { return twin < first_half_edge_; }
   void add(uint32_t face, uint32_t twin, uint32_t edge, const Wide<Real>& share) {
@@ -50,9 +51,9 @@ class LateFaceShares {
     Wide<Real> share;
   };
 
-  FaceShares<Real> shares_;
+  EdgeAccumulator<Real> shares_;
   uint32_t first_half_edge_;
-  Array<Late> late_;
+  Buffer<Late> late_;
 };
 
 }  // namespace papilio

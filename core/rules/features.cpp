@@ -36,7 +36,7 @@ namespace {
 class FeatureFinder {
  public:
   explicit FeatureFinder(const Topology& mesh)
-      : mesh_(mesh), corners_(mesh.vertex_count, 0), first_(mesh.vertex_count) {}
+      : mesh_(mesh), corners_(mesh.vertex_count, 0), first_(Buffer<uint32_t>::for_overwrite(mesh.vertex_count)) {}
 
   Features run() {
     found_.has_darts = !mesh_.darts.empty();
@@ -79,10 +79,10 @@ class FeatureFinder {
       }
     for (uint32_t c = 0; c < classes; ++c) start[c + 1] += start[c];
     const uint32_t fans = start[classes];
-    found_.centre.resize(fans);
+    found_.centre.resize_for_overwrite(fans);
     found_.is_closed.assign(fans, 1);
-    found_.first_spoke.resize(fans + 1);
-    found_.spokes.resize(spokes);
+    found_.first_spoke.resize_for_overwrite(fans + 1);
+    found_.spokes.resize_for_overwrite(spokes);
     for (uint32_t v = 0; v < mesh_.vertex_count; ++v)
       if (is_irregular(corners_[v])) found_.centre[start[class_of(corners_[v])]++] = v;
     uint32_t known = 0;
@@ -99,7 +99,7 @@ class FeatureFinder {
   }
 
   void find_other_fans() {
-    Array<uint8_t> visited(mesh_.half_edge_count(), 0);
+    Buffer<uint8_t> visited(mesh_.half_edge_count(), 0);
     Fan fan;
     for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
       if (corners_[mesh_.origin[h]] != several || visited[h] != 0) continue;
@@ -124,9 +124,9 @@ class FeatureFinder {
   static constexpr uint32_t unknown = 0;     ///< faces are missing here
 
   const Topology& mesh_;
-  Array<uint32_t> corners_;  ///< [V] of faces at the vertex; or `several`, or `unknown`
-  Array<uint32_t> first_;    ///< [V] its first half-edge
-  Array<uint32_t> cut_half_edges_;
+  Buffer<uint32_t> corners_;  ///< [V] of faces at the vertex; or `several`, or `unknown`
+  Buffer<uint32_t> first_;    ///< [V] its first half-edge
+  Buffer<uint32_t> cut_half_edges_;
   Features found_;
 };
 
@@ -142,7 +142,7 @@ void descend(Features& features, uint32_t vertex_count) {
       const uint32_t at_higher_end = features.centre[i] > spoke.tip ? 1 : 0;
       spoke = {first_half(spoke.half_edge), 2 * spoke.edge + at_higher_end, vertex_count + spoke.edge};
     }
-  Array<uint32_t> halves;
+  Buffer<uint32_t> halves;
   halves.reserve(2 * features.curve_half_edges.size());
   for (uint32_t h : features.curve_half_edges)
     for (uint32_t half : {first_half(h), second_half(h)}) halves.push_back(half);

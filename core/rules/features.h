@@ -20,15 +20,15 @@ struct Features {
     friend bool operator==(const Spoke&, const Spoke&) = default;
   };
 
-  Array<uint32_t> curve_half_edges;  ///< those on boundaries, shared edges and creases; not at cuts
+  Buffer<uint32_t> curve_half_edges;  ///< those on boundaries, shared edges and creases; not at cuts
   /// The fans that are not regular (fan.h): their spokes, one fan after the other. First those of vertices that have no
   /// other fan and no curve, by valence (as far as there is a list of weights, stencil.h) and then by number: alike
   /// ones lie together. Then the others, in the order of their lowest half-edges. A closed fan starts at its lowest
   /// half-edge, an open one at its end.
-  Array<Spoke> spokes;
-  Array<uint32_t> first_spoke{0};  ///< [fans + 1]
-  Array<uint32_t> centre;          ///< [fans]
-  Array<uint8_t> is_closed;        ///< [fans]
+  Buffer<Spoke> spokes;
+  Buffer<uint32_t> first_spoke{0};  ///< [fans + 1]
+  Buffer<uint32_t> centre;          ///< [fans]
+  Buffer<uint8_t> is_closed;        ///< [fans]
 
   bool has_darts = false;  ///< the mesh has: its fans are looked at one by one
 

@@ -31,8 +31,8 @@ double hinge_factor(double normal_product) {
   return s * s * (3 - 2 * s);
 }
 
-TensionField tension_field(const Topology& mesh, const Array<Vec3f>& normals, Tension tension) {
-  TensionField field{.factor = List<float>(mesh.edge_count(), 1), .follow_features = tension == Tension::sharp};
+TensionField tension_field(const Topology& mesh, const Buffer<Vec3f>& normals, Tension tension) {
+  TensionField field{.factor = Buffer<float>(mesh.edge_count(), 1), .follow_features = tension == Tension::sharp};
   for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
     if (mesh.kind[e] != EdgeKind::smooth) continue;
     const uint32_t h = mesh.half_edge[e];

@@ -21,7 +21,7 @@ inline constexpr double tension_bound = 0.2;
 
 /// What tension makes of one level.
 struct TensionField {
-  List<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
+  Buffer<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
   bool follow_features = false;
   /// With `follow_features`, [V]: how many sharp edges (factor under 1/2) meet there, 3 standing for more, and the
   /// exclusive or of their other ends.
@@ -32,6 +32,6 @@ struct TensionField {
 };
 
 /// The field of a level; `normals` [F] are its faces'. O(V + E).
-[[nodiscard]] TensionField tension_field(const Topology& mesh, const Array<Vec3f>& normals, Tension tension);
+[[nodiscard]] TensionField tension_field(const Topology& mesh, const Buffer<Vec3f>& normals, Tension tension);
 
 }  // namespace papilio

@@ -21,13 +21,14 @@ bool has_all_twins(const Topology& mesh, uint32_t f) {
 
 /// Calls add_shares(face, shares) for these faces, of a level or of the level above.
 template <class AddShares>
-void add_all_shares(const Topology& mesh, const Subset& faces, Vec3f* made, int threads, const AddShares& add_shares) {
+void add_all_shares(const Topology& mesh, const IndexRange& faces, Vec3f* made, int threads,
+                    const AddShares& add_shares) {
   if (faces.size() == 0) return;
-  const FaceShares<float> shares{made};
+  const EdgeAccumulator<float> shares{made};
   const uint32_t parts = parts_of(faces.size(), threads);
-  std::vector<LateFaceShares<float>> late_of(parts, {shares, 0});
+  std::vector<DeferredEdgeAccumulator<float>> late_of(parts, {shares, 0});
   for_each_part(parts, faces.size(), [&](uint32_t part, uint32_t first, uint32_t last) {
-    LateFaceShares<float> late(shares, faces[first]);
+    DeferredEdgeAccumulator<float> late(shares, faces[first]);
     const AddShares add = add_shares;  // this thread's own, and so in registers
     for (uint32_t i = first; i < last; ++i) {
       const uint32_t f = faces[i];
@@ -39,7 +40,7 @@ void add_all_shares(const Topology& mesh, const Subset& faces, Vec3f* made, int 
     }
     late_of[part] = std::move(late);
   });
-  for (const LateFaceShares<float>& late : late_of) late.end();
+  for (const DeferredEdgeAccumulator<float>& late : late_of) late.end();
 }
 
 /// What the children of a face know, where `shares` are by the faces of the level above.
@@ -47,7 +48,7 @@ template <class Shares>
 class ChildShares {
  public:
   ChildShares(uint32_t parent, Vec3f* made, Shares& shares) : parent_(parent), inside_{made}, shares_(shares) {}
-  void add(uint32_t face, uint32_t twin, uint32_t edge, Lanes share) {
+  void add(uint32_t face, uint32_t twin, uint32_t edge, Vec3fa share) {
     const uint32_t neighbour = Topology::face(twin) / 4;
     if (neighbour == parent_)
       inside_.add(face, twin, edge, share);
@@ -57,7 +58,7 @@ class ChildShares {
 
  private:
   uint32_t parent_;
-  FaceShares<float> inside_;
+  EdgeAccumulator<float> inside_;
   Shares& shares_;
 };
 
@@ -112,12 +113,13 @@ void split_at_irregular_vertices(const Features& features, const Vec3f* position
 void uniform_butterfly(const Topology& topology, const Features& features, const Vec3f* positions, Vec3f* made,
                        const TensionField* tension, int threads) {
   const ButterflyRules<float> rules(topology, positions, 0, tension);
-  add_all_shares(topology, Subset(topology.face_count()), made, threads, [rules, &topology](uint32_t f, auto& shares) {
-    if (has_all_twins(topology, f)) rules.add_face_shares(f, shares);
-  });
+  add_all_shares(topology, IndexRange(topology.face_count()), made, threads,
+                 [rules, &topology](uint32_t f, auto& shares) {
+                   if (has_all_twins(topology, f)) rules.add_face_shares(f, shares);
+                 });
   split_near_curves(topology, features, rules, made);
 
-  Array<uint8_t> has_opinion;  // [E] of an irregular end
+  Buffer<uint8_t> has_opinion;  // [E] of an irregular end
   if (features.level == 0) has_opinion.assign(topology.edge_count(), 0);
   const auto add_opinion = [&](uint32_t e, Vec3f q) {
     if (features.level > 0) {
@@ -136,20 +138,20 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
 }
 
 void uniform_butterfly_below(const Topology& parents, const Topology* topology, const Features& features,
-                             const Vec3f* positions, Vec3f* made, int threads, const List<uint32_t>* asked_of) {
+                             const Vec3f* positions, Vec3f* made, int threads, const Buffer<uint32_t>* asked_of) {
   std::optional<ButterflyRules<float>> rules;
   if (topology != nullptr) rules.emplace(*topology, positions, 0, nullptr);
   const FamilyRule<float> family_rule(positions);
   const auto add_shares = [&parents, topology, &rules, family_rule, made](uint32_t f, auto& shares) {
     if (has_all_twins(parents, f)) {
-      family_rule.add_shares(f, Family(parents, f), shares);
+      family_rule.add_shares(f, ChildStencil(parents, f), shares);
       return;
     }
     ChildShares of_children(f, made, shares);
     for (uint32_t child = 4 * f; child < 4 * f + 4; ++child)  // at a border, one by one
       if (has_all_twins(*topology, child)) rules->add_face_shares(child, of_children);
   };
-  add_all_shares(parents, Subset(parents.face_count(), asked_of), made, threads, add_shares);
+  add_all_shares(parents, IndexRange(parents.face_count(), asked_of), made, threads, add_shares);
   if (topology != nullptr) split_near_curves(*topology, features, *rules, made);
   split_at_irregular_vertices(features, positions, topology, rules ? &*rules : nullptr,
                               [&](uint32_t e, Vec3f q) { made[e] = q; });
@@ -159,9 +161,9 @@ void uniform_butterfly_below(const Topology& parents, const Part& part, const Fe
                              const Vec3f* positions, Vec3f* made, int threads) {
   const FamilyRule<float> family_rule(positions);
   const PartNumbers numbers(part);
-  add_all_shares(parents, Subset(part.faces.numbers()), made, threads,
+  add_all_shares(parents, IndexRange(part.faces.numbers()), made, threads,
                  [&parents, family_rule, numbers](uint32_t f, auto& shares) {
-                   family_rule.add_shares(f, Family(parents, f, numbers), shares);
+                   family_rule.add_shares(f, ChildStencil(parents, f, numbers), shares);
                  });
   const auto is_in_part = [&](const Features::Spoke& spoke) { return part.edges.has(spoke.edge); };
   for (size_t i = 0; i < features_of_parents.fan_count(); ++i) {

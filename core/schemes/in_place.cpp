@@ -51,9 +51,9 @@ class InPlace {
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);
     const bool has_view = selection_.camera() != nullptr;
-    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : List<double>{}, box_, region_);
+    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : Buffer<double>{}, box_, region_);
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
-      const List<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
+      const Buffer<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
       targets_.assign(mesh_.topology.edge_count(), 0);
       for (uint32_t e : wanted) targets_[e] = 1;
       if (selection_.is_by_error()) keep_largest_errors(wanted);
@@ -68,11 +68,11 @@ class InPlace {
     return 0;
   }
 
-  void keep_largest_errors(const List<uint32_t>& wanted) {
+  void keep_largest_errors(const Buffer<uint32_t>& wanted) {
     float threshold = selection_.threshold();
-    const List<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, threshold);
+    const Buffer<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, threshold);
     if (options_.max_faces > 0) {
-      List<WeighedEdge> edges;
+      Buffer<WeighedEdge> edges;
       append_edges(mesh_.topology, region_, errors, threshold, edges);
       threshold = threshold_within(edges, threshold, mesh_.topology.face_count(), options_.max_faces);
       if (threshold > selection_.threshold()) {
@@ -102,7 +102,7 @@ class InPlace {
   }
 
   void split_targets(int level, const SplitPlan& plan) {
-    Array<Vec3f> made;
+    Buffer<Vec3f> made;
     made.reserve(plan.count());
     for (uint32_t e = 0; e < targets_.size(); ++e)
       if (targets_[e] != 0) made.push_back(trial_->at(e));
@@ -127,7 +127,7 @@ class InPlace {
 
 }  // namespace
 
-Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Array<Vec3f>& made) {
+Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Buffer<Vec3f>& made) {
   mesh.positions.insert(mesh.positions.end(), made.begin(), made.end());
   mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
   return mesh;

@@ -60,8 +60,8 @@ class RedGreen {
     const HierarchyLevel& level = *choice.level;
     choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
     const float least = options_.max_faces > 0 ? 0 : threshold_;
-    List<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()), choice.region,
-                                              choice.shown, level.box, least);
+    Buffer<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()),
+                                                choice.region, choice.shown, level.box, least);
     if (!selection_.is_by_error()) {
       choice.candidates = std::move(wanted);
       return;
@@ -115,7 +115,7 @@ class RedGreen {
   void split_from(float threshold) {
     for (LevelChoice& choice : choices_) {
       choice.split_nothing();
-      List<uint32_t> edges = choice.candidates;
+      Buffer<uint32_t> edges = choice.candidates;
       if (!choice.error.empty()) keep_if(edges, [&](uint32_t e) { return choice.error[e] >= threshold; });
       choice.split_first(std::move(edges));
     }
@@ -139,7 +139,7 @@ class RedGreen {
   /// afterwards; where it is too much, the errors themselves get that much less.
   void keep_within_budget() {
     const uint64_t coarse = choices_[0].region.faces.size();
-    const List<WeighedEdge> edges = weighed_edges();
+    const Buffer<WeighedEdge> edges = weighed_edges();
     uint64_t room = options_.max_faces;
     for (uint64_t faces = count_assembled(choices_); faces > options_.max_faces; faces = count_assembled(choices_)) {
       float raised = threshold_within(edges, selection_.threshold(), coarse, room);
@@ -153,8 +153,8 @@ class RedGreen {
     out_of_budget_ = threshold_ > selection_.threshold();
   }
 
-  [[nodiscard]] List<WeighedEdge> weighed_edges() const {
-    List<WeighedEdge> edges;
+  [[nodiscard]] Buffer<WeighedEdge> weighed_edges() const {
+    Buffer<WeighedEdge> edges;
     for (const LevelChoice& choice : choices_)
       append_edges(choice.level->mesh.topology, choice.region, choice.error, selection_.threshold(), edges);
     return edges;
@@ -181,7 +181,7 @@ class RedGreen {
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
-    const List<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
+    const Buffer<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
     if (red.empty()) return false;
     mark_red(choices_.back(), red);
     if (!has_room_below(level + 1)) return false;
@@ -205,25 +205,25 @@ class RedGreen {
     return true;
   }
 
-  [[nodiscard]] List<uint32_t> faces_to_divide() const {
+  [[nodiscard]] Buffer<uint32_t> faces_to_divide() const {
     const LevelChoice& choice = choices_.back();
-    List<uint32_t> red = choice.region.faces;
+    Buffer<uint32_t> red = choice.region.faces;
     keep_if(red, [&](uint32_t f) { return choice.split_mask(f) == 7; });
     return red;
   }
 
   /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
   /// error were tried too, and a tenth: results were the same.)
-  [[nodiscard]] List<uint32_t> faces_to_look_into() const {
+  [[nodiscard]] Buffer<uint32_t> faces_to_look_into() const {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
-    List<uint8_t> touched(mesh.vertex_count, 0);
+    Buffer<uint8_t> touched(mesh.vertex_count, 0);
     for (uint32_t f : choice.region.faces) {
       const uint32_t* edge = &mesh.edge[size_t{3} * f];
       if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
         for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
     }
-    List<uint32_t> faces = choice.region.faces;
+    Buffer<uint32_t> faces = choice.region.faces;
     keep_if(faces, [&](uint32_t f) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
       const bool is_touched = (touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0;
@@ -265,7 +265,7 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  std::vector<List<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
+  std::vector<Buffer<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

@@ -54,14 +54,14 @@ class Uniform {
       make_plain_vertices();
       return;
     }
-    const Array<Vec3f> normals =
-        options_.tension == Tension::off ? Array<Vec3f>{} : face_normals(mesh_, progress_.threads());
+    const Buffer<Vec3f> normals =
+        options_.tension == Tension::off ? Buffer<Vec3f>{} : face_normals(mesh_, progress_.threads());
     if (options_.w == 0) {
       const TensionField field = tension_field(topology, normals, options_.tension);
       Vec3f* made = make_room(topology.edge_count());
       uniform_butterfly(topology, features_, mesh_.positions.data(), made, &field, progress_.threads());
     } else {
-      const Array<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
+      const Buffer<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
       mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
     }
   }
@@ -79,7 +79,7 @@ class Uniform {
 
   /// For so many positions behind those that are there: where they begin.
   Vec3f* make_room(uint32_t count) {
-    mesh_.positions.resize(mesh_.positions.size() + count);
+    mesh_.positions.resize_for_overwrite(mesh_.positions.size() + count);
     return mesh_.positions.data() + mesh_.topology.vertex_count;
   }
 

@@ -12,8 +12,8 @@
 namespace papilio {
 namespace {
 
-float largest_coordinate(const Array<Vec3f>& positions) {
-  Lanes largest{};
+float largest_coordinate(const Buffer<Vec3f>& positions) {
+  Vec3fa largest{};
   for (const Vec3f& p : positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
   return std::max({largest.v[0], largest.v[1], largest.v[2]});
 }
@@ -21,7 +21,7 @@ float largest_coordinate(const Array<Vec3f>& positions) {
 /// Collects deviations, each of which is asked for only where the edge's vertex is far enough from the midpoint.
 class Largest {
  public:
-  explicit Largest(TooNear too_near) : too_near_(too_near) {}
+  explicit Largest(DeviationCutoff too_near) : too_near_(too_near) {}
 
   /// Of the edge from a to b.
   template <class Deviation>
@@ -33,14 +33,14 @@ class Largest {
   [[nodiscard]] double distance() const { return distance_; }
 
  private:
-  TooNear too_near_;
+  DeviationCutoff too_near_;
   double distance_ = 0;
 };
 
 /// The largest of what add(first, last, largest) adds, for `count` things in all.
 template <class Add>
-double find_largest(const Array<Vec3f>& positions, uint32_t count, int threads, const Add& add) {
-  const Largest none_yet(TooNear(largest_coordinate(positions)));
+double find_largest(const Buffer<Vec3f>& positions, uint32_t count, int threads, const Add& add) {
+  const Largest none_yet(DeviationCutoff(largest_coordinate(positions)));
   const uint32_t parts = parts_of(count, threads);
   std::vector<Largest> found(parts, none_yet);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {
@@ -53,7 +53,7 @@ double find_largest(const Array<Vec3f>& positions, uint32_t count, int threads, 
 
 /// Adds the inner edges of the family of face `parent`, and the halves of its sides where it is the lower of two faces.
 void add_family(const Topology& parents, uint32_t parent, const Vec3f* p, const Vec3f* made, Largest& largest) {
-  const Family family(parents, parent);
+  const ChildStencil family(parents, parent);
   // An edge, from its lower vertex to the other, with the apexes of its two faces, the one on its left first.
   const auto add = [&](uint32_t edge, uint32_t a, uint32_t b, uint32_t apex, uint32_t other_apex) {
     largest.add(made[edge], p[a], p[b],
@@ -86,7 +86,8 @@ double largest_deviation(const Mesh& mesh, const Vec3f* made, int threads) {
   return find_largest(mesh.positions, topology.edge_count(), threads, add);
 }
 
-double largest_deviation_below(const Topology& parents, const Array<Vec3f>& positions, const Vec3f* made, int threads) {
+double largest_deviation_below(const Topology& parents, const Buffer<Vec3f>& positions, const Vec3f* made,
+                               int threads) {
   const auto add = [&](uint32_t first, uint32_t last, Largest& largest) {
     for (uint32_t f = first; f < last; ++f) add_family(parents, f, positions.data(), made, largest);
   };

@@ -22,7 +22,7 @@ std::vector<uint32_t> vertices_of_points(const Mesh& mesh) {
 }
 
 /// Numbers what is used anew, without gaps, in the same order. Returns the old numbers.
-std::vector<uint32_t> renumber(Array<uint32_t>& numbers, size_t count) {
+std::vector<uint32_t> renumber(Buffer<uint32_t>& numbers, size_t count) {
   std::vector<uint32_t> next(count, none);
   for (uint32_t n : numbers) next[n] = 0;
   std::vector<uint32_t> kept;
@@ -46,7 +46,7 @@ Attribute select(const Attribute& from, const std::vector<uint32_t>& points) {
 
 }  // namespace
 
-const Array<uint32_t>& corner_points(const Mesh& mesh) {
+const Buffer<uint32_t>& corner_points(const Mesh& mesh) {
   return mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point;
 }
 
@@ -75,7 +75,7 @@ void append(std::vector<uint32_t>& corners, const Mesh& mesh, uint32_t face) {
 }  // namespace
 
 void Collapser::set_aside(const std::vector<bool>& chosen, std::vector<bool>& to_collapse) {
-  const Array<uint32_t>& origin = mesh_.topology.origin;
+  const Buffer<uint32_t>& origin = mesh_.topology.origin;
   std::vector<uint32_t> faces(mesh_.topology.vertex_count, 0);  // of the chosen ones
   for (uint32_t h = 0; h < origin.size(); ++h) faces[origin[h]] += chosen[Topology::face(h)] ? 1 : 0;
   for (uint32_t h = 0; h < origin.size(); ++h)
@@ -135,7 +135,7 @@ void Collapser::lock_borders() {
 }
 
 Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
-  Array<uint32_t> corners(fixed_.begin(), fixed_.end());
+  Buffer<uint32_t> corners(fixed_.begin(), fixed_.end());
   for (const Corners& part : parts_) {
     poll_();
     collapse(part, locked, error, corners);
@@ -147,7 +147,7 @@ Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
 
 /// Appends what is left of the part to `out`.
 void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, double error,
-                         Array<uint32_t>& out) const {
+                         Buffer<uint32_t>& out) const {
   Corners points = part;  // its own, in ascending order
   std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -155,7 +155,7 @@ void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, d
   std::ranges::transform(part, own.begin(), [&](uint32_t p) {
     return static_cast<uint32_t>(std::ranges::lower_bound(points, p) - points.begin());
   });
-  const Array<Vec3f> positions = place(points, locked);
+  const Buffer<Vec3f> positions = place(points, locked);
   const auto target_error = static_cast<float>(error * box_.diagonal() * scale_);
   Corners left(own.size());
   left.resize(meshopt_simplify(left.data(), own.data(), own.size(), &positions[0].x, positions.size(), sizeof(Vec3f), 0,
@@ -168,9 +168,9 @@ void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, d
 /// seams; with three points at each none is one to it.) It scales by the longest side of the box: squares of what a
 /// mesh may have need not be numbers, so that is done here, by a power of two, and the last points make that side
 /// exactly 1. So nothing is rounded, and what lies in a line stays there, which lets it avoid faces without area.
-Array<Vec3f> Collapser::place(const std::vector<uint32_t>& points, const std::vector<bool>& locked) const {
+Buffer<Vec3f> Collapser::place(const std::vector<uint32_t>& points, const std::vector<bool>& locked) const {
   const Vec3d origin = to_double(box_.min);
-  Array<Vec3f> positions;
+  Buffer<Vec3f> positions;
   positions.reserve(2 * points.size() + 3);
   const auto add = [&](uint32_t v) {
     positions.push_back(to_float(scale_ * (to_double(mesh_.positions[v]) - origin)));
@@ -185,9 +185,9 @@ Array<Vec3f> Collapser::place(const std::vector<uint32_t>& points, const std::ve
 }
 
 /// The mesh of these corners, given as points. Vertices and points that none uses are left out.
-Collapsed Collapser::assemble(Array<uint32_t> points) const {
+Collapsed Collapser::assemble(Buffer<uint32_t> points) const {
   Collapsed out;
-  Array<uint32_t> origin(points.size());
+  auto origin = Buffer<uint32_t>::for_overwrite(points.size());
   std::ranges::transform(points, origin.begin(), [&](uint32_t p) { return vertex_of_point_[p]; });
   out.vertex = renumber(origin, mesh_.topology.vertex_count);
   for (uint32_t v : out.vertex) out.mesh.positions.push_back(mesh_.positions[v]);

@@ -15,7 +15,7 @@ struct Collapsed {
 };
 
 /// The points [H] at the corners, or the vertices when there are no attributes: what meshoptimizer calls vertices.
-[[nodiscard]] const Array<uint32_t>& corner_points(const Mesh& mesh);
+[[nodiscard]] const Buffer<uint32_t>& corner_points(const Mesh& mesh);
 
 /// Collapses edges by meshoptimizer, which does not look after topology: the result is to be checked. (Nor does 0.18
 /// avoid faces without area: they are mended where that can be done.) May be asked again and again; refers to the mesh.
@@ -39,9 +39,9 @@ class Collapser {
   void set_aside(const std::vector<bool>& chosen, std::vector<bool>& to_collapse);
   void split_into_parts(std::vector<bool> to_collapse);
   void lock_borders();
-  void collapse(const Corners& part, const std::vector<bool>& locked, double error, Array<uint32_t>& out) const;
-  [[nodiscard]] Array<Vec3f> place(const std::vector<uint32_t>& points, const std::vector<bool>& locked) const;
-  [[nodiscard]] Collapsed assemble(Array<uint32_t> points) const;
+  void collapse(const Corners& part, const std::vector<bool>& locked, double error, Buffer<uint32_t>& out) const;
+  [[nodiscard]] Buffer<Vec3f> place(const std::vector<uint32_t>& points, const std::vector<bool>& locked) const;
+  [[nodiscard]] Collapsed assemble(Buffer<uint32_t> points) const;
 
   const Mesh& mesh_;
   std::function<void()> poll_;

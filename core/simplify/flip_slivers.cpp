@@ -60,7 +60,7 @@ class Flipper {
     const uint32_t beyond = Topology::face(t);
     if (beyond < first_ || touched_[Topology::face(h)] || touched_[beyond]) return false;
     if (longest_of_sliver(mesh_, beyond) != none) return false;
-    const Array<uint32_t>& point = mesh_.attributes.empty() ? topology.origin : mesh_.attributes.point;
+    const Buffer<uint32_t>& point = mesh_.attributes.empty() ? topology.origin : mesh_.attributes.point;
     if (point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t]) return false;
     collect_fan(topology, Topology::previous(h), fan_);
     return topology.apex(h) != topology.apex(t) && std::ranges::find(fan_.ring, topology.apex(t)) == fan_.ring.end();
@@ -69,7 +69,7 @@ class Flipper {
   /// The edge now runs between what were the apexes.
   void flip(uint32_t h) {
     const uint32_t t = mesh_.topology.twin[h];
-    const auto turn = [&](Array<uint32_t>& corners) {
+    const auto turn = [&](Buffer<uint32_t>& corners) {
       corners[Topology::next(h)] = corners[Topology::previous(t)];
       corners[Topology::next(t)] = corners[Topology::previous(h)];
     };
@@ -83,7 +83,7 @@ class Flipper {
   uint32_t first_;
   std::vector<bool> touched_;
   std::vector<uint32_t> faces_;  ///< [V] at each vertex
-  Array<uint32_t> origin_;       ///< [H] after the flips, once there are any
+  Buffer<uint32_t> origin_;      ///< [H] after the flips, once there are any
   Fan fan_;
 };
 

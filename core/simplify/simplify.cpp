@@ -23,7 +23,7 @@ constexpr uint32_t last_lock_rings = 64;
 
 /// Whether the edge of half-edge h, with a face on either side, has other points in one than in the other.
 bool is_seam(const Mesh& mesh, uint32_t h) {
-  const Array<uint32_t>& point = corner_points(mesh);
+  const Buffer<uint32_t>& point = corner_points(mesh);
   const uint32_t t = mesh.topology.twin[h];
   return point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t];
 }

@@ -39,9 +39,9 @@ bool is_folded(const Topology& mesh, uint32_t face) {
 /// Faces, from their lowest vertex on and sorted, that have no normal, are folded, or are flipped: turned against the
 /// surface before at each corner.
 template <class Number>
-std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Array<Vec3f>& vertex_normals) {
+std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Buffer<Vec3f>& vertex_normals) {
   const Topology& topology = mesh.topology;
-  const Array<Vec3f> normals = face_normals(mesh);
+  const Buffer<Vec3f> normals = face_normals(mesh);
   std::vector<Triangle> bad;
   for (uint32_t f = 0; f < topology.face_count(); ++f) {
     Triangle t{};
@@ -102,7 +102,7 @@ std::vector<uint32_t> find_faults(const Mesh& before, const Collapsed& after, co
   append_difference(pinched_vertices(before.topology, same), pinched_vertices(after.mesh.topology, old), faults);
   poll();
 
-  const Array<Vec3f> normals = vertex_normals(before);
+  const Buffer<Vec3f> normals = vertex_normals(before);
   poll();
   const std::vector<Triangle> bad_before = bad_faces(before, same, normals);
   poll();

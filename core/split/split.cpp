@@ -9,7 +9,7 @@ namespace {
 
 class Splitter {
  public:
-  Splitter(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions)
+  Splitter(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions)
       : mesh_(mesh), plan_(plan), positions_(positions) {}
 
   Topology run(PointAttributes& attributes) {
@@ -18,11 +18,11 @@ class Splitter {
     child_.vertex_count = mesh_.vertex_count + plan_.count();
     child_.pinched = mesh_.pinched;
     child_.darts = mesh_.darts;
-    child_.origin.resize(size_t{3} * faces);
-    child_.twin.resize(size_t{3} * faces);
-    child_.edge.resize(size_t{3} * faces);
+    child_.origin.resize_for_overwrite(size_t{3} * faces);
+    child_.twin.resize_for_overwrite(size_t{3} * faces);
+    child_.edge.resize_for_overwrite(size_t{3} * faces);
     const uint32_t edges = inner_edge_base() + (faces - mesh_.face_count());
-    child_.half_edge.resize(edges);
+    child_.half_edge.resize_for_overwrite(edges);
     child_.kind.assign(edges, EdgeKind::smooth);
     for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
       const uint32_t base = e + plan_.before[e];
@@ -100,8 +100,8 @@ class Splitter {
     const Region all = whole_region(mesh_);
     EdgeMarks targets(mesh_.edge_count());
     for (uint32_t e = 0; e < targets.size(); ++e) targets[e] = plan_.is_split(e) ? 1 : 0;
-    const List<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
-    Array<uint32_t> point(child_.half_edge_count());
+    const Buffer<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
+    auto point = Buffer<uint32_t>::for_overwrite(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
         const uint8_t corner = pattern_[f]->corner[c / 3][c % 3];
@@ -112,9 +112,9 @@ class Splitter {
 
   const Topology& mesh_;
   const SplitPlan& plan_;
-  const Array<Vec3f>& positions_;
+  const Buffer<Vec3f>& positions_;
   std::vector<const SplitPattern*> pattern_;  ///< [F]
-  List<uint32_t> first_child_;                ///< [F + 1]
+  Buffer<uint32_t> first_child_;              ///< [F + 1]
   Topology child_;
 };
 
@@ -126,7 +126,7 @@ uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
   return children;
 }
 
-Topology split(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions,
+Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions,
                PointAttributes& attributes) {
   return Splitter(mesh, plan, positions).run(attributes);
 }

@@ -18,7 +18,7 @@ namespace papilio {
 /// `positions` [V + plan.count()] has the new vertices at its end; `attributes` are split along unless they are empty.
 /// The result's faces lie in their parents' order; its arrays follow from the parents' by formula, in O(F + E), without
 /// a search. Edge kinds are inherited; edges inside a parent are smooth.
-[[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const Array<Vec3f>& positions,
+[[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions,
                              PointAttributes& attributes);
 
 }  // namespace papilio

@@ -7,6 +7,7 @@
 #include "base/index_range.h"
 #include "base/parallel.h"
 #include "mesh/four_children.h"
+#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -54,23 +55,23 @@ Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, si
   below.vertex_count = vertices + edges;
   below.pinched = mesh.pinched;
   below.darts = mesh.darts;
-  below.origin.resize(half_edges);
-  below.twin.resize(half_edges);
+  below.origin.resize_for_overwrite(half_edges);
+  below.twin.resize_for_overwrite(half_edges);
   return below;
 }
 
 template <bool numbers_edges, class Numbers>
 class FourSplitter {
  public:
-  FourSplitter(const Topology& mesh, const Subset& faces, const Numbers& numbers)
+  FourSplitter(const Topology& mesh, const IndexRange& faces, const Numbers& numbers)
       : mesh_(mesh), faces_(faces), numbers_(numbers), rule_(mesh.vertex_count, numbers.edge_count()) {}
 
   /// `room`: for so many faces' children.
   Topology run(uint32_t room, int threads) {
     child_ = level_below(mesh_, mesh_.vertex_count, mesh_.edge_count(), size_t{12} * room);
     if (numbers_edges) {
-      child_.edge.resize(size_t{12} * room);
-      child_.half_edge.resize(rule_.inner_edge(room));
+      child_.edge.resize_for_overwrite(size_t{12} * room);
+      child_.half_edge.resize_for_overwrite(rule_.inner_edge(room));
     }
     for_each_part(parts_of(faces_.size(), threads), faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
       run_wide([this, first, last]() PAPILIO_INLINED {
@@ -119,7 +120,7 @@ class FourSplitter {
   }
 
   const Topology& mesh_;
-  const Subset faces_;
+  const IndexRange faces_;
   const Numbers numbers_;
   const FourRule rule_;
   Topology child_;
@@ -127,7 +128,7 @@ class FourSplitter {
 
 template <bool numbers_edges>
 Topology split_all(const Topology& mesh, int threads) {
-  return FourSplitter<numbers_edges, OwnNumbers>(mesh, Subset(mesh.face_count()), OwnNumbers(mesh.edge_count()))
+  return FourSplitter<numbers_edges, OwnNumbers>(mesh, IndexRange(mesh.face_count()), OwnNumbers(mesh.edge_count()))
       .run(mesh.face_count(), threads);
 }
 
@@ -148,14 +149,14 @@ void write_others(const Part& part, Topology& children) {
 Topology split_in_four(const Topology& mesh, int threads) {
   Topology children = split_all<true>(mesh, threads);
   const uint32_t edges = mesh.edge_count();
-  children.kind.resize(children.edge_count());
+  children.kind.resize_for_overwrite(children.edge_count());
   for (uint32_t e = 0; e < edges; ++e) children.kind[2 * e] = children.kind[2 * e + 1] = mesh.kind[e];
   std::fill(children.kind.begin() + 2 * edges, children.kind.end(), EdgeKind::smooth);
   return children;
 }
 
 Topology split_part_in_four(const Topology& mesh, const Part& part, int threads) {
-  Topology children = FourSplitter<true, PartNumbers>(mesh, Subset(part.faces.numbers()), PartNumbers(part))
+  Topology children = FourSplitter<true, PartNumbers>(mesh, IndexRange(part.faces.numbers()), PartNumbers(part))
                           .run(part.other_face() + 1, threads);
   write_others(part, children);
   children.kind.assign(children.edge_count(), EdgeKind::smooth);

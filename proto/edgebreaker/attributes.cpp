@@ -88,11 +88,11 @@ void write_unpredicted(const Integers& integers, draco::EncoderBuffer& out) {
 /// Writes the values of one attribute.
 class ValueWriter {
  public:
-  ValueWriter(const OutputAttribute& attribute, const CornerMesh& mesh, const Array<uint32_t>& corners, int speed,
+  ValueWriter(const OutputAttribute& attribute, const CornerMesh& mesh, const Buffer<uint32_t>& corners, int speed,
               Pace& pace)
       : attribute_(attribute), surface_(mesh, corners, pace), speed_(speed), pace_(pace) {}
 
-  void run(const Array<uint32_t>& value, const WrittenSurface& written, draco::EncoderBuffer& out) {
+  void run(const Buffer<uint32_t>& value, const WrittenSurface& written, draco::EncoderBuffer& out) {
     if (attribute_.coding == Coding::as_is) {
       write_as_they_are(value, out);
       return;
@@ -115,14 +115,14 @@ class ValueWriter {
  private:
   [[nodiscard]] const char* bytes_of(uint32_t value) const { return attribute_.values.bytes.data() + value * stride_; }
 
-  void write_as_they_are(const Array<uint32_t>& value, draco::EncoderBuffer& out) {
+  void write_as_they_are(const Buffer<uint32_t>& value, draco::EncoderBuffer& out) {
     for (draco::CornerIndex c : surface_.corners()) {
       pace_.step();
       out.Encode(bytes_of(value[c.value()]), stride_);
     }
   }
 
-  [[nodiscard]] Integers to_integers(const Array<uint32_t>& value) {
+  [[nodiscard]] Integers to_integers(const Buffer<uint32_t>& value) {
     Rounding rounding(attribute_);
     Integers integers{rounding.components(), {}};
     integers.values.reserve(surface_.corners().size() * integers.components);

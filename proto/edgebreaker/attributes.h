@@ -19,10 +19,10 @@ void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 /// The surface that attributes are on, and how its walk and its positions were written.
 struct WrittenSurface {
   const CornerMesh& mesh;
-  const Array<uint32_t>& starts;      ///< [faces] (connectivity.h)
-  const VertexOrder& order;           ///< of values without seams
-  const Array<GridPoint>& positions;  ///< [vertices], where they are on a grid
-  uint32_t points;                    ///< of the mesh: few are predicted otherwise than many
+  const Buffer<uint32_t>& starts;      ///< [faces] (connectivity.h)
+  const VertexOrder& order;            ///< of values without seams
+  const Buffer<GridPoint>& positions;  ///< [vertices], where they are on a grid
+  uint32_t points;                     ///< of the mesh: few are predicted otherwise than many
 };
 
 /// Writes the attribute's values: as differences from what is predicted at Draco's `speed`, 0 to 10, or as they are.

@@ -21,7 +21,7 @@ class StandardSymbols {
  public:
   explicit StandardSymbols(CornerMesh& mesh) { symbols_.reserve(mesh.face_count()); }
 
-  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t /*corner*/, const Array<uint8_t>& /*faces*/) {
+  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t /*corner*/, const Buffer<uint8_t>& /*faces*/) {
     symbols_.push_back(static_cast<uint8_t>(symbol));
   }
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(symbols_.size()); }
@@ -43,7 +43,7 @@ class StandardSymbols {
   void write_after_starts(draco::EncoderBuffer& /*out*/) const {}
 
  private:
-  Array<uint8_t> symbols_;
+  Buffer<uint8_t> symbols_;
 };
 
 /// Codes each symbol in the context of the valence, in the part of the mesh that is not yet written, of the vertex that
@@ -62,7 +62,7 @@ class ValenceSymbols {
     for (size_t i = moved_.size(); i-- > 0;) mesh_.set_vertex(moved_[i].corner, moved_[i].vertex);
   }
 
-  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner, const Array<uint8_t>& faces) {
+  void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner, const Buffer<uint8_t>& faces) {
     ++count_;
     const uint32_t next = CornerMesh::next(corner);
     const uint32_t previous = CornerMesh::previous(corner);
@@ -110,7 +110,7 @@ class ValenceSymbols {
 
   /// The vertex at the corner falls in two: the side with fewer faces gets a new one. Both sides are counted at once,
   /// and only until the smaller one ends: a face changes its vertex O(log F) times.
-  void split(uint32_t corner, const Array<uint8_t>& faces) {
+  void split(uint32_t corner, const Buffer<uint8_t>& faces) {
     const auto is_left = [&](uint32_t c) { return c != none && faces[CornerMesh::face(c)] == unvisited; };
     const auto on_left = [&](uint32_t c) { return mesh_.opposite(CornerMesh::next(c)); };
     const auto on_right = [&](uint32_t c) { return mesh_.opposite(CornerMesh::previous(c)); };
@@ -141,11 +141,11 @@ class ValenceSymbols {
   };
 
   CornerMesh& mesh_;
-  List<int> valence_;  ///< [vertices, and those that came of splits]
-  List<Moved> moved_;  ///< corners that are at another vertex now, and where they were
+  Buffer<int> valence_;  ///< [vertices, and those that came of splits]
+  Buffer<Moved> moved_;  ///< corners that are at another vertex now, and where they were
   int last_ = -1;
   uint32_t count_ = 0;
-  std::array<List<uint32_t>, most_valence - least_valence + 1> contexts_;
+  std::array<Buffer<uint32_t>, most_valence - least_valence + 1> contexts_;
 };
 
 /// The boundary loops: which vertices are on each, and which loops the walk has come to.
@@ -190,7 +190,7 @@ class Holes {
   }
 
   const CornerMesh& mesh_;
-  Array<uint32_t> hole_;          ///< [vertices] the loop; `none`. Empty where there is none
+  Buffer<uint32_t> hole_;         ///< [vertices] the loop; `none`. Empty where there is none
   std::vector<uint8_t> visited_;  ///< [loops]
 };
 
@@ -208,7 +208,7 @@ class Walk {
     corners_.reserve(mesh.face_count());
   }
 
-  Array<uint32_t> run(draco::EncoderBuffer& out) {
+  Buffer<uint32_t> run(draco::EncoderBuffer& out) {
     starts_.StartEncoding();
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       if (face_state_[f] == unvisited) start(f);
@@ -391,9 +391,9 @@ class Walk {
   Pace& pace_;
   Symbols symbols_;
   Holes holes_;
-  Array<uint8_t> face_state_;            ///< [faces] FaceState
-  Array<uint8_t> vertex_visited_;        ///< [vertices]
-  Array<uint32_t> corners_;              ///< of the faces visited, in their order
+  Buffer<uint8_t> face_state_;           ///< [faces] FaceState
+  Buffer<uint8_t> vertex_visited_;       ///< [vertices]
+  Buffer<uint32_t> corners_;             ///< of the faces visited, in their order
   std::vector<uint32_t> first_corners_;  ///< of the faces at which a walk started
   std::vector<uint32_t> stack_;
   std::unordered_map<uint32_t, uint32_t> split_symbol_;  ///< of a face at which the walk fell in two
@@ -404,8 +404,8 @@ class Walk {
 
 }  // namespace
 
-Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes, Pace& pace,
-                                   draco::EncoderBuffer& out) {
+Buffer<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
+                                    Pace& pace, draco::EncoderBuffer& out) {
   if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes, pace).run(out);
   return Walk<ValenceSymbols>(mesh, attributes, pace).run(out);
 }

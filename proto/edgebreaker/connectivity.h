@@ -21,8 +21,8 @@ enum class Traversal : uint8_t {
 /// specification, edgebreaker connectivity; and for each attribute beside the positions which edges are its seams.
 /// Returns the corner at which the walk came to each face, in the order in which a decoder meets them. [faces] The mesh
 /// is lent: afterwards it is as it was. O(F log F) at worst, O(F) on usual meshes. `pace` steps once a face.
-[[nodiscard]] Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal,
-                                                 std::span<const Seams> attributes, Pace& pace,
-                                                 draco::EncoderBuffer& out);
+[[nodiscard]] Buffer<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal,
+                                                  std::span<const Seams> attributes, Pace& pace,
+                                                  draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

@@ -17,16 +17,16 @@ namespace papilio::proto::edgebreaker {
 class CornerMesh {
  public:
   explicit CornerMesh(const Topology& mesh)
-      : vertex_count_(mesh.vertex_count), corners_(size_t{3} * mesh.face_count()) {
+      : vertex_count_(mesh.vertex_count), corners_(Buffer<Corner>::for_overwrite(size_t{3} * mesh.face_count())) {
     for (uint32_t f = 0; f < mesh.face_count(); ++f)
       add_face(f, &mesh.origin[size_t{3} * f], &mesh.twin[size_t{3} * f]);
   }
 
   /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
   /// [corners] where the edge opposite to the corner is one.
-  CornerMesh(const CornerMesh& whole, const Array<uint8_t>& is_seam, const Array<uint32_t>& vertex,
+  CornerMesh(const CornerMesh& whole, const Buffer<uint8_t>& is_seam, const Buffer<uint32_t>& vertex,
              uint32_t vertex_count)
-      : vertex_count_(vertex_count), corners_(whole.corner_count()) {
+      : vertex_count_(vertex_count), corners_(Buffer<Corner>::for_overwrite(whole.corner_count())) {
     for (uint32_t c = 0; c < corner_count(); ++c) {
       corners_[c] = {vertex[c], is_seam[c] != 0 ? none : whole.opposite(c)};
       if (corners_[c].opposite == none) at_boundary_.push_back(c);
@@ -62,7 +62,7 @@ class CornerMesh {
   void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }
 
   /// The corners opposite to boundary edges, in ascending order.
-  [[nodiscard]] const List<uint32_t>& at_boundary() const { return at_boundary_; }
+  [[nodiscard]] const Buffer<uint32_t>& at_boundary() const { return at_boundary_; }
   /// Whether there are two faces that share more than one edge.
   [[nodiscard]] bool has_faces_folded_together() const { return has_faces_folded_together_; }
 
@@ -104,8 +104,8 @@ class CornerMesh {
   static uint32_t previous_of(uint32_t half_edge) { return half_edge - 1 + (half_edge % 3 == 0 ? 3 : 0); }
 
   uint32_t vertex_count_;
-  Array<Corner> corners_;
-  List<uint32_t> at_boundary_;
+  Buffer<Corner> corners_;
+  Buffer<uint32_t> at_boundary_;
   bool has_faces_folded_together_ = false;
 };
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace papilio {
+namespace papilio::proto::edgebreaker {
 
 /// The logarithm to base 2 of a positive number. Of + - x / alone, rounded alike everywhere: the error is below 3 units
 /// in the last place.
@@ -24,4 +24,4 @@ namespace papilio {
   return exponent + twice_per_e * (s + s * sum);
 }
 
-}  // namespace papilio
+}  // namespace papilio::proto::edgebreaker

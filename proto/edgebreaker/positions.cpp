@@ -37,7 +37,7 @@ class Grid {
 /// Corrections of predictions, wrapped into the range that the values have.
 class Corrections {
  public:
-  explicit Corrections(const Array<GridPoint>& values) {
+  explicit Corrections(const Buffer<GridPoint>& values) {
     GridPoint low = values[0];
     GridPoint high = values[0];
     for (const GridPoint& p : values) {
@@ -70,12 +70,15 @@ class Corrections {
 /// Puts the corrections of one value after another.
 class Writer {
  public:
-  Writer(const CornerMesh& mesh, const Array<GridPoint>& values)
-      : mesh_(mesh), values_(values), corrections_(values), symbols_(3 * values.size() + 1) {}
+  Writer(const CornerMesh& mesh, const Buffer<GridPoint>& values)
+      : mesh_(mesh),
+        values_(values),
+        corrections_(values),
+        symbols_(Buffer<uint32_t>::for_overwrite(3 * values.size() + 1)) {}
 
   [[nodiscard]] const Corrections& corrections() const { return corrections_; }
   /// Of what was put, three a value.
-  [[nodiscard]] const Array<uint32_t>& symbols() const { return symbols_; }
+  [[nodiscard]] const Buffer<uint32_t>& symbols() const { return symbols_; }
 
   void put_difference(uint32_t corner) { put(corner, last_); }
   /// Opposite there must be a face all of whose values were put.
@@ -91,18 +94,19 @@ class Writer {
   }
 
   const CornerMesh& mesh_;
-  const Array<GridPoint>& values_;  ///< [vertices]
+  const Buffer<GridPoint>& values_;  ///< [vertices]
   Corrections corrections_;
-  Array<uint32_t> symbols_;
+  Buffer<uint32_t> symbols_;
   uint32_t count_ = 0;
   GridPoint last_{};
 };
 
 }  // namespace
 
-Array<GridPoint> to_grid(const Array<Vec3f>& positions, const Surface& surface, const QuantizationBox& box, int bits) {
+Buffer<GridPoint> to_grid(const Buffer<Vec3f>& positions, const Surface& surface, const QuantizationBox& box,
+                          int bits) {
   const Grid grid(box, bits);
-  Array<GridPoint> values(surface.mesh.vertex_count());
+  auto values = Buffer<GridPoint>::for_overwrite(surface.mesh.vertex_count());
   Floats p{};
   if (surface.vertex.empty()) {
     for (size_t v = 0; v + 1 < values.size(); ++v) {
@@ -121,7 +125,7 @@ Array<GridPoint> to_grid(const Array<Vec3f>& positions, const Surface& surface, 
   return values;
 }
 
-void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Array<GridPoint>& values,
+void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buffer<GridPoint>& values,
                      Prediction prediction, int compression_level, Pace& pace, draco::EncoderBuffer& out) {
   const auto count = static_cast<uint32_t>(order.corners.size());
   Writer writer(mesh, values);
@@ -150,8 +154,8 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Arr
   out.Encode(writer.corrections().high());
 }
 
-void write_positions_multi_parallelogram(const CornerMesh& mesh, const Array<uint32_t>& corners,
-                                         const Array<GridPoint>& values, int speed, uint32_t points, Pace& pace,
+void write_positions_multi_parallelogram(const CornerMesh& mesh, const Buffer<uint32_t>& corners,
+                                         const Buffer<GridPoint>& values, int speed, uint32_t points, Pace& pace,
                                          draco::EncoderBuffer& out) {
   const OrderedSurface surface(mesh, corners, pace);
   Integers integers{3, {}};
@@ -163,7 +167,7 @@ void write_positions_multi_parallelogram(const CornerMesh& mesh, const Array<uin
   (void)write_predicted(integers, *wrapped_predictor(surface, speed, points), {}, speed, out);  // it is never refused
 }
 
-void write_positions_exactly(const Array<Vec3f>& positions, const Surface& surface, const Array<uint32_t>& corners,
+void write_positions_exactly(const Buffer<Vec3f>& positions, const Surface& surface, const Buffer<uint32_t>& corners,
                              Pace& pace, draco::EncoderBuffer& out) {
   for (uint32_t c : corners) {
     pace.step();

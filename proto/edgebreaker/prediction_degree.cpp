@@ -19,7 +19,7 @@ class ByPredictionDegree {
     order_.reserve(mesh.vertex_count());
   }
 
-  Array<uint32_t> run(const Array<uint32_t>& starts) {
+  Buffer<uint32_t> run(const Buffer<uint32_t>& starts) {
     for (uint32_t corner : starts) {
       if (is_visited(corner)) continue;
       for (uint32_t c : {CornerMesh::next(corner), CornerMesh::previous(corner), corner}) come_to(c);
@@ -91,17 +91,17 @@ class ByPredictionDegree {
 
   const CornerMesh& mesh_;
   Pace& pace_;
-  Array<uint8_t> visited_;  ///< [faces]
-  Array<uint8_t> known_;    ///< [vertices] whether it is in the order
-  Array<uint8_t> degree_;   ///< [vertices] how often a face beyond which it lies was seen: 0, 1, or 2 for more
+  Buffer<uint8_t> visited_;  ///< [faces]
+  Buffer<uint8_t> known_;    ///< [vertices] whether it is in the order
+  Buffer<uint8_t> degree_;   ///< [vertices] how often a face beyond which it lies was seen: 0, 1, or 2 for more
   std::array<std::vector<uint32_t>, priorities> stacks_;
   uint32_t best_ = 0;  ///< the lowest stack that may hold a corner
-  Array<uint32_t> order_;
+  Buffer<uint32_t> order_;
 };
 
 }  // namespace
 
-Array<uint32_t> order_by_prediction_degree(const CornerMesh& mesh, const Array<uint32_t>& starts, Pace& pace) {
+Buffer<uint32_t> order_by_prediction_degree(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Pace& pace) {
   return ByPredictionDegree(mesh, pace).run(starts);
 }
 

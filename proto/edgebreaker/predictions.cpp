@@ -18,7 +18,7 @@ constexpr uint32_t few_points = 40;            ///< with fewer, one parallelogra
 
 }  // namespace
 
-OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Array<uint32_t>& corners, Pace& pace)
+OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Pace& pace)
     : table_(mesh, pace), place_(mesh.vertex_count(), -1) {
   corners_.reserve(corners.size());
   for (uint32_t c : corners) {

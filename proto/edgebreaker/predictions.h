@@ -54,7 +54,7 @@ using Predictor = draco::PredictionSchemeEncoder<int32_t, Transform>;
 /// A surface and the corners [values] at which its values are written, in their order.
 class OrderedSurface {
  public:
-  OrderedSurface(const CornerMesh& mesh, const Array<uint32_t>& corners, Pace& pace);
+  OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Pace& pace);
   OrderedSurface(const OrderedSurface&) = delete;
   OrderedSurface& operator=(const OrderedSurface&) = delete;
   ~OrderedSurface() = default;

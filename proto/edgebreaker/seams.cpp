@@ -2,10 +2,10 @@
 
 namespace papilio::proto::edgebreaker {
 
-Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Array<uint32_t>& corner_point,
+Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Buffer<uint32_t>& corner_point,
                  const OutputAttribute& attribute) {
   Seams seams;
-  seams.value.resize(mesh.corner_count());
+  seams.value.resize_for_overwrite(mesh.corner_count());
   for (uint32_t c = 0; c < mesh.corner_count(); ++c)
     seams.value[c] = attribute.is_of_vertices() ? topology.origin[c] : attribute.values.value[corner_point[c]];
   for (uint32_t c = 0; c < mesh.corner_count(); ++c) {
@@ -21,7 +21,7 @@ Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Array<u
 }
 
 CornerMesh cut_open(const CornerMesh& mesh, const Seams& seams) {
-  Array<uint32_t> vertex(mesh.corner_count(), none);
+  Buffer<uint32_t> vertex(mesh.corner_count(), none);
   uint32_t vertices = 0;
   const auto left = [&](uint32_t c) { return seams.is_seam[CornerMesh::next(c)] != 0 ? none : mesh.swing_left(c); };
   const auto right = [&](uint32_t c) {

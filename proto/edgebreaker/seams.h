@@ -7,11 +7,11 @@ namespace papilio::proto::edgebreaker {
 
 /// Where an attribute has more values than the mesh has vertices.
 struct Seams {
-  Array<uint8_t> is_seam;  ///< [corners] at the edge opposite to each, whose faces have other values there; or empty
-  Array<uint32_t> value;   ///< [corners] the number of each corner's value
+  Buffer<uint8_t> is_seam;  ///< [corners] at the edge opposite to each, whose faces have other values there; or empty
+  Buffer<uint32_t> value;   ///< [corners] the number of each corner's value
   [[nodiscard]] bool empty() const { return is_seam.empty(); }
 };
-[[nodiscard]] Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Array<uint32_t>& corner_point,
+[[nodiscard]] Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Buffer<uint32_t>& corner_point,
                                const OutputAttribute& attribute);
 
 /// The surface cut open along an attribute's seams: each vertex is what lies between two of them.

@@ -44,7 +44,7 @@ Surface manifold_surface(const Topology& mesh) {
   if (mesh.pinched.empty() && !whole.has_faces_folded_together() && !has_several_fans_or_edges(whole))
     return {std::move(whole)};
   Surface surface{cut_open(whole, seams_of_mirrored_faces(whole))};
-  surface.vertex.resize(surface.mesh.vertex_count());
+  surface.vertex.resize_for_overwrite(surface.mesh.vertex_count());
   for (uint32_t c = 0; c < whole.corner_count(); ++c) surface.vertex[surface.mesh.vertex(c)] = whole.vertex(c);
   return surface;
 }

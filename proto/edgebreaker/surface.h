@@ -8,7 +8,7 @@ namespace papilio::proto::edgebreaker {
 /// of its own.
 struct Surface {
   CornerMesh mesh;
-  Array<uint32_t> vertex{};  ///< [vertices of `mesh`] the mesh's vertex at each; empty: the same numbers
+  Buffer<uint32_t> vertex{};  ///< [vertices of `mesh`] the mesh's vertex at each; empty: the same numbers
 };
 
 /// Takes the surface apart where it is not manifold: at vertices with several fans, and at edges of three faces or

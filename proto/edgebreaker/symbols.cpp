@@ -44,7 +44,7 @@ class Counter {
  private:
   static constexpr size_t turns = 4;
   using Turns = std::array<uint32_t, turns>;
-  List<Turns> counts_;
+  Buffer<Turns> counts_;
 };
 
 template <uint32_t components>
@@ -177,7 +177,7 @@ class Table {
   }
 
   uint32_t precision_;
-  List<Symbol> symbols_;
+  Buffer<Symbol> symbols_;
 };
 
 /// The symbols of a list, last to first, as they are decoded first to last: all in one state, which gives bytes away.
@@ -186,7 +186,7 @@ class Stream {
   Stream(std::span<const uint32_t> symbols, Table table)
       : symbols_(symbols),
         table_(std::move(table)),
-        bytes_(symbols.size() * Table::most_bytes_a_symbol + sizeof(uint32_t)),
+        bytes_(Buffer<uint8_t>::for_overwrite(symbols.size() * Table::most_bytes_a_symbol + sizeof(uint32_t))),
         at_(bytes_.data()),
         state_(table_.least_state()) {}
 
@@ -215,7 +215,7 @@ class Stream {
   [[nodiscard]] bool is_done() const { return symbols_.empty(); }
 
   /// Has the list, which the symbols are those of, and bytes that come behind it kept until it is written.
-  void keep(List<uint32_t> symbols, Array<uint8_t> behind) {
+  void keep(Buffer<uint32_t> symbols, Buffer<uint8_t> behind) {
     kept_ = std::move(symbols);
     behind_ = std::move(behind);
   }
@@ -246,11 +246,11 @@ class Stream {
 
   std::span<const uint32_t> symbols_;  ///< still to come
   Table table_;
-  Array<uint8_t> bytes_;
+  Buffer<uint8_t> bytes_;
   uint8_t* at_;
   uint64_t state_;
-  List<uint32_t> kept_;
-  Array<uint8_t> behind_;
+  Buffer<uint32_t> kept_;
+  Buffer<uint8_t> behind_;
 };
 
 /// Probabilities are finer the more different symbols there are; how much finer is a matter of the level.
@@ -278,8 +278,8 @@ void with_constant(int bits, const Visit& visit) {
 }
 
 /// How many bits each value's largest component has. [values]
-List<uint32_t> find_bit_lengths(std::span<const uint32_t> symbols, uint32_t components) {
-  List<uint32_t> lengths(symbols.size() / components);
+Buffer<uint32_t> find_bit_lengths(std::span<const uint32_t> symbols, uint32_t components) {
+  Buffer<uint32_t> lengths(symbols.size() / components);
   for (size_t i = 0; i < lengths.size(); ++i) {
     uint32_t bits = 0;
     for (uint32_t symbol : symbols.subspan(i * components, components)) bits |= symbol;
@@ -289,8 +289,8 @@ List<uint32_t> find_bit_lengths(std::span<const uint32_t> symbols, uint32_t comp
 }
 
 /// The components' bits, one behind the other, the lowest of each first.
-Array<uint8_t> pack(std::span<const uint32_t> symbols, uint32_t components, const List<uint32_t>& lengths) {
-  Array<uint8_t> bytes(symbols.size() * sizeof(uint32_t) + sizeof(uint64_t));
+Buffer<uint8_t> pack(std::span<const uint32_t> symbols, uint32_t components, const Buffer<uint32_t>& lengths) {
+  auto bytes = Buffer<uint8_t>::for_overwrite(symbols.size() * sizeof(uint32_t) + sizeof(uint64_t));
   uint8_t* at = bytes.data();
   uint64_t bits = 0;
   uint32_t held = 0;
@@ -302,7 +302,7 @@ Array<uint8_t> pack(std::span<const uint32_t> symbols, uint32_t components, cons
     bits >>= held / 8 * 8;
     held %= 8;
   }
-  bytes.resize(static_cast<size_t>(at - bytes.data()) + (held > 0 ? 1 : 0));
+  bytes.resize_for_overwrite(static_cast<size_t>(at - bytes.data()) + (held > 0 ? 1 : 0));
   return bytes;
 }
 
@@ -313,8 +313,8 @@ Stream prepare_tagged(std::span<const uint32_t> symbols, uint32_t components, co
   out.Encode(static_cast<uint8_t>(draco::SYMBOL_CODING_TAGGED));
   Table table(draco::ComputeRAnsPrecisionFromUniqueSymbolsBitLength(tag_bits));
   table.make<tag_bits>(std::span(census.bit_lengths).first(1U << tag_bits), out);
-  List<uint32_t> lengths = find_bit_lengths(symbols, components);
-  Array<uint8_t> packed = pack(symbols, components, lengths);
+  Buffer<uint32_t> lengths = find_bit_lengths(symbols, components);
+  Buffer<uint8_t> packed = pack(symbols, components, lengths);
   Stream stream(lengths, std::move(table));
   stream.keep(std::move(lengths), std::move(packed));
   return stream;
@@ -361,7 +361,7 @@ void write_symbols(std::span<const uint32_t> symbols, uint32_t components, int c
   stream->write(out);
 }
 
-void write_symbol_lists(std::span<const List<uint32_t>> lists, draco::EncoderBuffer& out) {
+void write_symbol_lists(std::span<const Buffer<uint32_t>> lists, draco::EncoderBuffer& out) {
   std::vector<draco::EncoderBuffer> written(lists.size());
   std::vector<std::optional<Stream>> streams(lists.size());
   Stream* running = nullptr;

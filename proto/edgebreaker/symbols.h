@@ -21,6 +21,6 @@ void write_symbols(std::span<const uint32_t> symbols, uint32_t components, int c
 
 /// Writes each list of symbols, behind how many they are, at the default level: what draco::EncodeSymbols makes of one
 /// after the other, sooner.
-void write_symbol_lists(std::span<const List<uint32_t>> lists, draco::EncoderBuffer& out);
+void write_symbol_lists(std::span<const Buffer<uint32_t>> lists, draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

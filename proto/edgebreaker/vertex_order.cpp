@@ -14,7 +14,7 @@ class DepthFirst {
       known_[mesh.vertex(CornerMesh::next(c))] = known_[mesh.vertex(CornerMesh::previous(c))] = is_new_on_boundary;
   }
 
-  VertexOrder run(const Array<uint32_t>& starts) {
+  VertexOrder run(const Buffer<uint32_t>& starts) {
     for (uint32_t corner : starts) {
       if (order_.corners.size() == mesh_.vertex_count()) break;  // so has every face been visited, or says no more
       if (!is_visited(corner)) walk_from(corner);
@@ -89,15 +89,15 @@ class DepthFirst {
 
   const CornerMesh& mesh_;
   Pace& pace_;
-  Array<uint8_t> visited_;  ///< [faces]
-  Array<uint8_t> known_;    ///< [vertices] Known
+  Buffer<uint8_t> visited_;  ///< [faces]
+  Buffer<uint8_t> known_;    ///< [vertices] Known
   std::vector<uint32_t> stack_;
   VertexOrder order_;
 };
 
 }  // namespace
 
-VertexOrder order_vertices(const CornerMesh& mesh, const Array<uint32_t>& starts, Pace& pace) {
+VertexOrder order_vertices(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Pace& pace) {
   return DepthFirst(mesh, pace).run(starts);
 }
 

@@ -49,7 +49,7 @@ class StreamWriter {
       seams.push_back(find_seams(surface_.mesh, mesh_.topology, mesh_.attributes.point, attribute));
     const std::span<const Seams> own = in_one_ ? std::span<const Seams>() : seams;
     write_header();
-    const Array<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), own, pace_, out_);
+    const Buffer<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), own, pace_, out_);
     write_encoders(own);
     write_descriptions();
     write_all_values(seams, starts);
@@ -127,11 +127,11 @@ class StreamWriter {
     }
   }
 
-  void write_all_values(std::span<const Seams> seams, const Array<uint32_t>& starts) {
+  void write_all_values(std::span<const Seams> seams, const Buffer<uint32_t>& starts) {
     const CornerMesh& mesh = surface_.mesh;
     VertexOrder order;
     if (!is_by_prediction_degree() || !attributes_.empty()) order = order_vertices(mesh, starts, pace_);
-    Array<GridPoint> positions;
+    Buffer<GridPoint> positions;
     if (box_ != nullptr) positions = to_grid(mesh_.positions, surface_, *box_, options_.position_bits);
     write_position_values(order, positions, starts);
     if (!in_one_) write_position_coding();
@@ -145,8 +145,8 @@ class StreamWriter {
     for (const OutputAttribute& attribute : attributes_) write_coding(attribute, out_);
   }
 
-  void write_position_values(const VertexOrder& order, const Array<GridPoint>& positions,
-                             const Array<uint32_t>& starts) {
+  void write_position_values(const VertexOrder& order, const Buffer<GridPoint>& positions,
+                             const Buffer<uint32_t>& starts) {
     const CornerMesh& mesh = surface_.mesh;
     if (box_ == nullptr) {
       write_positions_exactly(mesh_.positions, surface_, order.corners, pace_, out_);

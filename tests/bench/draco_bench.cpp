@@ -37,7 +37,7 @@ void add_row(const std::string& name, const Mesh& made, int speed, const proto::
 /// The mesh with normals and with texture coordinates that have a chart for each of six sides.
 TriangleMesh with_attributes(const TriangleMesh& triangles) {
   const Mesh mesh = build_mesh(triangles);
-  const Array<Vec3f> normals = vertex_normals(mesh);
+  const Buffer<Vec3f> normals = vertex_normals(mesh);
   const Box box = bounding_box(mesh.positions);
   const double size = box.diagonal();
   TriangleMesh out;

@@ -21,7 +21,7 @@ double largest_difference(Vec3f a, Vec3f b) {
   return std::max({std::abs(double{a.x} - b.x), std::abs(double{a.y} - b.y), std::abs(double{a.z} - b.z)});
 }
 
-void require_near(const Array<Vec3f>& some, const Array<Vec3f>& others, double distance) {
+void require_near(const Buffer<Vec3f>& some, const Buffer<Vec3f>& others, double distance) {
   for (const Vec3f& p : some)
     fuzz::require(std::ranges::any_of(others, [&](Vec3f q) { return largest_difference(p, q) <= distance; }),
                   "every position is where one was");

@@ -19,7 +19,7 @@ namespace {
 
 using namespace proto;
 
-int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Array<Vec3f>& values,
+int add_vertex_attribute(draco::Mesh& out, draco::GeometryAttribute::Type type, const Buffer<Vec3f>& values,
                          const VertexPoints* points) {
   draco::GeometryAttribute description;
   description.Init(type, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);
@@ -75,7 +75,7 @@ class Encoding {
   /// With `attributes` points are what the faces name, else vertices.
   Encoding(const Mesh& mesh, bool attributes, uint32_t position_id) : mesh_(mesh), encoder_(out_) {
     if (attributes) points_.emplace(mesh);
-    const Array<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
+    const Buffer<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
     out_.set_num_points(attributes ? mesh.attributes.point_count : mesh.topology.vertex_count);
     out_.SetNumFaces(mesh.topology.face_count());
     for (uint32_t f = 0; f < mesh.topology.face_count(); ++f)
@@ -121,7 +121,7 @@ class Encoding {
 
  private:
   int add_at_vertices(const OutputAttribute& attribute) {
-    Array<Vec3f> values(mesh_.topology.vertex_count);
+    Buffer<Vec3f> values(mesh_.topology.vertex_count);
     std::memcpy(values.data(), attribute.values.bytes.data(), attribute.values.bytes.size());
     const int number = add_vertex_attribute(out_, draco_type(attribute.format.kind), values, points());
     out_.attribute(number)->set_unique_id(attribute.format.id);

@@ -10,7 +10,7 @@ namespace papilio::test {
 /// implementation that shares nothing with ours. (On open meshes it is no oracle: it uses ghost points at
 /// boundaries.)
 struct OracleResult {
-  Array<Vec3d> positions;
+  Buffer<Vec3d> positions;
   size_t faces = 0;
 };
 [[nodiscard]] OracleResult openmesh_butterfly(const TriangleMesh& mesh, size_t levels);

@@ -105,7 +105,7 @@ class Raster {
   uint32_t width_, height_;
   Vec3d forward_, right_, down_;
   double near_ = 0, scale_ = 0;
-  Array<Vec3d> lights_;
+  Buffer<Vec3d> lights_;
   std::vector<double> nearness_;
   std::vector<float> grey_;
 };
@@ -114,7 +114,7 @@ class Raster {
 
 Image render(const Mesh& mesh, const View& view, uint32_t samples) {
   Raster raster(view, samples);
-  const Array<Vec3f> normals = vertex_normals(mesh);
+  const Buffer<Vec3f> normals = vertex_normals(mesh);
   for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
     std::array<Corner, 3> corners{};
     std::array<Vec3d, 3> at_corners;

@@ -42,7 +42,8 @@ void punch_holes(TriangleMesh& mesh, std::mt19937& random, uint32_t times) {
     const Triangle t = mesh.triangles[f];
     if (taken[t[0]] || taken[t[1]] || taken[t[2]]) continue;
     for (uint32_t v : t) taken[v] = true;
-    mesh.triangles.erase(mesh.triangles.begin() + f);
+    std::copy(mesh.triangles.begin() + f + 1, mesh.triangles.end(), mesh.triangles.begin() + f);
+    mesh.triangles.pop_back();
   }
 }
 

@@ -9,8 +9,8 @@
 
 namespace papilio::test {
 
-[[nodiscard]] inline Array<Vec3d> in_double(const Mesh& mesh) {
-  Array<Vec3d> positions;
+[[nodiscard]] inline Buffer<Vec3d> in_double(const Mesh& mesh) {
+  Buffer<Vec3d> positions;
   positions.reserve(mesh.positions.size());
   for (Vec3f p : mesh.positions) positions.push_back(to_double(p));
   return positions;

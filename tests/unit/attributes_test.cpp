@@ -34,7 +34,7 @@ Mesh without_attributes(Mesh mesh) {
 
 uint32_t count_seams(const Mesh& mesh) {
   uint32_t seams = 0;
-  const Array<uint32_t>& point = mesh.attributes.point;
+  const Buffer<uint32_t>& point = mesh.attributes.point;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
     const uint32_t t = mesh.topology.twin[h];
     if (t == none || t < h) continue;

@@ -14,7 +14,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(ThresholdWithin, TakesTheLargestErrorsThatFit) {
-  const List<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
+  const Buffer<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
   EXPECT_EQ(threshold_within(edges, 0, 10, 19), 0);  // all fit: nine more faces
   EXPECT_EQ(threshold_within(edges, 2.5F, 10, 15), 2.5F);
   EXPECT_EQ(threshold_within(edges, 0, 10, 18), 2);
@@ -27,7 +27,7 @@ TEST(ThresholdWithin, TakesTheLargestErrorsThatFit) {
 }
 
 /// The same by sorting.
-float by_sorting(const List<WeighedEdge>& edges, float least, uint64_t faces, uint64_t budget) {
+float by_sorting(const Buffer<WeighedEdge>& edges, float least, uint64_t faces, uint64_t budget) {
   std::map<float, uint64_t, std::greater<>> faces_of;
   for (const WeighedEdge& e : edges)
     if (e.error >= least) faces_of[e.error] += e.faces;
@@ -44,7 +44,7 @@ TEST(ThresholdWithin, IsThatOfSortedErrors) {
   std::mt19937 random(7);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (int round = 0; round < 400; ++round) {
-    List<WeighedEdge> edges(random() % 200);
+    Buffer<WeighedEdge> edges(random() % 200);
     const float spread = std::uniform_real_distribution<float>(0, 30)(random);
     for (auto& [error, faces] : edges) {
       error = std::exp(std::uniform_real_distribution<float>(-spread, spread)(random));

@@ -35,7 +35,7 @@ TEST(Butterfly, RegularEdgeIsTheEightPointRule) {
     return std::nan("");
   };
   // From (3,3) to (4,3): apexes (4,4) and (3,2), wings across the four outer edges.
-  const Array<Vec3d> all = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
+  const Buffer<Vec3d> all = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
   const uint32_t along = [&] {
     for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
       const Vec3f a = mesh.positions[mesh.topology.origin[mesh.topology.half_edge[e]]];
@@ -67,7 +67,7 @@ TEST(Butterfly, PlanarMeshesOfAnyShapeStayPlanar) {
 TEST(Butterfly, LinearFunctionsOnRegularLayoutsAreReproduced) {
   const Mesh mesh = build_mesh(grid(5, 4));  // interior, boundary and corner rows, all on a lattice
   const SplitPlan plan = everything(mesh);
-  const Array<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), plan);
+  const Buffer<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), plan);
   for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
     const uint32_t h = mesh.topology.half_edge[e];
     const Vec3d a = to_double(mesh.positions[mesh.topology.origin[h]]);
@@ -84,7 +84,7 @@ TEST(Butterfly, LinearFunctionsOnRegularLayoutsAreReproduced) {
 TEST(Butterfly, BoundaryFollowsTheFourPointRule) {
   Mesh mesh = build_mesh(grid(6, 2));
   for (Vec3f& p : mesh.positions) p.z = p.y == 0 ? p.x * p.x : 100;  // the rim alone decides
-  const Array<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
+  const Buffer<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
   const uint32_t inner = edge_between(mesh, {2, 0, 4}, {3, 0, 9});
   EXPECT_NEAR(q[inner].z, 9.0 / 16 * (4 + 9) - 1.0 / 16 * (1 + 16), 1e-12);
 }
@@ -95,7 +95,7 @@ TEST(Butterfly, ExplicitWeightsAndHarmonicsAgree) {
     Mesh mesh = build_mesh(bipyramid(k));
     std::uniform_real_distribution<float> jitter(-0.3F, 0.3F);
     for (Vec3f& p : mesh.positions) p += Vec3f{jitter(random), jitter(random), jitter(random)};
-    const Array<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
+    const Buffer<Vec3d> q = butterfly<double>(mesh.topology, in_double(mesh), everything(mesh));
     const stencil::Interior apex = stencil::interior(k);
     const stencil::Interior rim = stencil::interior(4);
     Fan fan;
@@ -118,11 +118,11 @@ TEST(Butterfly, DoesNotDependOnWhatElseIsSplit) {
   for (uint32_t seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
     const Mesh mesh = build_mesh(random_manifold(random));
-    const Array<Vec3f> all = butterfly(mesh.topology, mesh.positions, everything(mesh));
+    const Buffer<Vec3f> all = butterfly(mesh.topology, mesh.positions, everything(mesh));
     EdgeMarks marks(mesh.topology.edge_count());
     for (uint8_t& mark : marks) mark = random() % 3 == 0 ? 1 : 0;
     const SplitPlan plan(marks);
-    const Array<Vec3f> some = butterfly(mesh.topology, mesh.positions, plan);
+    const Buffer<Vec3f> some = butterfly(mesh.topology, mesh.positions, plan);
     for (uint32_t e = 0; e < marks.size(); ++e)
       if (plan.is_split(e)) {
         ASSERT_EQ(some[plan.before[e]], all[e]) << seed;
@@ -137,16 +137,16 @@ TEST(Butterfly, DoesNotDependOnTheOrderOfFaces) {
     const auto vertices_of = [](const TriangleMesh& input) {
       Mesh mesh = build_mesh(input);
       const SplitPlan plan = everything(mesh);
-      const Array<Vec3f> made = butterfly(mesh.topology, mesh.positions, plan);
+      const Buffer<Vec3f> made = butterfly(mesh.topology, mesh.positions, plan);
       mesh = split_mesh(std::move(mesh), plan, made);
       std::sort(mesh.positions.begin(), mesh.positions.end(),
                 [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
       return mesh.positions;
     };
-    const Array<Vec3f> before = vertices_of(triangles);
+    const Buffer<Vec3f> before = vertices_of(triangles);
     std::shuffle(triangles.triangles.begin(), triangles.triangles.end(), random);
     for (Triangle& t : triangles.triangles) std::rotate(t.begin(), t.begin() + 1, t.end());
-    const Array<Vec3f> after = vertices_of(triangles);
+    const Buffer<Vec3f> after = vertices_of(triangles);
     ASSERT_EQ(before.size(), after.size());
     // Valences past `harmonic_valence` sum their ring from another start: equal but for rounding there.
     for (size_t v = 0; v < before.size(); ++v)
@@ -162,10 +162,10 @@ TEST(Butterfly, PinchedVertexActsAsOneVertexAFan) {
   two.positions[5] = two.positions[0];  // (-1,-1,1)+(2,2,2) = (1,1,3); welded to (1,1,1) instead
   const Mesh mesh = build_mesh(two);
   ASSERT_EQ(mesh.topology.vertex_count, 7U);
-  const Array<Vec3f> together = butterfly(mesh.topology, mesh.positions, everything(mesh));
+  const Buffer<Vec3f> together = butterfly(mesh.topology, mesh.positions, everything(mesh));
   TriangleMesh second = one;
   for (size_t v = 0; v < 4; ++v) second.positions[v] = two.positions[4 + v];
-  Array<Vec3f> alone;
+  Buffer<Vec3f> alone;
   for (const TriangleMesh& part : {one, second}) {
     const Mesh built = build_mesh(part);
     for (Vec3f q : butterfly(built.topology, built.positions, everything(built))) alone.push_back(q);

@@ -22,10 +22,10 @@ namespace {
 /// A mesh whose edges all are tried, with their new vertices.
 struct Tried {
   Mesh mesh;
-  Array<Vec3f> made;
+  Buffer<Vec3f> made;
   SplitPlan plan{EdgeMarks(mesh.topology.edge_count(), 1)};
-  Array<Vec3f> normals = face_normals(mesh);
-  Array<float> rooms = rooms_at_sides(mesh, nullptr, 1);
+  Buffer<Vec3f> normals = face_normals(mesh);
+  Buffer<float> rooms = rooms_at_sides(mesh, nullptr, 1);
 
   [[nodiscard]] std::vector<DeviationRange> ranges(const std::vector<uint32_t>& edges) const {
     constexpr size_t at_once = DeviationBounds::most_at_once;
@@ -81,7 +81,7 @@ Tried pairs(std::mt19937& random, float flat, float size, float far) {
     triangles.triangles.push_back({4 * i + 1, 4 * i, 4 * i + 3});
   }
   Mesh mesh = build_mesh(triangles);
-  Array<Vec3f> made(mesh.topology.edge_count());
+  Buffer<Vec3f> made(mesh.topology.edge_count());
   for (uint32_t e = 0; e < made.size(); ++e) {
     const auto middle = to_float(midpoint(mesh, e));
     made[e] = middle + somewhere(size * std::pow(10.0F, 3 * uniform(random) - 3.5F));
@@ -107,7 +107,7 @@ TEST(DeviationRange, IsMostlyNextToNothing) {
   EXPECT_GT(any.count_narrow(1e-4), any.made.size() / 20);
   for (const float size : {1e-5F, 1.0F, 1e5F}) {
     Mesh mesh = build_mesh(test::torus(20, 12, size, 0.4F * size));
-    Array<Vec3f> made =
+    Buffer<Vec3f> made =
         butterfly(mesh.topology, mesh.positions, SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1)), 0.0F);
     const Tried torus{std::move(mesh), std::move(made)};
     expect_ranges_hold(torus);
@@ -133,7 +133,7 @@ TEST(DeviationRange, IsTheSameAmongHoweverManyEdges) {
 TEST(RoomsAtSides, AreHowFarTheOtherSidesAreFromAMiddle) {
   const Mesh mesh =
       build_mesh({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 3, 1}, {0, 0, 1e-6F}}, {{0, 1, 2}, {2, 1, 3}, {0, 2, 4}}});
-  const Array<float> rooms = rooms_at_sides(mesh, nullptr, 1);
+  const Buffer<float> rooms = rooms_at_sides(mesh, nullptr, 1);
   ASSERT_EQ(rooms.size(), 3U);
   EXPECT_LE(rooms[0], std::sqrt(0.5F));
   EXPECT_GE(rooms[0], 0.98F * std::sqrt(0.5F));
@@ -143,12 +143,12 @@ TEST(RoomsAtSides, AreHowFarTheOtherSidesAreFromAMiddle) {
 
 TEST(RoomsAtSides, AreOfWhatIsAskedFor) {
   const Mesh mesh = build_mesh(test::torus(16, 10));
-  const Array<float> all = rooms_at_sides(mesh, nullptr, 1);
-  List<uint32_t> fours;
+  const Buffer<float> all = rooms_at_sides(mesh, nullptr, 1);
+  Buffer<uint32_t> fours;
   for (uint32_t i = 0; i + 1 < all.size() / 4; ++i)
     if (i != 1) fours.push_back(i);
   for (const int threads : {1, 2}) {
-    const Array<float> some = rooms_at_sides(mesh, &fours, threads);
+    const Buffer<float> some = rooms_at_sides(mesh, &fours, threads);
     ASSERT_EQ(some.size(), all.size());
     for (uint32_t i : fours)
       for (uint32_t f = 4 * i; f < 4 * i + 4; ++f) EXPECT_EQ(some[f], all[f]) << f;

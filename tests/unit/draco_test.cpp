@@ -29,7 +29,7 @@ Code code_of(std::string_view bytes, const Limits& limits = {}) {
   return Code::internal;
 }
 
-Array<Vec3f> sorted(Array<Vec3f> positions) {
+Buffer<Vec3f> sorted(Buffer<Vec3f> positions) {
   std::ranges::sort(positions, [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   return positions;
 }
@@ -127,9 +127,9 @@ TEST(DracoWriter, DecodesToTheSameMeshWithinHalfAGridStep) {
 TEST(DracoWriter, VerticesStayPutFromLevelToLevel) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   const QuantizationBox box = quantization_box(coarse.positions);
-  const Array<Vec3f> first = sorted(read_draco(write_draco(coarse, box, {}), {}).positions);
+  const Buffer<Vec3f> first = sorted(read_draco(write_draco(coarse, box, {}), {}).positions);
   const Result fine = refine(coarse, {.levels = 2});
-  const Array<Vec3f> second = sorted(read_draco(write_draco(fine.mesh, box, {}), {}).positions);
+  const Buffer<Vec3f> second = sorted(read_draco(write_draco(fine.mesh, box, {}), {}).positions);
   EXPECT_TRUE(std::ranges::includes(
       second, first, [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }));
 }

@@ -156,7 +156,8 @@ TriangleMesh with_attributes(const TriangleMesh& mesh, uint32_t charts, std::mt1
   const MeshFormat format = every_format();
   for (const Triangle& t : mesh.triangles) {
     const uint32_t chart = random() % charts;
-    Triangle& face = out.triangles.emplace_back();
+    out.triangles.push_back({});
+    Triangle& face = out.triangles.back();
     for (uint32_t i = 0; i < 3; ++i) {
       face[i] = static_cast<uint32_t>(out.positions.size());
       out.positions.push_back(mesh.positions[t[i]]);

@@ -44,8 +44,8 @@ std::vector<std::shared_ptr<HierarchyLevel>> ring_levels(std::mt19937& random) {
   return levels;
 }
 
-List<uint8_t> random_faces(const Topology& mesh, std::mt19937& random) {
-  List<uint8_t> red(mesh.face_count());
+Buffer<uint8_t> random_faces(const Topology& mesh, std::mt19937& random) {
+  Buffer<uint8_t> red(mesh.face_count());
   for (uint8_t& is_red : red) is_red = random() % 3 == 0 ? 1 : 0;
   red[random() % red.size()] = 1;
   return red;
@@ -54,7 +54,7 @@ List<uint8_t> random_faces(const Topology& mesh, std::mt19937& random) {
 /// The last level beside all of that level, whose numbers are other ones.
 class SomeOfAll {
  public:
-  SomeOfAll(const Topology& above, const List<uint8_t>& red, const Part& part, const HierarchyLevel& last)
+  SomeOfAll(const Topology& above, const Buffer<uint8_t>& red, const Part& part, const HierarchyLevel& last)
       : red_(red), part_(part), last_(last), inner_edges_of_all_(2 * above.edge_count()) {}
 
   /// Where these are in the whole level.
@@ -69,7 +69,7 @@ class SomeOfAll {
   [[nodiscard]] bool is_left_out(uint32_t h_of_all) const { return red_[h_of_all / 12] == 0; }
 
  private:
-  const List<uint8_t>& red_;
+  const Buffer<uint8_t>& red_;
   const Part& part_;
   const HierarchyLevel& last_;
   uint32_t inner_edges_of_all_;
@@ -79,8 +79,8 @@ TEST(LastLevel, HasWhatTheWholeLevelHas) {
   std::mt19937 random(1);
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
-      const List<uint8_t> red = random_faces(above->mesh.topology, random);
-      const HierarchyLevel whole = refine_level(*above, List<uint8_t>(red.size(), 1)).level;
+      const Buffer<uint8_t> red = random_faces(above->mesh.topology, random);
+      const HierarchyLevel whole = refine_level(*above, Buffer<uint8_t>(red.size(), 1)).level;
       ASSERT_TRUE(whole.is_whole);
       const Part part(above->mesh.topology, red);
       const HierarchyLevel last = refine_last_level(*above, red, part);
@@ -128,8 +128,8 @@ TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
       const Topology& mesh = above->mesh.topology;
-      const List<uint8_t> red = random_faces(mesh, random);
-      const HierarchyLevel whole = refine_level(*above, List<uint8_t>(red.size(), 1)).level;
+      const Buffer<uint8_t> red = random_faces(mesh, random);
+      const HierarchyLevel whole = refine_level(*above, Buffer<uint8_t>(red.size(), 1)).level;
       const Part part(mesh, red);
       const HierarchyLevel last = refine_last_level(*above, red, part);
       const SomeOfAll of_all(mesh, red, part, last);
@@ -142,7 +142,7 @@ TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
         ++between;
         ASSERT_EQ(some.at(topology.edge[h]), all.at(of_all.edge(topology.edge[h])));
       }
-      Array<Vec3f> points{above->box.min, above->box.max};
+      Buffer<Vec3f> points{above->box.min, above->box.max};
       for (uint32_t f : last.parent)
         for (uint32_t i = 0; f != none && i < 3; ++i) points.push_back(above->trial.made[mesh.edge[3 * f + i]]);
       const Box box = bounding_box(points);
@@ -156,7 +156,7 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
   std::mt19937 random(2);
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
-      const List<uint8_t> red = random_faces(above->mesh.topology, random);
+      const Buffer<uint8_t> red = random_faces(above->mesh.topology, random);
       LevelChoice choice = choose_coarsest(above);
       EXPECT_FALSE(choice.region.is_in_fours);
       mark_red(choice, marked(red));
@@ -188,19 +188,19 @@ TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
   size_t flat = 0;
   for (int round = 0; round < 12; ++round)
     for (const auto& above : ring_levels(random)) {
-      const List<uint8_t> red = random_faces(above->mesh.topology, random);
+      const Buffer<uint8_t> red = random_faces(above->mesh.topology, random);
       LevelChoice choice = choose_coarsest(above);
       mark_red(choice, marked(red));
       const auto level = std::make_shared<HierarchyLevel>(refine_level(*above, red).level);
       Topology& topology = level->mesh.topology;
       choice = choose_below(choice, level);
       Region& region = choice.region;
-      const List<uint32_t> edges = region.edges();
+      const Buffer<uint32_t> edges = region.edges();
       EXPECT_FALSE(region.has_curves);
       const bool has_creases = round % 2 == 1;
       if (has_creases)
         for (int i = 0; i < 5; ++i) topology.kind[edges[random() % edges.size()]] = EdgeKind::crease;
-      Array<Vec3f> normals = face_normals(level->mesh);
+      Buffer<Vec3f> normals = face_normals(level->mesh);
       for (int i = 0; i < 5; ++i) normals[random() % normals.size()] = {};
       const NormalProducts kept(topology.edge_count(), std::numeric_limits<float>::infinity());
       const auto find = [&](bool in_fours, bool has_curves, Growth growth, const NormalProducts& products) {
@@ -231,7 +231,7 @@ TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
 
 /// Where errors do not decide, what one level more adds lies behind what was there.
 void expect_more_of_the_same(const Mesh& coarse, Options options) {
-  Array<Vec3f> above;
+  Buffer<Vec3f> above;
   for (options.levels = 1; options.levels <= 3; ++options.levels) {
     const Mesh mesh = refine(coarse, options).mesh;
     ASSERT_GE(mesh.positions.size(), above.size());

@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 
 /// This share of the faces, from one side of the mesh.
-List<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
+Buffer<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
   const Topology& topology = mesh.topology;
   std::vector<double> height(topology.face_count());
   for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
@@ -26,14 +26,14 @@ List<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
   std::vector<double> sorted = height;
   std::ranges::sort(sorted);
   const double least = sorted[static_cast<size_t>((1 - share) * static_cast<double>(sorted.size() - 1))];
-  List<uint8_t> red(height.size());
+  Buffer<uint8_t> red(height.size());
   for (size_t f = 0; f < red.size(); ++f) red[f] = height[f] >= least ? 1 : 0;
   return red;
 }
 
 /// The children of red faces, of which either level may hold others too. `in_all`: which face of the level above those
 /// are where all are held.
-void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const List<uint8_t>& red,
+void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const Buffer<uint8_t>& red,
                   const std::vector<uint32_t>& in_all) {
   const Topology& topology = some.mesh.topology;
   std::vector<uint8_t> red_in_all(all.mesh.topology.face_count() / 4);
@@ -64,11 +64,11 @@ std::vector<uint32_t> places_in_all(const HierarchyLevel& some, const HierarchyL
 }
 
 /// Some of the faces that a request may want divided in their turn: they and those beside them are below red ones.
-List<uint8_t> some_below(const HierarchyLevel& level, const List<uint8_t>& red, std::mt19937& random) {
+Buffer<uint8_t> some_below(const HierarchyLevel& level, const Buffer<uint8_t>& red, std::mt19937& random) {
   const Topology& topology = level.mesh.topology;
   const uint32_t density = 1 + random() % 3;
   const auto is_below_red = [&](uint32_t f) { return red[level.parent_of(f)] != 0; };
-  List<uint8_t> below(topology.face_count(), 0);
+  Buffer<uint8_t> below(topology.face_count(), 0);
   for (uint32_t f = 0; f < below.size(); ++f) {
     bool may_be = is_below_red(f) && random() % density == 0;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
@@ -86,15 +86,15 @@ void compare(const Mesh& coarse, const Options& options, std::mt19937& random, C
   const Hooks hooks;
   const Progress progress(options, hooks);
   Levels all(coarse, options, progress);
-  all.deepen(List<uint8_t>(coarse.topology.face_count(), 1));
+  all.deepen(Buffer<uint8_t>(coarse.topology.face_count(), 1));
   const std::shared_ptr<const HierarchyLevel> all_of_first = all.deepest();
-  if (options.levels > 2) all.deepen(List<uint8_t>(all_of_first->mesh.topology.face_count(), 1));
+  if (options.levels > 2) all.deepen(Buffer<uint8_t>(all_of_first->mesh.topology.face_count(), 1));
   std::vector<uint32_t> in_all(coarse.topology.face_count());
   std::iota(in_all.begin(), in_all.end(), 0U);
   std::uniform_real_distribution<double> coordinate(-1, 1);
   for (double share : {0.05, 0.2, 0.4, 0.5, 0.6, 0.7, 0.95}) {
     const Vec3d direction{coordinate(random), coordinate(random), coordinate(random)};
-    const List<uint8_t> red = side_of(coarse, share, direction);
+    const Buffer<uint8_t> red = side_of(coarse, share, direction);
     Levels some(coarse, options, progress);
     some.deepen(red);
     SCOPED_TRACE(std::to_string(share) + " of " + std::to_string(options.levels) + " levels");
@@ -102,7 +102,7 @@ void compare(const Mesh& coarse, const Options& options, std::mt19937& random, C
     expect_alike(*first, *all_of_first, red, in_all);
     ++(first->is_whole ? count.whole : count.part);
     if (options.levels <= 2) continue;
-    const List<uint8_t> red_below = some_below(*first, red, random);
+    const Buffer<uint8_t> red_below = some_below(*first, red, random);
     if (std::ranges::find(red_below, 1) == red_below.end()) continue;
     some.deepen(red_below);
     expect_alike(*some.deepest(), *all.deepest(), red_below, places_in_all(*first, *all_of_first));

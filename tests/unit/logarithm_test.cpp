@@ -9,7 +9,7 @@
 
 // Against the standard library's long double.
 
-namespace papilio {
+namespace papilio::proto::edgebreaker {
 namespace {
 
 using test::error_in_units;
@@ -26,4 +26,4 @@ TEST(Logarithm, IsWithinThreeUnitsInTheLastPlace) {
 }
 
 }  // namespace
-}  // namespace papilio
+}  // namespace papilio::proto::edgebreaker

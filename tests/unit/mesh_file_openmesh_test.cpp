@@ -35,7 +35,7 @@ TriangleMesh with_smallest_first(TriangleMesh mesh) {
 }
 
 /// The triangles of a soup, by the number of each corner's position in `positions`.
-TriangleMesh welded(const TriangleMesh& apart, const Array<Vec3f>& positions) {
+TriangleMesh welded(const TriangleMesh& apart, const Buffer<Vec3f>& positions) {
   TriangleMesh mesh{positions, apart.triangles};
   for (Triangle& triangle : mesh.triangles)
     for (uint32_t& vertex : triangle)

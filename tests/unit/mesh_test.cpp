@@ -68,7 +68,7 @@ TEST(Mesh, WeldsPointsOfEqualPosition) {
 
 TEST(Mesh, KeepsFaceOrderAndNumbersVerticesAsFacesNameThem) {
   const Mesh mesh = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{3, 2, 1}, {0, 1, 2}}});
-  EXPECT_EQ(mesh.topology.origin, (Array<uint32_t>{0, 1, 2, 3, 2, 1}));
+  EXPECT_EQ(mesh.topology.origin, (Buffer<uint32_t>{0, 1, 2, 3, 2, 1}));
   EXPECT_EQ(mesh.positions[0], (Vec3f{1, 1, 0}));
 }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "core/simd/float4.h"
+#include "core/simd/dispatch.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {
@@ -36,7 +36,7 @@ TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
   size_t without = 0;
   for (const Mesh& mesh : meshes())
     for (const int threads : {1, 2}) {
-      const Array<Vec3f> normals = face_normals(mesh, threads);
+      const Buffer<Vec3f> normals = face_normals(mesh, threads);
       ASSERT_EQ(normals.size(), mesh.topology.face_count());
       for (uint32_t f = 0; f < normals.size(); ++f) {
         ASSERT_TRUE(are_same_bits(normals[f], face_normal(mesh, f))) << f;
@@ -48,10 +48,10 @@ TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
 
 TEST(FaceNormals, AreTheSameWithoutAvx2) {
   for (const Mesh& mesh : meshes()) {
-    const Array<Vec3f> with = face_normals(mesh);
-    may_use_avx2 = false;
-    const Array<Vec3f> without = face_normals(mesh);
-    may_use_avx2 = true;
+    const Buffer<Vec3f> with = face_normals(mesh);
+    allow_avx2(false);
+    const Buffer<Vec3f> without = face_normals(mesh);
+    allow_avx2(true);
     for (uint32_t f = 0; f < with.size(); ++f) ASSERT_TRUE(are_same_bits(with[f], without[f])) << f;
   }
 }
@@ -59,10 +59,10 @@ TEST(FaceNormals, AreTheSameWithoutAvx2) {
 TEST(FaceNormals, OfFoursAreThoseAskedOf) {
   std::mt19937 random(6);
   const Mesh mesh = build_mesh(torus(16, 8));
-  List<uint32_t> fours;
+  Buffer<uint32_t> fours;
   for (uint32_t i = 0; i < mesh.topology.face_count() / 4; ++i)
     if (random() % 2 == 0) fours.push_back(i);
-  const Array<Vec3f> normals = normals_of_fours(mesh, fours, 2);
+  const Buffer<Vec3f> normals = normals_of_fours(mesh, fours, 2);
   ASSERT_EQ(normals.size(), mesh.topology.face_count());
   for (uint32_t i : fours)
     for (uint32_t f = 4 * i; f < 4 * i + 4; ++f) EXPECT_TRUE(are_same_bits(normals[f], face_normal(mesh, f))) << f;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/trigonometry.h"
-#include "core/simd/float4.h"
+#include "core/simd/dispatch.h"
 #include "papilio/algorithm_version.h"
 #include "papilio/refine.h"
 #include "proto/draco_writer.h"
@@ -233,9 +233,9 @@ void expect_recorded_core_results() {
 TEST(RecordedResults, OfTheCoreChangeOnlyWithTheAlgorithmVersion) { expect_recorded_core_results(); }
 
 TEST(RecordedResults, OfTheCoreAreTheSameWithoutAvx2) {
-  may_use_avx2 = false;
+  allow_avx2(false);
   expect_recorded_core_results();
-  may_use_avx2 = true;
+  allow_avx2(true);
 }
 
 TEST(RecordedResults, EncodedChangeOnlyWithTheEncodingVersion) {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <tuple>
 
-#include "core/simd/float4.h"
+#include "core/simd/dispatch.h"
 #include "papilio/refine.h"
 #include "server/samples/models.h"
 #include "tests/support/invariants.h"
@@ -67,7 +67,7 @@ TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
 /// The positions of the first mesh that the second has too, looked up by bits.
 size_t count_common(const Mesh& a, const Mesh& b) {
   const auto less = [](Vec3f p, Vec3f q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
-  Array<Vec3f> sorted = b.positions;
+  Buffer<Vec3f> sorted = b.positions;
   std::ranges::sort(sorted, less);
   return static_cast<size_t>(
       std::ranges::count_if(a.positions, [&](Vec3f p) { return std::ranges::binary_search(sorted, p, less); }));
@@ -115,10 +115,10 @@ TEST(RedGreen, ThreadsGiveTheSameBits) {
 /// Has what runs meanwhile do without the widest instructions.
 class WithoutAvx2 {
  public:
-  WithoutAvx2() { may_use_avx2 = false; }
+  WithoutAvx2() { allow_avx2(false); }
   WithoutAvx2(const WithoutAvx2&) = delete;
   WithoutAvx2& operator=(const WithoutAvx2&) = delete;
-  ~WithoutAvx2() { may_use_avx2 = true; }
+  ~WithoutAvx2() { allow_avx2(true); }
 };
 
 TEST(RedGreen, IsTheSameWithWhatEveryMachineHas) {

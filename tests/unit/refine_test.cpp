@@ -29,7 +29,7 @@ Fault fault_of(const TriangleMesh& mesh, const Options& options, const Hooks& ho
 
 /// Largest distance from a point of `a` to its nearest of `b`, through a grid of cells of size `cell`;
 /// infinite beyond it.
-double one_sided_distance(const Array<Vec3d>& a, const Array<Vec3d>& b, double cell) {
+double one_sided_distance(const Buffer<Vec3d>& a, const Buffer<Vec3d>& b, double cell) {
   using Cell = std::array<int64_t, 3>;
   const auto cell_of = [&](Vec3d p) {
     return Cell{std::llround(p.x / cell), std::llround(p.y / cell), std::llround(p.z / cell)};
@@ -58,7 +58,7 @@ void expect_equal_to_openmesh(const TriangleMesh& mesh, int most_levels) {
     const OracleResult theirs = openmesh_butterfly(mesh, static_cast<size_t>(level));
     ASSERT_EQ(ours.mesh.topology.face_count(), theirs.faces);
     ASSERT_EQ(ours.mesh.positions.size(), theirs.positions.size());
-    Array<Vec3d> positions;
+    Buffer<Vec3d> positions;
     for (Vec3f p : ours.mesh.positions) positions.push_back(to_double(p));
     EXPECT_LE(one_sided_distance(positions, theirs.positions, 1e-4 * diagonal), 1e-6 * diagonal) << level;
     EXPECT_LE(one_sided_distance(theirs.positions, positions, 1e-4 * diagonal), 1e-6 * diagonal) << level;

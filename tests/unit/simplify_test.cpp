@@ -86,9 +86,9 @@ size_t faces_without_normal(const Mesh& mesh) {
 /// Faces whose normal is against that of the surface before at each of their corners.
 size_t flipped_faces(const Mesh& before, const Mesh& after) {
   std::map<Place, Vec3f> surface;
-  const Array<Vec3f> vertex = vertex_normals(before);
+  const Buffer<Vec3f> vertex = vertex_normals(before);
   for (size_t v = 0; v < vertex.size(); ++v) surface[place(before.positions[v])] = vertex[v];
-  const Array<Vec3f> normals = face_normals(after);
+  const Buffer<Vec3f> normals = face_normals(after);
   size_t flipped = 0;
   for (uint32_t f = 0; f < normals.size(); ++f) {
     bool against = true;
@@ -239,7 +239,7 @@ TEST(SimplifyHidden, PinchedVertexStays) {
     const Vec3f above = shape.positions[p];
     shape.positions.push_back({above.x, above.y, -1});
   }
-  const Array<Triangle> upper = shape.triangles;
+  const Buffer<Triangle> upper = shape.triangles;
   const auto below = [&](uint32_t p) { return p == 0 ? 0 : p + ring; };
   for (const Triangle& t : upper) shape.triangles.push_back({below(t[0]), below(t[2]), below(t[1])});
   const Mesh mesh = build_mesh(shape);
@@ -419,7 +419,7 @@ TEST(HiddenFaces, AreThoseAwayOrOutside) {
   View view = looking_at(mesh, {0, 0, 1}, 4);
   const std::vector<bool> hidden = hidden_from(mesh, view);
   EXPECT_EQ(count(hidden), 10U);
-  const Array<Vec3f> normals = face_normals(mesh);
+  const Buffer<Vec3f> normals = face_normals(mesh);
   for (uint32_t f = 0; f < hidden.size(); ++f) EXPECT_EQ(hidden[f], normals[f].z < 0.5F);
   const Mesh flat = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
   EXPECT_EQ(count(hidden_from(flat, looking_at(flat, {0, 0, 1}, 2))), 0U);  // no normal: never away

@@ -73,7 +73,7 @@ TEST(Symbols, NoneTakeNoBytes) { EXPECT_EQ(by_us({}, 3, 7), ""); }
 
 TEST(Symbols, OfSeveralListsAreThoseOfOneAfterTheOther) {
   std::mt19937 random(5);
-  std::vector<List<uint32_t>> lists;
+  std::vector<Buffer<uint32_t>> lists;
   std::string expected;
   for (const size_t count : {0, 700, 20, 0, 3000, 3000, 1}) {
     const std::vector<uint32_t> symbols = random_symbols(count, 3, random);

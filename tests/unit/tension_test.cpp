@@ -23,7 +23,7 @@ struct Ends {
   [[nodiscard]] double size() const { return length(b - a); }
 };
 
-Ends ends_of(const Mesh& mesh, uint32_t edge, const Array<Vec3d>& positions) {
+Ends ends_of(const Mesh& mesh, uint32_t edge, const Buffer<Vec3d>& positions) {
   const uint32_t h = mesh.topology.half_edge[edge];
   return {positions[mesh.topology.origin[h]], positions[mesh.topology.tip(h)]};
 }
@@ -89,7 +89,7 @@ TEST(Tension, TetrahedronStaysFlat) {
   // Its exterior angles are 109 degrees: every factor is 0, and every vertex a midpoint.
   const Mesh coarse = build_mesh(tetrahedron());
   const TensionField field = tension_field(coarse.topology, face_normals(coarse), Tension::soft);
-  const Array<Vec3d> positions = in_double(coarse);
+  const Buffer<Vec3d> positions = in_double(coarse);
   const auto made = butterfly<double>(coarse.topology, positions, everything(coarse), 0, &field);
   for (uint32_t e = 0; e < made.size(); ++e) EXPECT_LE(length(made[e] - ends_of(coarse, e, positions).middle()), 1e-15);
 }
@@ -97,8 +97,8 @@ TEST(Tension, TetrahedronStaysFlat) {
 /// Calls `check(edge, plain, tensed)` for each edge inside the surface that the bound leaves alone, every factor
 /// being 1.
 template <class Check>
-void with_all_factors_one(const Mesh& mesh, const Array<Vec3d>& positions, const Check& check) {
-  const TensionField ones{.factor = List<float>(mesh.topology.edge_count(), 1)};
+void with_all_factors_one(const Mesh& mesh, const Buffer<Vec3d>& positions, const Check& check) {
+  const TensionField ones{.factor = Buffer<float>(mesh.topology.edge_count(), 1)};
   const auto plain = butterfly<double>(mesh.topology, positions, everything(mesh));
   const auto tensed = butterfly<double>(mesh.topology, positions, everything(mesh), 0, &ones);
   for (uint32_t e = 0; e < plain.size(); ++e) {
@@ -130,8 +130,8 @@ TEST(Tension, IrregularVerticesAmongWholeHingesHaveThePlainBits) {
   const TensionField field = tension_field(mesh.topology, face_normals(mesh), Tension::soft);
   ASSERT_TRUE(std::ranges::all_of(field.factor, [](float factor) { return factor == 1; }));
   const SplitPlan plan = everything(mesh);
-  const Array<Vec3f> plain = butterfly(mesh.topology, mesh.positions, plan);
-  const Array<Vec3f> tensed = butterfly(mesh.topology, mesh.positions, plan, 0.0F, &field);
+  const Buffer<Vec3f> plain = butterfly(mesh.topology, mesh.positions, plan);
+  const Buffer<Vec3f> tensed = butterfly(mesh.topology, mesh.positions, plan, 0.0F, &field);
   int spokes = 0;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
     if (mesh.topology.origin[h] >= 12) continue;  // the icosahedron's vertices, of valence 5
@@ -148,8 +148,8 @@ TEST(Tension, IsAffineInvariantForGivenFactors) {
   const auto map = [](Vec3d p) {
     return Vec3d{1.5 * p.x + 0.25 * p.y - 0.5 * p.z + 3, 0.75 * p.y + 0.125 * p.x - 1, 1.25 * p.z + 0.5 * p.x};
   };
-  const Array<Vec3d> before = in_double(mesh);
-  Array<Vec3d> after = before;
+  const Buffer<Vec3d> before = in_double(mesh);
+  Buffer<Vec3d> after = before;
   std::ranges::transform(after, after.begin(), map);
   const auto q_before = butterfly<double>(mesh.topology, before, everything(mesh), 0, &field);
   const auto q_after = butterfly<double>(mesh.topology, after, everything(mesh), 0, &field);
@@ -170,7 +170,7 @@ TEST(Tension, NothingGoesFurtherThanTheBound) {
   for (uint32_t seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     const Mesh mesh = build_mesh(random_manifold(random));
-    const Array<Vec3d> positions = in_double(mesh);
+    const Buffer<Vec3d> positions = in_double(mesh);
     for (Tension tension : {Tension::soft, Tension::sharp}) {
       const TensionField field = tension_field(mesh.topology, face_normals(mesh), tension);
       const auto made = butterfly<double>(mesh.topology, positions, everything(mesh), 1.0 / 64, &field);

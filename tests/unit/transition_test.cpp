@@ -20,7 +20,7 @@ namespace {
 using namespace test;
 
 /// A level whose new vertices are `made` [E]; kept or made for once.
-std::shared_ptr<HierarchyLevel> level_of(const Mesh& mesh, const Array<Vec3f>& made, bool is_kept) {
+std::shared_ptr<HierarchyLevel> level_of(const Mesh& mesh, const Buffer<Vec3f>& made, bool is_kept) {
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(mesh));
   level->trial.made = made;
   if (is_kept) level->trial.keep_more(level->mesh.topology);
@@ -38,7 +38,7 @@ struct Count {
 };
 
 /// Splits random edges, and compares what becomes of the faces in part split.
-void compare(const Mesh& mesh, const Array<Vec3f>& made, double most_cosine, std::mt19937& random, Count& count) {
+void compare(const Mesh& mesh, const Buffer<Vec3f>& made, double most_cosine, std::mt19937& random, Count& count) {
   std::vector<uint32_t> edges;
   for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e)
     if (random() % 2 == 0) edges.push_back(e);
@@ -60,8 +60,8 @@ void compare(const Mesh& mesh, const Array<Vec3f>& made, double most_cosine, std
   count.divided += choice.split_edges.size() - edges.size();
 }
 
-Array<Vec3f> middles(const Mesh& mesh) {
-  Array<Vec3f> made(mesh.topology.edge_count());
+Buffer<Vec3f> middles(const Mesh& mesh) {
+  Buffer<Vec3f> made(mesh.topology.edge_count());
   for (uint32_t e = 0; e < made.size(); ++e) made[e] = to_float(midpoint(mesh, e));
   return made;
 }
@@ -78,7 +78,7 @@ TEST(Transitions, AreTheSameJudgedFourAtATime) {
     for (Vec3f& p : triangles.positions) p = {size * p.x + far, size * stretch * p.y, size * stretch * p.z};
     const Mesh mesh = build_mesh(triangles);
     std::normal_distribution<float> shift(0, 0.1F * size);
-    Array<Vec3f> made = middles(mesh);
+    Buffer<Vec3f> made = middles(mesh);
     for (Vec3f& p : made) p += Vec3f{shift(random), stretch * shift(random), stretch * shift(random)};
     const double smallest = std::uniform_real_distribution<double>(0.001, 0.6)(random);
     compare(mesh, made, most_cosine_beside(smallest), random, count);

@@ -81,7 +81,7 @@ TEST(SplitInFour, IsTheSplitOfEverything) {
   for (Mesh& mesh : shaken_meshes())
     for (int level = 0; level < 3; ++level) {
       const SplitPlan plan = everything(mesh);
-      Array<Vec3f> positions = mesh.positions;
+      Buffer<Vec3f> positions = mesh.positions;
       positions.resize(positions.size() + plan.count(), Vec3f{});
       const Topology expected = split(mesh.topology, plan, positions, mesh.attributes);
       const Topology made = split_in_four(mesh.topology);
@@ -141,7 +141,7 @@ TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
         std::optional<TensionField> field;
         if (tension != Tension::off) field = tension_field(level.topology, face_normals(level), tension);
         const TensionField* const used = field ? &*field : nullptr;
-        const Array<Vec3f> expected = butterfly(level.topology, level.positions, everything(level), 0.0F, used);
+        const Buffer<Vec3f> expected = butterfly(level.topology, level.positions, everything(level), 0.0F, used);
         const uint32_t vertices = level.topology.vertex_count;
         level.positions.resize(vertices + expected.size());
         uniform_butterfly(level.topology, features, level.positions.data(), &level.positions[vertices], used);
@@ -177,9 +177,9 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAbove) {
     for (int k = 1; k < 3; ++k) {
       const Topology& topology = level.mesh.topology;
       const Vec3f* positions = level.mesh.positions.data();
-      Array<Vec3f> expected(topology.edge_count());
+      Buffer<Vec3f> expected(topology.edge_count());
       uniform_butterfly(topology, level.features, positions, expected.data());
-      Array<Vec3f> made(topology.edge_count(), Vec3f{});
+      Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
       uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data());
       EXPECT_EQ(made, expected);
       if (level.features.are_rings()) {
@@ -201,12 +201,12 @@ TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
     const WholeLevel level = next_level(mesh, find_features(mesh.topology));
     const Topology& topology = level.mesh.topology;
     const Vec3f* positions = level.mesh.positions.data();
-    Array<Vec3f> expected(topology.edge_count());
+    Buffer<Vec3f> expected(topology.edge_count());
     uniform_butterfly(topology, level.features, positions, expected.data());
-    List<uint8_t> is_asked_of(mesh.topology.face_count());
+    Buffer<uint8_t> is_asked_of(mesh.topology.face_count());
     for (uint8_t& is_asked : is_asked_of) is_asked = random() % 4 != 0 ? 1 : 0;
-    const List<uint32_t> asked_of = marked(is_asked_of);
-    Array<Vec3f> made(topology.edge_count(), Vec3f{});
+    const Buffer<uint32_t> asked_of = marked(is_asked_of);
+    Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
     uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data(), 1, &asked_of);
     EdgeMarks is_asked(topology.edge_count(), 1);
     for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
@@ -228,7 +228,7 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
     HierarchyLevel level = coarsest_level(mesh);
     for (int k = 1; k < 4; ++k) {
       level.trial = try_split(level.mesh, options, complete_edges(level));
-      List<uint8_t> red(level.mesh.topology.face_count());
+      Buffer<uint8_t> red(level.mesh.topology.face_count());
       for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent_of(f)] != 0;
       for (uint8_t& is_red : red) is_red &= random() % 16 == 0 ? 1 : 0;
       LevelBelow below = refine_level(level, red);
@@ -238,9 +238,9 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
       for (uint32_t h : level.features.curve_half_edges)
         ASSERT_NE(topology.kind[topology.edge[h]], EdgeKind::cut);  // a crease of which one face is held
       const Vec3f* positions = level.mesh.positions.data();
-      Array<Vec3f> expected(topology.edge_count());
+      Buffer<Vec3f> expected(topology.edge_count());
       uniform_butterfly(topology, level.features, positions, expected.data());
-      Array<Vec3f> made(topology.edge_count(), Vec3f{});
+      Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
       uniform_butterfly_below(below.parents, &topology, level.features, positions, made.data());
       const EdgeMarks are_complete = complete_edges(level);
       for (uint32_t e = 0; e < made.size(); ++e) {
@@ -261,10 +261,10 @@ TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
         EdgeMarks marks(mesh.topology.edge_count());
         for (uint8_t& mark : marks) mark = random() % one_in == 0 ? 1 : 0;
         const SplitPlan plan(marks);
-        const Array<Vec3f> normals = face_normals(mesh);
+        const Buffer<Vec3f> normals = face_normals(mesh);
         const Options options{.tension = tension};
-        const Array<Vec3f> all = make_vertices(mesh, normals, options, everything(mesh));
-        const Array<Vec3f> some = make_vertices(mesh, normals, options, plan);
+        const Buffer<Vec3f> all = make_vertices(mesh, normals, options, everything(mesh));
+        const Buffer<Vec3f> some = make_vertices(mesh, normals, options, plan);
         ASSERT_EQ(some.size(), plan.count());
         for (uint32_t e = 0; e < marks.size(); ++e)
           if (marks[e] != 0) {
@@ -276,7 +276,7 @@ TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
 TEST(UniformError, IsTheLargestDeviation) {
   for (const Mesh& mesh : shaken_meshes()) {
     const WholeLevel level = next_level(mesh, find_features(mesh.topology));
-    Array<Vec3f> made(level.mesh.topology.edge_count());
+    Buffer<Vec3f> made(level.mesh.topology.edge_count());
     uniform_butterfly(level.mesh.topology, level.features, level.mesh.positions.data(), made.data());
     double largest = 0;
     for (uint32_t e = 0; e < level.mesh.topology.edge_count(); ++e)

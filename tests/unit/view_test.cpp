@@ -152,8 +152,8 @@ TEST(Camera, WhatIsDecidedInFloatsIsSo) {
     if ((through >> 4 & 1U) != 0) continue;  // the near plane
     const Camera::QuickOutside is_outside(camera, box, through);
     const Camera::QuickAway is_away(camera, box);
-    Array<Vec3f> normals;
-    Four planes{};
+    Buffer<Vec3f> normals;
+    Float4 planes{};
     for (size_t k = 0; k < 4; ++k) {
       const double radius = random() % 2 == 0 ? 0 : 0.1 * size * std::abs(within(random));
       const Camera::Answer answer = is_outside(points[k], static_cast<float>(radius));
@@ -240,15 +240,15 @@ TEST(LongestEdges, AreTheSameByFours) {
     mesh.positions.resize(mesh.topology.vertex_count);
     std::uniform_real_distribution<float> coordinate(-1, 1);
     for (Vec3f& p : mesh.positions) p = {coordinate(random), coordinate(random), coordinate(random)};
-    const List<double> longest = longest_edges(mesh);
+    const Buffer<double> longest = longest_edges(mesh);
     EXPECT_EQ(longest_edges_below(parents, mesh.positions), longest);
     // Of some faces it is right where all faces are among them.
-    List<uint8_t> is_among(parents.face_count());
+    Buffer<uint8_t> is_among(parents.face_count());
     for (uint8_t& among : is_among) among = random() % 4 != 0 ? 1 : 0;
-    List<uint8_t> all_are(mesh.topology.vertex_count, 1);
+    Buffer<uint8_t> all_are(mesh.topology.vertex_count, 1);
     for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) all_are[mesh.topology.origin[h]] &= is_among[h / 12];
-    const List<uint32_t> some = marked(is_among);
-    const List<double> of_some = longest_edges_below(parents, mesh.positions, &some);
+    const Buffer<uint32_t> some = marked(is_among);
+    const Buffer<double> of_some = longest_edges_below(parents, mesh.positions, &some);
     for (uint32_t v = 0; v < longest.size(); ++v) EXPECT_EQ(all_are[v] != 0 ? of_some[v] : longest[v], longest[v]);
   }
 }

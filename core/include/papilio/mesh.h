@@ -35,8 +35,8 @@ struct Attribute {
 /// of it: there may be repeated positions, unused ones, degenerate faces. Points that share a position but not their
 /// attributes are a seam.
 struct TriangleMesh {
-  Array<Vec3f> positions;  ///< [points]
-  Array<Triangle> triangles;
+  Buffer<Vec3f> positions;  ///< [points]
+  Buffer<Triangle> triangles;
   std::vector<Attribute> attributes{};
 
   friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
@@ -58,11 +58,11 @@ enum class EdgeKind : uint8_t {
 /// `half_edge` and `kind` are empty.
 struct Topology {
   uint32_t vertex_count = 0;
-  Array<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
-  Array<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
-  Array<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
-  Array<uint32_t> half_edge;  ///< [E] one half-edge of each edge
-  Array<EdgeKind> kind;       ///< [E]
+  Buffer<uint32_t> origin;     ///< [H] vertex that the half-edge leaves
+  Buffer<uint32_t> twin;       ///< [H] the half-edge running the other way, `none` at boundary and shared edges
+  Buffer<uint32_t> edge;       ///< [H] edge of the half-edge, the same for all that run along it
+  Buffer<uint32_t> half_edge;  ///< [E] one half-edge of each edge
+  Buffer<EdgeKind> kind;       ///< [E]
   /// Vertices of the coarse mesh with more than one fan, in ascending order. (Vertices that arise on shared edges have
   /// several too; rules find those by their curves.)
   std::vector<uint32_t> pinched;
@@ -91,7 +91,7 @@ struct Topology {
 /// Attributes of a mesh. A point is a vertex together with its values; where charts meet, one vertex is several points,
 /// and positions do not open.
 struct PointAttributes {
-  Array<uint32_t> point;              ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
+  Buffer<uint32_t> point;             ///< [H] point at the origin of the half-edge, in its face; empty: no attributes
   uint32_t point_count = 0;           ///< P
   std::vector<Attribute> attributes;  ///< values [P * components] each
 
@@ -101,7 +101,7 @@ struct PointAttributes {
 /// A mesh: connectivity and one position a vertex, and attributes if it has any.
 struct Mesh {
   Topology topology;
-  Array<Vec3f> positions;  ///< [V]
+  Buffer<Vec3f> positions;  ///< [V]
   PointAttributes attributes{};
 
   /// Copies the faces and positions out; with attributes, points in place of vertices. Of a mesh that is not needed any
@@ -146,6 +146,6 @@ struct Box {
 
 /// Unit normal of each vertex [V]: its faces' normals weighted by area; (0, 0, 1) where they cancel out or
 /// there are none.
-[[nodiscard]] Array<Vec3f> vertex_normals(const Mesh& mesh);
+[[nodiscard]] Buffer<Vec3f> vertex_normals(const Mesh& mesh);
 
 }  // namespace papilio
