@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/mesh.h"
@@ -18,8 +17,7 @@ class CornerMesh {
  public:
   explicit CornerMesh(const Topology& mesh)
       : vertex_count_(mesh.vertex_count), corners_(size_t{3} * mesh.face_count()) {
-    for (uint32_t f = 0; f < mesh.face_count(); ++f)
-      add_face(f, &mesh.origin[size_t{3} * f], &mesh.twin[size_t{3} * f]);
+    for (uint32_t f = 0; f < face_count(); ++f) add_face(f, mesh);
   }
 
   /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
@@ -71,37 +69,17 @@ class CornerMesh {
     uint32_t vertex, opposite;
   };
 
-  void add_face(uint32_t f, const uint32_t* origin, const uint32_t* twin) {
-    const uint32_t a = twin[1];  // what runs against the edge opposite to each corner
-    const uint32_t b = twin[2];
-    const uint32_t c = twin[0];
-    Corner* corner = &corners_[size_t{3} * f];
-    if ((a | b | c) == none && (a == none || b == none || c == none)) {
-      add_face_at_boundary(f, origin, {a, b, c});
-      return;
-    }
-    corner[0] = {origin[0], previous_of(a)};
-    corner[1] = {origin[1], previous_of(b)};
-    corner[2] = {origin[2], previous_of(c)};
-    note_if_folded(corner[0].opposite, b);
-    note_if_folded(corner[1].opposite, c);
-    note_if_folded(corner[2].opposite, a);
-  }
-  /// Where a face runs against two edges of another, it comes to the later one first.
-  void note_if_folded(uint32_t before_first, uint32_t second) {
-    has_faces_folded_together_ = has_faces_folded_together_ || before_first == second;
-  }
-
-  void add_face_at_boundary(uint32_t f, const uint32_t* origin, const std::array<uint32_t, 3>& across) {
-    for (uint32_t i = 0; i < 3; ++i) {
-      corners_[size_t{3} * f + i] = {origin[i], across[i] == none ? none : previous_of(across[i])};
-      if (across[i] == none) at_boundary_.push_back(3 * f + i);
-      if (across[i] != none) note_if_folded(previous_of(across[i]), across[(i + 1) % 3]);
+  void add_face(uint32_t f, const Topology& mesh) {
+    const uint32_t first = first_corner(f);
+    for (uint32_t c = first; c < first + 3; ++c) {
+      const uint32_t twin = mesh.twin[next(c)];
+      corners_[c] = {mesh.origin[c], twin == none ? none : previous(twin)};
+      if (twin == none)
+        at_boundary_.push_back(c);
+      else if (corners_[c].opposite == mesh.twin[previous(c)])
+        has_faces_folded_together_ = true;
     }
   }
-
-  /// In fewer steps than `previous`.
-  static uint32_t previous_of(uint32_t half_edge) { return half_edge - 1 + (half_edge % 3 == 0 ? 3 : 0); }
 
   uint32_t vertex_count_;
   Array<Corner> corners_;
