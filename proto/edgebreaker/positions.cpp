@@ -103,20 +103,9 @@ class Writer {
 Array<GridPoint> to_grid(const Array<Vec3f>& positions, const Surface& surface, const QuantizationBox& box, int bits) {
   const Grid grid(box, bits);
   Array<GridPoint> values(surface.mesh.vertex_count());
-  Floats p{};
-  if (surface.vertex.empty()) {
-    for (size_t v = 0; v + 1 < values.size(); ++v) {
-      std::memcpy(&p, &positions[v], sizeof p);
-      p[3] = 0;  // it was the next one's
-      values[v] = grid.at(p);
-    }
-    std::memcpy(&p, &positions.back(), sizeof(Vec3f));
-    values.back() = grid.at(p);
-    return values;
-  }
-  for (size_t v = 0; v < values.size(); ++v) {
-    std::memcpy(&p, &positions[surface.vertex[v]], sizeof(Vec3f));
-    values[v] = grid.at(p);
+  for (uint32_t v = 0; v < values.size(); ++v) {
+    const Vec3f& p = positions[surface.mesh_vertex(v)];
+    values[v] = grid.at(Floats{p.x, p.y, p.z, 0});
   }
   return values;
 }
@@ -167,8 +156,7 @@ void write_positions_exactly(const Array<Vec3f>& positions, const Surface& surfa
                              Pace& pace, draco::EncoderBuffer& out) {
   for (uint32_t c : corners) {
     pace.step();
-    const uint32_t v = surface.mesh.vertex(c);
-    out.Encode(positions[surface.vertex.empty() ? v : surface.vertex[v]]);
+    out.Encode(positions[surface.mesh_vertex(surface.mesh.vertex(c))]);
   }
 }
 

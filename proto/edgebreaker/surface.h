@@ -9,6 +9,8 @@ namespace papilio::proto::edgebreaker {
 struct Surface {
   CornerMesh mesh;
   Array<uint32_t> vertex{};  ///< [vertices of `mesh`] the mesh's vertex at each; empty: the same numbers
+
+  [[nodiscard]] uint32_t mesh_vertex(uint32_t v) const { return vertex.empty() ? v : vertex[v]; }
 };
 
 /// Takes the surface apart where it is not manifold: at vertices with several fans, and at edges of three faces or
