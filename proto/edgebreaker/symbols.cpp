@@ -47,35 +47,25 @@ class Counter {
   List<Turns> counts_;
 };
 
-template <uint32_t components>
-void count_bit_lengths(std::span<const uint32_t> symbols, Counter& counter) {
-  size_t turn = 0;
-  for (size_t i = 0; i < symbols.size(); i += components) {
-    uint32_t bits = symbols[i];
-    for (uint32_t k = 1; k < components; ++k) bits |= symbols[i + k];
-    counter.add(bit_length(bits), turn++);
-  }
+/// Bits of a value's largest component.
+uint32_t value_bit_length(const uint32_t* value, uint32_t components) {
+  uint32_t bits = 0;
+  for (uint32_t k = 0; k < components; ++k) bits |= value[k];
+  return bit_length(bits);
 }
 
 Census take_census(std::span<const uint32_t> symbols, uint32_t components, uint32_t largest) {
   Census census;
   Counter bit_lengths(census.bit_lengths.size());
-  if (components == 2)
-    count_bit_lengths<2>(symbols, bit_lengths);
-  else if (components == 3)
-    count_bit_lengths<3>(symbols, bit_lengths);
-  else if (components > 3)
-    for (size_t i = 0; i < symbols.size(); i += components)
-      bit_lengths.add(bit_length(std::ranges::max(symbols.subspan(i, components))), i);
+  size_t turn = 0;
+  for (size_t i = 0; i < symbols.size(); i += components)
+    bit_lengths.add(value_bit_length(&symbols[i], components), turn++);
   for (size_t i = 0; i < census.bit_lengths.size(); ++i) census.bit_lengths[i] = bit_lengths.count(i);
 
   Counter counts(size_t{largest} + 1);
   for (size_t i = 0; i < symbols.size(); ++i) counts.add(symbols[i], i);
   census.counts.resize(size_t{largest} + 1);
-  for (uint32_t i = 0; i <= largest; ++i) {
-    census.counts[i] = counts.count(i);
-    if (components == 1) census.bit_lengths[bit_length(i)] += census.counts[i];
-  }
+  for (uint32_t i = 0; i <= largest; ++i) census.counts[i] = counts.count(i);
   return census;
 }
 
@@ -280,11 +270,7 @@ void with_constant(int bits, const Visit& visit) {
 /// How many bits each value's largest component has. [values]
 List<uint32_t> find_bit_lengths(std::span<const uint32_t> symbols, uint32_t components) {
   List<uint32_t> lengths(symbols.size() / components);
-  for (size_t i = 0; i < lengths.size(); ++i) {
-    uint32_t bits = 0;
-    for (uint32_t symbol : symbols.subspan(i * components, components)) bits |= symbol;
-    lengths[i] = bit_length(bits);
-  }
+  for (size_t i = 0; i < lengths.size(); ++i) lengths[i] = value_bit_length(&symbols[i * components], components);
   return lengths;
 }
 
