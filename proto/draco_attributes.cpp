@@ -125,8 +125,7 @@ void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
     const AttributeFormat format = format_of(mesh, number);
     Attribute& read = out.attributes.emplace_back();
     read.components = attribute.num_components();
-    read.unit_length =
-        format.kind == AttributeKind::normal && format.type == ValueType::float32 && read.components == 3;
+    read.unit_length = is_unit_normal(format, read.components);
     read.values = with_number(format.type, [&](auto zero) {
       return read_values<decltype(zero)>(attribute, static_cast<uint32_t>(out.positions.size()));
     });

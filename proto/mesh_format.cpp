@@ -4,6 +4,10 @@
 
 namespace papilio::proto {
 
+bool is_unit_normal(const AttributeFormat& format, uint32_t components) {
+  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && components == 3;
+}
+
 double one_of(const AttributeFormat& format) {
   if (!format.normalized || format.type > ValueType::uint64) return 1;
   const auto number = static_cast<unsigned>(format.type);  // signed and unsigned by turns, of 8 bits and more

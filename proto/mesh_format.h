@@ -26,6 +26,9 @@ struct AttributeFormat {
   friend bool operator==(const AttributeFormat&, const AttributeFormat&) = default;
 };
 
+/// Returns whether an attribute of so many components holds unit normals that Draco codes on an octahedron.
+[[nodiscard]] bool is_unit_normal(const AttributeFormat& format, uint32_t components);
+
 /// The stored number that stands for 1: the largest of a normalized integer, else 1.
 [[nodiscard]] double one_of(const AttributeFormat& format);
 

@@ -15,11 +15,6 @@ constexpr int texture_bits = 14;
 constexpr int value_bits = 16;  // of values whose meaning is not known
 constexpr double largest_integer = 1 << 20;
 
-/// Whether Draco's octahedral coding takes it.
-bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
-  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
-}
-
 bool is_integer_of_32_bits(ValueType type) { return type <= ValueType::uint32; }
 
 /// Draco's entropy coder counts symbols in a table as long as the largest, and crashes where predictions from values
@@ -32,7 +27,7 @@ bool is_too_large(const Attribute& attribute, const AttributeFormat& format) {
 
 void choose_coding(OutputAttribute& output, const Attribute& attribute, const AttributeEncoding::Grid& grid) {
   const AttributeFormat& format = output.format;
-  if (is_unit_normal(attribute, format)) {
+  if (is_unit_normal(format, attribute.components)) {
     output.coding = Coding::octahedral;
     output.bits = normal_bits;
   } else if (format.type == ValueType::float32 && format.kind != AttributeKind::normal && grid.range > 0) {

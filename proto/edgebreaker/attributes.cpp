@@ -4,7 +4,6 @@
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_geometric_normal_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_tex_coords_portable_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_delta_encoder.h>
-#include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/core/bit_utils.h>
 #include <draco/core/quantization_utils.h>
 #include <draco/core/varint_encoding.h>
@@ -17,16 +16,12 @@
 #include <vector>
 
 #include "proto/edgebreaker/predictions.h"
+#include "proto/edgebreaker/speeds.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
 
-// What Draco makes of its speed.
-constexpr int geometric_below = 4;  ///< normals and texture coordinates are predicted from positions
-
 constexpr uint32_t texture_components = 2;
-
-using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingTransform<int32_t>;
 
 template <class Number>
 void append_integers(const OutputAttribute& attribute, const char* bytes, std::vector<int32_t>& out) {
@@ -138,7 +133,7 @@ class ValueWriter {
            attribute_.components == texture_components;
   }
   [[nodiscard]] bool needs_positions() const {
-    return speed_ < geometric_below && (attribute_.coding == Coding::octahedral || is_texture());
+    return speed_ < min_position_independent_speed && (attribute_.coding == Coding::octahedral || is_texture());
   }
 
   void remember_positions(const WrittenSurface& written) {
@@ -192,8 +187,6 @@ void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
   out.Encode(static_cast<uint8_t>(attribute.format.normalized ? 1 : 0));
   draco::EncodeVarint<uint32_t>(attribute.format.id, &out);
 }
-
-uint8_t coding_byte(const OutputAttribute& attribute) { return static_cast<uint8_t>(attribute.coding); }
 
 void write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& written, int speed,
                   Pace& pace, draco::EncoderBuffer& out) {

@@ -13,8 +13,6 @@ namespace papilio::proto::edgebreaker {
 
 /// Writes what a decoder has to know of it first: what it is for, its type, components and id.
 void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out);
-/// How its values are coded, in Draco's numbers.
-[[nodiscard]] uint8_t coding_byte(const OutputAttribute& attribute);
 
 /// The surface that attributes are on, and how its walk and its positions were written.
 struct WrittenSurface {

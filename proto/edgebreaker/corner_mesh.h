@@ -17,7 +17,14 @@ class CornerMesh {
  public:
   explicit CornerMesh(const Topology& mesh)
       : vertex_count_(mesh.vertex_count), corners_(size_t{3} * mesh.face_count()) {
-    for (uint32_t f = 0; f < face_count(); ++f) add_face(f, mesh);
+    for (uint32_t c = 0; c < corner_count(); ++c) {
+      const uint32_t twin = mesh.twin[next(c)];
+      corners_[c] = {mesh.origin[c], twin == none ? none : previous(twin)};
+      if (twin == none)
+        at_boundary_.push_back(c);
+      else if (corners_[c].opposite == mesh.twin[previous(c)])  // two consecutive edges face the same other face
+        has_faces_folded_together_ = true;
+    }
   }
 
   /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
@@ -68,18 +75,6 @@ class CornerMesh {
   struct Corner {
     uint32_t vertex, opposite;
   };
-
-  void add_face(uint32_t f, const Topology& mesh) {
-    const uint32_t first = first_corner(f);
-    for (uint32_t c = first; c < first + 3; ++c) {
-      const uint32_t twin = mesh.twin[next(c)];
-      corners_[c] = {mesh.origin[c], twin == none ? none : previous(twin)};
-      if (twin == none)
-        at_boundary_.push_back(c);
-      else if (corners_[c].opposite == mesh.twin[previous(c)])
-        has_faces_folded_together_ = true;
-    }
-  }
 
   uint32_t vertex_count_;
   Array<Corner> corners_;

@@ -2,6 +2,7 @@
 
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_data.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_encoder.h>
+#include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_wrap_encoding_transform.h>
 #include <draco/core/encoder_buffer.h>
 
@@ -48,6 +49,7 @@ static_assert(draco::kInvalidCornerIndex.value() == none);
 
 using MeshData = draco::MeshPredictionSchemeData<CornerTable>;
 using Wrap = draco::PredictionSchemeWrapEncodingTransform<int32_t>;
+using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingTransform<int32_t>;
 template <class Transform>
 using Predictor = draco::PredictionSchemeEncoder<int32_t, Transform>;
 

@@ -15,18 +15,11 @@
 #include "proto/edgebreaker/connectivity.h"
 #include "proto/edgebreaker/positions.h"
 #include "proto/edgebreaker/seams.h"
+#include "proto/edgebreaker/speeds.h"
 #include "proto/edgebreaker/surface.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
-
-// What Draco makes of its speed.
-constexpr int prediction_degree_speed = 0;     ///< positions in the order of their prediction degrees
-constexpr int single_parallelogram_speed = 2;  ///< below, several are averaged
-constexpr int standard_speed = 5;              ///< from here on, or for few faces, symbols are written as bits
-constexpr int single_connectivity_speed = 6;
-constexpr int difference_speed = 8;  ///< from here on, no parallelograms
-constexpr uint32_t few_faces = 1000;
 
 /// A stream on its way. Positions are on the box's grid, or exact where there is no box.
 class StreamWriter {
@@ -59,16 +52,17 @@ class StreamWriter {
 
  private:
   [[nodiscard]] Traversal traversal() const {
-    const bool is_standard = options_.speed >= standard_speed || mesh_.topology.face_count() < few_faces;
+    const bool is_standard =
+        options_.speed >= min_standard_traversal_speed || mesh_.topology.face_count() < min_valence_faces;
     return is_standard ? Traversal::standard : Traversal::valence;
   }
   /// Whether the attributes are written with the connectivity of positions, by one encoder: what Draco does at high
   /// speeds where it need not cut the surface open.
   [[nodiscard]] bool is_single_connectivity() const {
-    return options_.speed >= single_connectivity_speed &&
+    return options_.speed >= min_single_connectivity_speed &&
            std::ranges::all_of(attributes_, &OutputAttribute::is_of_vertices);
   }
-  [[nodiscard]] bool is_by_prediction_degree() const { return options_.speed <= prediction_degree_speed; }
+  [[nodiscard]] bool is_by_prediction_degree() const { return options_.speed <= max_prediction_degree_speed; }
   /// How many points libdraco would have.
   [[nodiscard]] uint32_t point_count() const {
     const bool has_points = !std::ranges::all_of(attributes_, &OutputAttribute::is_of_vertices);
@@ -123,7 +117,7 @@ class StreamWriter {
         draco::EncodeVarint<uint32_t>(1, &out_);
         describe(attribute, out_);
       }
-      out_.Encode(coding_byte(attribute));
+      out_.Encode(static_cast<uint8_t>(attribute.coding));
     }
   }
 
@@ -150,12 +144,12 @@ class StreamWriter {
     const CornerMesh& mesh = surface_.mesh;
     if (box_ == nullptr) {
       write_positions_exactly(mesh_.positions, surface_, order.corners, pace_, out_);
-    } else if (options_.speed < single_parallelogram_speed) {
+    } else if (options_.speed < min_single_parallelogram_speed) {
       write_positions_multi_parallelogram(
           mesh, is_by_prediction_degree() ? order_by_prediction_degree(mesh, starts, pace_) : order.corners, positions,
           options_.speed, point_count(), pace_, out_);
     } else {
-      const bool is_by_difference = options_.speed >= difference_speed;
+      const bool is_by_difference = options_.speed >= min_difference_speed;
       write_positions(mesh, order, positions, is_by_difference ? Prediction::difference : Prediction::parallelogram,
                       10 - options_.speed, pace_, out_);
     }
@@ -184,7 +178,7 @@ std::string write(const Mesh& mesh, const QuantizationBox& box, const OutputOpti
 }
 
 std::string write_exact(const Mesh& mesh, uint32_t position_id, std::span<const OutputAttribute> attributes) {
-  constexpr OutputOptions options{.speed = standard_speed};
+  constexpr OutputOptions options{.speed = min_standard_traversal_speed};
   return StreamWriter(mesh, nullptr, options, position_id, attributes, {}).run();
 }
 
