@@ -27,7 +27,7 @@ struct OutputAttribute {
   /// `value` is empty where each vertex has its own, in their order: new normals.
   StoredValues values{};
 
-  [[nodiscard]] bool is_of_vertices() const { return values.value.empty(); }
+  [[nodiscard]] bool has_value_per_vertex() const { return values.value.empty(); }
 };
 
 /// All that `encoding` describes of the mesh, but with new normals of the vertices in place of its own, if `options`

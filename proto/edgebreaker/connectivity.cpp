@@ -62,10 +62,10 @@ class BoundaryLoops {
 template <class Symbols>
 class Walk {
  public:
-  Walk(CornerMesh& mesh, std::span<const Seams> attributes, Pace& pace)
+  Walk(CornerMesh& mesh, std::span<const Seams> attributes, Poller& poller)
       : mesh_(mesh),
         attributes_(attributes),
-        pace_(pace),
+        poller_(poller),
         symbols_(mesh),
         loops_(mesh),
         face_state_(mesh.face_count(), unvisited),
@@ -137,7 +137,7 @@ class Walk {
   /// Visits the face of the corner. Returns the next corner; `none` where the walk ends or splits.
   uint32_t visit(uint32_t corner) {
     const uint32_t face = CornerMesh::face(corner);
-    pace_.step();
+    poller_.step();
     mesh_.prefetch(mesh_.right(corner));
     mesh_.prefetch(mesh_.left(corner));
     const uint32_t vertex = mesh_.vertex(corner);
@@ -250,7 +250,7 @@ class Walk {
 
   const CornerMesh& mesh_;
   std::span<const Seams> attributes_;
-  Pace& pace_;
+  Poller& poller_;
   Symbols symbols_;
   BoundaryLoops loops_;
   Array<uint8_t> face_state_;           ///< [faces] FaceState
@@ -266,10 +266,10 @@ class Walk {
 
 }  // namespace
 
-Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes, Pace& pace,
-                                   draco::EncoderBuffer& out) {
-  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes, pace).run(out);
-  return Walk<ValenceSymbols>(mesh, attributes, pace).run(out);
+Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal, std::span<const Seams> attributes,
+                                   Poller& poller, draco::EncoderBuffer& out) {
+  if (traversal == Traversal::standard) return Walk<StandardSymbols>(mesh, attributes, poller).run(out);
+  return Walk<ValenceSymbols>(mesh, attributes, poller).run(out);
 }
 
 }  // namespace papilio::proto::edgebreaker

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proto/edgebreaker/corner_mesh.h"
-#include "proto/edgebreaker/pace.h"
+#include "proto/edgebreaker/poller.h"
 #include "proto/edgebreaker/seams.h"
 
 namespace papilio::proto::edgebreaker {
@@ -19,10 +19,10 @@ enum class Traversal : uint8_t {
 
 /// Walks over all faces and writes the connectivity (Draco's bitstream specification, edgebreaker) and the seams of
 /// each attribute. Returns the corner at which the walk entered each face, in decoding order. [faces] The mesh is
-/// modified during the walk and restored afterwards. O(F log F) in the worst case, O(F) on usual meshes. `pace` steps
+/// modified during the walk and restored afterwards. O(F log F) in the worst case, O(F) on usual meshes. `poller` steps
 /// once a face.
 [[nodiscard]] Array<uint32_t> write_connectivity(CornerMesh& mesh, Traversal traversal,
-                                                 std::span<const Seams> attributes, Pace& pace,
+                                                 std::span<const Seams> attributes, Poller& poller,
                                                  draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

@@ -6,13 +6,11 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// A mesh as Draco's bitstream speaks of it. A face's three corners are where its half-edges leave; its edge that a
-/// corner does not touch is the one opposite to it, and so is the corner of the other face at that edge. Faces lie
-/// counter-clockwise; left and right are as seen from the corner, facing the opposite edge, from behind: right of a
-/// corner is across the edge before it, left across its own.
+/// A mesh in the terms of Draco's bitstream. Corner c of a face is at the origin of half-edge c. The edge opposite to a
+/// corner is the edge of its face that it does not touch. The corner opposite to it is the corner of the other face at
+/// that edge. Faces are counter-clockwise: right of a corner is across the edge before it, left across its own edge.
 ///
-/// Corner c is where half-edge c leaves. What a walk asks of a face lies together, and takes no more room than it
-/// needs: a walk waits for memory most of the time.
+/// The vertex and the opposite of a corner share a cache line, as walks are bound by memory latency.
 class CornerMesh {
  public:
   explicit CornerMesh(const Topology& mesh)
@@ -27,8 +25,8 @@ class CornerMesh {
     }
   }
 
-  /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
-  /// [corners] where the edge opposite to the corner is one.
+  /// Cuts `whole` open along seams. `is_seam` [corners]: whether the edge opposite to the corner is a seam. `vertex`
+  /// [corners]: the vertex of the corner after the cut.
   CornerMesh(const CornerMesh& whole, const Array<uint8_t>& is_seam, const Array<uint32_t>& vertex,
              uint32_t vertex_count)
       : vertex_count_(vertex_count), corners_(whole.corner_count()) {
@@ -46,29 +44,30 @@ class CornerMesh {
   static uint32_t next(uint32_t corner) { return Topology::next(corner); }
   static uint32_t previous(uint32_t corner) { return Topology::previous(corner); }
   [[nodiscard]] uint32_t vertex(uint32_t corner) const { return corners_[corner].vertex; }
-  /// `none` at a boundary.
+  /// Returns the opposite corner; `none` at a boundary.
   [[nodiscard]] uint32_t opposite(uint32_t corner) const { return corners_[corner].opposite; }
   [[nodiscard]] uint32_t right(uint32_t corner) const { return opposite(next(corner)); }
   [[nodiscard]] uint32_t left(uint32_t corner) const { return opposite(previous(corner)); }
-  /// The corner at the same vertex in the next face, counter-clockwise, or clockwise; `none` beyond a boundary.
+  /// Returns the corner at the same vertex of the next face counter-clockwise; `none` beyond a boundary.
   [[nodiscard]] uint32_t swing_left(uint32_t corner) const {
     const uint32_t across = opposite(next(corner));
     return across == none ? none : next(across);
   }
+  /// Returns the corner at the same vertex of the next face clockwise; `none` beyond a boundary.
   [[nodiscard]] uint32_t swing_right(uint32_t corner) const {
     const uint32_t across = opposite(previous(corner));
     return across == none ? none : previous(across);
   }
 
-  /// Gives the corner a vertex of another number.
+  /// Moves the corner to another vertex.
   void set_vertex(uint32_t corner, uint32_t vertex) { corners_[corner].vertex = vertex; }
 
-  /// Has what belongs to a corner's face fetched, for a walk that may soon come there; `none` may be given.
+  /// Prefetches the cache line of a corner that a walk may visit next. `corner` may be `none`.
   void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }
 
-  /// The corners opposite to boundary edges, in ascending order.
+  /// Returns the corners opposite to boundary edges, in ascending order.
   [[nodiscard]] const List<uint32_t>& at_boundary() const { return at_boundary_; }
-  /// Whether there are two faces that share more than one edge.
+  /// Returns whether two faces share more than one edge.
   [[nodiscard]] bool has_faces_folded_together() const { return has_faces_folded_together_; }
 
  private:

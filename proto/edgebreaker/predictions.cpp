@@ -10,14 +10,14 @@
 
 namespace papilio::proto::edgebreaker {
 
-OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Array<uint32_t>& corners, Pace& pace)
-    : table_(mesh, pace), place_(mesh.vertex_count(), -1) {
+OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Array<uint32_t>& corners, Poller& poller)
+    : table_(mesh, poller), value_index_(mesh.vertex_count(), -1) {
   corners_.reserve(corners.size());
   for (uint32_t c : corners) {
-    place_[mesh.vertex(c)] = static_cast<int32_t>(corners_.size());
+    value_index_[mesh.vertex(c)] = static_cast<int32_t>(corners_.size());
     corners_.emplace_back(c);
   }
-  data_.Set(nullptr, &table_, &corners_, &place_);
+  data_.Set(nullptr, &table_, &corners_, &value_index_);
 }
 
 std::unique_ptr<Predictor<Wrap>> wrapped_predictor(const OrderedSurface& surface, int speed, uint32_t points) {
