@@ -30,7 +30,9 @@ AttributeFormat format_of(const draco::Mesh& mesh, int number) {
   format.kind = kind >= 0 && kind < static_cast<int>(AttributeKind::generic) ? static_cast<AttributeKind>(kind)
                                                                              : AttributeKind::generic;
   if (attribute.data_type() <= draco::DT_INVALID || attribute.data_type() > draco::DT_BOOL)
-    throw Problem(Code::mesh_not_draco, "An attribute of the mesh has a type that does not exist. Encode it again.");
+    throw Problem(Code::mesh_not_draco, "Attribute " + std::to_string(attribute.unique_id()) + " has data type " +
+                                            std::to_string(attribute.data_type()) + "; Draco has 1 to " +
+                                            std::to_string(draco::DT_BOOL) + ". Encode the mesh again.");
   format.type = static_cast<ValueType>(attribute.data_type() - 1);
   format.normalized = attribute.normalized();
   format.id = attribute.unique_id();
@@ -48,8 +50,8 @@ std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t
   for (draco::PointIndex p(0); p < points; ++p) {
     const draco::AttributeValueIndex index = attribute.mapped_index(p);
     if (index.value() >= attribute.size())
-      throw Problem(Code::mesh_unusable, "The mesh has a point without a value of attribute " +
-                                             std::to_string(attribute.unique_id()) + ". Encode it again.");
+      throw Problem(Code::mesh_unusable, "Point " + std::to_string(p.value()) + " has no value of attribute " +
+                                             std::to_string(attribute.unique_id()) + ". Encode the mesh again.");
     const uint8_t* bytes = attribute.GetAddress(index);
     for (size_t i = 0; i < components; ++i) {
       using Stored = std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // any byte, not 0 or 1 alone
@@ -109,10 +111,9 @@ std::vector<uint32_t> find_same(const std::vector<char>& bytes, size_t stride, c
 void require_attributes_within_limits(const draco::PointCloud& mesh) {
   uint64_t components = 0;
   for (int number = 0; number < mesh.num_attributes(); ++number) components += mesh.attribute(number)->num_components();
-  require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes,
-                 "attributes, its positions included", "Leave some out.");
-  require_within(components, 3 + most_components, "components in its attributes, three of its positions included",
-                 "Leave some attributes out.");
+  require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes, "attributes, positions included",
+                 "Remove attributes.");
+  require_within(components, 3 + most_components, "components of attributes, positions included", "Remove attributes.");
 }
 
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {

@@ -267,12 +267,12 @@ void require_bounded_merges(std::string_view bytes, const DracoHeader& header) {
   if (c->traversal == draco::MESH_EDGEBREAKER_PREDICTIVE_ENCODING)
     throw Problem(Code::mesh_unsupported,
                   "The Draco stream has " + std::to_string(c->faces) + " faces and " + std::to_string(c->splits) +
-                      " split symbols by the predictive traversal; their product may be " +
-                      std::to_string(most_renumbered_corners) + ". Encode the mesh again with Draco 1.3 or later.");
+                      " split symbols by the predictive traversal; their product exceeds " +
+                      std::to_string(most_renumbered_corners) + ". Encode the mesh with Draco 1.3 or later.");
   if (count_renumbered(*c) > most_renumbered_corners)
     throw Problem(Code::mesh_unsupported,
-                  "Decoding the Draco stream renumbers more than " + std::to_string(most_renumbered_corners) +
-                      " corners, the limit: it merges vertices with too many faces too often. Encode the mesh again.");
+                  "Decoding the Draco stream would renumber more than " + std::to_string(most_renumbered_corners) +
+                      " corners: it merges vertices of many faces too often. Encode the mesh again.");
 }
 
 }  // namespace papilio::proto

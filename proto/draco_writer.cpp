@@ -41,8 +41,7 @@ QuantizationBox quantization_box(const Array<Vec3f>& coarse) {
   const Vec3d low = to_double(box.min);
   const Vec3d size = to_double(box.max) - low;
   const double range = 1.25 * std::max({size.x, size.y, size.z});
-  if (range < smallest_range)
-    throw Problem(Code::mesh_unusable, "The mesh is smaller than 1e-30 across, too small to be encoded. Scale it up.");
+  if (range < smallest_range) throw Problem(Code::mesh_unusable, "The extent of the mesh is below 1e-30. Scale it up.");
   const Vec3d centre = low + 0.5 * size;
   return {to_float(centre - 0.5 * Vec3d{range, range, range}), static_cast<float>(range)};
 }

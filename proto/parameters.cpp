@@ -81,9 +81,9 @@ const ParameterInfo& find(const std::string& name) {
     advice = "Did you mean " + std::string(*meant) + "?";
   } else {
     for (const std::string_view known : names) append_item(advice, ", ", known);
-    advice = "There are: " + advice + ".";
+    advice = "The parameters are " + advice + ".";
   }
-  throw Problem(Code::unknown_parameter, "There is no parameter " + quote(name) + ". " + advice, shorten(name));
+  throw Problem(Code::unknown_parameter, "Unknown parameter " + quote(name) + ". " + advice, shorten(name));
 }
 
 std::string what_it_takes(const ParameterInfo& info) { return "must be " + describe_range(info); }
@@ -169,10 +169,10 @@ void read_object(Reader& reader, const json& object, const std::string& prefix) 
         throw Problem(Code::bad_parameter, name + " must be an object, such as {\"" + name + "\": {...}}.", name);
       read_object(reader, value, name + ".");
     } else if (prefix.empty() && key.find('.') != std::string::npos) {
-      throw Problem(
-          Code::unknown_parameter,
-          "In JSON, nest instead of writing dots: " + quote(name) + " is {\"view\": {...}} or {\"output\": {...}}.",
-          shorten(name));
+      throw Problem(Code::unknown_parameter,
+                    "JSON parameters are nested, not dotted: write " + quote(name) +
+                        " as {\"view\": {...}} or {\"output\": {...}}.",
+                    shorten(name));
     } else {
       const ParameterInfo& info = find(name);
       reader.set(info, parse_json_value(info, value));
@@ -186,7 +186,8 @@ json parse_document(std::string_view text) {
   std::vector<std::set<std::string>> keys;
   const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
     if (depth > deepest_json)
-      throw Problem(Code::bad_request, "The parameters are nested too deeply. No parameter is an array of arrays.");
+      throw Problem(Code::bad_request,
+                    "The parameters are nested deeper than " + std::to_string(deepest_json) + " levels.");
     if (event == json::parse_event_t::object_start) keys.emplace_back();
     if (event == json::parse_event_t::object_end) keys.pop_back();
     if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
@@ -197,10 +198,9 @@ json parse_document(std::string_view text) {
   try {
     return json::parse(text, watch);
   } catch (const json::parse_error& error) {
-    throw Problem(Code::bad_request,
-                  "The parameters are not JSON; the fault is at byte " + std::to_string(error.byte) + ".");
+    throw Problem(Code::bad_request, "The parameters are not valid JSON at byte " + std::to_string(error.byte) + ".");
   } catch (const json::exception&) {
-    throw Problem(Code::bad_request, "The parameters hold a number too large to be read.");
+    throw Problem(Code::bad_request, "A number in the parameters exceeds the range of a double.");
   }
 }
 
@@ -258,10 +258,11 @@ Parameters parse_query(const QueryFields& fields) {
 
 Parameters parse_json(std::string_view text) {
   if (text.size() > longest_json)
-    throw Problem(Code::body_too_large, "The parameters are longer than 65536 bytes. Send only parameters there.");
+    throw Problem(Code::body_too_large, "The parameters have " + std::to_string(text.size()) + " bytes; the limit is " +
+                                            std::to_string(longest_json) + ". Send the mesh in a part of its own.");
   const json document = parse_document(text);
   if (!document.is_object())
-    throw Problem(Code::bad_request, "The parameters must be one JSON object, such as {\"levels\": 2}.");
+    throw Problem(Code::bad_request, "The parameters must be a JSON object, such as {\"levels\": 2}.");
   Reader reader;
   read_object(reader, document, "");
   return reader.finish();

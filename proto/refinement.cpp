@@ -141,7 +141,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     return is_cancelled;
   };
   const auto poll = [&] {
-    if (stop()) throw Problem(Code::cancelled, "The client went away.");
+    if (stop()) throw Problem(Code::cancelled, "The client closed the request.");
   };
   const bool encodes_aside = hooks.on_level && hooks.threads > 1;
   Hooks core_hooks{.cancelled = stop, .threads = encodes_aside ? hooks.threads - 1 : hooks.threads};
@@ -187,8 +187,8 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
 void Refinement::require_time() const {
   if (most_seconds_ > 0 &&
       std::chrono::steady_clock::now() - begin_ - waited_.load() > std::chrono::seconds(most_seconds_))
-    throw Problem(Code::takes_too_long, "The work takes longer than " + std::to_string(most_seconds_) +
-                                            " seconds, the limit. Ask for fewer levels or a coarser mesh.");
+    throw Problem(Code::takes_too_long, "The computation exceeds " + std::to_string(most_seconds_) +
+                                            " seconds. Request fewer levels, or send a coarser mesh.");
 }
 
 namespace {

@@ -15,7 +15,7 @@ auto in_words_of_the_wire(const Work& work) {
   } catch (const Error& error) {
     throw Problem(error);
   } catch (const std::bad_alloc&) {
-    throw Problem(Code::result_too_large, "There is not enough memory for this result. Ask for fewer levels.");
+    throw Problem(Code::result_too_large, "Not enough memory for the result. Request fewer levels.");
   }
 }
 

@@ -52,9 +52,10 @@ TEST(DracoMerges, StreamThatRenumbersQuadraticallyIsRefused) {
     FAIL();
   } catch (const Problem& problem) {
     EXPECT_EQ(problem.code(), Code::mesh_unsupported);
-    EXPECT_STREQ(problem.what(),
-                 "Decoding the Draco stream renumbers more than 134217728 corners, the limit: it merges vertices with "
-                 "too many faces too often. Encode the mesh again.");
+    EXPECT_STREQ(
+        problem.what(),
+        "Decoding the Draco stream would renumber more than 134217728 corners: it merges vertices of many faces "
+        "too often. Encode the mesh again.");
   }
 }
 

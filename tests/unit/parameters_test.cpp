@@ -194,11 +194,11 @@ TEST(Parameters, AMisspeltNameIsAnsweredWithTheOneMeant) {
            {"tolerence", "tolerance"}, {"crease-angle", "crease_angle"}, {"eye", "view.eye"}, {"level", "levels"}}) {
     const Refusal refusal = query_refusal({{typed, "1"}});
     EXPECT_EQ(refusal.code, Code::unknown_parameter);
-    EXPECT_EQ(refusal.detail, "There is no parameter \"" + typed + "\". Did you mean " + meant + "?");
+    EXPECT_EQ(refusal.detail, "Unknown parameter \"" + typed + "\". Did you mean " + meant + "?");
   }
   EXPECT_NE(json_refusal("{\"view\": {\"edgePixels\": 1}}").detail.find("Did you mean view.edge_pixels?"),
             std::string::npos);
-  EXPECT_NE(query_refusal({{"colour", "1"}}).detail.find("There are: levels, "), std::string::npos);
+  EXPECT_NE(query_refusal({{"colour", "1"}}).detail.find("The parameters are levels, "), std::string::npos);
 }
 
 TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {

@@ -126,7 +126,7 @@ TEST(Refinement, TargetThatTheLevelsCannotReachIsSaid) {
   EXPECT_EQ(made.stop_reason, StopReason::levels);
   EXPECT_GT(made.error, 0.0003);
   EXPECT_NE(made.unreached.find("tolerance=0.0003 is not reached"), std::string::npos) << made.unreached;
-  EXPECT_NE(made.unreached.find("more levels than 1"), std::string::npos) << made.unreached;
+  EXPECT_NE(made.unreached.find("Raise levels above 1"), std::string::npos) << made.unreached;
   const Statistics budget = refined({{"view.error_pixels", "0.1"}, {"max_faces", "100"}});
   EXPECT_NE(budget.unreached.find("view.error_pixels=0.1 is not reached"), std::string::npos) << budget.unreached;
   EXPECT_NE(budget.unreached.find("max_faces"), std::string::npos) << budget.unreached;
