@@ -13,7 +13,7 @@
 namespace papilio::proto {
 namespace {
 
-// Everything a skinned glTF model has (tangents, two texture coordinates, colours, joints, weights) is 20 components.
+// A skinned glTF model (tangents, two texture coordinates, colours, joints, weights) has 20 components.
 constexpr uint64_t most_attributes = 16;
 constexpr uint64_t most_components = 32;
 constexpr size_t longest_name = 256;
@@ -54,7 +54,8 @@ std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t
                                              std::to_string(attribute.unique_id()) + ". Encode the mesh again.");
     const uint8_t* bytes = attribute.GetAddress(index);
     for (size_t i = 0; i < components; ++i) {
-      using Stored = std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // any byte, not 0 or 1 alone
+      using Stored =
+          std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // other bytes than 0 and 1 occur
       Stored value;
       std::memcpy(&value, bytes + i * sizeof value, sizeof value);
       values.push_back(std::is_same_v<Number, bool> ? (value != 0 ? 1 : 0) : static_cast<double>(value));
@@ -86,8 +87,8 @@ std::vector<char> to_bytes(const std::vector<double>& values) {
   return bytes;
 }
 
-/// For each point the first of its vertex whose value is the same.
-std::vector<uint32_t> find_same(const std::vector<char>& bytes, size_t stride, const VertexPoints& points) {
+/// Returns for each point the first point of its vertex with an equal value. [points]
+std::vector<uint32_t> find_equal(const std::vector<char>& bytes, size_t stride, const VertexPoints& points) {
   const std::vector<uint32_t>& vertex = points.vertex();
   std::vector<uint32_t> same(vertex.size());
   for (uint32_t p = 0; p < same.size(); ++p) same[p] = p;
@@ -153,7 +154,7 @@ StoredValues store_values(const Attribute& attribute, const AttributeFormat& for
   stored.bytes = with_number(format.type, [&](auto zero) { return to_bytes<decltype(zero)>(attribute.values); });
   const auto count = static_cast<uint32_t>(points.vertex().size());
   const size_t stride = stored.bytes.size() / count;
-  const std::vector<uint32_t> same = find_same(stored.bytes, stride, points);
+  const std::vector<uint32_t> same = find_equal(stored.bytes, stride, points);
   stored.value.resize(count);
   uint32_t kept = 0;
   for (uint32_t p = 0; p < count; ++p) {

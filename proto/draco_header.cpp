@@ -9,7 +9,7 @@ namespace {
 
 constexpr int deepest_metadata = 64;
 
-/// Takes little-endian values off the front; throws where the stream ends too early.
+/// Reader of little-endian values. Throws `Problem` at the end of the stream.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
@@ -21,7 +21,7 @@ class Cursor {
     return static_cast<uint16_t>(low | byte() << 8U);
   }
 
-  /// Unsigned LEB128.
+  /// Reads an unsigned LEB128.
   uint32_t varint() {
     uint64_t value = 0;
     for (unsigned shift = 0; shift < 35; shift += 7) {

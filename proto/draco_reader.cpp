@@ -17,9 +17,8 @@
 namespace papilio::proto {
 namespace {
 
-/// One of Draco's decoders, stopped where a few bytes would make it work without end: between the attributes'
-/// declarations and their values (255 attributes of 255 components may be declared, and a value that is the same
-/// everywhere takes next to no bytes), and where an attribute is predicted.
+/// One of libdraco's decoders with bounded work. Attributes are checked after their declarations, before their values:
+/// a few bytes can declare 255 attributes of 255 components with constant values. Predictions are checked before use.
 template <class Decoder>
 class BoundedDecoder : public Decoder {
  public:
@@ -35,18 +34,18 @@ class BoundedDecoder : public Decoder {
   bool DecodeAllAttributes() override {
     try {
       require_attributes_within_limits(*this->point_cloud());
-    } catch (const Problem& problem) {  // not through Draco, which is built without exceptions
+    } catch (const Problem& problem) {  // libdraco is built without exceptions
       refusal_ = problem;
       return false;
     }
     return Decoder::DecodeAllAttributes();
   }
 
-  /// Draco asks for this once for each attribute that is predicted from the mesh, at the start of its values.
+  /// Checks the prediction. libdraco calls it once for each attribute predicted from the mesh, before its values.
   const draco::MeshAttributeIndicesEncodingData* GetAttributeEncodingData(int number) const override {
     const auto* data = Decoder::GetAttributeEncodingData(number);
-    if (data == nullptr || has_sane_prediction(stream_, data->encoded_attribute_value_index_to_corner_map.size(),
-                                               this->point_cloud()->attribute(number)->num_components()))
+    if (data == nullptr || has_valid_prediction(stream_, data->encoded_attribute_value_index_to_corner_map.size(),
+                                                this->point_cloud()->attribute(number)->num_components()))
       return data;
     refusal_.emplace(Code::mesh_not_draco,
                      "Attribute " + std::to_string(this->point_cloud()->attribute(number)->unique_id()) +
@@ -63,7 +62,7 @@ std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool edgebreaker) {
     std::unique_ptr<draco::Mesh> mesh = edgebreaker ? BoundedDecoder<draco::MeshEdgebreakerDecoder>().run(bytes)
                                                     : BoundedDecoder<draco::MeshSequentialDecoder>().run(bytes);
     if (mesh) return mesh;
-  } catch (const std::bad_alloc&) {  // a damaged stream asks for absurd sizes
+  } catch (const std::bad_alloc&) {  // sizes in a damaged stream
   } catch (const std::length_error&) {
   }
   throw Problem(Code::mesh_not_draco,
@@ -88,7 +87,7 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   if (header.edgebreaker) require_bounded_merges(bytes, header);
   const std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
-  // A point for every corner is the most that seams can make of a mesh.
+  // Upper bound with seams: a point for every corner.
   require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
   if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
 

@@ -14,7 +14,7 @@
 namespace papilio::proto {
 namespace {
 
-constexpr double smallest_range = 1e-30;  // below, Draco's steps a unit overflow
+constexpr double smallest_range = 1e-30;  // below, steps per unit overflow in Draco
 
 AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   AttributeEncoding::Grid grid;
@@ -29,7 +29,7 @@ AttributeEncoding::Grid grid_of(const Attribute& attribute) {
     grid.origin.push_back(static_cast<float>(low));
     range = std::max(range, high - low);
   }
-  if (range < smallest_range) range = 1;  // all values are the origin
+  if (range < smallest_range) range = 1;  // all values equal the origin
   if (range < static_cast<double>(std::numeric_limits<float>::max())) grid.range = static_cast<float>(range);
   return grid;
 }

@@ -90,7 +90,6 @@ void MultipartReader::finish() const {
   if (state_ != State::done) fail("ends before its closing boundary. Send the request again.");
 }
 
-/// Takes the next piece off `pending_`; false when it is not there whole yet.
 bool MultipartReader::step() {
   switch (state_) {
     case State::delimiter: {

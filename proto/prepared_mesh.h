@@ -12,7 +12,7 @@
 
 namespace papilio::proto {
 
-/// A mesh as it came, checked, with what it takes to write its refinements.
+/// A decoded and checked mesh, with the grids for encoding its refinements.
 struct DecodedMesh {
   Mesh mesh;
   BuildReport found;
@@ -20,32 +20,30 @@ struct DecodedMesh {
   AttributeEncoding attributes;
 };
 
-/// Throws `Problem`.
+/// Decodes and checks a mesh. Throws `Problem`.
 [[nodiscard]] DecodedMesh decode_mesh(std::string_view draco, const Limits& limits);
 
-/// A stored mesh, decoded once, and what refinements made of it (core/prepared_mesh.h). Any number of threads may use
-/// one object at once.
+/// A decoded mesh and a cache of what refinements computed for it: a core mesh for each set of rules. Thread-safe.
 class PreparedMesh {
  public:
-  /// Keeps up to `byte_budget` bytes of what refinements make, besides the mesh itself and the level of its own edges.
-  /// Throws `Problem`.
+  /// `byte_budget`: limit of cached bytes, besides the mesh itself and the level of its own edges. Throws `Problem`.
   PreparedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
-  /// The mesh under the rules (tension, w, crease angle) of the options: made when they are asked for first. Those
-  /// asked for longest ago are given up where together they pass the budget.
-  [[nodiscard]] std::shared_ptr<const papilio::PreparedMesh> under_rules_of(const Options& options) const;
-  /// What all of it takes in memory now.
+  /// Returns the mesh for the rules (tension, w, crease angle) of the options, computed on first use. Least recently
+  /// used meshes are evicted beyond the budget.
+  [[nodiscard]] std::shared_ptr<const papilio::PreparedMesh> for_rules_of(const Options& options) const;
+  /// Returns the bytes in memory.
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  using UnderRules = std::shared_ptr<const papilio::PreparedMesh>;
-  [[nodiscard]] UnderRules find(const Options& options) const;
+  using CoreMesh = std::shared_ptr<const papilio::PreparedMesh>;
+  [[nodiscard]] CoreMesh find(const Options& options) const;
 
   DecodedMesh decoded_;
   uint64_t budget_;
-  mutable std::mutex access_;               ///< to the one below
-  mutable std::vector<UnderRules> in_use_;  ///< the latest asked for first
+  mutable std::mutex access_;             ///< guards `recent_`
+  mutable std::vector<CoreMesh> recent_;  ///< most recently used first
 };
 
 }  // namespace papilio::proto

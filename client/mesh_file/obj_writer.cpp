@@ -22,7 +22,7 @@ Array<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& f
     components = attribute.components;
     if (format.attributes[a].kind != kind || components > 3 || (kind == AttributeKind::normal && components != 3))
       continue;
-    const double unit = proto::one_of(format.attributes[a]);
+    const double unit = proto::unit_value(format.attributes[a]);
     Array<Vec3f> found(mesh.positions.size());
     for (size_t p = 0; p < found.size(); ++p) {
       std::array<float, 3> numbers{};

@@ -7,9 +7,9 @@
 
 namespace papilio::proto {
 
-/// Runs `work` and puts the core's refusals, and memory that is not there, into the words of the wire.
+/// Runs `work`. Throws errors of the core, and a lack of memory, as `Problem`.
 template <class Work>
-auto in_words_of_the_wire(const Work& work) {
+auto translate_errors(const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
