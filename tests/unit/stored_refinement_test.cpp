@@ -52,7 +52,7 @@ void expect_equal(const EncodedLevel& a, const EncodedLevel& b) {
   EXPECT_EQ(a.statistics.error_pixels, b.statistics.error_pixels);
 }
 
-TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
+TEST(StoredRefinement, BytesEqualThoseOfAStream) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const std::string draco = real_draco(name);
     for (uint64_t budget : {plenty, uint64_t{2'000'000}}) {
@@ -68,7 +68,7 @@ TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
   }
 }
 
-/// The answer, or why there is none.
+/// Returns the result, or the error text.
 template <class Coarse>
 std::variant<EncodedLevel, std::string> answer_of(const Coarse& coarse, const Parameters& parameters) {
   try {
@@ -141,7 +141,7 @@ TEST(StoredRefinement, RulesShareTheBudget) {
   EXPECT_LT(after(one, {"off", "soft", "sharp", "off", "off"}), 2 * one);
 }
 
-TEST(StoredRefinement, IsRefusedAsOneOfItsOwn) {
+TEST(StoredRefinement, RefusalsEqualThoseOfAStream) {
   const std::string draco = write_draco_exact(icosahedron());
   const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, plenty);
   EXPECT_THROW(Refinement(stored, parse_query({{"levels", "10"}}), {.max_output_faces = 1000}), Problem);
