@@ -96,9 +96,9 @@ Refinement::Refinement(std::string_view draco, const Parameters& parameters, con
   times_.decode = watch.lap();
 }
 
-Refinement::Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits)
+Refinement::Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits)
     : Refinement(parameters, limits) {
-  prepared_ = std::move(prepared);
+  shared_ = std::move(shared);
   set_options(parameters, limits);
 }
 
@@ -107,9 +107,9 @@ EncodedLevel Refinement::run(const RefinementHooks& hooks) {
 }
 
 Result Refinement::refine_coarse(const Hooks& hooks) {
-  if (!prepared_) return refine(std::move(decoded_.mesh), options_, hooks);
-  if (!uses_hierarchy(options_)) return refine(prepared_->decoded().mesh, options_, hooks);
-  return refine(*prepared_->for_rules_of(options_), options_, hooks);
+  if (!shared_) return refine(std::move(decoded_.mesh), options_, hooks);
+  if (!uses_hierarchy(options_)) return refine(shared_->decoded().mesh, options_, hooks);
+  return refine(*shared_->for_rules_of(options_), options_, hooks);
 }
 
 EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,

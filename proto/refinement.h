@@ -13,7 +13,7 @@
 #include "core/refine.h"
 #include "proto/limits.h"
 #include "proto/parameters.h"
-#include "proto/prepared_mesh.h"
+#include "proto/shared_mesh.h"
 
 // The pipeline from a Draco mesh to a refined Draco mesh. Server and client share it, so local and remote results are
 // byte-identical.
@@ -61,7 +61,7 @@ class Refinement {
   /// Throws `Problem`, also if the result is certain to exceed a limit.
   Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
   /// Refines a cached mesh. Results are byte-identical to those from a stream.
-  Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits);
+  Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits);
 
   [[nodiscard]] uint32_t coarse_faces() const { return coarse().mesh.topology.face_count(); }
   [[nodiscard]] uint32_t coarse_vertices() const { return coarse().mesh.topology.vertex_count; }
@@ -74,7 +74,7 @@ class Refinement {
   Refinement(const Parameters& parameters, const Limits& limits);
   /// Sets the options from the coarse mesh. Throws `Problem` if the result is certain to exceed a limit.
   void set_options(const Parameters& parameters, const Limits& limits);
-  [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
+  [[nodiscard]] const DecodedMesh& coarse() const { return shared_ ? shared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
   /// Encodes a level. `times`: time spent before.
   [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times,
@@ -84,8 +84,8 @@ class Refinement {
 
   Options options_;
   OutputOptions output_;
-  DecodedMesh decoded_;                           ///< unused with `prepared_`
-  std::shared_ptr<const PreparedMesh> prepared_;  ///< null: `decoded_` is used
+  DecodedMesh decoded_;                       ///< unused with `shared_`
+  std::shared_ptr<const SharedMesh> shared_;  ///< null: `decoded_` is used
   StageTimes times_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::atomic<std::chrono::steady_clock::duration> waited_{};  ///< time in `RefinementHooks::cancelled`

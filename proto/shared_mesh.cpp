@@ -1,4 +1,4 @@
-#include "proto/prepared_mesh.h"
+#include "proto/shared_mesh.h"
 
 #include <algorithm>
 #include <numeric>
@@ -30,10 +30,10 @@ DecodedMesh decode_mesh(std::string_view draco, const Limits& limits) {
   return decoded;
 }
 
-PreparedMesh::PreparedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget)
+SharedMesh::SharedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget)
     : decoded_(decode_mesh(draco, limits)), budget_(byte_budget) {}
 
-std::shared_ptr<const papilio::PreparedMesh> PreparedMesh::for_rules_of(const Options& options) const {
+std::shared_ptr<const papilio::PreparedMesh> SharedMesh::for_rules_of(const Options& options) const {
   if (CoreMesh found = find(options)) return found;
   // Computed outside the lock: concurrent first requests both compute it, and neither waits for the other.
   auto made = std::make_shared<const papilio::PreparedMesh>(decoded_.mesh, options, budget_);
@@ -42,7 +42,7 @@ std::shared_ptr<const papilio::PreparedMesh> PreparedMesh::for_rules_of(const Op
   return made;
 }
 
-PreparedMesh::CoreMesh PreparedMesh::find(const Options& options) const {
+SharedMesh::CoreMesh SharedMesh::find(const Options& options) const {
   const std::lock_guard lock(access_);
   const auto found = std::ranges::find_if(recent_, [&](const CoreMesh& mesh) { return mesh->suits(options); });
   if (found != recent_.end()) std::rotate(recent_.begin(), found, found + 1);
@@ -54,7 +54,7 @@ PreparedMesh::CoreMesh PreparedMesh::find(const Options& options) const {
   return suits ? recent_.front() : nullptr;
 }
 
-uint64_t PreparedMesh::bytes() const {
+uint64_t SharedMesh::bytes() const {
   const std::lock_guard lock(access_);
   return std::accumulate(recent_.begin(), recent_.end(), bytes_of(decoded_.mesh),
                          [](uint64_t sum, const CoreMesh& mesh) { return sum + mesh->bytes(); });

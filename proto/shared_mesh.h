@@ -23,11 +23,11 @@ struct DecodedMesh {
 /// Decodes and checks a mesh. Throws `Problem`.
 [[nodiscard]] DecodedMesh decode_mesh(std::string_view draco, const Limits& limits);
 
-/// A decoded mesh and a cache of what refinements computed for it: a core mesh for each set of rules. Thread-safe.
-class PreparedMesh {
+/// A decoded mesh, shared by refinements, and a cache of their prepared meshes, one for each set of rules. Thread-safe.
+class SharedMesh {
  public:
   /// `byte_budget`: limit of cached bytes, besides the mesh itself and the level of its own edges. Throws `Problem`.
-  PreparedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
+  SharedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
   /// Returns the mesh for the rules (tension, w, crease angle) of the options, computed on first use. Least recently
