@@ -13,7 +13,7 @@
 namespace papilio::proto {
 namespace {
 
-// Everything a skinned glTF model has (tangents, two texture coordinates, colours, joints, weights) is 20 components.
+// A skinned glTF model (tangents, two texture coordinates, colours, joints, weights) has 20 components.
 constexpr uint64_t most_attributes = 16;
 constexpr uint64_t most_components = 32;
 constexpr size_t longest_name = 256;
@@ -30,7 +30,9 @@ AttributeFormat format_of(const draco::Mesh& mesh, int number) {
   format.kind = kind >= 0 && kind < static_cast<int>(AttributeKind::generic) ? static_cast<AttributeKind>(kind)
                                                                              : AttributeKind::generic;
   if (attribute.data_type() <= draco::DT_INVALID || attribute.data_type() > draco::DT_BOOL)
-    throw Problem(Code::mesh_not_draco, "An attribute of the mesh has a type that does not exist. Encode it again.");
+    throw Problem(Code::mesh_not_draco, "Attribute " + std::to_string(attribute.unique_id()) + " has data type " +
+                                            std::to_string(attribute.data_type()) + "; Draco has 1 to " +
+                                            std::to_string(draco::DT_BOOL) + ". Encode the mesh again.");
   format.type = static_cast<ValueType>(attribute.data_type() - 1);
   format.normalized = attribute.normalized();
   format.id = attribute.unique_id();
@@ -48,11 +50,12 @@ std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t
   for (draco::PointIndex p(0); p < points; ++p) {
     const draco::AttributeValueIndex index = attribute.mapped_index(p);
     if (index.value() >= attribute.size())
-      throw Problem(Code::mesh_unusable, "The mesh has a point without a value of attribute " +
-                                             std::to_string(attribute.unique_id()) + ". Encode it again.");
+      throw Problem(Code::mesh_unusable, "Point " + std::to_string(p.value()) + " has no value of attribute " +
+                                             std::to_string(attribute.unique_id()) + ". Encode the mesh again.");
     const uint8_t* bytes = attribute.GetAddress(index);
     for (size_t i = 0; i < components; ++i) {
-      using Stored = std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // any byte, not 0 or 1 alone
+      using Stored =
+          std::conditional_t<std::is_same_v<Number, bool>, uint8_t, Number>;  // other bytes than 0 and 1 occur
       Stored value;
       std::memcpy(&value, bytes + i * sizeof value, sizeof value);
       values.push_back(std::is_same_v<Number, bool> ? (value != 0 ? 1 : 0) : static_cast<double>(value));
@@ -84,8 +87,8 @@ std::vector<char> to_bytes(const std::vector<double>& values) {
   return bytes;
 }
 
-/// For each point the first of its vertex whose value is the same.
-std::vector<uint32_t> find_same(const std::vector<char>& bytes, size_t stride, const VertexPoints& points) {
+/// Returns for each point the first point of its vertex with an equal value. [points]
+std::vector<uint32_t> find_equal(const std::vector<char>& bytes, size_t stride, const VertexPoints& points) {
   const std::vector<uint32_t>& vertex = points.vertex();
   std::vector<uint32_t> same(vertex.size());
   for (uint32_t p = 0; p < same.size(); ++p) same[p] = p;
@@ -109,10 +112,9 @@ std::vector<uint32_t> find_same(const std::vector<char>& bytes, size_t stride, c
 void require_attributes_within_limits(const draco::PointCloud& mesh) {
   uint64_t components = 0;
   for (int number = 0; number < mesh.num_attributes(); ++number) components += mesh.attribute(number)->num_components();
-  require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes,
-                 "attributes, its positions included", "Leave some out.");
-  require_within(components, 3 + most_components, "components in its attributes, three of its positions included",
-                 "Leave some attributes out.");
+  require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes, "attributes, positions included",
+                 "Remove attributes.");
+  require_within(components, 3 + most_components, "components of attributes, positions included", "Remove attributes.");
 }
 
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
@@ -125,8 +127,7 @@ void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
     const AttributeFormat format = format_of(mesh, number);
     Attribute& read = out.attributes.emplace_back();
     read.components = attribute.num_components();
-    read.unit_length =
-        format.kind == AttributeKind::normal && format.type == ValueType::float32 && read.components == 3;
+    read.unit_length = is_unit_normal(format, read.components);
     read.values = with_number(format.type, [&](auto zero) {
       return read_values<decltype(zero)>(attribute, static_cast<uint32_t>(out.positions.size()));
     });
@@ -153,7 +154,7 @@ StoredValues store_values(const Attribute& attribute, const AttributeFormat& for
   stored.bytes = with_number(format.type, [&](auto zero) { return to_bytes<decltype(zero)>(attribute.values); });
   const auto count = static_cast<uint32_t>(points.vertex().size());
   const size_t stride = stored.bytes.size() / count;
-  const std::vector<uint32_t> same = find_same(stored.bytes, stride, points);
+  const std::vector<uint32_t> same = find_equal(stored.bytes, stride, points);
   stored.value.resize(count);
   uint32_t kept = 0;
   for (uint32_t p = 0; p < count; ++p) {

@@ -7,44 +7,44 @@
 #include "papilio/mesh.h"
 #include "proto/mesh_format.h"
 
-// Attributes between Draco's meshes and the core. For the reader and the writer only.
+// Conversion of attributes between Draco's meshes and the core. For the reader and the writer only.
 
 namespace papilio::proto {
 
-/// The metadata entry that names an attribute.
+/// Metadata entry with the name of an attribute.
 inline constexpr const char* name_entry = "name";
 
-/// Throws `Problem` mesh_too_large for more than 16 attributes or 32 components besides a position. Needs no values.
+/// Throws `Problem` mesh_too_large for more than 16 attributes or 32 components besides the position. Reads no values.
 void require_attributes_within_limits(const draco::PointCloud& mesh);
 
-/// Reads everything but POSITION into `out`, whose positions are there already. Throws `Problem` mesh_unusable (a point
-/// without a value).
+/// Reads all attributes but POSITION into `out`, whose positions must be set. Throws `Problem` mesh_unusable for a
+/// point without a value.
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out);
 
-/// Which points of a mesh lie at which vertex.
+/// Vertex of each point of a mesh.
 class VertexPoints {
  public:
   explicit VertexPoints(const Mesh& mesh);
 
   [[nodiscard]] const std::vector<uint32_t>& vertex() const { return vertex_; }
-  /// Points of vertices that have several of them.
+  /// Returns the points of vertices with several points.
   [[nodiscard]] const std::vector<uint32_t>& on_seams() const { return on_seams_; }
 
  private:
-  std::vector<uint32_t> vertex_;  ///< [P]
+  std::vector<uint32_t> vertex_;  ///< [points]
   std::vector<uint32_t> on_seams_;
 };
 
-/// The values of an attribute as Draco stores them. Integers are rounded and held to their range. Points of one vertex
-/// share a value where theirs are the same, so that it has only its own seams.
+/// Values of an attribute as Draco stores them. Integers are rounded and clamped to their range. Points of one vertex
+/// share a value if theirs are equal, so seams of other attributes do not become seams of this one.
 struct StoredValues {
-  std::vector<char> bytes;      ///< [values] in the attribute's type, component by component
-  std::vector<uint32_t> value;  ///< [P] the number of each point's value
+  std::vector<char> bytes;      ///< [values][components] in the attribute's type
+  std::vector<uint32_t> value;  ///< [points] index of each point's value
 };
 [[nodiscard]] StoredValues store_values(const Attribute& attribute, const AttributeFormat& format,
                                         const VertexPoints& points);
 
-/// Calls `visit` with a number (0) of the type.
+/// Calls `visit` with a zero of the C++ type that `type` stands for.
 template <class Visit>
 auto with_number(ValueType type, Visit visit) {
   switch (type) {

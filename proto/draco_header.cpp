@@ -9,7 +9,7 @@ namespace {
 
 constexpr int deepest_metadata = 64;
 
-/// Takes little-endian values off the front; throws where the stream ends too early.
+/// Reader of little-endian values. Throws `Problem` at the end of the stream.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
@@ -21,7 +21,7 @@ class Cursor {
     return static_cast<uint16_t>(low | byte() << 8U);
   }
 
-  /// Unsigned LEB128.
+  /// Reads an unsigned LEB128.
   uint32_t varint() {
     uint64_t value = 0;
     for (unsigned shift = 0; shift < 35; shift += 7) {
@@ -32,13 +32,12 @@ class Cursor {
         return static_cast<uint32_t>(value);
       }
     }
-    throw Problem(Code::mesh_not_draco,
-                  "The Draco header has a count that does not fit 32 bits. Encode the mesh again.");
+    throw Problem(Code::mesh_not_draco, "A count in the Draco header exceeds 4294967295. Encode the mesh again.");
   }
 
   std::string_view take(size_t size) {
     if (size > bytes_.size())
-      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Use the whole file.");
+      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Send the whole file.");
     const std::string_view taken = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return taken;
@@ -52,7 +51,9 @@ class Cursor {
 
 void skip_metadata_block(Cursor& cursor, int depth) {
   if (depth > deepest_metadata)
-    throw Problem(Code::mesh_unsupported, "The Draco metadata is nested too deeply. Encode the mesh without metadata.");
+    throw Problem(Code::mesh_unsupported, "The Draco metadata is nested deeper than " +
+                                              std::to_string(deepest_metadata) +
+                                              " levels. Encode the mesh without metadata.");
   for (uint32_t entries = cursor.varint(); entries > 0; --entries) {
     cursor.take(cursor.byte());
     cursor.take(cursor.varint());
@@ -82,8 +83,8 @@ void require_within(uint64_t count, uint64_t limit, const char* what, const char
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (!bytes.starts_with("DRACO"))
     throw Problem(Code::mesh_not_draco,
-                  bytes.empty() ? "The mesh is empty: it has 0 bytes. A Draco file is needed."
-                                : "The mesh does not start with DRACO, so it is not a Draco file. Encode it with "
+                  bytes.empty() ? "The mesh is empty (0 bytes). Send a Draco file."
+                                : "The mesh is not a Draco file: it does not start with DRACO. Encode it with "
                                   "draco_encoder or `papilio convert in.obj out.drc`.");
   Cursor cursor(bytes);
   cursor.take(5);
@@ -95,10 +96,11 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (major != 2 || minor != 2)
     throw Problem(Code::mesh_unsupported, "The Draco bitstream is version " + std::to_string(major) + "." +
                                               std::to_string(minor) +
-                                              "; only 2.2 is read. Encode the mesh again with Draco 1.3 or later.");
-  if (geometry != 1)
-    throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud; a triangle mesh is needed.");
-  if (method > 1) throw Problem(Code::mesh_not_draco, "The Draco stream names an encoding method that does not exist.");
+                                              "; only 2.2 is supported. Encode the mesh with Draco 1.3 or later.");
+  if (geometry != 1) throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud. Send a triangle mesh.");
+  if (method > 1)
+    throw Problem(Code::mesh_not_draco, "The Draco stream has encoding method " + std::to_string(method) +
+                                            "; only 0 and 1 exist. Encode the mesh again.");
   constexpr unsigned metadata_flag = 0x8000;
   if ((flags & metadata_flag) != 0) skip_metadata(cursor);
 

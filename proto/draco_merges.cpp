@@ -21,12 +21,12 @@
 namespace papilio::proto {
 namespace {
 
-/// A stream from its traversal byte to its symbols.
+/// Connectivity section of a stream, up to its symbols.
 struct Connectivity {
   uint8_t traversal = 0;
   uint32_t vertices = 0, faces = 0, symbols = 0, splits = 0;
   uint8_t attributes = 0;
-  draco::DecoderBuffer rest;
+  draco::DecoderBuffer rest;  ///< bytes not yet read
 };
 
 std::optional<Connectivity> read_counts(std::string_view bytes) {
@@ -40,9 +40,9 @@ std::optional<Connectivity> read_counts(std::string_view bytes) {
   return c;
 }
 
-/// Where the surface is joined to a split symbol that is decoded later.
+/// Topology split event: an edge is joined to a split symbol that is decoded later.
 struct Event {
-  uint32_t source, split;  ///< symbols, counted from the last one on
+  uint32_t source, split;  ///< symbols, numbered from the last
   bool is_right = false;
 };
 
@@ -70,7 +70,7 @@ std::optional<std::vector<Event>> read_events(Connectivity& c) {
   return events;
 }
 
-/// Symbols as bits.
+/// Decoder of the symbols of the standard traversal.
 class StandardSymbols {
  public:
   bool start(Connectivity& c) {
@@ -91,7 +91,7 @@ class StandardSymbols {
   draco::DecoderBuffer bits_;
 };
 
-/// Symbols in lists, by the valence of the vertex that the walk turns round.
+/// Decoder of the symbols of the valence traversal. `valence`: valence of the active vertex.
 class ValenceSymbols {
  public:
   bool start(Connectivity& c) {
@@ -121,19 +121,20 @@ class ValenceSymbols {
   std::array<std::vector<uint32_t>, most_valence - least_valence + 1> lists_;
 };
 
-/// Follows a decoder, with the boundary alone: each vertex there has a next and a previous one, and faces on one side.
-/// An edge of the boundary is known by the vertex at which it begins.
-class Follower {
+/// Simulation of the decoder on boundaries only. A boundary vertex has a next and a previous vertex and a number of
+/// faces. A boundary edge is identified by its first vertex.
+class DecoderSimulation {
  public:
-  Follower(const Connectivity& c, std::vector<Event> events) : symbols_(c.symbols), events_(std::move(events)) {
-    ends_.reserve(size_t{c.vertices} + c.splits);
+  DecoderSimulation(const Connectivity& c, std::vector<Event> events)
+      : symbols_(c.symbols), events_(std::move(events)) {
+    vertices_.reserve(size_t{c.vertices} + c.splits);
   }
 
-  /// How many corners are renumbered, as far as the stream is sound.
+  /// Decodes symbols up to the first damage or the limit. Returns the number of renumbered corners.
   template <class Symbols>
   uint64_t run(Symbols& symbols) {
     for (at_ = 0; at_ < symbols_ && renumbered_ <= most_renumbered_corners; ++at_) {
-      const uint32_t symbol = symbols.next(active_.empty() ? 0 : ends_[active_.back()].faces + 1);
+      const uint32_t symbol = symbols.next(active_.empty() ? 0 : vertices_[active_.back()].faces + 1);
       if (symbol == draco::TOPOLOGY_E)
         add_triangle();
       else if (active_.empty() || !add(symbol))
@@ -143,17 +144,17 @@ class Follower {
   }
 
  private:
-  struct End {
+  struct BoundaryVertex {
     uint32_t next, previous, faces;
   };
 
   void link(uint32_t from, uint32_t to) {
-    ends_[from].next = to;
-    ends_[to].previous = from;
+    vertices_[from].next = to;
+    vertices_[to].previous = from;
   }
   uint32_t add_vertex() {
-    ends_.push_back({0, 0, 1});
-    return static_cast<uint32_t>(ends_.size() - 1);
+    vertices_.push_back({0, 0, 1});
+    return static_cast<uint32_t>(vertices_.size() - 1);
   }
 
   void add_triangle() {
@@ -164,12 +165,12 @@ class Follower {
     link(b, c);
     link(c, a);
     active_.push_back(b);
-    note_events(a, c);
+    apply_events(a, c);
   }
 
   bool add(uint32_t symbol) {
     const uint32_t from = active_.back();
-    const uint32_t to = ends_[from].next;
+    const uint32_t to = vertices_[from].next;
     switch (symbol) {
       case draco::TOPOLOGY_C:
         close(from, to);
@@ -177,15 +178,15 @@ class Follower {
       case draco::TOPOLOGY_R:
       case draco::TOPOLOGY_L: {
         const uint32_t added = add_vertex();
-        ++ends_[from].faces;
-        ++ends_[to].faces;
+        ++vertices_[from].faces;
+        ++vertices_[to].faces;
         link(from, added);
         link(added, to);
         if (symbol == draco::TOPOLOGY_L) active_.back() = added;
         if (symbol == draco::TOPOLOGY_R)
-          note_events(to, added);
+          apply_events(to, added);
         else
-          note_events(from, to);
+          apply_events(from, to);
         return true;
       }
       case draco::TOPOLOGY_S:
@@ -196,31 +197,32 @@ class Follower {
   }
 
   void close(uint32_t vertex, uint32_t to) {
-    const uint32_t before = ends_[vertex].previous;
-    ++ends_[before].faces;
-    ++ends_[to].faces;
+    const uint32_t before = vertices_[vertex].previous;
+    ++vertices_[before].faces;
+    ++vertices_[to].faces;
     link(before, to);
     active_.back() = before;
   }
 
-  /// The vertex at which the last active edge begins becomes the one at which the active edge before it ends.
+  /// Merges the first vertex of the last active edge into the last vertex of the active edge before it.
   bool merge(uint32_t vertex, uint32_t to) {
     active_.pop_back();
     if (const auto joined = joined_.find(at_); joined != joined_.end()) active_.push_back(joined->second);
     if (active_.empty()) return false;
     const uint32_t from = active_.back();
-    const uint32_t kept = ends_[from].next;
-    renumbered_ += ends_[vertex].faces;
-    ends_[kept].faces += ends_[vertex].faces + 1;
-    ++ends_[from].faces;
-    ++ends_[to].faces;
-    link(ends_[vertex].previous, kept);
+    const uint32_t kept = vertices_[from].next;
+    renumbered_ += vertices_[vertex].faces;
+    vertices_[kept].faces += vertices_[vertex].faces + 1;
+    ++vertices_[from].faces;
+    ++vertices_[to].faces;
+    link(vertices_[vertex].previous, kept);
     link(from, to);
     return true;
   }
 
-  /// Of the face that was just added: its corner opposite to the active edge, and the one before that.
-  void note_events(uint32_t corner, uint32_t before) {
+  /// Applies the split events of the added face. `corner`: its corner opposite to the active edge. `before`: the
+  /// previous corner.
+  void apply_events(uint32_t corner, uint32_t before) {
     const uint32_t source = symbols_ - at_ - 1;
     for (; !events_.empty() && events_.back().source == source; events_.pop_back())
       joined_[symbols_ - events_.back().split - 1] = events_.back().is_right ? before : corner;
@@ -228,9 +230,9 @@ class Follower {
 
   uint32_t symbols_;
   std::vector<Event> events_;
-  Buffer<End> ends_;                               ///< [vertices] of the boundary
-  std::vector<uint32_t> active_;                   ///< edges
-  std::unordered_map<uint32_t, uint32_t> joined_;  ///< edges that events join to split symbols
+  Buffer<BoundaryVertex> vertices_;                ///< [vertices]
+  std::vector<uint32_t> active_;                   ///< stack of active edges
+  std::unordered_map<uint32_t, uint32_t> joined_;  ///< [split symbol] edge joined by an event
   uint32_t at_ = 0;
   uint64_t renumbered_ = 0;
 };
@@ -238,7 +240,7 @@ class Follower {
 template <class Symbols>
 uint64_t count_renumbered(Connectivity& c, std::vector<Event> events) {
   Symbols symbols;
-  return symbols.start(c) ? Follower(c, std::move(events)).run(symbols) : 0;
+  return symbols.start(c) ? DecoderSimulation(c, std::move(events)).run(symbols) : 0;
 }
 
 uint64_t count_renumbered(Connectivity& c) {
@@ -267,12 +269,12 @@ void require_bounded_merges(std::string_view bytes, const DracoHeader& header) {
   if (c->traversal == draco::MESH_EDGEBREAKER_PREDICTIVE_ENCODING)
     throw Problem(Code::mesh_unsupported,
                   "The Draco stream has " + std::to_string(c->faces) + " faces and " + std::to_string(c->splits) +
-                      " split symbols by the predictive traversal; their product may be " +
-                      std::to_string(most_renumbered_corners) + ". Encode the mesh again with Draco 1.3 or later.");
+                      " split symbols by the predictive traversal; their product exceeds " +
+                      std::to_string(most_renumbered_corners) + ". Encode the mesh with Draco 1.3 or later.");
   if (count_renumbered(*c) > most_renumbered_corners)
     throw Problem(Code::mesh_unsupported,
-                  "Decoding the Draco stream renumbers more than " + std::to_string(most_renumbered_corners) +
-                      " corners, the limit: it merges vertices with too many faces too often. Encode the mesh again.");
+                  "Decoding the Draco stream would renumber more than " + std::to_string(most_renumbered_corners) +
+                      " corners: it merges vertices of many faces too often. Encode the mesh again.");
 }
 
 }  // namespace papilio::proto

@@ -9,7 +9,7 @@
 namespace papilio::proto {
 namespace {
 
-/// Passes over an attribute's corrections. False where they are damaged: Draco will say so.
+/// Skips the corrections of an attribute. Returns false for damaged corrections, which libdraco refuses.
 bool skip_corrections(draco::DecoderBuffer& buffer, size_t count, int components) {
   uint8_t is_compressed = 0;
   if (!buffer.Decode(&is_compressed)) return false;
@@ -25,9 +25,9 @@ bool skip_corrections(draco::DecoderBuffer& buffer, size_t count, int components
 
 }  // namespace
 
-bool has_sane_prediction(const draco::DecoderBuffer& buffer, size_t values, int components) {
-  const char method = buffer.data_head()[-2];                                // the other is its transform
-  if (method == draco::MESH_PREDICTION_TEX_COORDS_DEPRECATED) return false;  // not in version 2.2
+bool has_valid_prediction(const draco::DecoderBuffer& buffer, size_t values, int components) {
+  const char method = buffer.data_head()[-2];                                // the last byte is the transform
+  if (method == draco::MESH_PREDICTION_TEX_COORDS_DEPRECATED) return false;  // not part of bitstream 2.2
   if (method != draco::MESH_PREDICTION_TEX_COORDS_PORTABLE) return true;
   constexpr int texture_components = 2;
   if (components != texture_components) return false;

@@ -17,9 +17,8 @@
 namespace papilio::proto {
 namespace {
 
-/// One of Draco's decoders, stopped where a few bytes would make it work without end: between the attributes'
-/// declarations and their values (255 attributes of 255 components may be declared, and a value that is the same
-/// everywhere takes next to no bytes), and where an attribute is predicted.
+/// One of libdraco's decoders with bounded work. Attributes are checked after their declarations, before their values:
+/// a few bytes can declare 255 attributes of 255 components with constant values. Predictions are checked before use.
 template <class Decoder>
 class BoundedDecoder : public Decoder {
  public:
@@ -35,21 +34,22 @@ class BoundedDecoder : public Decoder {
   bool DecodeAllAttributes() override {
     try {
       require_attributes_within_limits(*this->point_cloud());
-    } catch (const Problem& problem) {  // not through Draco, which is built without exceptions
+    } catch (const Problem& problem) {  // libdraco is built without exceptions
       refusal_ = problem;
       return false;
     }
     return Decoder::DecodeAllAttributes();
   }
 
-  /// Draco asks for this once for each attribute that is predicted from the mesh, at the start of its values.
+  /// Checks the prediction. libdraco calls it once for each attribute predicted from the mesh, before its values.
   const draco::MeshAttributeIndicesEncodingData* GetAttributeEncodingData(int number) const override {
     const auto* data = Decoder::GetAttributeEncodingData(number);
-    if (data == nullptr || has_sane_prediction(stream_, data->encoded_attribute_value_index_to_corner_map.size(),
-                                               this->point_cloud()->attribute(number)->num_components()))
+    if (data == nullptr || has_valid_prediction(stream_, data->encoded_attribute_value_index_to_corner_map.size(),
+                                                this->point_cloud()->attribute(number)->num_components()))
       return data;
     refusal_.emplace(Code::mesh_not_draco,
-                     "The Draco stream predicts an attribute in a way that makes no sense. Encode the mesh again.");
+                     "Attribute " + std::to_string(this->point_cloud()->attribute(number)->unique_id()) +
+                         " of the Draco stream has an invalid prediction. Encode the mesh again.");
     return nullptr;
   }
 
@@ -62,19 +62,21 @@ std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool edgebreaker) {
     std::unique_ptr<draco::Mesh> mesh = edgebreaker ? BoundedDecoder<draco::MeshEdgebreakerDecoder>().run(bytes)
                                                     : BoundedDecoder<draco::MeshSequentialDecoder>().run(bytes);
     if (mesh) return mesh;
-  } catch (const std::bad_alloc&) {  // a damaged stream asks for absurd sizes
+  } catch (const std::bad_alloc&) {  // sizes in a damaged stream
   } catch (const std::length_error&) {
   }
   throw Problem(Code::mesh_not_draco,
-                "The Draco stream is damaged or cut short. Use the whole file, or encode the mesh again.");
+                "The Draco stream is damaged or truncated. Send the whole file, or encode the mesh again.");
 }
 
 const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
   if (mesh.NumNamedAttributes(draco::GeometryAttribute::POSITION) != 1)
-    throw Problem(Code::mesh_unsupported, "The mesh must have exactly one POSITION attribute. Encode it again.");
+    throw Problem(Code::mesh_unsupported,
+                  "The mesh has " + std::to_string(mesh.NumNamedAttributes(draco::GeometryAttribute::POSITION)) +
+                      " POSITION attributes; exactly one is required. Encode it again.");
   const draco::PointAttribute& attribute = *mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (attribute.num_components() != 3 || attribute.data_type() != draco::DT_FLOAT32)
-    throw Problem(Code::mesh_unsupported, "POSITION must be three 32-bit floats. Encode the mesh again.");
+    throw Problem(Code::mesh_unsupported, "POSITION must have three 32-bit floats. Encode the mesh again.");
   return attribute;
 }
 
@@ -85,9 +87,9 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   if (header.edgebreaker) require_bounded_merges(bytes, header);
   const std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
-  // A point for every corner is the most that seams can make of a mesh.
+  // Upper bound with seams: a point for every corner.
   require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
-  if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Use a triangle mesh.");
+  if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
   FormattedMesh out;
@@ -95,7 +97,8 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   for (draco::PointIndex p(0); p < mesh->num_points(); ++p) {
     const draco::AttributeValueIndex value = attribute.mapped_index(p);
     if (value.value() >= attribute.size())
-      throw Problem(Code::mesh_unusable, "The mesh has a point without a position. Encode it again.");
+      throw Problem(Code::mesh_unusable,
+                    "Point " + std::to_string(p.value()) + " has no position. Encode the mesh again.");
     attribute.GetValue(value, &out.positions[p.value()]);
   }
   out.triangles.resize_for_overwrite(mesh->num_faces());
@@ -103,8 +106,9 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
     for (int corner = 0; corner < 3; ++corner) {
       const uint32_t p = mesh->face(f)[corner].value();
       if (p >= mesh->num_points())
-        throw Problem(Code::mesh_unusable, "Face " + std::to_string(f.value()) +
-                                               " names a point that does not exist. Encode the mesh again.");
+        throw Problem(Code::mesh_unusable, "Face " + std::to_string(f.value()) + " has point " + std::to_string(p) +
+                                               "; the mesh has " + std::to_string(mesh->num_points()) +
+                                               " points. Encode the mesh again.");
       out.triangles[f.value()][corner] = p;
     }
   }

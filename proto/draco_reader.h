@@ -7,11 +7,10 @@
 
 namespace papilio::proto {
 
-/// Decodes a Draco triangle mesh: its positions, faces and attributes. Whatever the bytes are, the answer is a mesh
-/// whose indices are in range, or a `Problem`: mesh_not_draco (damaged, cut short), mesh_unsupported (version, point
-/// cloud, positions that are not three floats), mesh_too_large (more than 16 attributes or 32 components of them too),
-/// mesh_unusable (no faces, index out of range). Coordinates and values may still be NaN or infinite. Integers of 64
-/// bits keep 53 of them.
+/// Decodes positions, faces and attributes of a Draco triangle mesh. For any bytes, either returns a mesh with indices
+/// in range or throws `Problem`: mesh_not_draco (damaged, truncated), mesh_unsupported (version, point cloud, positions
+/// that are not three floats), mesh_too_large (`limits`, more than 16 attributes or 32 components), mesh_unusable (no
+/// faces, index out of range). Values may be NaN or infinite. Integers of 64 bits are rounded to 53 bits.
 [[nodiscard]] FormattedMesh read_draco(std::string_view bytes, const Limits& limits);
 
 }  // namespace papilio::proto

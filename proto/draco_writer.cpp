@@ -14,7 +14,7 @@
 namespace papilio::proto {
 namespace {
 
-constexpr double smallest_range = 1e-30;  // below, Draco's steps a unit overflow
+constexpr double smallest_range = 1e-30;  // below, steps per unit overflow in Draco
 
 AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   AttributeEncoding::Grid grid;
@@ -29,7 +29,7 @@ AttributeEncoding::Grid grid_of(const Attribute& attribute) {
     grid.origin.push_back(static_cast<float>(low));
     range = std::max(range, high - low);
   }
-  if (range < smallest_range) range = 1;  // all values are the origin
+  if (range < smallest_range) range = 1;  // all values equal the origin
   if (range < static_cast<double>(std::numeric_limits<float>::max())) grid.range = static_cast<float>(range);
   return grid;
 }
@@ -41,8 +41,7 @@ QuantizationBox quantization_box(const Buffer<Vec3f>& coarse) {
   const Vec3d low = to_double(box.min);
   const Vec3d size = to_double(box.max) - low;
   const double range = 1.25 * std::max({size.x, size.y, size.z});
-  if (range < smallest_range)
-    throw Problem(Code::mesh_unusable, "The mesh is smaller than 1e-30 across, too small to be encoded. Scale it up.");
+  if (range < smallest_range) throw Problem(Code::mesh_unusable, "The extent of the mesh is below 1e-30. Scale it up.");
   const Vec3d centre = low + 0.5 * size;
   return {to_float(centre - 0.5 * Vec3d{range, range, range}), static_cast<float>(range)};
 }

@@ -10,20 +10,20 @@
 
 namespace papilio::proto {
 
-/// The cube in whose grid positions are quantised. It comes from the coarse mesh alone, so that a vertex
-/// stays where it is from level to level and from view to view.
+/// Cube whose grid quantizes positions. It depends on the coarse mesh alone, so a vertex keeps its position in all
+/// levels and views.
 struct QuantizationBox {
   Vec3f origin;     ///< lowest corner
   float range = 0;  ///< edge length
 };
 
-/// The bounding box's longest side, padded by an eighth on both sides since the surface swells, round the
-/// box's centre. (What swells further still is encoded right: Draco's grid goes on beyond the cube.)
-/// Throws `Problem` mesh_unusable for a mesh smaller than 1e-30.
+/// Returns the cube about the centre of the bounding box. Its edge is the longest side of the box, padded by an eighth
+/// at both ends because refinement expands the surface. Draco's grid also encodes positions beyond the cube. Throws
+/// `Problem` mesh_unusable for a mesh smaller than 1e-30.
 [[nodiscard]] QuantizationBox quantization_box(const Buffer<Vec3f>& coarse);
 
-/// How the attributes of a mesh are written. As with positions the grids come from the coarse mesh alone: values
-/// between its own are all that interpolation makes.
+/// Formats and grids with which attributes are written. The grids depend on the coarse mesh alone, as interpolated
+/// values stay in its range.
 struct AttributeEncoding {
   struct Grid {
     std::vector<float> origin;  ///< [components] lowest values
@@ -32,29 +32,29 @@ struct AttributeEncoding {
   MeshFormat format{};
   std::vector<Grid> grids{};  ///< one for each attribute
 };
+/// Returns the encoding of the attributes of refinements of `coarse`.
 [[nodiscard]] AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format);
 
 struct OutputOptions {
-  int position_bits = 14;  ///< 8..16, bits of a coordinate
-  int speed = 7;           ///< 0..10, Draco's encoding speed: 0 smallest, 10 fastest
-  bool normals = false;    ///< adds unit normals of the vertices, at 10 bits, in place of the mesh's own
+  int position_bits = 14;  ///< bits of a coordinate, 8 to 16
+  int speed = 7;           ///< Draco's encoding speed: 0 smallest, 10 fastest
+  bool normals = false;    ///< vertex normals of 10 bits in place of the mesh's own normals
 };
 
-/// Encodes the mesh as a Draco 2.2 edgebreaker stream (edgebreaker/writer.h). The mesh must have faces; positions must
-/// be finite. Each vertex has one position, but where several fans of faces meet at a vertex it is written once for
-/// each. Attributes that `attributes` describes (all, in order, or none) have their seams. 32-bit floats are quantised:
-/// texture coordinates at 14 bits, unit normals at 10, the rest at 16. All else is kept: integers (uint32 to 2^31 - 1),
-/// float64, normals that are not three floats, floats with a range that is no float's. `poll`, if any, is called every
-/// few milliseconds; it may throw to stop.
+/// Encodes the mesh as a Draco 2.2 edgebreaker stream (edgebreaker/writer.h). The mesh must have faces and finite
+/// positions. A vertex has one position for each of its fans of faces. `attributes` describes all attributes in order,
+/// or none. 32-bit floats are quantized: texture coordinates to 14 bits, unit normals to 10, others to 16. Kept exactly
+/// are integers (uint32 up to 2^31 - 1), float64, normals that are not three floats, and floats whose range overflows.
+/// Calls `poll`, unless empty, every few milliseconds; it may throw to stop.
 [[nodiscard]] std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                                       const AttributeEncoding& attributes = {}, const std::function<void()>& poll = {});
 
-/// Encodes triangles as they are, positions and the attributes of `format` to the bit: what the client sends of a mesh
-/// that is not Draco yet. Isolated points and degenerate faces are dropped, points of equal position welded. Throws
-/// `Error` as `build_mesh`.
+/// Encodes triangles with exact positions and exact attributes of `format`. The client sends meshes of other formats
+/// this way. Isolated points and degenerate faces are removed; points of equal position are welded. Throws `Error` like
+/// `build_mesh`.
 [[nodiscard]] std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format = {});
 
-/// Of the library that writes: other versions may write other bytes.
+/// Returns the version of libdraco, on which encoded bytes depend.
 [[nodiscard]] std::string_view draco_version();
 
 }  // namespace papilio::proto

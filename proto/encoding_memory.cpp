@@ -7,18 +7,18 @@
 namespace papilio::proto {
 namespace {
 
-// Measured on meshes of half a million faces, and rounded up; tests/unit/compute_memory_test.cpp holds them against the
-// memory that a process may have.
+// Measured on meshes of half a million faces and rounded up. tests/unit/compute_memory_test.cpp checks them in a
+// process with limited memory.
 constexpr uint64_t face_bytes = 75;            // corners, their order, positions on the grid and symbols
-constexpr uint64_t seam_face_bytes = 36;       // the surface cut open along an attribute's seams
-constexpr uint64_t attribute_face_bytes = 16;  // which values the corners have
-constexpr uint64_t attribute_point_bytes = 8;  // values of the points
+constexpr uint64_t seam_face_bytes = 36;       // surface cut open along an attribute's seams
+constexpr uint64_t attribute_face_bytes = 16;  // value indices of the corners
+constexpr uint64_t attribute_point_bytes = 8;  // value indices of the points
 constexpr uint64_t value_point_bytes = 12;     // order of the values
-constexpr uint64_t component_point_bytes = 8;  // of the attribute that is being written: integers and symbols
-constexpr uint64_t stream_copies = 3;          // while it grows, and when it is handed on
-constexpr uint64_t coded_component_bytes = 2;  // of a component that is predicted, in the stream
+constexpr uint64_t component_point_bytes = 8;  // integers and symbols of one attribute
+constexpr uint64_t stream_copies = 3;          // growth and hand-over of the stream
+constexpr uint64_t coded_component_bytes = 2;  // a predicted component in the stream
 
-/// Bytes of a component as Draco stores it.
+/// Returns the bytes of a component as Draco stores it.
 uint64_t size_of(ValueType type) {
   return with_number(type, [](auto number) { return uint64_t{sizeof number}; });
 }

@@ -5,7 +5,7 @@
 
 namespace papilio::proto {
 
-/// Upper bound of the memory that `write_draco` takes for a mesh refined from `coarse`, the stream included.
+/// Returns an upper bound of the memory of `write_draco` for a mesh refined from `coarse`, including the stream.
 [[nodiscard]] OutputBytes encoding_bytes(const Mesh& coarse, const OutputOptions& options,
                                          const AttributeEncoding& encoding);
 

@@ -10,19 +10,18 @@
 
 namespace papilio::proto {
 
-/// Counts by their names on the wire.
+/// Counts with their names in headers and JSON.
 using Findings = std::vector<std::pair<std::string_view, uint32_t>>;
 
-/// All that was found in a mesh, zeros included.
+/// Returns all counts of a report, zeros included.
 [[nodiscard]] Findings all_findings(const BuildReport& report);
 
-/// Only what had to be dropped or worked round, and only what there is: neither welded points nor boundaries, which are
-/// common.
+/// Returns the nonzero counts of defects. Welded points and boundaries are no defects.
 [[nodiscard]] Findings defects(const BuildReport& report);
 
-/// The defects as a header field's value: "non_manifold_edges=2, pinched_vertices=1", empty when there are none; and
-/// back (unknown names are passed over).
+/// Formats the defects as a header value: "non_manifold_edges=2, pinched_vertices=1", or "" for none.
 [[nodiscard]] std::string defects_text(const BuildReport& report);
+/// Parses the text of `defects_text`. Ignores unknown names.
 [[nodiscard]] BuildReport parse_defects(std::string_view text);
 
 }  // namespace papilio::proto

@@ -4,9 +4,13 @@
 
 namespace papilio::proto {
 
-double one_of(const AttributeFormat& format) {
+bool is_unit_normal(const AttributeFormat& format, uint32_t components) {
+  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && components == 3;
+}
+
+double unit_value(const AttributeFormat& format) {
   if (!format.normalized || format.type > ValueType::uint64) return 1;
-  const auto number = static_cast<unsigned>(format.type);  // signed and unsigned by turns, of 8 bits and more
+  const auto number = static_cast<unsigned>(format.type);  // int8, uint8, int16, uint16, ...
   const int bits = 8 << (number / 2);
   return std::ldexp(1.0, number % 2 == 0 ? bits - 1 : bits) - 1;
 }

@@ -6,29 +6,34 @@
 
 #include "papilio/mesh.h"
 
-// What the core does not need to know of a mesh's attributes, but whoever writes them back does.
+// Formats of a mesh's attributes, which the core does not need and a writer does.
 
 namespace papilio::proto {
 
-/// What an attribute is for; in Draco's order.
+/// Purpose of an attribute, in Draco's order.
 enum class AttributeKind : uint8_t { normal, color, tex_coord, generic };
 
-/// What one component is stored as; in Draco's order.
+/// Stored type of a component, in Draco's order.
 enum class ValueType : uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, boolean };
 
+/// Format of one attribute.
 struct AttributeFormat {
   AttributeKind kind = AttributeKind::generic;
   ValueType type = ValueType::float32;
-  bool normalized = false;  ///< integers stand for the range from 0 (or -1) to 1
-  uint32_t id = 0;          ///< Draco's unique id, by which applications know the attribute
+  bool normalized = false;  ///< integers represent the range from 0 (or -1) to 1
+  uint32_t id = 0;          ///< Draco's unique id, which identifies the attribute to applications
   std::string name{};       ///< the metadata entry "name"; empty if there is none
 
   friend bool operator==(const AttributeFormat&, const AttributeFormat&) = default;
 };
 
-/// The stored number that stands for 1: the largest of a normalized integer, else 1.
-[[nodiscard]] double one_of(const AttributeFormat& format);
+/// Returns whether an attribute of so many components holds unit normals that Draco codes on an octahedron.
+[[nodiscard]] bool is_unit_normal(const AttributeFormat& format, uint32_t components);
 
+/// Returns the stored number that represents 1: the maximum of a normalized integer type, else 1.
+[[nodiscard]] double unit_value(const AttributeFormat& format);
+
+/// Formats of all attributes of a mesh.
 struct MeshFormat {
   uint32_t position_id = 0;                   ///< Draco's unique id of POSITION
   std::vector<AttributeFormat> attributes{};  ///< one for each of TriangleMesh::attributes
@@ -36,7 +41,7 @@ struct MeshFormat {
   friend bool operator==(const MeshFormat&, const MeshFormat&) = default;
 };
 
-/// A mesh as it was read, and how to write it back.
+/// A mesh with the formats of its attributes.
 struct FormattedMesh : TriangleMesh {
   MeshFormat format;
 };

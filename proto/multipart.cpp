@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "proto/problem.h"
+#include "proto/text.h"
 
 namespace papilio::proto {
 namespace {
 
 constexpr size_t longest_header = 16 << 10;
+constexpr size_t most_headers = 100;
 
 bool equal_without_case(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
@@ -36,7 +38,7 @@ std::string_view trim(std::string_view text) {
 std::string boundary_of(std::string_view content_type) {
   const size_t semicolon = content_type.find(';');
   if (!equal_without_case(trim(content_type.substr(0, semicolon)), "multipart/mixed"))
-    throw Problem(Code::bad_request, "The body is not multipart/mixed.");
+    throw Problem(Code::bad_request, "Content-Type must be multipart/mixed, not " + quote(content_type) + ".");
   while (semicolon != std::string_view::npos) {
     content_type.remove_prefix(content_type.find(';') + 1);
     std::string_view field = trim(content_type.substr(0, content_type.find(';')));
@@ -47,7 +49,7 @@ std::string boundary_of(std::string_view content_type) {
     }
     if (content_type.find(';') == std::string_view::npos) break;
   }
-  fail("has no usable boundary.");
+  fail("has no boundary of 1 to 70 characters.");
 }
 
 }  // namespace
@@ -85,20 +87,19 @@ void MultipartReader::feed(std::string_view bytes) {
 }
 
 void MultipartReader::finish() const {
-  if (state_ != State::done) fail("ends before its closing boundary: something is missing.");
+  if (state_ != State::done) fail("ends before its closing boundary. Send the request again.");
 }
 
-/// Takes the next piece off `pending_`; false when it is not there whole yet.
 bool MultipartReader::step() {
   switch (state_) {
     case State::delimiter: {
       const size_t end = pending_.find("\r\n");
       if (end == std::string::npos) {
-        if (pending_.size() > delimiter_.size() + 4) fail("has bytes where a boundary should be.");
+        if (pending_.size() > delimiter_.size() + 4) fail("has other bytes in place of a boundary.");
         return false;
       }
       const std::string line = pending_.substr(0, end);
-      if (line != delimiter_ && line != delimiter_ + "--") fail("has bytes where a boundary should be.");
+      if (line != delimiter_ && line != delimiter_ + "--") fail("has other bytes in place of a boundary.");
       state_ = line == delimiter_ ? State::headers : State::done;
       pending_.erase(0, end + 2);
       return true;
@@ -106,22 +107,26 @@ bool MultipartReader::step() {
     case State::headers: {
       const size_t end = pending_.find("\r\n");
       if (end == std::string::npos) {
-        if (pending_.size() > longest_header) fail("has a part with too long a header.");
+        if (pending_.size() > longest_header)
+          fail("has a header line of more than " + std::to_string(longest_header) + " bytes.");
         return false;
       }
       const std::string line = pending_.substr(0, end);
       pending_.erase(0, end + 2);
       if (!line.empty()) {
         const size_t colon = line.find(':');
-        if (colon == std::string::npos || part_.headers.size() > 100) fail("has a part with a damaged header.");
+        if (colon == std::string::npos) fail("has a header line without a colon: " + quote(line) + ".");
+        if (part_.headers.size() >= most_headers)
+          fail("has a part with more than " + std::to_string(most_headers) + " header lines.");
         part_.headers.emplace_back(line.substr(0, colon), trim(std::string_view(line).substr(colon + 1)));
         return true;
       }
       const std::string length = part_.header("Content-Length");
       const auto [last, error] = std::from_chars(length.data(), length.data() + length.size(), body_size_);
       if (error != std::errc() || last != length.data() + length.size() || length.empty())
-        fail("has a part without a Content-Length.");
-      if (body_size_ > max_part_bytes_) fail("has a part of " + length + " bytes, more than is taken.");
+        fail("has a part without a valid Content-Length.");
+      if (body_size_ > max_part_bytes_)
+        fail("has a part of " + length + " bytes; the limit is " + std::to_string(max_part_bytes_) + ".");
       state_ = State::body;
       return true;
     }

@@ -7,49 +7,49 @@
 #include <utility>
 #include <vector>
 
-// multipart/mixed (RFC 2046) as the service streams it: every part has a Content-Length, so that a reader
-// knows a part's end without searching for the boundary.
+// multipart/mixed (RFC 2046) with a Content-Length in every part, so a reader need not search for the boundary.
 
 namespace papilio::proto {
 
-/// One part: its header fields in order, and its bytes.
+/// A part: header fields in order, and body.
 struct Part {
   std::vector<std::pair<std::string, std::string>> headers;
   std::string body;
 
-  /// A field's value, "" when absent; names match without regard to case.
+  /// Returns the value of a field, "" if absent. Names are case-insensitive.
   [[nodiscard]] std::string header(std::string_view name) const;
 };
 
+/// Writer of a multipart body.
 class MultipartWriter {
  public:
-  /// 1 to 70 characters of [A-Za-z0-9._-]. A random one is made when none is given.
+  /// `boundary`: 1 to 70 characters of [A-Za-z0-9._-]; empty: a random one.
   explicit MultipartWriter(std::string boundary = {});
-  /// The value of the answer's Content-Type.
+  /// Returns the value of the response's Content-Type.
   [[nodiscard]] std::string content_type() const;
-  /// The bytes of one part; Content-Length is added to its headers.
+  /// Returns the bytes of a part, with Content-Length added to its headers.
   [[nodiscard]] std::string part(const Part& part) const;
-  /// The bytes after the last part.
+  /// Returns the bytes after the last part.
   [[nodiscard]] std::string end() const;
 
  private:
   std::string boundary_;
 };
 
-/// Reads what `MultipartWriter` writes, in pieces of any size.
+/// Incremental reader of bodies written by `MultipartWriter`.
 class MultipartReader {
  public:
-  /// `content_type`: that of the answer. `max_part_bytes` bounds a part's body. Throws `Problem` bad_request
-  /// when it is not multipart/mixed with a boundary.
+  /// `content_type`: of the response. `max_part_bytes`: limit of a part's body. Throws `Problem` bad_request unless the
+  /// type is multipart/mixed with a boundary.
   MultipartReader(std::string_view content_type, uint64_t max_part_bytes, std::function<void(Part)> on_part);
-  /// Takes the next bytes; calls `on_part` for each part completed. Throws `Problem` bad_request when they
-  /// are no such body.
+  /// Reads the next bytes and calls `on_part` for each completed part. Throws `Problem` bad_request for a malformed
+  /// body.
   void feed(std::string_view bytes);
-  /// Call after the last bytes: throws `Problem` bad_request when the closing boundary has not come, so
-  /// nothing may be missing.
+  /// Ends the body. Throws `Problem` bad_request if the closing boundary is missing.
   void finish() const;
 
  private:
+  /// Reads one element off `pending_`. Returns false if it is incomplete.
   bool step();
 
   std::string delimiter_;  ///< "--" and the boundary

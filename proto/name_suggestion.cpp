@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t most_edits = 3;
 
-/// Each pair of neighbours is swapped at most once (optimal string alignment).
+/// Returns the optimal string alignment distance: each pair of neighbours is swapped at most once.
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> before_last, last(b.size() + 1), row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -10,20 +10,15 @@ namespace papilio::proto {
 namespace {
 
 constexpr int normal_bits = 10;
-// A quarter of a texel of a texture of 4096; at 12 bits a whole one, and the picture would swim where faces are small.
+// A quarter of a texel of a 4096 texture. At 12 bits, a whole texel, textures visibly shift on small faces.
 constexpr int texture_bits = 14;
-constexpr int value_bits = 16;  // of values whose meaning is not known
+constexpr int value_bits = 16;  // other attributes
 constexpr double largest_integer = 1 << 20;
-
-/// Whether Draco's octahedral coding takes it.
-bool is_unit_normal(const Attribute& attribute, const AttributeFormat& format) {
-  return format.kind == AttributeKind::normal && format.type == ValueType::float32 && attribute.components == 3;
-}
 
 bool is_integer_of_32_bits(ValueType type) { return type <= ValueType::uint32; }
 
-/// Draco's entropy coder counts symbols in a table as long as the largest, and crashes where predictions from values
-/// of 31 bits overflow.
+/// Returns whether integers are too large for Draco's entropy coder. It allocates a table up to the largest symbol, and
+/// crashes if predictions from 31-bit values overflow.
 bool is_too_large(const Attribute& attribute, const AttributeFormat& format) {
   if (format.type != ValueType::int32 && format.type != ValueType::uint32) return false;
   const auto [low, high] = std::ranges::minmax(attribute.values);
@@ -32,7 +27,7 @@ bool is_too_large(const Attribute& attribute, const AttributeFormat& format) {
 
 void choose_coding(OutputAttribute& output, const Attribute& attribute, const AttributeEncoding::Grid& grid) {
   const AttributeFormat& format = output.format;
-  if (is_unit_normal(attribute, format)) {
+  if (is_unit_normal(format, attribute.components)) {
     output.coding = Coding::octahedral;
     output.bits = normal_bits;
   } else if (format.type == ValueType::float32 && format.kind != AttributeKind::normal && grid.range > 0) {
@@ -42,7 +37,7 @@ void choose_coding(OutputAttribute& output, const Attribute& attribute, const At
   }
 }
 
-/// The id of the normals that are replaced, or the lowest that is free.
+/// Returns the id of the replaced normals, or the lowest free id.
 uint32_t id_for_normals(const MeshFormat& format) {
   const auto& attributes = format.attributes;
   const auto own = std::ranges::find(attributes, AttributeKind::normal, &AttributeFormat::kind);

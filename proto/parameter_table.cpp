@@ -8,16 +8,17 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr double any = 1e18;  // coordinate_limit, in decimal to the digit
+constexpr double any = 1e18;  // coordinate_limit as an exact decimal
 
 View& view_of(Parameters& p) { return p.options.view ? *p.options.view : p.options.view.emplace(); }
 View view_of(const Parameters& p) { return p.options.view.value_or(View{}); }
 
+/// Returns no values for a default that follows from other parameters, else `value`.
 Values unless(bool follows, Values value) { return follows ? Values{} : std::move(value); }
 
-/// Whether the number of levels is the one that stands for none given.
+/// Returns whether `levels` has its default.
 bool has_default_levels(const Options& options) {
-  return asks_for_error(options) ? options.stop_at_limits : options.levels == Options{}.levels;
+  return has_error_target(options) ? options.stop_at_limits : options.levels == Options{}.levels;
 }
 
 Values values(Vec3d v) { return {v.x, v.y, v.z}; }
@@ -131,11 +132,11 @@ const std::array table{
         .default_text = "where the whole mesh is in the picture, seen from +z",
         .description = "Position of the viewer; any view parameter turns view-dependence on. With view.up along "
                        "z the default is seen from -y",
-        .get = [](const Parameters& p) { return unless(!p.options.view || p.frames_eye, values(view_of(p).eye)); },
+        .get = [](const Parameters& p) { return unless(!p.options.view || p.default_eye, values(view_of(p).eye)); },
         .set =
             [](Parameters& p, const Values& v) {
               view_of(p).eye = vector(v);
-              p.frames_eye = false;
+              p.default_eye = false;
             }},
     ParameterInfo{
         .name = "view.target",
@@ -148,11 +149,11 @@ const std::array table{
         .default_text = "the centre of the mesh's box",
         .description = "The point looked at",
         .get =
-            [](const Parameters& p) { return unless(!p.options.view || p.frames_target, values(view_of(p).target)); },
+            [](const Parameters& p) { return unless(!p.options.view || p.default_target, values(view_of(p).target)); },
         .set =
             [](Parameters& p, const Values& v) {
               view_of(p).target = vector(v);
-              p.frames_target = false;
+              p.default_target = false;
             }},
     ParameterInfo{.name = "view.up",
                   .type = ParameterType::numbers,

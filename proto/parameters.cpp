@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr size_t longest_json = 64 << 10;
 constexpr int deepest_json = 4;
 
-/// Reads into one Parameters; knows which names have come already.
+/// Collector of the parameters of one request. Detects repeated names.
 class Reader {
  public:
   void set(const ParameterInfo& info, const std::vector<double>& values) {
@@ -30,7 +30,7 @@ class Reader {
   }
 
   Parameters finish() {
-    follow();
+    set_dependent_defaults();
     try {
       check_options(options_for(parameters_, any_box));
     } catch (const Error& error) {
@@ -44,10 +44,10 @@ class Reader {
   }
 
  private:
-  /// Sets what is left out and follows from other parameters.
-  void follow() {
+  /// Sets omitted parameters whose defaults depend on others.
+  void set_dependent_defaults() {
     Options& options = parameters_.options;
-    options.stop_at_limits = asks_for_error(options) && !given_.contains("levels");
+    options.stop_at_limits = has_error_target(options) && !given_.contains("levels");
     if (options.stop_at_limits) options.levels = most_levels;
     if (options.view && !given_.contains("view.edge_pixels"))
       options.view->edge_pixels = default_edge_pixels(*options.view);
@@ -56,11 +56,11 @@ class Reader {
   static constexpr int most_levels = 10;
   static constexpr Box any_box{{-1, -1, -1}, {1, 1, 1}};
 
-  Parameters parameters_{.options = {}, .output = {}, .frames_eye = true, .frames_target = true};
+  Parameters parameters_{.options = {}, .output = {}, .default_eye = true, .default_target = true};
   std::set<std::string_view> given_;
 };
 
-/// "an integer", "3 numbers", "1 to 8 times 3 numbers".
+/// Describes the number of values: "an integer", "3 numbers", "1 to 8 times 3 numbers".
 std::string describe_count(const ParameterInfo& info) {
   if (info.type == ParameterType::integer) return "an integer";
   if (info.type == ParameterType::number) return "a number";
@@ -81,19 +81,20 @@ const ParameterInfo& find(const std::string& name) {
     advice = "Did you mean " + std::string(*meant) + "?";
   } else {
     for (const std::string_view known : names) append_item(advice, ", ", known);
-    advice = "There are: " + advice + ".";
+    advice = "The parameters are " + advice + ".";
   }
-  throw Problem(Code::unknown_parameter, "There is no parameter " + quote(name) + ". " + advice, shorten(name));
+  throw Problem(Code::unknown_parameter, "Unknown parameter " + quote(name) + ". " + advice, shorten(name));
 }
 
-std::string what_it_takes(const ParameterInfo& info) { return "must be " + describe_range(info); }
+[[noreturn]] void refuse_value(const ParameterInfo& info, const std::string& given) {
+  Reader::refuse(info, "must be " + describe_range(info) + ", not " + given);
+}
 
-/// Refuses a number below or above its bounds, and names the bound where the parameter's range does not show it or the
-/// number is one of several.
+/// Throws for a number out of range. Names the violated bound of a list, or of a range that `describe_range` omits.
 void check_bounds(const ParameterInfo& info, double value, const std::string& given) {
   if (value >= info.min && value <= info.max) return;
   const bool is_list = info.type == ParameterType::numbers;
-  if (!is_list && info.max < coordinate_limit) Reader::refuse(info, what_it_takes(info) + ", not " + given);
+  if (!is_list && info.max < coordinate_limit) refuse_value(info, given);
   const std::string bound =
       value > info.max ? " of at most " + format_number(info.max) : " of at least " + format_number(info.min);
   Reader::refuse(info, "must be " + describe_count(info) + bound + ", not " + (is_list ? format_number(value) : given));
@@ -101,16 +102,15 @@ void check_bounds(const ParameterInfo& info, double value, const std::string& gi
 
 void check_numbers(const ParameterInfo& info, const std::vector<double>& values, const std::string& given) {
   if (values.size() < info.least || values.size() > info.most || values.size() % info.group != 0)
-    Reader::refuse(info, what_it_takes(info) + ", not " + given);
+    refuse_value(info, given);
   for (const double value : values) check_bounds(info, value, given);
-  if (info.type == ParameterType::integer && values[0] != std::floor(values[0]))
-    Reader::refuse(info, what_it_takes(info) + ", not " + given);
+  if (info.type == ParameterType::integer && values[0] != std::floor(values[0])) refuse_value(info, given);
 }
 
 std::vector<double> choose(const ParameterInfo& info, const std::string& text) {
   const auto index = [&](const auto& names) -> std::vector<double> {
     const auto found = std::ranges::find(names, text);
-    if (found == names.end()) Reader::refuse(info, what_it_takes(info) + ", not " + quote(text));
+    if (found == names.end()) refuse_value(info, quote(text));
     return {static_cast<double>(found - names.begin())};
   };
   static const std::vector<std::string_view> booleans{"false", "true"};
@@ -123,7 +123,7 @@ std::vector<double> parse_text(const ParameterInfo& info, const std::string& tex
   for (size_t begin = 0; begin <= text.size();) {
     const size_t comma = std::min(text.find(',', begin), text.size());
     const std::optional<double> value = parse_number(std::string_view(text).substr(begin, comma - begin));
-    if (!value) Reader::refuse(info, what_it_takes(info) + ", not " + quote(text));
+    if (!value) refuse_value(info, quote(text));
     values.push_back(*value);
     begin = comma + 1;
   }
@@ -152,8 +152,8 @@ std::vector<double> parse_json_value(const ParameterInfo& info, const json& valu
       return values;
     }
   }
-  Reader::refuse(
-      info, what_it_takes(info) + (info.type == ParameterType::numbers ? " in an array" : "") + ", not " + given());
+  Reader::refuse(info, "must be " + describe_range(info) + (info.type == ParameterType::numbers ? " in an array" : "") +
+                           ", not " + given());
 }
 
 bool is_group(const std::string& name) {
@@ -169,10 +169,10 @@ void read_object(Reader& reader, const json& object, const std::string& prefix) 
         throw Problem(Code::bad_parameter, name + " must be an object, such as {\"" + name + "\": {...}}.", name);
       read_object(reader, value, name + ".");
     } else if (prefix.empty() && key.find('.') != std::string::npos) {
-      throw Problem(
-          Code::unknown_parameter,
-          "In JSON, nest instead of writing dots: " + quote(name) + " is {\"view\": {...}} or {\"output\": {...}}.",
-          shorten(name));
+      throw Problem(Code::unknown_parameter,
+                    "JSON parameters are nested, not dotted: write " + quote(name) +
+                        " as {\"view\": {...}} or {\"output\": {...}}.",
+                    shorten(name));
     } else {
       const ParameterInfo& info = find(name);
       reader.set(info, parse_json_value(info, value));
@@ -180,13 +180,14 @@ void read_object(Reader& reader, const json& object, const std::string& prefix) 
   }
 }
 
-/// Parses, refusing nesting deeper than any parameter's (the library prints recursively) and a key that comes twice in
-/// one object (the library would keep the last one and lose the other).
+/// Parses JSON. Throws for deep nesting, which the library prints recursively, and for repeated keys, of which the
+/// library would keep the last.
 json parse_document(std::string_view text) {
   std::vector<std::set<std::string>> keys;
   const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
     if (depth > deepest_json)
-      throw Problem(Code::bad_request, "The parameters are nested too deeply. No parameter is an array of arrays.");
+      throw Problem(Code::bad_request,
+                    "The parameters are nested deeper than " + std::to_string(deepest_json) + " levels.");
     if (event == json::parse_event_t::object_start) keys.emplace_back();
     if (event == json::parse_event_t::object_end) keys.pop_back();
     if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
@@ -197,14 +198,13 @@ json parse_document(std::string_view text) {
   try {
     return json::parse(text, watch);
   } catch (const json::parse_error& error) {
-    throw Problem(Code::bad_request,
-                  "The parameters are not JSON; the fault is at byte " + std::to_string(error.byte) + ".");
+    throw Problem(Code::bad_request, "The parameters are not valid JSON at byte " + std::to_string(error.byte) + ".");
   } catch (const json::exception&) {
-    throw Problem(Code::bad_request, "The parameters hold a number too large to be read.");
+    throw Problem(Code::bad_request, "A number in the parameters exceeds the range of a double.");
   }
 }
 
-/// Appends the values of a list that is given as repeated fields (`a=1&a=2`) to its first field (`a=1,2`).
+/// Joins repeated fields of a list: `a=1&a=2` to `a=1,2`.
 QueryFields join_repeated_lists(const QueryFields& fields) {
   QueryFields joined;
   for (const auto& [name, text] : fields) {
@@ -231,14 +231,14 @@ std::string value_text(const ParameterInfo& info, const std::vector<double>& val
 Options options_for(const Parameters& parameters, const Box& box) {
   Options options = parameters.options;
   if (!options.view) return options;
-  if (parameters.frames_target) options.view->target = box.centre();
-  if (parameters.frames_eye) options.view->eye = framing_eye(*options.view, box);
+  if (parameters.default_target) options.view->target = box.centre();
+  if (parameters.default_eye) options.view->eye = framing_eye(*options.view, box);
   return options;
 }
 
 double default_edge_pixels(const View& view) { return view.error_pixels > 0 ? 0 : View{}.edge_pixels; }
 
-bool asks_for_error(const Options& options) {
+bool has_error_target(const Options& options) {
   return options.tolerance > 0 || (options.view && options.view->error_pixels > 0);
 }
 
@@ -258,10 +258,11 @@ Parameters parse_query(const QueryFields& fields) {
 
 Parameters parse_json(std::string_view text) {
   if (text.size() > longest_json)
-    throw Problem(Code::body_too_large, "The parameters are longer than 65536 bytes. Send only parameters there.");
+    throw Problem(Code::body_too_large, "The parameters have " + std::to_string(text.size()) + " bytes; the limit is " +
+                                            std::to_string(longest_json) + ". Send the mesh in a part of its own.");
   const json document = parse_document(text);
   if (!document.is_object())
-    throw Problem(Code::bad_request, "The parameters must be one JSON object, such as {\"levels\": 2}.");
+    throw Problem(Code::bad_request, "The parameters must be a JSON object, such as {\"levels\": 2}.");
   Reader reader;
   read_object(reader, document, "");
   return reader.finish();
@@ -269,7 +270,7 @@ Parameters parse_json(std::string_view text) {
 
 QueryFields to_fields(const Parameters& parameters) {
   static const Parameters defaults;
-  constexpr std::string_view view_of_defaults = "view.up";  // stands for a view that has nothing else
+  constexpr std::string_view view_of_defaults = "view.up";  // represents a view with default values only
   const auto differs = [&](const ParameterInfo& info) { return info.get(parameters) != info.get(defaults); };
   const bool has_bare_view =
       parameters.options.view && std::ranges::none_of(parameter_table(), [&](const ParameterInfo& info) {
@@ -315,13 +316,13 @@ std::string parameters_markdown() {
 
 namespace {
 
-/// Whole numbers without a fraction.
+/// Returns a number, as an integer if it is whole.
 nlohmann::ordered_json number_json(double value) {
   return std::abs(value) < 1e15 && value == std::floor(value) ? nlohmann::ordered_json(static_cast<int64_t>(value))
                                                               : nlohmann::ordered_json(value);
 }
 
-/// Typed as a request's JSON would be.
+/// Returns the default value in the JSON type of a request.
 nlohmann::ordered_json default_json(const ParameterInfo& info) {
   const std::vector<double> values = info.get(Parameters{});
   if (values.empty() && info.type != ParameterType::numbers) return nullptr;

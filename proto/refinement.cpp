@@ -13,11 +13,11 @@
 #include <utility>
 
 #include "proto/encoding_memory.h"
+#include "proto/error_translation.h"
 #include "proto/findings.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 #include "proto/unreached.h"
-#include "proto/wire_words.h"
 
 namespace papilio::proto {
 namespace {
@@ -36,10 +36,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// One piece of work at a time, done on a thread beside this one; or here, where the system has no more threads.
-class Aside {
+/// A task on another thread, one at a time. Runs on the calling thread if the system has no more threads.
+class BackgroundTask {
  public:
-  /// After `wait`. What the work holds is freed at its end.
+  /// Starts the work; call after `wait`. The captures of the work are freed at its end.
   void start(std::function<void()> work) {
     const auto kept = std::make_shared<std::function<void()>>(std::move(work));
     const auto run = [this, kept] {
@@ -57,7 +57,7 @@ class Aside {
       run();
     }
   }
-  /// For the end of what was started, if anything was. Throws what that has thrown.
+  /// Waits for the task, if any. Rethrows its exception.
   void wait() {
     if (running_.valid()) running_.get();
   }
@@ -65,7 +65,7 @@ class Aside {
 
  private:
   std::atomic<bool> has_failed_ = false;
-  std::future<void> running_;  // the last to be made: waits at its end
+  std::future<void> running_;  // last member: its destructor waits
 };
 
 std::string milliseconds_text(double milliseconds) {
@@ -85,7 +85,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   options_.memory_limit = limits.max_compute_bytes;
   options_.output = encoding_bytes(coarse().mesh, output_, coarse().attributes);
   options_.edges = false;
-  in_words_of_the_wire([&] { check_room(coarse().mesh, options_); });
+  translate_errors([&] { check_room(coarse().mesh, options_); });
 }
 
 Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
@@ -96,20 +96,20 @@ Refinement::Refinement(std::string_view draco, const Parameters& parameters, con
   times_.decode = watch.lap();
 }
 
-Refinement::Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits)
+Refinement::Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits)
     : Refinement(parameters, limits) {
-  prepared_ = std::move(prepared);
+  shared_ = std::move(shared);
   set_options(parameters, limits);
 }
 
 EncodedLevel Refinement::run(const RefinementHooks& hooks) {
-  return in_words_of_the_wire([&] { return run_core(hooks); });
+  return translate_errors([&] { return run_core(hooks); });
 }
 
 Result Refinement::refine_coarse(const Hooks& hooks) {
-  if (!prepared_) return refine(std::move(decoded_.mesh), options_, hooks);
-  if (!uses_hierarchy(options_)) return refine(prepared_->decoded().mesh, options_, hooks);
-  return refine(*prepared_->under_rules_of(options_), options_, hooks);
+  if (!shared_) return refine(std::move(decoded_.mesh), options_, hooks);
+  if (!uses_hierarchy(options_)) return refine(shared_->decoded().mesh, options_, hooks);
+  return refine(*shared_->for_rules_of(options_), options_, hooks);
 }
 
 EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,
@@ -128,9 +128,9 @@ EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,
 
 EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   Stopwatch watch;
-  StageTimes encoded;  // with what was spent on the last level that was encoded
-  Aside aside;         // encodes a level while the next is made
-  std::mutex asking;   // the threads ask one at a time
+  StageTimes encoded;    // includes the last encoded level
+  BackgroundTask aside;  // encodes a level while the next is refined
+  std::mutex asking;     // serializes calls of `cancelled`
   const auto stop = [&] {
     require_time();
     const std::lock_guard lock(asking);
@@ -141,13 +141,13 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     return is_cancelled;
   };
   const auto poll = [&] {
-    if (stop()) throw Problem(Code::cancelled, "The client went away.");
+    if (stop()) throw Problem(Code::cancelled, "The client closed the request.");
   };
   const bool encodes_aside = hooks.on_level && hooks.threads > 1;
   Hooks core_hooks{.cancelled = stop, .threads = encodes_aside ? hooks.threads - 1 : hooks.threads};
   if (hooks.on_level) {
     core_hooks.on_level = [&](const Level& level) {
-      if (level.last) return;  // it is sent with the reason why it is the last
+      if (level.last) return;  // encoded below, with its stop reason
       times_.refine += watch.lap();
       aside.wait();
       times_.encode = encoded.encode;
@@ -167,7 +167,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
     try {
       return refine_coarse(core_hooks);
     } catch (...) {
-      aside.wait();  // what was thrown there came first
+      aside.wait();  // its exception came first
       throw;
     }
   }();
@@ -187,8 +187,8 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
 void Refinement::require_time() const {
   if (most_seconds_ > 0 &&
       std::chrono::steady_clock::now() - begin_ - waited_.load() > std::chrono::seconds(most_seconds_))
-    throw Problem(Code::takes_too_long, "The work takes longer than " + std::to_string(most_seconds_) +
-                                            " seconds, the limit. Ask for fewer levels or a coarser mesh.");
+    throw Problem(Code::takes_too_long, "The computation exceeds " + std::to_string(most_seconds_) +
+                                            " seconds. Request fewer levels, or send a coarser mesh.");
 }
 
 namespace {

@@ -13,10 +13,10 @@
 #include "papilio/refine.h"
 #include "proto/limits.h"
 #include "proto/parameters.h"
-#include "proto/prepared_mesh.h"
+#include "proto/shared_mesh.h"
 
-// The whole way from a Draco mesh to a refined Draco mesh. Server and client both go it, so local and remote
-// results are the same bytes.
+// The pipeline from a Draco mesh to a refined Draco mesh. Server and client share it, so local and remote results are
+// byte-identical.
 
 namespace papilio::proto {
 
@@ -25,15 +25,15 @@ struct StageTimes {
   double decode = 0, refine = 0, encode = 0;
 };
 
-/// What is known of a mesh on its way out.
+/// Statistics of an encoded mesh.
 struct Statistics {
   int level = 0;  ///< 0: the coarse mesh
   uint64_t vertices = 0, faces = 0;
-  std::optional<StopReason> stop_reason;  ///< known with the last level, and so are the errors
-  double error = 0;                       ///< the largest deviation left, as a share of the coarse mesh's diagonal
-  std::optional<double> error_pixels{};   ///< the same in pixels, where there is a view
-  std::string unreached{};                ///< targets that were not reached, in words (unreached.h)
-  BuildReport found{};                    ///< in the coarse mesh
+  std::optional<StopReason> stop_reason;  ///< set for the last level only, like `error`
+  double error = 0;                       ///< largest remaining deviation, relative to the coarse mesh's diagonal
+  std::optional<double> error_pixels{};   ///< largest remaining deviation in pixels, with a view
+  std::string unreached{};                ///< description of unreached targets (unreached.h)
+  BuildReport found{};                    ///< findings in the coarse mesh
   StageTimes times;
 };
 
@@ -43,25 +43,25 @@ struct EncodedLevel {
   Statistics statistics;
 };
 
-/// How the caller takes part; both functions may be empty.
+/// Callbacks and threads of the caller. Both functions may be empty.
 struct RefinementHooks {
-  /// Every level encoded, the coarse one first, as it is made. Without it only the last is encoded. May throw
-  /// to stop. With more than one thread a level is encoded, and this is called, beside the making of the next: one call
-  /// at a time, but not always from the thread that runs it all, and while `cancelled` may be asked.
+  /// Receives every encoded level, coarse first; if empty, only the last is encoded. May throw to stop. With several
+  /// threads a level is encoded and handed over while the next is refined. Calls do not overlap, but may come from
+  /// another thread and concurrently with `cancelled`.
   std::function<void(const EncodedLevel&)> on_level{};
-  /// Asked every few milliseconds: one call at a time, but not always from the thread that runs it all. It may wait, so
-  /// that other work goes first: the time limit does not count that.
+  /// Returns whether to stop; called every few milliseconds. Calls do not overlap, but may come from another thread. It
+  /// may block to let other work go first, which the time limit does not count.
   std::function<bool()> cancelled{};
-  int threads = 1;  ///< at most so many work on it at once
+  int threads = 1;  ///< maximum number of threads
 };
 
-/// One refinement: decoded and checked when it is made, carried out by `run`.
+/// One refinement. The constructor decodes and checks, `run` refines.
 class Refinement {
  public:
-  /// Throws `Problem`, also where it is certain from the start that the result would pass a limit.
+  /// Throws `Problem`, also if the result is certain to exceed a limit.
   Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
-  /// The same answers, to the byte, of a mesh that is refined more than once.
-  Refinement(std::shared_ptr<const PreparedMesh> prepared, const Parameters& parameters, const Limits& limits);
+  /// Refines a cached mesh. Results are byte-identical to those from a stream.
+  Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits);
 
   [[nodiscard]] uint32_t coarse_faces() const { return coarse().mesh.topology.face_count(); }
   [[nodiscard]] uint32_t coarse_vertices() const { return coarse().mesh.topology.vertex_count; }
@@ -72,11 +72,11 @@ class Refinement {
 
  private:
   Refinement(const Parameters& parameters, const Limits& limits);
-  /// Once the coarse mesh is there. Throws `Problem` where the result is certain to pass a limit.
+  /// Sets the options from the coarse mesh. Throws `Problem` if the result is certain to exceed a limit.
   void set_options(const Parameters& parameters, const Limits& limits);
-  [[nodiscard]] const DecodedMesh& coarse() const { return prepared_ ? prepared_->decoded() : decoded_; }
+  [[nodiscard]] const DecodedMesh& coarse() const { return shared_ ? shared_->decoded() : decoded_; }
   EncodedLevel run_core(const RefinementHooks& hooks);
-  /// `times`: what was spent before.
+  /// Encodes a level. `times`: time spent before.
   [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times,
                                     const std::function<void()>& poll) const;
   void require_time() const;
@@ -84,24 +84,24 @@ class Refinement {
 
   Options options_;
   OutputOptions output_;
-  DecodedMesh decoded_;                           ///< unless it is
-  std::shared_ptr<const PreparedMesh> prepared_;  ///< prepared
+  DecodedMesh decoded_;                       ///< unused with `shared_`
+  std::shared_ptr<const SharedMesh> shared_;  ///< null: `decoded_` is used
   StageTimes times_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::atomic<std::chrono::steady_clock::duration> waited_{};  ///< in `RefinementHooks::cancelled`
+  std::atomic<std::chrono::steady_clock::duration> waited_{};  ///< time in `RefinementHooks::cancelled`
   int most_seconds_;
 };
 
-/// "converged", "levels", "budget", "limits".
+/// Returns "converged", "levels", "budget" or "limits".
 [[nodiscard]] std::string_view stop_reason_name(StopReason reason);
-/// The other way round; nothing for any other text.
+/// Returns the reason of a name; nothing for other text.
 [[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
 
-/// The statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Found
+/// Formats statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Found
 /// (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// The same as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, found {...},
-/// milliseconds {decode, refine, encode}.
+/// Formats statistics as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, found
+/// {...}, milliseconds {decode, refine, encode}.
 [[nodiscard]] std::string statistics_json(const Statistics& statistics);
 
 }  // namespace papilio::proto

@@ -4,12 +4,11 @@
 
 namespace papilio::proto {
 
-/// Raised by whoever changes any byte of an encoded result, or what a default means, where results of the core stay the
-/// same. A test holds it against recorded bytes (tests/unit/recorded_results_test.cpp).
+/// Version of encoded bytes and of the meaning of defaults. Raise it with any change that leaves results of the core
+/// unchanged. tests/unit/recorded_results_test.cpp checks it against recorded bytes.
 inline constexpr int encoding_version = 2;
 
-/// Names all that the bytes of a result depend on besides the mesh and the parameters: the versions of the algorithm
-/// and the encoding, and those of the libraries that simplify and encode.
+/// Returns all versions that the bytes of a result depend on: algorithm, encoding, meshoptimizer and libdraco.
 [[nodiscard]] std::string results_version();
 
 }  // namespace papilio::proto

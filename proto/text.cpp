@@ -40,7 +40,7 @@ std::string shorten(std::string_view text) {
 
 namespace {
 
-/// The character at the front of `text`, or nothing where the bytes there are no UTF-8. `size`: its bytes, else 1.
+/// Decodes the first character of `text`; nothing for invalid UTF-8. Sets `size` to its bytes, else 1.
 std::optional<char32_t> first_character(std::string_view text, size_t& size) {
   size = 1;
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -66,7 +66,7 @@ bool is_control(char32_t c) {
   return c < 0x20 || (c >= 0x7F && c <= 0x9F) || reverses || breaks_line;
 }
 
-/// \xNN or \uNNNN.
+/// Appends \xNN or \uNNNN.
 void append_escape(std::string& out, char32_t c) {
   constexpr std::string_view digits = "0123456789abcdef";
   out += c < 0x100 ? "\\x" : "\\u";

@@ -8,16 +8,16 @@ namespace {
 std::string what_to_do(StopReason reason, const Options& options) {
   switch (reason) {
     case StopReason::levels:
-      if (options.stop_at_limits) return "No more than " + std::to_string(options.levels) + " levels are made.";
-      return "Give more levels than " + std::to_string(options.levels) + ", or leave levels out.";
+      if (options.stop_at_limits) return std::to_string(options.levels) + " levels are the maximum.";
+      return "Raise levels above " + std::to_string(options.levels) + ", or omit levels.";
     case StopReason::budget:
-      return "Give more max_faces than " + std::to_string(options.max_faces) + ".";
+      return "Raise max_faces above " + std::to_string(options.max_faces) + ".";
     case StopReason::limits:
-      return "A further level would pass a limit on faces or memory. Ask for a larger error.";
+      return "A further level would exceed a limit on faces or memory. Request a larger error.";
     case StopReason::converged:
       break;
   }
-  return "Other criteria keep edges whole: flatness, view.edge_pixels or the view.";
+  return "Other criteria exclude edges: flatness, view.edge_pixels or the view.";
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ std::string unreached_text(const Options& options, const Statistics& statistics)
   const auto add = [&](std::string_view target, double wanted, double left) {
     if (!statistics.stop_reason || !(wanted > 0 && left > wanted)) return;
     append_item(text, " ",
-                std::string(target) + "=" + format_rounded(wanted) + " is not reached: the error left is " +
+                std::string(target) + "=" + format_rounded(wanted) + " is not reached: the remaining error is " +
                     format_rounded(left) + ". " + what_to_do(*statistics.stop_reason, options));
   };
   add("tolerance", options.tolerance, statistics.error);

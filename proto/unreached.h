@@ -7,8 +7,8 @@
 
 namespace papilio::proto {
 
-/// One sentence for each target (`tolerance`, `view.error_pixels`) that the refinement did not reach: the target, the
-/// error left and what to do. Empty where all are reached.
+/// Describes each target (`tolerance`, `view.error_pixels`) that the refinement did not reach: target, remaining error
+/// and advice. Returns "" if all are reached.
 [[nodiscard]] std::string unreached_text(const Options& options, const Statistics& statistics);
 
 }  // namespace papilio::proto

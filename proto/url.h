@@ -10,10 +10,11 @@ namespace papilio::proto {
 
 /// Percent-encodes all but the unreserved characters of RFC 3986 and the comma, which lists use.
 [[nodiscard]] std::string encode_url(std::string_view text);
-/// Undoes that; nothing where a % is without its two hexadecimal digits. `plus_is_space`: as in a query.
+/// Decodes percent-encoded text; nothing for a % without two hexadecimal digits. `plus_is_space`: decodes + as a space,
+/// as in a query.
 [[nodiscard]] std::optional<std::string> decode_url(std::string_view text, bool plus_is_space = false);
 
-/// "a=1&b=2", names and values percent-encoded.
+/// Joins fields to "a=1&b=2", with names and values percent-encoded.
 [[nodiscard]] std::string join_query(const std::vector<std::pair<std::string, std::string>>& fields);
 
 }  // namespace papilio::proto

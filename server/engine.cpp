@@ -68,11 +68,11 @@ MeshStore::Bytes Engine::stored_bytes(const std::string& id) {
 }
 
 std::unique_ptr<proto::Refinement> Engine::refinement_of(const std::string& id, const proto::Parameters& parameters) {
-  return std::make_unique<proto::Refinement>(prepared(id), parameters, options_.limits);
+  return std::make_unique<proto::Refinement>(shared_mesh(id), parameters, options_.limits);
 }
 
-std::shared_ptr<const proto::PreparedMesh> Engine::prepared(const std::string& id) {
-  std::shared_ptr<const proto::PreparedMesh> mesh = meshes_.get(id);
+std::shared_ptr<const proto::SharedMesh> Engine::shared_mesh(const std::string& id) {
+  std::shared_ptr<const proto::SharedMesh> mesh = meshes_.get(id);
   metrics_.count_lookup(Metrics::Cache::meshes, mesh != nullptr);
   if (mesh != nullptr) {
     count_again(id);
@@ -80,7 +80,7 @@ std::shared_ptr<const proto::PreparedMesh> Engine::prepared(const std::string& i
   }
   const MeshStore::Bytes bytes = stored_bytes(id);
   // One mesh may have a quarter of the cache, so that a few large ones are kept beside each other.
-  mesh = std::make_shared<const proto::PreparedMesh>(*bytes, options_.limits, options_.mesh_cache_bytes / 4);
+  mesh = std::make_shared<const proto::SharedMesh>(*bytes, options_.limits, options_.mesh_cache_bytes / 4);
   meshes_.put(id, mesh, mesh->bytes());
   return mesh;
 }

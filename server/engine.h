@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "proto/limits.h"
-#include "proto/prepared_mesh.h"
 #include "proto/refinement.h"
+#include "proto/shared_mesh.h"
 #include "server/admission.h"
 #include "server/cache/lru.h"
 #include "server/cache/result_cache.h"
@@ -73,7 +73,7 @@ class Engine {
   void observe_held_bytes(std::function<HeldBytes()> held) { held_ = std::move(held); }
 
  private:
-  [[nodiscard]] std::shared_ptr<const proto::PreparedMesh> prepared(const std::string& id);
+  [[nodiscard]] std::shared_ptr<const proto::SharedMesh> shared_mesh(const std::string& id);
   /// Never null. Throws `Problem` mesh_not_found.
   [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
 
@@ -81,7 +81,7 @@ class Engine {
   Admission admission_;
   std::unique_ptr<MeshStore> store_;
   ResultCache results_;
-  Lru<const proto::PreparedMesh> meshes_;
+  Lru<const proto::SharedMesh> meshes_;
   Lru<const uint64_t> face_counts_;  ///< of stored meshes, so that work is predicted without reading one
   Metrics metrics_;
   std::function<HeldBytes()> held_ = [] { return HeldBytes{}; };

@@ -22,7 +22,7 @@ Buffer<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& 
     components = attribute.components;
     if (format.attributes[a].kind != kind || components > 3 || (kind == AttributeKind::normal && components != 3))
       continue;
-    const double unit = proto::one_of(format.attributes[a]);
+    const double unit = proto::unit_value(format.attributes[a]);
     auto found = Buffer<Vec3f>::for_overwrite(mesh.positions.size());
     for (size_t p = 0; p < found.size(); ++p) {
       std::array<float, 3> numbers{};
@@ -56,7 +56,7 @@ std::vector<uint32_t> drop_repeated(Buffer<Vec3f>& values) {
       place[p] = place[place[p]];
     }
   }
-  values.resize_for_overwrite(kept);
+  values.resize(kept);
   return place;
 }
 

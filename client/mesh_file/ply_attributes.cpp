@@ -74,7 +74,7 @@ PlyAttributeWriter::PlyAttributeWriter(const TriangleMesh& mesh, const proto::Me
     const bool bytes = its.kind == AttributeKind::color && its.type == ValueType::uint8;
     for (const std::string_view name : names->components)
       properties_ += (bytes ? "property uchar " : "property float ") + std::string(name) + "\n";
-    chosen_.push_back({&mesh.attributes[a], bytes, proto::one_of(its)});
+    chosen_.push_back({&mesh.attributes[a], bytes, proto::unit_value(its)});
     done.push_back(its);
   }
 }

@@ -4,7 +4,6 @@
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_geometric_normal_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_tex_coords_portable_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_delta_encoder.h>
-#include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/core/bit_utils.h>
 #include <draco/core/quantization_utils.h>
 #include <draco/core/varint_encoding.h>
@@ -17,16 +16,12 @@
 #include <vector>
 
 #include "proto/edgebreaker/predictions.h"
+#include "proto/edgebreaker/speeds.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
 
-// What Draco makes of its speed.
-constexpr int geometric_below = 4;  ///< normals and texture coordinates are predicted from positions
-
 constexpr uint32_t texture_components = 2;
-
-using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingTransform<int32_t>;
 
 template <class Number>
 void append_integers(const OutputAttribute& attribute, const char* bytes, std::vector<int32_t>& out) {
@@ -37,10 +32,10 @@ void append_integers(const OutputAttribute& attribute, const char* bytes, std::v
   }
 }
 
-/// Rounds as Draco does, to the bit.
-class Rounding {
+/// Quantizer of one attribute: bit-identical to libdraco's.
+class AttributeQuantizer {
  public:
-  explicit Rounding(const OutputAttribute& attribute) : attribute_(attribute) {
+  explicit AttributeQuantizer(const OutputAttribute& attribute) : attribute_(attribute) {
     if (attribute.coding == Coding::octahedral) octahedron_.SetQuantizationBits(attribute.bits);
     if (attribute.coding == Coding::grid) grid_.Init(attribute.grid.range, (1 << attribute.bits) - 1);
   }
@@ -72,7 +67,7 @@ class Rounding {
   std::vector<float> floats_;
 };
 
-/// Integers that libdraco's entropy coder cannot take: bit by bit, unpredicted.
+/// Writes integers without entropy coding and without predictions, for values too large for libdraco's entropy coder.
 void write_unpredicted(const Integers& integers, draco::EncoderBuffer& out) {
   std::vector<uint32_t> symbols(integers.values.size());
   draco::ConvertSignedIntsToSymbols(integers.values.data(), static_cast<int>(symbols.size()), symbols.data());
@@ -85,16 +80,16 @@ void write_unpredicted(const Integers& integers, draco::EncoderBuffer& out) {
   for (const uint32_t symbol : symbols) out.Encode(&symbol, bytes);
 }
 
-/// Writes the values of one attribute.
+/// Writer of the values of one attribute.
 class ValueWriter {
  public:
   ValueWriter(const OutputAttribute& attribute, const CornerMesh& mesh, const Buffer<uint32_t>& corners, int speed,
-              Pace& pace)
-      : attribute_(attribute), surface_(mesh, corners, pace), speed_(speed), pace_(pace) {}
+              Poller& poller)
+      : attribute_(attribute), surface_(mesh, corners, poller), speed_(speed), poller_(poller) {}
 
   void run(const Buffer<uint32_t>& value, const WrittenSurface& written, draco::EncoderBuffer& out) {
     if (attribute_.coding == Coding::as_is) {
-      write_as_they_are(value, out);
+      write_raw(value, out);
       return;
     }
     const Integers integers = to_integers(value);
@@ -102,7 +97,7 @@ class ValueWriter {
       write_unpredicted(integers, out);
       return;
     }
-    if (needs_positions()) remember_positions(written);
+    if (needs_positions()) set_positions(written);
     if (attribute_.coding == Coding::octahedral) {
       if (write(integers, *octahedral_predictor(), out)) return;
       draco::PredictionSchemeDeltaEncoder<int32_t, Octahedron> difference(nullptr, octahedron());
@@ -115,20 +110,20 @@ class ValueWriter {
  private:
   [[nodiscard]] const char* bytes_of(uint32_t value) const { return attribute_.values.bytes.data() + value * stride_; }
 
-  void write_as_they_are(const Buffer<uint32_t>& value, draco::EncoderBuffer& out) {
+  void write_raw(const Buffer<uint32_t>& value, draco::EncoderBuffer& out) {
     for (draco::CornerIndex c : surface_.corners()) {
-      pace_.step();
+      poller_.step();
       out.Encode(bytes_of(value[c.value()]), stride_);
     }
   }
 
   [[nodiscard]] Integers to_integers(const Buffer<uint32_t>& value) {
-    Rounding rounding(attribute_);
-    Integers integers{rounding.components(), {}};
+    AttributeQuantizer quantizer(attribute_);
+    Integers integers{quantizer.components(), {}};
     integers.values.reserve(surface_.corners().size() * integers.components);
     for (draco::CornerIndex c : surface_.corners()) {
-      pace_.step();
-      rounding.append(bytes_of(value[c.value()]), integers.values);
+      poller_.step();
+      quantizer.append(bytes_of(value[c.value()]), integers.values);
     }
     return integers;
   }
@@ -138,10 +133,10 @@ class ValueWriter {
            attribute_.components == texture_components;
   }
   [[nodiscard]] bool needs_positions() const {
-    return speed_ < geometric_below && (attribute_.coding == Coding::octahedral || is_texture());
+    return speed_ < min_position_independent_speed && (attribute_.coding == Coding::octahedral || is_texture());
   }
 
-  void remember_positions(const WrittenSurface& written) {
+  void set_positions(const WrittenSurface& written) {
     draco::GeometryAttribute description;
     description.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_INT32, false, 3 * sizeof(int32_t), 0);
     positions_.emplace(description);
@@ -175,17 +170,17 @@ class ValueWriter {
   }
 
   const OutputAttribute& attribute_;
-  const OrderedSurface surface_;  ///< cut open at the attribute's seams
+  const OrderedSurface surface_;  ///< surface cut open at the attribute's seams
   int speed_;
-  Pace& pace_;
+  Poller& poller_;
   size_t stride_ = size_t{attribute_.components} * draco::DataTypeLength(draco_type(attribute_.format.type));
-  std::optional<draco::PointAttribute> positions_;  ///< of the vertices, where they predict
-  std::vector<draco::PointIndex> vertices_;         ///< of each value's position
+  std::optional<draco::PointAttribute> positions_;  ///< parent attribute of predictions
+  std::vector<draco::PointIndex> vertices_;         ///< [values] vertex of each value; empty without a parent
 };
 
 }  // namespace
 
-void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
+void write_declaration(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
   out.Encode(static_cast<uint8_t>(draco_type(attribute.format.kind)));
   out.Encode(static_cast<uint8_t>(draco_type(attribute.format.type)));
   out.Encode(static_cast<uint8_t>(attribute.components));
@@ -193,20 +188,18 @@ void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
   draco::EncodeVarint<uint32_t>(attribute.format.id, &out);
 }
 
-uint8_t coding_byte(const OutputAttribute& attribute) { return static_cast<uint8_t>(attribute.coding); }
-
 void write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& written, int speed,
-                  Pace& pace, draco::EncoderBuffer& out) {
+                  Poller& poller, draco::EncoderBuffer& out) {
   if (seams.empty()) {
-    ValueWriter(attribute, written.mesh, written.order.corners, speed, pace).run(seams.value, written, out);
+    ValueWriter(attribute, written.mesh, written.order.corners, speed, poller).run(seams.value, written, out);
     return;
   }
   const CornerMesh open = cut_open(written.mesh, seams);
-  const VertexOrder order = order_vertices(open, written.starts, pace);
-  ValueWriter(attribute, open, order.corners, speed, pace).run(seams.value, written, out);
+  const VertexOrder order = order_vertices(open, written.starts, poller);
+  ValueWriter(attribute, open, order.corners, speed, poller).run(seams.value, written, out);
 }
 
-void write_coding(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
+void write_quantization(const OutputAttribute& attribute, draco::EncoderBuffer& out) {
   if (attribute.coding == Coding::as_is || attribute.coding == Coding::integers) return;
   if (attribute.coding == Coding::grid) {
     for (const float origin : attribute.grid.origin) out.Encode(origin);

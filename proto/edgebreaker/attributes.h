@@ -6,30 +6,27 @@
 #include "proto/edgebreaker/seams.h"
 #include "proto/output_attribute.h"
 
-// Attributes beside the positions. The order of their values is ours; predictions are libdraco's, as they are of many
-// kinds and seldom cost much.
+// Attributes other than positions. Predictions are libdraco's: there are many kinds, and they seldom cost much.
 
 namespace papilio::proto::edgebreaker {
 
-/// Writes what a decoder has to know of it first: what it is for, its type, components and id.
-void describe(const OutputAttribute& attribute, draco::EncoderBuffer& out);
-/// How its values are coded, in Draco's numbers.
-[[nodiscard]] uint8_t coding_byte(const OutputAttribute& attribute);
+/// Writes the declaration of an attribute: kind, type, components and id.
+void write_declaration(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 
-/// The surface that attributes are on, and how its walk and its positions were written.
+/// A surface with its walk and its positions as they were written.
 struct WrittenSurface {
   const CornerMesh& mesh;
-  const Buffer<uint32_t>& starts;      ///< [faces] (connectivity.h)
-  const VertexOrder& order;            ///< of values without seams
-  const Buffer<GridPoint>& positions;  ///< [vertices], where they are on a grid
-  uint32_t points;                     ///< of the mesh: few are predicted otherwise than many
+  const Buffer<uint32_t>& starts;      ///< [faces] entry corners (connectivity.h)
+  const VertexOrder& order;            ///< order of values without seams
+  const Buffer<GridPoint>& positions;  ///< [vertices] quantized positions; empty: positions are exact
+  uint32_t points;                     ///< points of the mesh
 };
 
-/// Writes the attribute's values: as differences from what is predicted at Draco's `speed`, 0 to 10, or as they are.
+/// Writes the values of an attribute: raw, or as differences from the predictions of Draco's `speed`, 0 to 10.
 void write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& written, int speed,
-                  Pace& pace, draco::EncoderBuffer& out);
+                  Poller& poller, draco::EncoderBuffer& out);
 
-/// Writes what a decoder needs to come back from integers.
-void write_coding(const OutputAttribute& attribute, draco::EncoderBuffer& out);
+/// Writes the parameters with which a decoder dequantizes values.
+void write_quantization(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

@@ -1,32 +1,35 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "papilio/mesh.h"
 
 namespace papilio::proto::edgebreaker {
 
-/// A mesh as Draco's bitstream speaks of it. A face's three corners are where its half-edges leave; its edge that a
-/// corner does not touch is the one opposite to it, and so is the corner of the other face at that edge. Faces lie
-/// counter-clockwise; left and right are as seen from the corner, facing the opposite edge, from behind: right of a
-/// corner is across the edge before it, left across its own.
+/// A mesh in the terms of Draco's bitstream. Corner c of a face is at the origin of half-edge c. The edge opposite to a
+/// corner is the edge of its face that it does not touch. The corner opposite to it is the corner of the other face at
+/// that edge. Faces are counter-clockwise: right of a corner is across the edge before it, left across its own edge.
 ///
-/// Corner c is where half-edge c leaves. What a walk asks of a face lies together, and takes no more room than it
-/// needs: a walk waits for memory most of the time.
+/// The vertex and the opposite of a corner share a cache line, as walks are bound by memory latency.
 class CornerMesh {
  public:
   explicit CornerMesh(const Topology& mesh)
-      : vertex_count_(mesh.vertex_count), corners_(Buffer<Corner>::for_overwrite(size_t{3} * mesh.face_count())) {
-    for (uint32_t f = 0; f < mesh.face_count(); ++f)
-      add_face(f, &mesh.origin[size_t{3} * f], &mesh.twin[size_t{3} * f]);
+      : vertex_count_(mesh.vertex_count), corners_(size_t{3} * mesh.face_count()) {
+    for (uint32_t c = 0; c < corner_count(); ++c) {
+      const uint32_t twin = mesh.twin[next(c)];
+      corners_[c] = {mesh.origin[c], twin == none ? none : previous(twin)};
+      if (twin == none)
+        at_boundary_.push_back(c);
+      else if (corners_[c].opposite == mesh.twin[previous(c)])  // two consecutive edges face the same other face
+        has_faces_folded_together_ = true;
+    }
   }
 
-  /// The same faces, cut open along seams: `vertex` [corners] of the surface with this many vertices, `is_seam`
-  /// [corners] where the edge opposite to the corner is one.
+  /// Cuts `whole` open along seams. `is_seam` [corners]: whether the edge opposite to the corner is a seam. `vertex`
+  /// [corners]: the vertex of the corner after the cut.
   CornerMesh(const CornerMesh& whole, const Buffer<uint8_t>& is_seam, const Buffer<uint32_t>& vertex,
              uint32_t vertex_count)
-      : vertex_count_(vertex_count), corners_(Buffer<Corner>::for_overwrite(whole.corner_count())) {
+      : vertex_count_(vertex_count), corners_(whole.corner_count()) {
     for (uint32_t c = 0; c < corner_count(); ++c) {
       corners_[c] = {vertex[c], is_seam[c] != 0 ? none : whole.opposite(c)};
       if (corners_[c].opposite == none) at_boundary_.push_back(c);
@@ -41,67 +44,36 @@ class CornerMesh {
   static uint32_t next(uint32_t corner) { return Topology::next(corner); }
   static uint32_t previous(uint32_t corner) { return Topology::previous(corner); }
   [[nodiscard]] uint32_t vertex(uint32_t corner) const { return corners_[corner].vertex; }
-  /// `none` at a boundary.
+  /// Returns the opposite corner; `none` at a boundary.
   [[nodiscard]] uint32_t opposite(uint32_t corner) const { return corners_[corner].opposite; }
   [[nodiscard]] uint32_t right(uint32_t corner) const { return opposite(next(corner)); }
   [[nodiscard]] uint32_t left(uint32_t corner) const { return opposite(previous(corner)); }
-  /// The corner at the same vertex in the next face, counter-clockwise, or clockwise; `none` beyond a boundary.
+  /// Returns the corner at the same vertex of the next face counter-clockwise; `none` beyond a boundary.
   [[nodiscard]] uint32_t swing_left(uint32_t corner) const {
     const uint32_t across = opposite(next(corner));
     return across == none ? none : next(across);
   }
+  /// Returns the corner at the same vertex of the next face clockwise; `none` beyond a boundary.
   [[nodiscard]] uint32_t swing_right(uint32_t corner) const {
     const uint32_t across = opposite(previous(corner));
     return across == none ? none : previous(across);
   }
 
-  /// Gives the corner a vertex of another number.
+  /// Moves the corner to another vertex.
   void set_vertex(uint32_t corner, uint32_t vertex) { corners_[corner].vertex = vertex; }
 
-  /// Has what belongs to a corner's face fetched, for a walk that may soon come there; `none` may be given.
+  /// Prefetches the cache line of a corner that a walk may visit next. `corner` may be `none`.
   void prefetch(uint32_t corner) const { __builtin_prefetch(&corners_[corner == none ? 0 : corner]); }
 
-  /// The corners opposite to boundary edges, in ascending order.
+  /// Returns the corners opposite to boundary edges, in ascending order.
   [[nodiscard]] const Buffer<uint32_t>& at_boundary() const { return at_boundary_; }
-  /// Whether there are two faces that share more than one edge.
+  /// Returns whether two faces share more than one edge.
   [[nodiscard]] bool has_faces_folded_together() const { return has_faces_folded_together_; }
 
  private:
   struct Corner {
     uint32_t vertex, opposite;
   };
-
-  void add_face(uint32_t f, const uint32_t* origin, const uint32_t* twin) {
-    const uint32_t a = twin[1];  // what runs against the edge opposite to each corner
-    const uint32_t b = twin[2];
-    const uint32_t c = twin[0];
-    Corner* corner = &corners_[size_t{3} * f];
-    if ((a | b | c) == none && (a == none || b == none || c == none)) {
-      add_face_at_boundary(f, origin, {a, b, c});
-      return;
-    }
-    corner[0] = {origin[0], previous_of(a)};
-    corner[1] = {origin[1], previous_of(b)};
-    corner[2] = {origin[2], previous_of(c)};
-    note_if_folded(corner[0].opposite, b);
-    note_if_folded(corner[1].opposite, c);
-    note_if_folded(corner[2].opposite, a);
-  }
-  /// Where a face runs against two edges of another, it comes to the later one first.
-  void note_if_folded(uint32_t before_first, uint32_t second) {
-    has_faces_folded_together_ = has_faces_folded_together_ || before_first == second;
-  }
-
-  void add_face_at_boundary(uint32_t f, const uint32_t* origin, const std::array<uint32_t, 3>& across) {
-    for (uint32_t i = 0; i < 3; ++i) {
-      corners_[size_t{3} * f + i] = {origin[i], across[i] == none ? none : previous_of(across[i])};
-      if (across[i] == none) at_boundary_.push_back(3 * f + i);
-      if (across[i] != none) note_if_folded(previous_of(across[i]), across[(i + 1) % 3]);
-    }
-  }
-
-  /// In fewer steps than `previous`.
-  static uint32_t previous_of(uint32_t half_edge) { return half_edge - 1 + (half_edge % 3 == 0 ? 3 : 0); }
 
   uint32_t vertex_count_;
   Buffer<Corner> corners_;

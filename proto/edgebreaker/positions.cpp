@@ -10,23 +10,23 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-GridPoint all(int32_t number) { return GridPoint{number, number, number, number}; }
-GridPoint smaller(GridPoint a, GridPoint b) { return a < b ? a : b; }
-GridPoint larger(GridPoint a, GridPoint b) { return a > b ? a : b; }
+GridPoint broadcast(int32_t number) { return GridPoint{number, number, number, number}; }
+GridPoint lane_min(GridPoint a, GridPoint b) { return a < b ? a : b; }
+GridPoint lane_max(GridPoint a, GridPoint b) { return a > b ? a : b; }
 
 using Floats = float __attribute__((vector_size(16)));
 
-/// As Draco rounds, to the bit.
-class Grid {
+/// Quantizer of positions: bit-identical to draco::Quantizer.
+class PositionQuantizer {
  public:
-  Grid(const QuantizationBox& box, int bits)
+  PositionQuantizer(const QuantizationBox& box, int bits)
       : origin_{box.origin.x, box.origin.y, box.origin.z, 0},
         steps_per_unit_(static_cast<float>((1 << bits) - 1) / box.range) {}
-  /// Rounded down.
-  [[nodiscard]] GridPoint at(Floats p) const {
+  /// Rounds to the nearest grid point, half a step up.
+  [[nodiscard]] GridPoint quantize(Floats p) const {
     const Floats steps = (p - origin_) * steps_per_unit_ + 0.5F;
     const GridPoint towards_zero = __builtin_convertvector(steps, GridPoint);
-    return towards_zero + (__builtin_convertvector(towards_zero, Floats) > steps);  // true is -1
+    return towards_zero + (__builtin_convertvector(towards_zero, Floats) > steps);  // a true lane is -1
   }
 
  private:
@@ -34,54 +34,51 @@ class Grid {
   float steps_per_unit_;
 };
 
-/// Corrections of predictions, wrapped into the range that the values have.
-class Corrections {
+/// Differences from predictions, wrapped into the range of the values.
+class WrappedDifferences {
  public:
-  explicit Corrections(const Buffer<GridPoint>& values) {
+  explicit WrappedDifferences(const Buffer<GridPoint>& values) {
     GridPoint low = values[0];
     GridPoint high = values[0];
     for (const GridPoint& p : values) {
-      low = smaller(low, p);
-      high = larger(high, p);
+      low = lane_min(low, p);
+      high = lane_max(high, p);
     }
     low_ = std::min({low[0], low[1], low[2]});
     high_ = std::max({high[0], high[1], high[2]});
     range_ = 1 + high_ - low_;
-    most_ = range_ / 2;
-    least_ = -most_;
-    if (range_ % 2 == 0) --most_;
+    max_ = range_ / 2;
+    min_ = -max_;
+    if (range_ % 2 == 0) --max_;
   }
   [[nodiscard]] int32_t low() const { return low_; }
   [[nodiscard]] int32_t high() const { return high_; }
 
-  /// Three symbols for the entropy coder; what is behind them may be written over.
+  /// Stores three symbols for the entropy coder. Overwrites a fourth element.
   void put(GridPoint value, GridPoint predicted, uint32_t* symbols) const {
-    GridPoint correction = value - smaller(larger(predicted, all(low_)), all(high_));
-    correction += (correction < all(least_)) & all(range_);
-    correction -= (correction > all(most_)) & all(range_);
-    const GridPoint coded = (correction + correction) ^ (correction >> 31);
+    GridPoint difference = value - lane_min(lane_max(predicted, broadcast(low_)), broadcast(high_));
+    difference += (difference < broadcast(min_)) & broadcast(range_);
+    difference -= (difference > broadcast(max_)) & broadcast(range_);
+    const GridPoint coded = (difference + difference) ^ (difference >> 31);
     std::memcpy(symbols, &coded, sizeof(coded));
   }
 
  private:
-  int32_t low_, high_, range_, most_, least_;
+  int32_t low_, high_, range_, max_, min_;
 };
 
-/// Puts the corrections of one value after another.
-class Writer {
+/// Collects the symbols of the values' differences.
+class DifferenceSymbols {
  public:
-  Writer(const CornerMesh& mesh, const Buffer<GridPoint>& values)
-      : mesh_(mesh),
-        values_(values),
-        corrections_(values),
-        symbols_(Buffer<uint32_t>::for_overwrite(3 * values.size() + 1)) {}
+  DifferenceSymbols(const CornerMesh& mesh, const Buffer<GridPoint>& values)
+      : mesh_(mesh), values_(values), differences_(values), symbols_(3 * values.size() + 1) {}
 
-  [[nodiscard]] const Corrections& corrections() const { return corrections_; }
-  /// Of what was put, three a value.
+  [[nodiscard]] const WrappedDifferences& differences() const { return differences_; }
+  /// Returns the symbols, three a value.
   [[nodiscard]] const Buffer<uint32_t>& symbols() const { return symbols_; }
 
   void put_difference(uint32_t corner) { put(corner, last_); }
-  /// Opposite there must be a face all of whose values were put.
+  /// The corner must have an opposite face whose three values were put.
   void put_parallelogram(uint32_t corner) {
     put(corner, value(CornerMesh::next(corner)) + value(CornerMesh::previous(corner)) - value(mesh_.opposite(corner)));
   }
@@ -90,12 +87,12 @@ class Writer {
   [[nodiscard]] GridPoint value(uint32_t corner) const { return values_[mesh_.vertex(corner)]; }
   void put(uint32_t corner, GridPoint predicted) {
     last_ = value(corner);
-    corrections_.put(last_, predicted, &symbols_[size_t{3} * count_++]);
+    differences_.put(last_, predicted, &symbols_[size_t{3} * count_++]);
   }
 
   const CornerMesh& mesh_;
   const Buffer<GridPoint>& values_;  ///< [vertices]
-  Corrections corrections_;
+  WrappedDifferences differences_;
   Buffer<uint32_t> symbols_;
   uint32_t count_ = 0;
   GridPoint last_{};
@@ -105,41 +102,30 @@ class Writer {
 
 Buffer<GridPoint> to_grid(const Buffer<Vec3f>& positions, const Surface& surface, const QuantizationBox& box,
                           int bits) {
-  const Grid grid(box, bits);
+  const PositionQuantizer quantizer(box, bits);
   auto values = Buffer<GridPoint>::for_overwrite(surface.mesh.vertex_count());
-  Floats p{};
-  if (surface.vertex.empty()) {
-    for (size_t v = 0; v + 1 < values.size(); ++v) {
-      std::memcpy(&p, &positions[v], sizeof p);
-      p[3] = 0;  // it was the next one's
-      values[v] = grid.at(p);
-    }
-    std::memcpy(&p, &positions.back(), sizeof(Vec3f));
-    values.back() = grid.at(p);
-    return values;
-  }
-  for (size_t v = 0; v < values.size(); ++v) {
-    std::memcpy(&p, &positions[surface.vertex[v]], sizeof(Vec3f));
-    values[v] = grid.at(p);
+  for (uint32_t v = 0; v < values.size(); ++v) {
+    const Vec3f& p = positions[surface.mesh_vertex(v)];
+    values[v] = quantizer.quantize(Floats{p.x, p.y, p.z, 0});
   }
   return values;
 }
 
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buffer<GridPoint>& values,
-                     Prediction prediction, int compression_level, Pace& pace, draco::EncoderBuffer& out) {
+                     Prediction prediction, int compression_level, Poller& poller, draco::EncoderBuffer& out) {
   const auto count = static_cast<uint32_t>(order.corners.size());
-  Writer writer(mesh, values);
+  DifferenceSymbols symbols(mesh, values);
   uint32_t done = 0;
   const auto put_differences = [&](uint32_t end) {
-    for (; done < end; ++done, pace.step()) writer.put_difference(order.corners[done]);
+    for (; done < end; ++done, poller.step()) symbols.put_difference(order.corners[done]);
   };
   const auto put_parallelograms = [&](uint32_t end) {
-    for (; done < end; ++done, pace.step()) writer.put_parallelogram(order.corners[done]);
+    for (; done < end; ++done, poller.step()) symbols.put_parallelogram(order.corners[done]);
   };
   if (prediction == Prediction::parallelogram) {
-    for (uint32_t alone : order.alone) {
-      put_parallelograms(alone);
-      put_differences(alone + 1);
+    for (uint32_t unpredicted : order.unpredicted) {
+      put_parallelograms(unpredicted);
+      put_differences(unpredicted + 1);
     }
     put_parallelograms(count);
   }
@@ -149,30 +135,30 @@ void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buf
   out.Encode(static_cast<int8_t>(prediction));
   out.Encode(wrapped);
   out.Encode(uint8_t{1});  // entropy coded
-  write_symbols(std::span(writer.symbols().data(), size_t{3} * count), 3, compression_level, out);
-  out.Encode(writer.corrections().low());
-  out.Encode(writer.corrections().high());
+  write_symbols(std::span(symbols.symbols().data(), size_t{3} * count), 3, compression_level, out);
+  out.Encode(symbols.differences().low());
+  out.Encode(symbols.differences().high());
 }
 
 void write_positions_multi_parallelogram(const CornerMesh& mesh, const Buffer<uint32_t>& corners,
-                                         const Buffer<GridPoint>& values, int speed, uint32_t points, Pace& pace,
+                                         const Buffer<GridPoint>& values, int speed, uint32_t points, Poller& poller,
                                          draco::EncoderBuffer& out) {
-  const OrderedSurface surface(mesh, corners, pace);
+  const OrderedSurface surface(mesh, corners, poller);
   Integers integers{3, {}};
   integers.values.reserve(3 * corners.size());
   for (uint32_t c : corners) {
     const GridPoint& p = values[mesh.vertex(c)];
     integers.values.insert(integers.values.end(), {p[0], p[1], p[2]});
   }
-  (void)write_predicted(integers, *wrapped_predictor(surface, speed, points), {}, speed, out);  // it is never refused
+  (void)write_predicted(integers, *wrapped_predictor(surface, speed, points), {}, speed,
+                        out);  // grid points never overflow
 }
 
 void write_positions_exactly(const Buffer<Vec3f>& positions, const Surface& surface, const Buffer<uint32_t>& corners,
-                             Pace& pace, draco::EncoderBuffer& out) {
+                             Poller& poller, draco::EncoderBuffer& out) {
   for (uint32_t c : corners) {
-    pace.step();
-    const uint32_t v = surface.mesh.vertex(c);
-    out.Encode(positions[surface.vertex.empty() ? v : surface.vertex[v]]);
+    poller.step();
+    out.Encode(positions[surface.mesh_vertex(surface.mesh.vertex(c))]);
   }
 }
 

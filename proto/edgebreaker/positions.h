@@ -8,37 +8,36 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// How a position is predicted from those before it.
+/// Prediction of a position from the positions before it.
 enum class Prediction : int8_t {
-  difference = 0,  ///< as the last one
-  parallelogram =
-      1,  ///< the fourth corner of the parallelogram over the face beyond; where it is not known, the last one
+  difference = 0,     ///< the previous position
+  parallelogram = 1,  ///< completion of the opposite face to a parallelogram, else the previous position
 };
 
-/// A point of the grid, and what is computed with it; the fourth lane is 0. Compilers have such types for every
-/// machine.
+/// Point of the grid, or a vector in grid steps; the fourth lane is 0. GCC and Clang support vector types on every
+/// target.
 using GridPoint = int32_t __attribute__((vector_size(16)));
 
-/// The positions of the surface's vertices on the grid of 2^bits steps along the box.
+/// Quantizes the positions of the surface's vertices to the grid of 2^bits steps along the box.
 [[nodiscard]] Buffer<GridPoint> to_grid(const Buffer<Vec3f>& positions, const Surface& surface,
                                         const QuantizationBox& box, int bits);
 
-/// Writes the positions [vertices] in the order of their vertices, as differences from what is predicted.
-/// `compression_level` of Draco's entropy coder, 0 to 10. `pace` steps once a value.
+/// Writes the positions [vertices] in the given order as differences from their predictions. `compression_level`: of
+/// Draco's entropy coder, 0 to 10. `poller` steps once a value.
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buffer<GridPoint>& values,
-                     Prediction prediction, int compression_level, Pace& pace, draco::EncoderBuffer& out);
+                     Prediction prediction, int compression_level, Poller& poller, draco::EncoderBuffer& out);
 
-/// Writes the positions in the order of these corners, predicted from the best mean of up to four parallelograms, or
-/// from one where the mesh has few `points`: what Draco does at `speed` 0 and 1.
+/// Writes the positions in the order of `corners` as libdraco does at `speed` 0 and 1. The prediction is the best mean
+/// of up to four parallelograms, or a single parallelogram for a mesh with few `points`.
 void write_positions_multi_parallelogram(const CornerMesh& mesh, const Buffer<uint32_t>& corners,
-                                         const Buffer<GridPoint>& values, int speed, uint32_t points, Pace& pace,
+                                         const Buffer<GridPoint>& values, int speed, uint32_t points, Poller& poller,
                                          draco::EncoderBuffer& out);
 
-/// Writes the mesh's positions as floats in the order of these corners.
+/// Writes the mesh's positions as floats in the order of `corners`.
 void write_positions_exactly(const Buffer<Vec3f>& positions, const Surface& surface, const Buffer<uint32_t>& corners,
-                             Pace& pace, draco::EncoderBuffer& out);
+                             Poller& poller, draco::EncoderBuffer& out);
 
-/// Writes what a decoder needs to come back from the grid.
+/// Writes the parameters with which a decoder dequantizes positions.
 void write_grid(const QuantizationBox& box, int bits, draco::EncoderBuffer& out);
 
 }  // namespace papilio::proto::edgebreaker

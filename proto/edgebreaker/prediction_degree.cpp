@@ -7,14 +7,14 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// Corners still to be walked to are in three stacks; those of the lowest come first.
-class ByPredictionDegree {
+/// The walk by prediction degree. Pending corners are in three stacks by priority; the lowest stack comes first.
+class PredictionDegreeWalk {
  public:
-  ByPredictionDegree(const CornerMesh& mesh, Pace& pace)
+  PredictionDegreeWalk(const CornerMesh& mesh, Poller& poller)
       : mesh_(mesh),
-        pace_(pace),
-        visited_(mesh.face_count(), 0),
-        known_(mesh.vertex_count(), 0),
+        poller_(poller),
+        face_visited_(mesh.face_count(), 0),
+        vertex_visited_(mesh.vertex_count(), 0),
         degree_(mesh.vertex_count(), 0) {
     order_.reserve(mesh.vertex_count());
   }
@@ -22,7 +22,7 @@ class ByPredictionDegree {
   Buffer<uint32_t> run(const Buffer<uint32_t>& starts) {
     for (uint32_t corner : starts) {
       if (is_visited(corner)) continue;
-      for (uint32_t c : {CornerMesh::next(corner), CornerMesh::previous(corner), corner}) come_to(c);
+      for (uint32_t c : {CornerMesh::next(corner), CornerMesh::previous(corner), corner}) visit_vertex(c);
       push(corner, 0);
       while ((corner = pop()) != none)
         while (corner != none) corner = visit(corner);
@@ -33,17 +33,17 @@ class ByPredictionDegree {
  private:
   static constexpr uint32_t priorities = 3;
 
-  void come_to(uint32_t corner) {
-    uint8_t& known = known_[mesh_.vertex(corner)];
-    if (known == 0) order_.push_back(corner);
-    known = 1;
+  void visit_vertex(uint32_t corner) {
+    uint8_t& is_visited = vertex_visited_[mesh_.vertex(corner)];
+    if (is_visited == 0) order_.push_back(corner);
+    is_visited = 1;
   }
 
-  /// The corner to go on with; `none` where others come first.
+  /// Visits the face of the corner. Returns the next corner; `none` where a pending corner has priority.
   uint32_t visit(uint32_t corner) {
-    pace_.step();
-    visited_[CornerMesh::face(corner)] = 1;
-    come_to(corner);
+    poller_.step();
+    face_visited_[CornerMesh::face(corner)] = 1;
+    visit_vertex(corner);
     const uint32_t right = mesh_.right(corner);
     const uint32_t left = mesh_.left(corner);
     const bool right_visited = is_visited(right);
@@ -60,10 +60,10 @@ class ByPredictionDegree {
     return none;
   }
 
-  /// 0 to a vertex that is known, 1 to one that was come across before, else 2.
+  /// Returns 0 for a visited vertex, 1 for a vertex that several visited faces predict, else 2.
   uint32_t priority_of(uint32_t corner) {
     const uint32_t vertex = mesh_.vertex(corner);
-    if (known_[vertex] != 0) return 0;
+    if (vertex_visited_[vertex] != 0) return 0;
     uint8_t& degree = degree_[vertex];
     degree = std::min(degree + 1, 2);
     return degree > 1 ? 1 : 2;
@@ -73,7 +73,7 @@ class ByPredictionDegree {
     stacks_[priority].push_back(corner);
     best_ = std::min(best_, priority);
   }
-  /// `none` where every face that can be reached has been visited.
+  /// Takes the pending corner of the highest priority; `none` where all faces in reach are visited.
   uint32_t pop() {
     for (; best_ < priorities; ++best_)
       for (std::vector<uint32_t>& stack = stacks_[best_]; !stack.empty();) {
@@ -86,23 +86,23 @@ class ByPredictionDegree {
   }
 
   [[nodiscard]] bool is_visited(uint32_t corner) const {
-    return corner == none || visited_[CornerMesh::face(corner)] != 0;
+    return corner == none || face_visited_[CornerMesh::face(corner)] != 0;
   }
 
   const CornerMesh& mesh_;
-  Pace& pace_;
-  Buffer<uint8_t> visited_;  ///< [faces]
-  Buffer<uint8_t> known_;    ///< [vertices] whether it is in the order
-  Buffer<uint8_t> degree_;   ///< [vertices] how often a face beyond which it lies was seen: 0, 1, or 2 for more
+  Poller& poller_;
+  Buffer<uint8_t> face_visited_;    ///< [faces]
+  Buffer<uint8_t> vertex_visited_;  ///< [vertices]
+  Buffer<uint8_t> degree_;          ///< [vertices] number of visited faces that predict it, at most 2
   std::array<std::vector<uint32_t>, priorities> stacks_;
-  uint32_t best_ = 0;  ///< the lowest stack that may hold a corner
+  uint32_t best_ = 0;  ///< lowest stack that may hold a corner
   Buffer<uint32_t> order_;
 };
 
 }  // namespace
 
-Buffer<uint32_t> order_by_prediction_degree(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Pace& pace) {
-  return ByPredictionDegree(mesh, pace).run(starts);
+Buffer<uint32_t> order_by_prediction_degree(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Poller& poller) {
+  return PredictionDegreeWalk(mesh, poller).run(starts);
 }
 
 }  // namespace papilio::proto::edgebreaker

@@ -3,34 +3,26 @@
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_constrained_multi_parallelogram_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_parallelogram_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_delta_encoder.h>
-#include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/core/bit_utils.h>
 
+#include "proto/edgebreaker/speeds.h"
 #include "proto/edgebreaker/symbols.h"
 
 namespace papilio::proto::edgebreaker {
-namespace {
 
-// What Draco makes of its speed.
-constexpr int single_parallelogram_speed = 2;  ///< below, several parallelograms are averaged
-constexpr int difference_speed = 8;            ///< from here on, no parallelograms
-constexpr uint32_t few_points = 40;            ///< with fewer, one parallelogram at any speed
-
-}  // namespace
-
-OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Pace& pace)
-    : table_(mesh, pace), place_(mesh.vertex_count(), -1) {
+OrderedSurface::OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Poller& poller)
+    : table_(mesh, poller), value_index_(mesh.vertex_count(), -1) {
   corners_.reserve(corners.size());
   for (uint32_t c : corners) {
-    place_[mesh.vertex(c)] = static_cast<int32_t>(corners_.size());
+    value_index_[mesh.vertex(c)] = static_cast<int32_t>(corners_.size());
     corners_.emplace_back(c);
   }
-  data_.Set(nullptr, &table_, &corners_, &place_);
+  data_.Set(nullptr, &table_, &corners_, &value_index_);
 }
 
 std::unique_ptr<Predictor<Wrap>> wrapped_predictor(const OrderedSurface& surface, int speed, uint32_t points) {
-  if (speed >= difference_speed) return difference_predictor();
-  if (speed >= single_parallelogram_speed || points < few_points)
+  if (speed >= min_difference_speed) return difference_predictor();
+  if (speed >= min_single_parallelogram_speed || points < min_multi_parallelogram_points)
     return std::make_unique<draco::MeshPredictionSchemeParallelogramEncoder<int32_t, Wrap, MeshData>>(nullptr, Wrap(),
                                                                                                       surface.data());
   return std::make_unique<draco::MeshPredictionSchemeConstrainedMultiParallelogramEncoder<int32_t, Wrap, MeshData>>(
@@ -58,7 +50,6 @@ bool write_predicted(const Integers& integers, Predictor<Transform>& predictor,
   return predictor.EncodePredictionData(&out);
 }
 
-using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingTransform<int32_t>;
 template bool write_predicted(const Integers&, Predictor<Wrap>&, std::span<const draco::PointIndex>, int,
                               draco::EncoderBuffer&);
 template bool write_predicted(const Integers&, Predictor<Octahedron>&, std::span<const draco::PointIndex>, int,

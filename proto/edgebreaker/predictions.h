@@ -2,6 +2,7 @@
 
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_data.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_encoder.h>
+#include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_wrap_encoding_transform.h>
 #include <draco/core/encoder_buffer.h>
 
@@ -10,16 +11,17 @@
 #include <vector>
 
 #include "proto/edgebreaker/corner_mesh.h"
-#include "proto/edgebreaker/pace.h"
+#include "proto/edgebreaker/poller.h"
 
-// libdraco's predictions of values at corners, on our surfaces.
+// libdraco's predictions of values at corners, applied to corner meshes.
 
 namespace papilio::proto::edgebreaker {
 
-/// A surface as libdraco's predictions use it. `pace` steps at each vertex looked up: so predictions can be stopped.
+/// Adapter from a corner mesh to the corner table that libdraco's predictions expect. `poller` steps at each look-up of
+/// a vertex, so that predictions can be cancelled.
 class CornerTable {
  public:
-  CornerTable(const CornerMesh& mesh, Pace& pace) : mesh_(mesh), pace_(pace) {}
+  CornerTable(const CornerMesh& mesh, Poller& poller) : mesh_(mesh), poller_(poller) {}
   [[nodiscard]] static draco::CornerIndex Next(draco::CornerIndex c) {
     return draco::CornerIndex(CornerMesh::next(c.value()));
   }
@@ -27,7 +29,7 @@ class CornerTable {
     return draco::CornerIndex(CornerMesh::previous(c.value()));
   }
   [[nodiscard]] draco::VertexIndex Vertex(draco::CornerIndex c) const {
-    pace_.step();
+    poller_.step();
     return draco::VertexIndex(mesh_.vertex(c.value()));
   }
   [[nodiscard]] draco::CornerIndex Opposite(draco::CornerIndex c) const {
@@ -42,19 +44,20 @@ class CornerTable {
 
  private:
   const CornerMesh& mesh_;
-  Pace& pace_;
+  Poller& poller_;
 };
 static_assert(draco::kInvalidCornerIndex.value() == none);
 
 using MeshData = draco::MeshPredictionSchemeData<CornerTable>;
 using Wrap = draco::PredictionSchemeWrapEncodingTransform<int32_t>;
+using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingTransform<int32_t>;
 template <class Transform>
 using Predictor = draco::PredictionSchemeEncoder<int32_t, Transform>;
 
-/// A surface and the corners [values] at which its values are written, in their order.
+/// A surface with the corners [values] of its values, in writing order.
 class OrderedSurface {
  public:
-  OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Pace& pace);
+  OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Poller& poller);
   OrderedSurface(const OrderedSurface&) = delete;
   OrderedSurface& operator=(const OrderedSurface&) = delete;
   ~OrderedSurface() = default;
@@ -65,26 +68,26 @@ class OrderedSurface {
  private:
   const CornerTable table_;
   std::vector<draco::CornerIndex> corners_;
-  std::vector<int32_t> place_;  ///< [vertices] among the values
+  std::vector<int32_t> value_index_;  ///< [vertices] index of the vertex's value; -1: none
   MeshData data_;
 };
 
-/// Values as integers, in the order in which they are written.
+/// Integer values in writing order.
 struct Integers {
   uint32_t components;
   std::vector<int32_t> values;
 };
 
-/// How values are predicted where nothing but the values themselves is known, at Draco's `speed`, of a mesh with so
-/// many points.
+/// Returns the predictor that libdraco selects for values without a parent attribute. `speed`: Draco's, 0 to 10.
+/// `points`: points of the mesh.
 [[nodiscard]] std::unique_ptr<Predictor<Wrap>> wrapped_predictor(const OrderedSurface& surface, int speed,
                                                                  uint32_t points);
 
-/// As the value before.
+/// Returns a predictor that takes the previous value as the prediction.
 [[nodiscard]] std::unique_ptr<Predictor<Wrap>> difference_predictor();
 
-/// Writes the values as differences from what is predicted. `vertices` [values] or empty: the points that the
-/// predictor's parent attribute is asked for. False, and nothing is written, where a prediction overflows.
+/// Writes the values as differences from their predictions. `vertices` [values]: points of the parent attribute; empty
+/// for predictors without one. Returns false and writes nothing if a prediction overflows.
 template <class Transform>
 [[nodiscard]] bool write_predicted(const Integers& integers, Predictor<Transform>& predictor,
                                    std::span<const draco::PointIndex> vertices, int speed, draco::EncoderBuffer& out);

@@ -5,16 +5,17 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// Where an attribute has more values than the mesh has vertices.
+/// Seams of an attribute: inner edges whose two faces have different values at a common vertex.
 struct Seams {
-  Buffer<uint8_t> is_seam;  ///< [corners] at the edge opposite to each, whose faces have other values there; or empty
-  Buffer<uint32_t> value;   ///< [corners] the number of each corner's value
+  Buffer<uint8_t> is_seam;  ///< [corners] whether the edge opposite to the corner is a seam; empty: no seams
+  Buffer<uint32_t> value;   ///< [corners] index of each corner's value
   [[nodiscard]] bool empty() const { return is_seam.empty(); }
 };
+/// Finds the seams of an attribute. `corner_point` [corners]: the point at each corner.
 [[nodiscard]] Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Buffer<uint32_t>& corner_point,
                                const OutputAttribute& attribute);
 
-/// The surface cut open along an attribute's seams: each vertex is what lies between two of them.
+/// Cuts the surface open along an attribute's seams: a vertex becomes one vertex for each fan between two seams.
 [[nodiscard]] CornerMesh cut_open(const CornerMesh& mesh, const Seams& seams);
 
 }  // namespace papilio::proto::edgebreaker

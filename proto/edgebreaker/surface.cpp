@@ -9,7 +9,7 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// Whether two vertices share several edges or an edge has more than two faces, or boundaries touch at a vertex.
+/// Returns whether an edge has more than two faces, two vertices share several edges, or boundaries touch at a vertex.
 bool has_several_fans_or_edges(const CornerMesh& mesh) {
   std::vector<std::pair<uint32_t, uint32_t>> open;
   std::vector<uint32_t> starts;
@@ -26,7 +26,7 @@ bool has_several_fans_or_edges(const CornerMesh& mesh) {
   return has_twice(open) || has_twice(starts);
 }
 
-/// Seams between faces with the same three vertices.
+/// Finds the edges between faces with the same three vertices.
 Seams seams_of_mirrored_faces(const CornerMesh& mesh) {
   Seams seams;
   seams.is_seam.assign(mesh.corner_count(), 0);

@@ -5,32 +5,37 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
+/// The depth-first walk.
 class DepthFirst {
  public:
-  DepthFirst(const CornerMesh& mesh, Pace& pace)
-      : mesh_(mesh), pace_(pace), visited_(mesh.face_count(), 0), known_(mesh.vertex_count(), is_new) {
+  DepthFirst(const CornerMesh& mesh, Poller& poller)
+      : mesh_(mesh),
+        poller_(poller),
+        face_visited_(mesh.face_count(), 0),
+        vertex_state_(mesh.vertex_count(), unvisited_inner) {
     order_.corners.reserve(mesh.vertex_count());
     for (uint32_t c : mesh.at_boundary())
-      known_[mesh.vertex(CornerMesh::next(c))] = known_[mesh.vertex(CornerMesh::previous(c))] = is_new_on_boundary;
+      for (uint32_t end : {CornerMesh::next(c), CornerMesh::previous(c)})
+        vertex_state_[mesh.vertex(end)] = unvisited_boundary;
   }
 
   VertexOrder run(const Buffer<uint32_t>& starts) {
     for (uint32_t corner : starts) {
-      if (order_.corners.size() == mesh_.vertex_count()) break;  // so has every face been visited, or says no more
+      if (order_.corners.size() == mesh_.vertex_count()) break;  // further faces add nothing
       if (!is_visited(corner)) walk_from(corner);
     }
     return std::move(order_);
   }
 
  private:
-  enum Known : uint8_t { is_new, is_new_on_boundary, is_known };
+  enum VertexState : uint8_t { unvisited_inner, unvisited_boundary, visited };
 
   void walk_from(uint32_t corner) {
     for (uint32_t c : {CornerMesh::next(corner), CornerMesh::previous(corner)}) {
-      note_if_alone(c);
-      (void)come_to(c);
+      record_if_unpredicted(c);
+      (void)visit_vertex(c);
     }
-    note_if_alone(corner);
+    record_if_unpredicted(corner);
     stack_.assign(1, corner);
     while (!stack_.empty()) {
       corner = stack_.back();
@@ -42,33 +47,34 @@ class DepthFirst {
     }
   }
 
-  /// For the vertices that no walk comes to across an edge.
-  void note_if_alone(uint32_t corner) {
-    const auto is_vertex_known = [this](uint32_t c) { return known_[mesh_.vertex(c)] == is_known; };
-    if (is_vertex_known(corner)) return;
-    const uint32_t beyond = mesh_.opposite(corner);
-    if (beyond == none || !is_vertex_known(beyond) || !is_vertex_known(CornerMesh::next(beyond)) ||
-        !is_vertex_known(CornerMesh::previous(beyond)))
-      order_.alone.push_back(static_cast<uint32_t>(order_.corners.size()));
+  /// Records an unvisited vertex at the start of a walk that no parallelogram predicts. Vertices that a walk reaches
+  /// across an edge always have a parallelogram.
+  void record_if_unpredicted(uint32_t corner) {
+    const auto is_vertex_visited = [this](uint32_t c) { return vertex_state_[mesh_.vertex(c)] == visited; };
+    if (is_vertex_visited(corner)) return;
+    const uint32_t opposite = mesh_.opposite(corner);
+    if (opposite == none || !is_vertex_visited(opposite) || !is_vertex_visited(CornerMesh::next(opposite)) ||
+        !is_vertex_visited(CornerMesh::previous(opposite)))
+      order_.unpredicted.push_back(static_cast<uint32_t>(order_.corners.size()));
   }
 
-  /// What was known of the vertex before.
-  Known come_to(uint32_t corner) {
-    uint8_t& known = known_[mesh_.vertex(corner)];
-    const auto before = static_cast<Known>(known);
-    if (before != is_known) order_.corners.push_back(corner);
-    known = is_known;
+  /// Appends the corner's vertex to the order unless it is visited. Returns the state of the vertex before.
+  VertexState visit_vertex(uint32_t corner) {
+    uint8_t& state = vertex_state_[mesh_.vertex(corner)];
+    const auto before = static_cast<VertexState>(state);
+    if (before != visited) order_.corners.push_back(corner);
+    state = visited;
     return before;
   }
 
-  /// The corner to go on with; `none` where the walk ends or falls in two.
+  /// Visits the face of the corner. Returns the next corner; `none` where the walk ends or splits.
   uint32_t visit(uint32_t corner) {
-    visited_[CornerMesh::face(corner)] = 1;
-    pace_.step();
+    face_visited_[CornerMesh::face(corner)] = 1;
+    poller_.step();
     const uint32_t right = mesh_.right(corner);
     mesh_.prefetch(right);
     mesh_.prefetch(mesh_.left(corner));
-    if (come_to(corner) == is_new) return right;
+    if (visit_vertex(corner) == unvisited_inner) return right;
     const uint32_t left = mesh_.left(corner);
     const bool right_visited = is_visited(right);
     const bool left_visited = is_visited(left);
@@ -84,21 +90,21 @@ class DepthFirst {
   }
 
   [[nodiscard]] bool is_visited(uint32_t corner) const {
-    return corner == none || visited_[CornerMesh::face(corner)] != 0;
+    return corner == none || face_visited_[CornerMesh::face(corner)] != 0;
   }
 
   const CornerMesh& mesh_;
-  Pace& pace_;
-  Buffer<uint8_t> visited_;  ///< [faces]
-  Buffer<uint8_t> known_;    ///< [vertices] Known
+  Poller& poller_;
+  Buffer<uint8_t> face_visited_;  ///< [faces]
+  Buffer<uint8_t> vertex_state_;  ///< [vertices] VertexState
   std::vector<uint32_t> stack_;
   VertexOrder order_;
 };
 
 }  // namespace
 
-VertexOrder order_vertices(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Pace& pace) {
-  return DepthFirst(mesh, pace).run(starts);
+VertexOrder order_vertices(const CornerMesh& mesh, const Buffer<uint32_t>& starts, Poller& poller) {
+  return DepthFirst(mesh, poller).run(starts);
 }
 
 }  // namespace papilio::proto::edgebreaker

@@ -15,20 +15,13 @@
 #include "proto/edgebreaker/connectivity.h"
 #include "proto/edgebreaker/positions.h"
 #include "proto/edgebreaker/seams.h"
+#include "proto/edgebreaker/speeds.h"
 #include "proto/edgebreaker/surface.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
 
-// What Draco makes of its speed.
-constexpr int prediction_degree_speed = 0;     ///< positions in the order of their prediction degrees
-constexpr int single_parallelogram_speed = 2;  ///< below, several are averaged
-constexpr int standard_speed = 5;              ///< from here on, or for few faces, symbols are written as bits
-constexpr int single_connectivity_speed = 6;
-constexpr int difference_speed = 8;  ///< from here on, no parallelograms
-constexpr uint32_t few_faces = 1000;
-
-/// A stream on its way. Positions are on the box's grid, or exact where there is no box.
+/// Writer of one stream. Positions are quantized to the box's grid, or exact if `box` is null.
 class StreamWriter {
  public:
   StreamWriter(const Mesh& mesh, const QuantizationBox* box, const OutputOptions& options, uint32_t position_id,
@@ -38,40 +31,41 @@ class StreamWriter {
         options_(options),
         position_id_(position_id),
         attributes_(attributes),
-        pace_(poll),
+        poller_(poll),
         surface_(manifold_surface(mesh.topology)),
-        in_one_(is_single_connectivity()) {}
+        single_connectivity_(is_single_connectivity()) {}
 
   std::string run() {
-    pace_.call();
+    poller_.call();
     std::vector<Seams> seams;
     for (const OutputAttribute& attribute : attributes_)
       seams.push_back(find_seams(surface_.mesh, mesh_.topology, mesh_.attributes.point, attribute));
-    const std::span<const Seams> own = in_one_ ? std::span<const Seams>() : seams;
+    const std::span<const Seams> separate = single_connectivity_ ? std::span<const Seams>() : seams;
     write_header();
-    const Buffer<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), own, pace_, out_);
-    write_encoders(own);
-    write_descriptions();
+    const Buffer<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), separate, poller_, out_);
+    write_encoders(separate);
+    write_declarations();
     write_all_values(seams, starts);
-    pace_.call();
+    poller_.call();
     return {out_.data(), out_.size()};
   }
 
  private:
   [[nodiscard]] Traversal traversal() const {
-    const bool is_standard = options_.speed >= standard_speed || mesh_.topology.face_count() < few_faces;
+    const bool is_standard =
+        options_.speed >= min_standard_traversal_speed || mesh_.topology.face_count() < min_valence_faces;
     return is_standard ? Traversal::standard : Traversal::valence;
   }
-  /// Whether the attributes are written with the connectivity of positions, by one encoder: what Draco does at high
-  /// speeds where it need not cut the surface open.
+  /// Returns whether one encoder writes all attributes with the connectivity of the positions. Draco does so at high
+  /// speeds if no attribute has seams.
   [[nodiscard]] bool is_single_connectivity() const {
-    return options_.speed >= single_connectivity_speed &&
-           std::ranges::all_of(attributes_, &OutputAttribute::is_of_vertices);
+    return options_.speed >= min_single_connectivity_speed &&
+           std::ranges::all_of(attributes_, &OutputAttribute::has_value_per_vertex);
   }
-  [[nodiscard]] bool is_by_prediction_degree() const { return options_.speed <= prediction_degree_speed; }
-  /// How many points libdraco would have.
+  [[nodiscard]] bool is_by_prediction_degree() const { return options_.speed <= max_prediction_degree_speed; }
+  /// Returns the number of points of the mesh in libdraco.
   [[nodiscard]] uint32_t point_count() const {
-    const bool has_points = !std::ranges::all_of(attributes_, &OutputAttribute::is_of_vertices);
+    const bool has_points = !std::ranges::all_of(attributes_, &OutputAttribute::has_value_per_vertex);
     return has_points ? mesh_.attributes.point_count : mesh_.topology.vertex_count;
   }
 
@@ -97,71 +91,71 @@ class StreamWriter {
     return names;
   }
 
-  /// Each encoder: with which attribute's seams, and whether it has any.
-  void write_encoders(std::span<const Seams> own) {
-    out_.Encode(static_cast<uint8_t>(1 + own.size()));
+  /// Writes each encoder: the attribute whose seams it follows, whether there are seams, and its traversal.
+  void write_encoders(std::span<const Seams> separate) {
+    out_.Encode(static_cast<uint8_t>(1 + separate.size()));
     constexpr uint8_t depth_first = 0;
     constexpr uint8_t prediction_degree = 1;
-    const uint8_t of_positions = is_by_prediction_degree() ? prediction_degree : depth_first;
-    for (const uint8_t byte : {uint8_t{255}, uint8_t{0}, of_positions}) out_.Encode(byte);
-    for (size_t a = 0; a < own.size(); ++a) {
+    const uint8_t position_traversal = is_by_prediction_degree() ? prediction_degree : depth_first;
+    for (const uint8_t byte : {uint8_t{255}, uint8_t{0}, position_traversal}) out_.Encode(byte);
+    for (size_t a = 0; a < separate.size(); ++a) {
       out_.Encode(static_cast<int8_t>(a));
-      out_.Encode(static_cast<uint8_t>(own[a].empty() ? 0 : 1));
+      out_.Encode(static_cast<uint8_t>(separate[a].empty() ? 0 : 1));
       out_.Encode(depth_first);
     }
   }
 
-  void write_descriptions() {
-    draco::EncodeVarint<uint32_t>(static_cast<uint32_t>(in_one_ ? 1 + attributes_.size() : 1), &out_);
-    for (const uint8_t byte : {0, 9, 3, 0}) out_.Encode(byte);  // position, float32, three components, as they are
+  void write_declarations() {
+    draco::EncodeVarint<uint32_t>(static_cast<uint32_t>(single_connectivity_ ? 1 + attributes_.size() : 1), &out_);
+    for (const uint8_t byte : {0, 9, 3, 0}) out_.Encode(byte);  // position, float32, three components, not normalized
     draco::EncodeVarint<uint32_t>(position_id_, &out_);
-    if (in_one_)
-      for (const OutputAttribute& attribute : attributes_) describe(attribute, out_);
+    if (single_connectivity_)
+      for (const OutputAttribute& attribute : attributes_) write_declaration(attribute, out_);
     out_.Encode(static_cast<uint8_t>(box_ != nullptr ? Coding::grid : Coding::as_is));
     for (const OutputAttribute& attribute : attributes_) {
-      if (!in_one_) {
+      if (!single_connectivity_) {
         draco::EncodeVarint<uint32_t>(1, &out_);
-        describe(attribute, out_);
+        write_declaration(attribute, out_);
       }
-      out_.Encode(coding_byte(attribute));
+      out_.Encode(static_cast<uint8_t>(attribute.coding));
     }
   }
 
   void write_all_values(std::span<const Seams> seams, const Buffer<uint32_t>& starts) {
     const CornerMesh& mesh = surface_.mesh;
     VertexOrder order;
-    if (!is_by_prediction_degree() || !attributes_.empty()) order = order_vertices(mesh, starts, pace_);
+    if (!is_by_prediction_degree() || !attributes_.empty()) order = order_vertices(mesh, starts, poller_);
     Buffer<GridPoint> positions;
     if (box_ != nullptr) positions = to_grid(mesh_.positions, surface_, *box_, options_.position_bits);
     write_position_values(order, positions, starts);
-    if (!in_one_) write_position_coding();
+    if (!single_connectivity_) write_position_quantization();
     for (size_t a = 0; a < attributes_.size(); ++a) {
-      write_values(attributes_[a], seams[a], {mesh, starts, order, positions, point_count()}, options_.speed, pace_,
+      write_values(attributes_[a], seams[a], {mesh, starts, order, positions, point_count()}, options_.speed, poller_,
                    out_);
-      if (!in_one_) write_coding(attributes_[a], out_);
+      if (!single_connectivity_) write_quantization(attributes_[a], out_);
     }
-    if (!in_one_) return;
-    write_position_coding();
-    for (const OutputAttribute& attribute : attributes_) write_coding(attribute, out_);
+    if (!single_connectivity_) return;
+    write_position_quantization();
+    for (const OutputAttribute& attribute : attributes_) write_quantization(attribute, out_);
   }
 
   void write_position_values(const VertexOrder& order, const Buffer<GridPoint>& positions,
                              const Buffer<uint32_t>& starts) {
     const CornerMesh& mesh = surface_.mesh;
     if (box_ == nullptr) {
-      write_positions_exactly(mesh_.positions, surface_, order.corners, pace_, out_);
-    } else if (options_.speed < single_parallelogram_speed) {
+      write_positions_exactly(mesh_.positions, surface_, order.corners, poller_, out_);
+    } else if (options_.speed < min_single_parallelogram_speed) {
       write_positions_multi_parallelogram(
-          mesh, is_by_prediction_degree() ? order_by_prediction_degree(mesh, starts, pace_) : order.corners, positions,
-          options_.speed, point_count(), pace_, out_);
+          mesh, is_by_prediction_degree() ? order_by_prediction_degree(mesh, starts, poller_) : order.corners,
+          positions, options_.speed, point_count(), poller_, out_);
     } else {
-      const bool is_by_difference = options_.speed >= difference_speed;
+      const bool is_by_difference = options_.speed >= min_difference_speed;
       write_positions(mesh, order, positions, is_by_difference ? Prediction::difference : Prediction::parallelogram,
-                      10 - options_.speed, pace_, out_);
+                      10 - options_.speed, poller_, out_);
     }
   }
 
-  void write_position_coding() {
+  void write_position_quantization() {
     if (box_ != nullptr) write_grid(*box_, options_.position_bits, out_);
   }
 
@@ -170,9 +164,9 @@ class StreamWriter {
   const OutputOptions& options_;
   uint32_t position_id_;
   std::span<const OutputAttribute> attributes_;
-  Pace pace_;
+  Poller poller_;
   Surface surface_;
-  bool in_one_;
+  bool single_connectivity_;
   draco::EncoderBuffer out_;
 };
 
@@ -184,7 +178,7 @@ std::string write(const Mesh& mesh, const QuantizationBox& box, const OutputOpti
 }
 
 std::string write_exact(const Mesh& mesh, uint32_t position_id, std::span<const OutputAttribute> attributes) {
-  constexpr OutputOptions options{.speed = standard_speed};
+  constexpr OutputOptions options{.speed = min_standard_traversal_speed};
   return StreamWriter(mesh, nullptr, options, position_id, attributes, {}).run();
 }
 

@@ -58,7 +58,7 @@ class Orbit {
   }
   /// And serves what was served before the time is taken.
   void store() {
-    stored_ = std::make_shared<const proto::PreparedMesh>(draco_, proto::Limits{}, byte_budget);
+    stored_ = std::make_shared<const proto::SharedMesh>(draco_, proto::Limits{}, byte_budget);
     if (first_round_)
       (void)ask_stored(0);
     else
@@ -76,7 +76,7 @@ class Orbit {
   std::string draco_;
   Vec3d target_;
   double distance_ = 0;
-  std::shared_ptr<const proto::PreparedMesh> stored_;
+  std::shared_ptr<const proto::SharedMesh> stored_;
   int cold_step_ = 0, stored_step_ = 0;
 };
 

@@ -71,7 +71,7 @@ END
   for where in '' "--server $url"; do
     # shellcheck disable=SC2086
     "$papilio" refine "$coarse" -o fine.drc --tolerance 0.0001 --levels 1 $where 2>warnings
-    grep -q '^warning: tolerance=0.0001 is not reached: the error left is 0\.0.* Give more levels than 1' warnings
+    grep -q '^warning: tolerance=0.0001 is not reached: the remaining error is 0\.0.* Raise levels above 1' warnings
     # shellcheck disable=SC2086
     "$papilio" refine "$coarse" -o fine.drc --tolerance 0.0001 $where 2>warnings
     if grep warning warnings; then return 1; fi
@@ -175,7 +175,7 @@ END
     # shellcheck disable=SC2086
     run "$papilio" refine short.drc -o out.drc $where
     [ "$status" = 1 ]
-    [[ $output == *'cut short'* ]]
+    [[ $output == *'truncated'* ]]
   done
   [ ! -e out.drc ]
   for command in "info $coarse" parameters "refine $coarse -o fine.drc --json" "refine $coarse -o -"; do

@@ -79,7 +79,7 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" -gt 2000 ]
   request -H 'Accept: multipart/mixed' "$url/v1/meshes/$(coarse_id)/refined?view.error_pixels=0.5&levels=1"
   grep -aq '"stop_reason": "levels"' "$body"
-  grep -aq '"unreached": "view.error_pixels=0.5 is not reached: the error left is .* Give more levels than 1' "$body"
+  grep -aq '"unreached": "view.error_pixels=0.5 is not reached: the remaining error is .* Raise levels above 1' "$body"
 }
 
 @test "max_faces is never passed, in no part" {

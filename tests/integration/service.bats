@@ -250,6 +250,6 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   grep -q 'id=log-me method=POST path="/v1/refine" status=507 .*code=result_too_large' "$log"
   grep -q 'id=bad-one .*status=400 .*code=bad_parameter' "$log"
   # What a client sends stays inside its quotes.
-  grep -q 'detail="There is no parameter \\"a\\" status=200' "$log"
+  grep -q 'detail="Unknown parameter \\"a\\" status=200' "$log"
   ! grep -q alive-question "$log"
 }

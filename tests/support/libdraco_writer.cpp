@@ -89,7 +89,7 @@ class Encoding {
   [[nodiscard]] const VertexPoints* points() const { return points_ ? &*points_ : nullptr; }
 
   void add(const OutputAttribute& attribute) {
-    const int number = attribute.is_of_vertices()
+    const int number = attribute.has_value_per_vertex()
                            ? add_at_vertices(attribute)
                            : add_point_attribute(out_, attribute.values, attribute.components, attribute.format);
     if (attribute.coding == Coding::octahedral) options().SetAttributeInt(number, "quantization_bits", attribute.bits);
@@ -138,7 +138,7 @@ class Encoding {
 
 std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                                 uint32_t position_id, std::span<const OutputAttribute> attributes) {
-  const bool has_points = !std::ranges::all_of(attributes, &OutputAttribute::is_of_vertices);
+  const bool has_points = !std::ranges::all_of(attributes, &OutputAttribute::has_value_per_vertex);
   Encoding encoding(mesh, has_points, position_id);
   encoding.options().SetSpeed(options.speed, options.speed);
   encoding.options().SetAttributeOptions(

@@ -23,7 +23,7 @@ namespace {
 
 using namespace test;
 
-constexpr double texture_step = 11.0 / ((1 << 14) - 1);  // of the charted cube, whose coordinates go from 0 to 11
+constexpr double texture_step = 11.0 / ((1 << 14) - 1);  // of the charted cube, with coordinates from 0 to 11
 
 FormattedMesh repeat(FormattedMesh mesh, AttributeKind kind, ValueType type, const std::vector<double>& value) {
   std::vector<double> values;
@@ -32,7 +32,7 @@ FormattedMesh repeat(FormattedMesh mesh, AttributeKind kind, ValueType type, con
   return mesh;
 }
 
-/// The charted cube with an attribute of every type besides, random in its range.
+/// Returns the charted cube with additional attributes of every type, with random values.
 FormattedMesh decorated_cube() {
   FormattedMesh mesh = charted_cube();
   std::mt19937 random(5);
@@ -68,15 +68,15 @@ std::string write(const Mesh& mesh, const Mesh& coarse, const MeshFormat& format
   return write_draco(mesh, quantization_box(coarse.positions), options, attribute_encoding(coarse, format));
 }
 
-/// How far a written value may be from the one before.
+/// Returns the largest error of a written value.
 double tolerance_of(const Attribute& attribute, const AttributeFormat& format) {
   if (format.kind == AttributeKind::tex_coord) return 0.51 * texture_step;
   if (format.type == ValueType::float32) return attribute.unit_length ? 0.01 : 2000.0 / 65535 * 0.51;
   return format.type == ValueType::float64 ? 0 : 0.5;
 }
 
-/// Every corner of `read` is one of `mesh`, found by its chart and place: same position and values. Edgebreaker orders
-/// both anew.
+/// Expects every corner of `read` to equal the corner of `mesh` with its chart and position. Edgebreaker reorders
+/// corners and faces.
 void expect_same_corners(const FormattedMesh& read, const TriangleMesh& mesh, const MeshFormat& format) {
   ASSERT_EQ(read.format, format);
   ASSERT_EQ(read.triangles.size(), mesh.triangles.size());
@@ -98,7 +98,7 @@ void expect_same_corners(const FormattedMesh& read, const TriangleMesh& mesh, co
   }
 }
 
-TEST(DracoAttributes, EveryTypeComesBackAtEverySpeed) {
+TEST(DracoAttributes, EveryTypeRoundTripsAtEverySpeed) {
   const FormattedMesh input = decorated_cube();
   const Mesh coarse = build_mesh(input);
   for (const Options& options : {Options{.levels = 0}, Options{.levels = 2}, Options{.levels = 3, .flatness = {0.5}}}) {
@@ -137,7 +137,7 @@ TEST(DracoAttributes, DracoDecoderSeesOnePositionAVertex) {
     for (uint32_t p = 0; p < seen.positions.size(); ++p) {
       const auto side = static_cast<uint32_t>((texture[2 * p] + 0.5) / 2);
       EXPECT_NEAR(normal[3 * p + 2 - side / 2], side % 2 == 0 ? -1 : 1, 1e-2);
-      // A quarter of a side each: the grid that interpolation makes.
+      // Interpolated values are multiples of a quarter of a side.
       for (double t : {texture[2 * p], texture[2 * p + 1]})
         EXPECT_NEAR(4 * t, std::round(4 * t), 4 * 0.51 * texture_step + 1e-5);
     }
@@ -156,7 +156,7 @@ TEST(DracoAttributes, StreamsOfDracoEncoderAreRead) {
   }
 }
 
-TEST(DracoAttributes, ValuesStayPutFromLevelToLevel) {
+TEST(DracoAttributes, CoarseValuesAreUnchangedInFinerLevels) {
   const FormattedMesh input = charted_faces(real_mesh("bunny600.obj"));
   const Mesh coarse = build_mesh(input);
   const auto values = [&](int levels) {
@@ -173,7 +173,7 @@ TEST(DracoAttributes, ValuesStayPutFromLevelToLevel) {
   EXPECT_TRUE(std::ranges::includes(second, first));
 }
 
-TEST(DracoAttributes, HardValuesDoNotBreakTheAnswer) {
+TEST(DracoAttributes, ExtremeValuesGiveReadableStreams) {
   const float most = std::numeric_limits<float>::max();
   const FormattedMesh cube = charted_cube();
   std::vector<FormattedMesh> inputs{
@@ -193,7 +193,7 @@ TEST(DracoAttributes, HardValuesDoNotBreakTheAnswer) {
       repeat(cube, AttributeKind::tex_coord, ValueType::uint16, {1, 65535}),
       repeat(cube, AttributeKind::color, ValueType::float32, {most, 1, 0}),
   };
-  for (size_t i = 0; i < inputs.size(); ++i) {  // two values besides one everywhere: everything between arises
+  for (size_t i = 0; i < inputs.size(); ++i) {  // a second value, so that refinement interpolates
     FormattedMesh spread = inputs[i];
     std::vector<double>& values = spread.attributes.back().values;
     for (size_t k = 0; k < values.size() / 2; ++k) values[k] = -values[k];
@@ -214,8 +214,8 @@ TEST(DracoAttributes, HardValuesDoNotBreakTheAnswer) {
   }
 }
 
-// Draco predicted them as if they were octahedral, two numbers each: values changed, and with one number it wrote past
-// the end of its memory.
+// libdraco predicted them as octahedral coordinates of two numbers: values changed, and with one number it wrote out of
+// bounds.
 TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
   std::mt19937 random(3);
   for (uint32_t components = 1; components <= 4; ++components) {
@@ -231,8 +231,8 @@ TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
   }
 }
 
-// Draco made two billion orientations of texture coordinates from a stream of 255 bytes.
-TEST(DracoAttributes, OrientationsThatNobodyNeedsAreRefused) {
+// libdraco allocated two billion orientations of texture coordinates for a stream of 255 bytes.
+TEST(DracoAttributes, SuperfluousOrientationsAreRefused) {
   const FormattedMesh input = charted_cube();
   const Mesh mesh = build_mesh(input);
   const std::string sound = write(mesh, mesh, input.format, {.speed = 0});
@@ -242,7 +242,7 @@ TEST(DracoAttributes, OrientationsThatNobodyNeedsAreRefused) {
     try {
       (void)read_draco(damaged, {});
     } catch (const Problem& problem) {
-      return std::string_view(problem.what()).find("predicts") != std::string_view::npos;
+      return std::string_view(problem.what()).find("invalid prediction") != std::string_view::npos;
     } catch (const Error&) {
     }
     return false;
@@ -253,7 +253,7 @@ TEST(DracoAttributes, OrientationsThatNobodyNeedsAreRefused) {
   EXPECT_EQ(read_draco(sound, {}).format, input.format);
 }
 
-TEST(DracoAttributes, MeshesOfEveryKindSurvive) {
+TEST(DracoAttributes, MeshesOfEveryKindKeepFacesAndCharts) {
   TriangleMesh misoriented = icosahedron();
   std::swap(misoriented.triangles[3][0], misoriented.triangles[3][1]);
   TriangleMesh non_manifold = cube();
@@ -278,7 +278,7 @@ TEST(DracoAttributes, MeshesOfEveryKindSurvive) {
   }
 }
 
-TEST(DracoAttributes, NewNormalsReplaceTheMeshsOwn) {
+TEST(DracoAttributes, NewNormalsReplaceExistingNormals) {
   const FormattedMesh input = repeat(decorated_cube(), AttributeKind::normal, ValueType::float32, {0, 0, 1});
   const Mesh coarse = build_mesh(input);
   const FormattedMesh read = read_draco(write(coarse, coarse, input.format, {.normals = true}), {});
@@ -314,13 +314,13 @@ Problem problem_of(const FormattedMesh& mesh) {
   return {Code::internal, ""};
 }
 
-TEST(DracoAttributes, NumbersOfThemAreHeldToLimits) {
+TEST(DracoAttributes, CountsAboveTheLimitsAreRefused) {
   FormattedMesh many = charted_cube();
   while (many.attributes.size() < 17) many = repeat(many, AttributeKind::generic, ValueType::uint8, {1});
   EXPECT_EQ(problem_of(many).code(), Code::mesh_too_large);
   EXPECT_STREQ(problem_of(many).what(),
-               "The mesh has 18 attributes, its positions included; the limit is 17. Leave some out.");
-  try {  // cut off within the values: the refusal comes before they are decoded
+               "The mesh has 18 attributes, positions included; the limit is 17. Remove attributes.");
+  try {  // truncated within the values: refused before they are decoded
     const std::string bytes = write_draco_exact(many, many.format);
     (void)read_draco(std::string_view(bytes).substr(0, bytes.size() - 20), {});
     ADD_FAILURE() << "was not refused";
@@ -356,10 +356,10 @@ TEST(DracoAttributes, DamagedStreamsNeverCrash) {
   }
 }
 
-TEST(DracoAttributes, ValuesThatAreNotFiniteAreRefusedInWords) {
+TEST(DracoAttributes, NonFiniteValuesAreRefusedByAttribute) {
   FormattedMesh mesh = charted_cube();
   std::string bytes = write_draco_exact(mesh, mesh.format);
-  // The exact form has floats as they are: put NaN in place of 11.
+  // Exact streams have raw floats: NaN replaces 11.
   const float from = 11;
   const float to = std::nanf("");
   const size_t at = bytes.find(std::string_view(reinterpret_cast<const char*>(&from), sizeof from));

@@ -18,8 +18,8 @@ uint64_t count_renumbered(const std::string& draco) {
   return count_renumbered_corners(draco, read_draco_header(draco, {}));
 }
 
-// The vertex has a face more for each symbol there: three for each triangle that was merged.
-TEST(DracoMerges, CountsTheCornersThatADecoderRenumbers) {
+// Each symbol adds a face at the vertex: three for each merged triangle.
+TEST(DracoMerges, CountsRenumberedCornersOfKnownMeshes) {
   for (uint32_t triangles : {2U, 3U, 10U, 100U}) {
     uint64_t expected = 0;
     for (uint32_t i = 1, faces = 1; i < triangles; ++i) {
@@ -31,7 +31,7 @@ TEST(DracoMerges, CountsTheCornersThatADecoderRenumbers) {
 }
 
 // Both traversals write the same symbols.
-TEST(DracoMerges, CountsTheSameForEitherTraversal) {
+TEST(DracoMerges, CountIsEqualForBothTraversals) {
   std::mt19937 random(23);
   uint64_t all = 0;
   for (int i = 0; i < 60; ++i) {
@@ -52,9 +52,10 @@ TEST(DracoMerges, StreamThatRenumbersQuadraticallyIsRefused) {
     FAIL();
   } catch (const Problem& problem) {
     EXPECT_EQ(problem.code(), Code::mesh_unsupported);
-    EXPECT_STREQ(problem.what(),
-                 "Decoding the Draco stream renumbers more than 134217728 corners, the limit: it merges vertices with "
-                 "too many faces too often. Encode the mesh again.");
+    EXPECT_STREQ(
+        problem.what(),
+        "Decoding the Draco stream would renumber more than 134217728 corners: it merges vertices of many faces "
+        "too often. Encode the mesh again.");
   }
 }
 

@@ -50,7 +50,7 @@ TEST(DracoReader, ReadsBothMethodsAndMetadata) {
   }
 }
 
-TEST(DracoReader, RefusesWhatIsNotDraco) {
+TEST(DracoReader, RefusesBytesOtherThanDraco) {
   EXPECT_EQ(code_of(""), Code::mesh_not_draco);
   EXPECT_EQ(code_of("solid cube"), Code::mesh_not_draco);
   EXPECT_EQ(code_of("DRACO"), Code::mesh_not_draco);
@@ -68,12 +68,12 @@ TEST(DracoReader, RefusesOtherVersionsAndPointClouds) {
   EXPECT_EQ(code_of(encode_point_cloud(cube())), Code::mesh_unsupported);
 }
 
-TEST(DracoReader, HoldsDeclaredCountsToTheLimits) {
+TEST(DracoReader, RefusesDeclaredCountsAboveTheLimits) {
   const std::string bytes = encode_with_draco(icosahedron(), Method::edgebreaker);
   EXPECT_EQ(code_of(bytes, {.max_input_faces = 19}), Code::mesh_too_large);
   EXPECT_EQ(code_of(bytes, {.max_input_vertices = 11}), Code::mesh_too_large);
   EXPECT_NO_THROW((void)read_draco(bytes, {.max_input_faces = 20, .max_input_vertices = 12}));
-  // 68 bytes that declare 2^27 faces: refused before the decoder would allocate gigabytes for them.
+  // 68 bytes declare 2^27 faces. They are refused before the decoder allocates gigabytes.
   EXPECT_EQ(code_of(std::string("DRACO\2\2\1\1\0\0\0\xff\xff\xff\x3f\xff\xff\xff\x3f", 20) + std::string(48, '\0')),
             Code::mesh_too_large);
 }
@@ -84,7 +84,7 @@ TEST(DracoReader, EveryTruncationIsRefused) {
     EXPECT_EQ(code_of(bytes.substr(0, size)), Code::mesh_not_draco) << size << " of " << bytes.size();
 }
 
-TEST(DracoReader, DamagedStreamsNeverCrash) {
+TEST(DracoReader, DamagedStreamsGiveIndicesInRangeOrAProblem) {
   for (Method method : {Method::edgebreaker, Method::sequential}) {
     const std::string bytes = encode_with_draco(join(torus(5, 5), grid(3, 3), 5), method, true);
     std::mt19937 random(1);
@@ -124,7 +124,7 @@ TEST(DracoWriter, DecodesToTheSameMeshWithinHalfAGridStep) {
   }
 }
 
-TEST(DracoWriter, VerticesStayPutFromLevelToLevel) {
+TEST(DracoWriter, CoarsePositionsAreUnchangedInFinerLevels) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   const QuantizationBox box = quantization_box(coarse.positions);
   const Buffer<Vec3f> first = sorted(read_draco(write_draco(coarse, box, {}), {}).positions);
@@ -134,9 +134,9 @@ TEST(DracoWriter, VerticesStayPutFromLevelToLevel) {
       second, first, [](Vec3f a, Vec3f b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }));
 }
 
-TEST(DracoWriter, PositionsOutsideTheBoxAreEncodedRight) {
+TEST(DracoWriter, PositionsOutsideTheBoxAreWithinAGridStep) {
   const Mesh mesh = build_mesh(icosahedron());
-  const QuantizationBox box{{-0.5F, -0.5F, -0.5F}, 1};  // the mesh reaches to 1.6 on all sides
+  const QuantizationBox box{{-0.5F, -0.5F, -0.5F}, 1};  // the mesh extends to 1.6 in all directions
   const TriangleMesh decoded = decode_with_draco_decoder(write_draco(mesh, box, {.position_bits = 16}));
   for (Vec3f p : decoded.positions) {
     double nearest = 1e9;
@@ -183,14 +183,14 @@ TEST(DracoWriter, ExactKeepsPositionsToTheBit) {
   }
 }
 
-TEST(DracoWriter, EveryRandomManifoldSurvives) {
+TEST(DracoWriter, RandomManifoldsKeepFacesAndEulerCharacteristic) {
   for (uint32_t seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     const Mesh mesh = build_mesh(random_manifold(random));
     const std::string bytes = write_draco(mesh, quantization_box(mesh.positions), {.position_bits = 16});
     const TriangleMesh read = read_draco(bytes, {});
     ASSERT_EQ(read.triangles.size(), mesh.topology.face_count());
-    // Draco gives each fan of a pinched vertex a point of its own; welding brings them together again.
+    // Draco splits a pinched vertex into a point for each fan; welding merges the points.
     ASSERT_EQ(build_mesh(read).topology.euler_characteristic(), mesh.topology.euler_characteristic()) << seed;
   }
 }

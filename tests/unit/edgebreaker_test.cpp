@@ -21,15 +21,14 @@
 #include "tests/support/shapes.h"
 #include "tests/support/small_surfaces.h"
 
-// Written from the half-edges, to the byte as libdraco writes it.
+// Streams written from half-edges are byte-identical to libdraco's.
 
 namespace papilio::proto {
 namespace {
 
 using namespace test;
 
-/// Each edge between two vertices of its own, each face (there may be two sides of one) between three, and one fan of
-/// faces at each vertex.
+/// Returns whether each edge and each face (up to two sides) has vertices of its own, and each vertex one fan of faces.
 bool is_manifold(const Mesh& mesh) {
   const Topology& topology = mesh.topology;
   std::set<std::pair<uint32_t, uint32_t>> pairs;
@@ -42,8 +41,8 @@ bool is_manifold(const Mesh& mesh) {
   return pairs.size() == edges && find_pinched(topology).empty() && !is_pillow;
 }
 
-/// Whether the bytes are libdraco's. Where they are not, expects the mesh not to be manifold, and the faces of
-/// libdraco's stream.
+/// Returns whether the bytes equal libdraco's. Otherwise expects a non-manifold mesh and the faces of libdraco's
+/// stream.
 bool is_the_same(const Mesh& mesh, const OutputOptions& options, const MeshFormat& format = {}) {
   const QuantizationBox box = quantization_box(mesh.positions);
   const std::vector<OutputAttribute> attributes = output_attributes(mesh, options, attribute_encoding(mesh, format));
@@ -55,7 +54,7 @@ bool is_the_same(const Mesh& mesh, const OutputOptions& options, const MeshForma
   return false;
 }
 
-TEST(Edgebreaker, IsLibdracosOnShapes) {
+TEST(Edgebreaker, BytesEqualLibdracosOnShapes) {
   for (const TriangleMesh& shape :
        {tetrahedron(), icosahedron(), cube(), torus(3, 3), torus(7, 5), grid(1, 1), grid(4, 3), fan(1, false),
         fan(5, true), fan(40, false), bipyramid(3), bipyramid(50), square_ring(4, 1, 2, 0.5F),
@@ -65,7 +64,7 @@ TEST(Edgebreaker, IsLibdracosOnShapes) {
         EXPECT_TRUE(is_the_same(build_mesh(shape), {.position_bits = bits, .speed = speed}));
 }
 
-TEST(Edgebreaker, IsLibdracosOnRandomManifolds) {
+TEST(Edgebreaker, BytesEqualLibdracosOnRandomManifolds) {
   std::mt19937 random(5);
   int own = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -75,8 +74,8 @@ TEST(Edgebreaker, IsLibdracosOnRandomManifolds) {
   EXPECT_GT(own, 3000);
 }
 
-// Few faces are never coded by valence.
-TEST(Edgebreaker, IsLibdracosOnRandomManifoldsOfManyFaces) {
+// The valence traversal needs many faces.
+TEST(Edgebreaker, BytesEqualLibdracosOnLargeRandomManifolds) {
   std::mt19937 random(17);
   int own = 0;
   for (int i = 0; i < 150; ++i) {
@@ -87,7 +86,7 @@ TEST(Edgebreaker, IsLibdracosOnRandomManifoldsOfManyFaces) {
   EXPECT_GT(own, 100);
 }
 
-TEST(Edgebreaker, IsLibdracosOnRefinedRealMeshes) {
+TEST(Edgebreaker, BytesEqualLibdracosOnRefinedRealMeshes) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const Mesh coarse = build_mesh(real_mesh(name));
     for (int levels = 0; levels <= 3; ++levels)
@@ -99,7 +98,7 @@ TEST(Edgebreaker, IsLibdracosOnRefinedRealMeshes) {
   }
 }
 
-// Under sanitizers, which take ten times as long, only what is not too large.
+// Sanitizers take ten times as long and get smaller meshes only.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint32_t most_faces = 30'000;
 #else
@@ -108,7 +107,7 @@ constexpr uint32_t most_faces = 3'000'000;
 
 class EdgebreakerAtSpeed : public testing::TestWithParam<int> {};
 
-TEST_P(EdgebreakerAtSpeed, IsLibdracosOnAllRealMeshesInAllLevels) {
+TEST_P(EdgebreakerAtSpeed, BytesEqualLibdracosOnAllLevelsOfAllRealMeshes) {
   int same = 0;
   int others = 0;
   for (const auto& entry :
@@ -118,10 +117,10 @@ TEST_P(EdgebreakerAtSpeed, IsLibdracosOnAllRealMeshesInAllLevels) {
       mesh = build_mesh(client::read_triangles(entry.path(), client::format_of(entry.path())));
       (void)quantization_box(mesh.positions);
     } catch (const std::exception&) {
-      continue;  // every_real_mesh_test looks at what cannot be read, or is too small
+      continue;  // every_real_mesh_test covers unreadable and tiny meshes
     }
     SCOPED_TRACE(entry.path());
-    const uint32_t most = GetParam() < 2 ? most_faces / 1000 : most_faces;  // libdraco takes long
+    const uint32_t most = GetParam() < 2 ? most_faces / 1000 : most_faces;  // libdraco is slow there
     for (int level = 0; level <= 3 && mesh.topology.face_count() <= most; ++level) {
       if (level > 0) mesh = refine(std::move(mesh), {.levels = 1}).mesh;
       ++(is_the_same(mesh, {.position_bits = 11, .speed = GetParam()}) ? same : others);
@@ -149,7 +148,7 @@ MeshFormat every_format() {
 }
 constexpr std::array<uint32_t, 7> components_of_every_format{3, 2, 4, 1, 3, 3, 4};
 
-/// Gives each corner values of its vertex and of one of `charts` charts, which its face belongs to by chance.
+/// Assigns each face to a random chart, and each corner the values of its vertex in that chart.
 TriangleMesh with_attributes(const TriangleMesh& mesh, uint32_t charts, std::mt19937& random) {
   TriangleMesh out;
   std::vector<std::vector<double>> values(components_of_every_format.size());
@@ -176,7 +175,7 @@ TriangleMesh with_attributes(const TriangleMesh& mesh, uint32_t charts, std::mt1
   return out;
 }
 
-TEST(Edgebreaker, IsLibdracosWithAttributes) {
+TEST(Edgebreaker, BytesEqualLibdracosWithAttributes) {
   std::mt19937 random(7);
   int with_seams = 0;
   for (const TriangleMesh& shape : {tetrahedron(), icosahedron(), torus(9, 7), grid(1, 1), grid(6, 5), fan(7, true),
@@ -191,7 +190,7 @@ TEST(Edgebreaker, IsLibdracosWithAttributes) {
   EXPECT_GT(with_seams, 10);
 }
 
-TEST(Edgebreaker, IsLibdracosWithAttributesOnRandomManifolds) {
+TEST(Edgebreaker, BytesEqualLibdracosWithAttributesOnRandomManifolds) {
   std::mt19937 random(11);
   int own = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -202,7 +201,7 @@ TEST(Edgebreaker, IsLibdracosWithAttributesOnRandomManifolds) {
   EXPECT_GT(own, 700);
 }
 
-TEST(Edgebreaker, IsLibdracosWithAttributesOfRefinedMeshes) {
+TEST(Edgebreaker, BytesEqualLibdracosWithAttributesOfRefinedMeshes) {
   std::mt19937 random(13);
   const Mesh coarse = build_mesh(with_attributes(real_mesh("bunny600.obj"), 2, random));
   for (int levels = 1; levels <= 2; ++levels)
@@ -213,21 +212,21 @@ TEST(Edgebreaker, IsLibdracosWithAttributesOfRefinedMeshes) {
     }
 }
 
-TEST(Edgebreaker, IsLibdracosWithNewNormals) {
+TEST(Edgebreaker, BytesEqualLibdracosWithNewNormals) {
   for (const TriangleMesh& shape : {icosahedron(), torus(40, 30), grid(40, 3)})
     for (int speed = 0; speed <= 10; ++speed)
       EXPECT_TRUE(is_the_same(build_mesh(shape), {.speed = speed, .normals = true}));
 }
 
-// Also where several fans meet at a vertex, or two faces have the same vertices.
-TEST(Edgebreaker, IsLibdracosOnEverySmallSurface) {
+// Covers several fans at a vertex and two faces with the same vertices.
+TEST(Edgebreaker, BytesEqualLibdracosOnEverySmallSurface) {
   for (uint32_t triangles = 1; triangles <= 8; ++triangles)
     for (const TriangleMesh& surface : small_surfaces(triangles))
       for (int speed : {0, 2, 5, 8})
         EXPECT_TRUE(is_the_same(build_mesh(surface), {.position_bits = 12, .speed = speed}));
 }
 
-TEST(Edgebreaker, IsLibdracosWithAttributesOfEveryKind) {
+TEST(Edgebreaker, BytesEqualLibdracosWithAttributesOfEveryKind) {
   TriangleMesh triangles = tetrahedron();
   const auto write = [&](const AttributeFormat& format, double largest = 1) {
     triangles.attributes = {{.components = 1, .values = {0, 0, 1, largest}}};
@@ -239,11 +238,11 @@ TEST(Edgebreaker, IsLibdracosWithAttributesOfEveryKind) {
   write({.type = ValueType::float64});
   write({.type = ValueType::int64});
   write({.type = ValueType::boolean});
-  write({.kind = AttributeKind::normal});  // of one component
+  write({.kind = AttributeKind::normal});  // one component
   write({.id = 77, .name = "weight"});
 }
 
-// libdraco then writes no attribute with its entropy coder; here the others are.
+// libdraco then codes no attribute with its entropy coder; this writer still codes the others.
 TEST(Edgebreaker, WritesIntegersTooLargeForTheEntropyCoder) {
   TriangleMesh triangles = tetrahedron();
   const std::vector<double> large{0, -(1 << 21), 1 << 30, 77};
@@ -259,7 +258,7 @@ TEST(Edgebreaker, WritesIntegersTooLargeForTheEntropyCoder) {
   }
 }
 
-TEST(Edgebreaker, IsLibdracosWhereAllIsExact) {
+TEST(Edgebreaker, BytesEqualLibdracosWithExactValues) {
   std::mt19937 random(19);
   for (int i = 0; i < 300; ++i) {
     const TriangleMesh plain = random_manifold(random);
@@ -282,14 +281,14 @@ TEST(Edgebreaker, NonManifoldMeshesKeepTheirAttributes) {
   int others = 0;
   for (int i = 0; i < 60; ++i) {
     TriangleMesh triangles = i % 2 == 0 ? faces_at_one_edge(3 + i) : triangles_at_one_vertex(2 + i);
-    if (i % 3 == 0) triangles = join(triangles, random_manifold(random), 1);  // one face may touch another there
+    if (i % 3 == 0) triangles = join(triangles, random_manifold(random), 1);  // faces may touch there
     const Mesh mesh = build_mesh(with_attributes(triangles, 1 + random() % 3, random));
     others += is_the_same(refine(mesh, {.levels = i % 2}).mesh, {.speed = i % 11}, every_format()) ? 0 : 1;
   }
   EXPECT_GT(others, 20);
 }
 
-TEST(Edgebreaker, IsStoppedByItsPollAtAnyCall) {
+TEST(Edgebreaker, ThrowingPollStopsTheWriterAtAnyCall) {
   const Mesh mesh = build_mesh(torus(330, 200));
   const QuantizationBox box = quantization_box(mesh.positions);
   for (int speed : {0, 3, 7}) {
@@ -308,8 +307,8 @@ TEST(Edgebreaker, IsStoppedByItsPollAtAnyCall) {
   }
 }
 
-// The fourth lane held the next vertex's x, which is no point of the grid: as numbers it overflowed.
-TEST(Edgebreaker, GridPointsFarFromTheOriginHaveNothingInTheirFourthLane) {
+// The fourth lane held the x of the next vertex, which overflowed.
+TEST(Edgebreaker, FourthLaneOfGridPointsIsZeroFarFromTheOrigin) {
   TriangleMesh far = grid(8, 8);
   for (Vec3f& p : far.positions) p.x += 800'000;
   const Mesh mesh = build_mesh(far);

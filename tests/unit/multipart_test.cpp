@@ -25,7 +25,7 @@ std::vector<Part> read(const std::string& type, const std::string& body, size_t 
   return found;
 }
 
-TEST(Multipart, ReadsWhatItWritesInPiecesOfAnySize) {
+TEST(Multipart, PartsRoundTripInPiecesOfAnySize) {
   const MultipartWriter writer("papilio-test");
   const std::string body = body_of(writer);
   for (size_t piece = 1; piece <= body.size(); ++piece) {
@@ -41,21 +41,23 @@ TEST(Multipart, ReadsWhatItWritesInPiecesOfAnySize) {
   }
 }
 
-TEST(Multipart, EveryTruncationIsNoticed) {
+TEST(Multipart, EveryTruncationIsRefused) {
   const MultipartWriter writer("papilio-test");
   const std::string body = body_of(writer);
   for (size_t size = 0; size < body.size(); ++size)
     EXPECT_THROW((void)read(writer.content_type(), body.substr(0, size), 7), Problem) << size;
 }
 
-TEST(Multipart, BoundariesDiffer) { EXPECT_NE(MultipartWriter().content_type(), MultipartWriter().content_type()); }
+TEST(Multipart, RandomBoundariesDiffer) {
+  EXPECT_NE(MultipartWriter().content_type(), MultipartWriter().content_type());
+}
 
-TEST(Multipart, ReaderTakesQuotedBoundariesAndOtherFields) {
+TEST(Multipart, ReaderAcceptsQuotedBoundariesAndOtherFields) {
   const std::string body = body_of(MultipartWriter("papilio-test"));
   EXPECT_EQ(read("Multipart/Mixed; charset=x; boundary=\"papilio-test\"", body, 100).size(), 3U);
 }
 
-TEST(Multipart, ReaderRefusesWhatItCannotRead) {
+TEST(Multipart, ReaderRefusesMalformedBodies) {
   const std::string type = "multipart/mixed; boundary=b";
   for (const char* bad : {"application/json", "multipart/mixed", "multipart/mixed; boundary=", ""})
     EXPECT_THROW((void)read(bad, "--b--\r\n", 99), Problem) << bad;

@@ -20,13 +20,13 @@ TEST(NameSuggestion, IsTheNearestNameWithinAThirdOfItsLength) {
   EXPECT_EQ(suggest_name("viewEye", names), "view.eye");
 }
 
-TEST(NameSuggestion, APartAfterTheDotStandsForItsName) {
+TEST(NameSuggestion, PartAfterTheDotMatchesTheName) {
   EXPECT_EQ(suggest_name("eye", names), "view.eye");
   EXPECT_EQ(suggest_name("up", names), "view.up");
   EXPECT_EQ(suggest_name("edge_pixel", names), "view.edge_pixels");
 }
 
-TEST(NameSuggestion, NothingIsSuggestedForADistantName) {
+TEST(NameSuggestion, DistantNamesHaveNoSuggestion) {
   for (const std::string_view typed : {"", "x", "colour", "lvs", "tolerate_more"})
     EXPECT_FALSE(suggest_name(typed, names)) << typed;
   EXPECT_FALSE(suggest_name(std::string(1 << 20, 't'), names));

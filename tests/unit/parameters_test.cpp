@@ -32,14 +32,14 @@ Refusal json_refusal(const std::string& text) {
   return refusal_of([&] { (void)parse_json(text); });
 }
 
-TEST(Parameters, NothingGivenIsTheDefault) {
+TEST(Parameters, NoParametersAreTheDefaults) {
   EXPECT_EQ(parse_query({}), Parameters{});
   EXPECT_EQ(parse_json("{}"), Parameters{});
   EXPECT_EQ(to_query(Parameters{}), "");
   EXPECT_FALSE(parse_query({}).options.view.has_value());
 }
 
-TEST(Parameters, QueryAndJsonSayTheSame) {
+TEST(Parameters, QueryAndJsonGiveEqualParameters) {
   const Parameters query = parse_query({{"levels", "3"},
                                         {"flatness", "0.8,0.9"},
                                         {"growth", "2"},
@@ -64,7 +64,7 @@ TEST(Parameters, QueryAndJsonSayTheSame) {
   EXPECT_TRUE(query.output.normals);
 }
 
-TEST(Parameters, CanonicalFormIsOneForEqualParametersAndReadsBack) {
+TEST(Parameters, EqualParametersHaveOneCanonicalFormThatRoundTrips) {
   const Parameters a = parse_query({{"levels", "03"}, {"flatness", "0.90,.5"}, {"view.fov_y", "45"}, {"w", "-0"}});
   const Parameters b = parse_query({{"view.fov_y", "45.0"}, {"flatness", "9e-1,0.5"}, {"levels", "3"}});
   EXPECT_EQ(to_query(a), to_query(b));
@@ -92,7 +92,7 @@ TEST(Parameters, RepeatedFieldsOfAListAreOneList) {
   EXPECT_EQ(query_refusal({{"w", "0"}, {"w", "0"}}).detail, "w is given twice; give it once.");
 }
 
-TEST(Parameters, LevelsLeftOutAreAsManyAsAnErrorTakes) {
+TEST(Parameters, OmittedLevelsAreOpenWithAnErrorTarget) {
   EXPECT_EQ(parse_query({}).options.levels, 2);
   EXPECT_EQ(parse_query({{"max_faces", "5000"}}).options.levels, 2);
   for (const QueryFields& error : {QueryFields{{"tolerance", "0.001"}}, {{"view.error_pixels", "0.5"}}}) {
@@ -111,7 +111,7 @@ TEST(Parameters, LevelsLeftOutAreAsManyAsAnErrorTakes) {
   EXPECT_EQ(to_query(parse_query({{"levels", "2"}})), "");
 }
 
-TEST(Parameters, ErrorPixelsSwitchEdgePixelsOffUnlessGiven) {
+TEST(Parameters, ErrorPixelsSetEdgePixelsToZeroUnlessGiven) {
   EXPECT_EQ(parse_query({{"view.fov_y", "30"}}).options.view->edge_pixels, 10);
   const Parameters by_error = parse_query({{"view.error_pixels", "0.5"}});
   EXPECT_EQ(by_error.options.view->edge_pixels, 0);
@@ -121,7 +121,7 @@ TEST(Parameters, ErrorPixelsSwitchEdgePixelsOffUnlessGiven) {
   EXPECT_EQ(parse_query(to_fields(both)), both);
 }
 
-TEST(Parameters, EyeAndTargetLeftOutFrameTheMesh) {
+TEST(Parameters, OmittedEyeAndTargetFrameTheMesh) {
   const Box box{{10, 20, 30}, {12, 24, 36}};
   const View framed = *options_for(parse_query({{"view.error_pixels", "1"}}), box).view;
   EXPECT_EQ(framed.target, (Vec3d{11, 22, 33}));
@@ -137,7 +137,7 @@ TEST(Parameters, EyeAndTargetLeftOutFrameTheMesh) {
   EXPECT_GT(at.eye.z, framed.eye.z - 3) << "the whole box is in the picture from the side of it, too";
 }
 
-TEST(Parameters, EveryRowRoundTripsAndRefusesItsNeighbours) {
+TEST(Parameters, EveryRowRefusesMalformedAndOutOfRangeValues) {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string name(info.name);
     if (info.type == ParameterType::choice || info.type == ParameterType::boolean) {
@@ -160,7 +160,7 @@ TEST(Parameters, EveryRowRoundTripsAndRefusesItsNeighbours) {
   }
 }
 
-TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
+TEST(Parameters, RefusalsNameTheParameterAndItsRange) {
   const Refusal range = query_refusal({{"levels", "11"}});
   EXPECT_EQ(range.code, Code::bad_parameter);
   EXPECT_EQ(range.detail, "levels must be an integer in 0..10, not \"11\".");
@@ -174,7 +174,7 @@ TEST(Parameters, RefusalsNameTheParameterAndSayWhatItTakes) {
   EXPECT_EQ(query_refusal({{"output.normals", "1"}}).detail, "output.normals must be true or false, not \"1\".");
 }
 
-TEST(Parameters, RefusalsNameTheBoundThatFailed) {
+TEST(Parameters, RefusalsNameTheViolatedBound) {
   EXPECT_EQ(query_refusal({{"view.near", "1e300"}}).detail,
             "view.near must be a number of at most 1e+18, not \"1e300\".");
   EXPECT_EQ(query_refusal({{"view.near", "-1"}}).detail, "view.near must be a number of at least 0, not \"-1\".");
@@ -189,19 +189,19 @@ TEST(Parameters, RefusalsNameTheBoundThatFailed) {
   EXPECT_EQ(parse_query({{"view.eye", "1e18,0,0"}}).options.view->eye.x, 1e18);
 }
 
-TEST(Parameters, AMisspeltNameIsAnsweredWithTheOneMeant) {
+TEST(Parameters, MisspeltNamesGetASuggestion) {
   for (const auto& [typed, meant] : std::vector<std::pair<std::string, std::string>>{
            {"tolerence", "tolerance"}, {"crease-angle", "crease_angle"}, {"eye", "view.eye"}, {"level", "levels"}}) {
     const Refusal refusal = query_refusal({{typed, "1"}});
     EXPECT_EQ(refusal.code, Code::unknown_parameter);
-    EXPECT_EQ(refusal.detail, "There is no parameter \"" + typed + "\". Did you mean " + meant + "?");
+    EXPECT_EQ(refusal.detail, "Unknown parameter \"" + typed + "\". Did you mean " + meant + "?");
   }
   EXPECT_NE(json_refusal("{\"view\": {\"edgePixels\": 1}}").detail.find("Did you mean view.edge_pixels?"),
             std::string::npos);
-  EXPECT_NE(query_refusal({{"colour", "1"}}).detail.find("There are: levels, "), std::string::npos);
+  EXPECT_NE(query_refusal({{"colour", "1"}}).detail.find("The parameters are levels, "), std::string::npos);
 }
 
-TEST(Parameters, ViewsThatDefineNoPictureAreRefusedByName) {
+TEST(Parameters, DegenerateViewsAreRefusedByParameter) {
   EXPECT_EQ(query_refusal({{"view.eye", "1,2,3"}, {"view.target", "1,2,3"}}).parameter, "view.target");
   EXPECT_EQ(query_refusal({{"view.eye", "0,0,3"}, {"view.target", "0,0,0"}, {"view.up", "0,0,1"}}).parameter,
             "view.up");
@@ -229,7 +229,7 @@ TEST(Parameters, JsonOfTheWrongShapeIsRefused) {
   EXPECT_EQ(json_refusal("{\"flatness\": [1e400]}").code, Code::bad_request);
 }
 
-TEST(Parameters, TheTableDocumentsItself) {
+TEST(Parameters, MarkdownAndJsonListEveryParameter) {
   const auto rows = nlohmann::json::parse(parameters_json());
   ASSERT_EQ(rows.size(), parameter_table().size());
   const std::string markdown = parameters_markdown();
@@ -250,7 +250,7 @@ TEST(Problem, TableIsInTheOrderOfItsCodesAndComplete) {
   EXPECT_EQ(index, static_cast<size_t>(Code::internal) + 1);
 }
 
-TEST(Problem, JsonIsAProblemDocumentWhateverTheDetailHolds) {
+TEST(Problem, JsonEscapesAnyDetail) {
   const Problem problem(Code::bad_parameter, "not \"\xff\n<b>\"", "levels");
   const auto document = nlohmann::json::parse(problem.json("id-1"));
   EXPECT_EQ(document["type"], "urn:papilio:problem:bad_parameter");

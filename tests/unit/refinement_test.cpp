@@ -24,7 +24,7 @@ const std::string& coarse() {
   return bytes;
 }
 
-TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheAnswer) {
+TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheResult) {
   const Parameters parameters = parse_query({{"levels", "3"}});
   std::vector<EncodedLevel> levels;
   Refinement refinement(coarse(), parameters, {});
@@ -41,7 +41,7 @@ TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheAnswer) {
   EXPECT_EQ(Refinement(coarse(), parameters, {}).run().draco, last.draco);
 }
 
-TEST(Refinement, ALevelIsHandedOnWhileTheNextIsMade) {
+TEST(Refinement, LevelIsHandedOverWhileTheNextIsRefined) {
   std::atomic<int> steps = 0;
   std::vector<int> levels;
   const auto run = [&](int threads, const std::function<void()>& at_first) {
@@ -55,7 +55,7 @@ TEST(Refinement, ALevelIsHandedOnWhileTheNextIsMade) {
     (void)refinement.run({.on_level = look, .cancelled = [&] { return ++steps < 0; }, .threads = threads});
     EXPECT_EQ(levels, (std::vector<int>{0, 1, 2, 3}));
   };
-  int before = 0;  // steps up to the first level
+  int before = 0;  // steps before the first level
   run(1, [&] { before = steps; });
   bool went_on = false;
   run(2, [&] {
@@ -65,7 +65,7 @@ TEST(Refinement, ALevelIsHandedOnWhileTheNextIsMade) {
   EXPECT_TRUE(went_on);
 }
 
-TEST(Refinement, LevelsAreTheSameOnMoreThreads) {
+TEST(Refinement, LevelsAreBitIdenticalOnSeveralThreads) {
   for (const QueryFields& fields : {QueryFields{{"levels", "4"}}, {{"levels", "4"}, {"tolerance", "0.0001"}}}) {
     const auto levels = [&](int threads) {
       std::vector<EncodedLevel> all;
@@ -84,10 +84,10 @@ TEST(Refinement, LevelsAreTheSameOnMoreThreads) {
   }
 }
 
-TEST(Refinement, WhoSeesTheLevelsMayStop) {
+TEST(Refinement, ThrowingLevelHookStopsRefinement) {
   for (int threads : {1, 2, 3})
     for (int at : {0, 2, 3})
-      for (uint64_t limit : {5000U, 400U}) {  // faces: level 3 would pass the second, when level 2 is looked at
+      for (uint64_t limit : {5000U, 400U}) {  // faces: level 3 would exceed the second limit
         Refinement refinement(coarse(), parse_query({{"levels", "3"}, {"tolerance", "1e-9"}}),
                               {.max_output_faces = limit});
         const auto stop = [&](const EncodedLevel& level) {
@@ -100,12 +100,12 @@ TEST(Refinement, WhoSeesTheLevelsMayStop) {
       }
 }
 
-/// Statistics of the refined icosahedron.
+/// Returns the statistics of the refined icosahedron.
 Statistics refined(const QueryFields& fields, const Limits& limits = {}) {
   return Refinement(coarse(), parse_query(fields), limits).run().statistics;
 }
 
-TEST(Refinement, LevelsLeftOutReachTheError) {
+TEST(Refinement, OmittedLevelsReachTheErrorTarget) {
   for (const char* scheme : {"red-green", "in-place"})
     for (const char* tolerance : {"0.003", "0.0003"}) {
       const Statistics made = refined({{"tolerance", tolerance}, {"scheme", scheme}});
@@ -121,18 +121,18 @@ TEST(Refinement, LevelsLeftOutReachTheError) {
   EXPECT_LE(seen.error_pixels.value(), 0.5);
 }
 
-TEST(Refinement, TargetThatTheLevelsCannotReachIsSaid) {
+TEST(Refinement, UnreachedTargetsAreReported) {
   const Statistics made = refined({{"tolerance", "0.0003"}, {"levels", "1"}});
   EXPECT_EQ(made.stop_reason, StopReason::levels);
   EXPECT_GT(made.error, 0.0003);
   EXPECT_NE(made.unreached.find("tolerance=0.0003 is not reached"), std::string::npos) << made.unreached;
-  EXPECT_NE(made.unreached.find("more levels than 1"), std::string::npos) << made.unreached;
+  EXPECT_NE(made.unreached.find("Raise levels above 1"), std::string::npos) << made.unreached;
   const Statistics budget = refined({{"view.error_pixels", "0.1"}, {"max_faces", "100"}});
   EXPECT_NE(budget.unreached.find("view.error_pixels=0.1 is not reached"), std::string::npos) << budget.unreached;
   EXPECT_NE(budget.unreached.find("max_faces"), std::string::npos) << budget.unreached;
 }
 
-TEST(Refinement, LevelsLeftOutEndAtTheLimits) {
+TEST(Refinement, OmittedLevelsStopAtTheLimits) {
   for (const char* scheme : {"red-green", "in-place"})
     for (const Limits& limits : {Limits{.max_output_faces = 2000}, Limits{.max_compute_bytes = 300 << 10}}) {
       const QueryFields fields{{"tolerance", "1e-7"}, {"scheme", scheme}};
@@ -141,7 +141,7 @@ TEST(Refinement, LevelsLeftOutEndAtTheLimits) {
       EXPECT_LE(made.faces, limits.max_output_faces);
       EXPECT_GT(made.error, 1e-7);
       EXPECT_NE(made.unreached.find("limit"), std::string::npos) << made.unreached;
-      // What the last level that fits gives.
+      // Expects the result of the last level within the limit.
       QueryFields bounded = fields;
       bounded.emplace_back("levels", std::to_string(made.level));
       EXPECT_EQ(refined(bounded).faces, made.faces);
@@ -150,24 +150,24 @@ TEST(Refinement, LevelsLeftOutEndAtTheLimits) {
     }
 }
 
-TEST(Refinement, CertainOverflowIsRefusedBeforeTheWork) {
+TEST(Refinement, CertainOverflowIsRefusedBeforeRefinement) {
   const Parameters parameters = parse_query({{"levels", "10"}});
   try {
     const Refinement refinement(coarse(), parameters, {.max_output_faces = 1000});
     FAIL() << "was not refused";
   } catch (const Problem& problem) {
     EXPECT_EQ(problem.code(), Code::result_too_large);
-    EXPECT_NE(std::string(problem.what()).find("1280"), std::string::npos);  // the number
+    EXPECT_NE(std::string(problem.what()).find("1280"), std::string::npos);  // the predicted faces
   }
 }
 
-TEST(Refinement, NaNIsNotEvenEncoded) {
+TEST(Refinement, NaNIsRefusedBeforeEncoding) {
   TriangleMesh mesh = icosahedron();
   mesh.positions[3].z = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW((void)write_draco_exact(mesh), Error);
 }
 
-TEST(Refinement, CancelledStops) {
+TEST(Refinement, CancelledHookStopsRefinement) {
   Refinement refinement(coarse(), parse_query({{"levels", "5"}}), {});
   try {
     (void)refinement.run({.cancelled = [] { return true; }});
@@ -177,7 +177,7 @@ TEST(Refinement, CancelledStops) {
   }
 }
 
-TEST(Refinement, IsCancelledInsideTheEncoder) {
+TEST(Refinement, CancelledHookStopsTheEncoder) {
   const std::string draco = write_draco_exact(test::torus(330, 200));
   const auto run = [&](const std::function<bool()>& cancelled) {
     Refinement refinement(draco, parse_query({{"levels", "0"}}), {});
@@ -185,14 +185,14 @@ TEST(Refinement, IsCancelledInsideTheEncoder) {
   };
   int calls = 0;
   run([&] { return ++calls < 0; });
-  EXPECT_GT(calls, 8);  // once in 65,536 faces or vertices of each step
+  EXPECT_GT(calls, 8);  // once per 65,536 faces or vertices of each pass
   for (int last = calls; last > calls - 6; --last) {
     int left = last;
     EXPECT_THROW(run([&] { return --left == 0; }), Problem);
   }
 }
 
-TEST(Refinement, TheTimeLimitDoesNotCountWaitsOfTheCaller) {
+TEST(Refinement, TimeLimitExcludesWaitsOfTheCaller) {
   int questions = 0;
   const auto wait_once = [&] {
     if (++questions == 1) std::this_thread::sleep_for(std::chrono::milliseconds(2200));
@@ -203,7 +203,7 @@ TEST(Refinement, TheTimeLimitDoesNotCountWaitsOfTheCaller) {
   EXPECT_GT(questions, 1);
 }
 
-TEST(Refinement, StatisticsAreHeaders) {
+TEST(Refinement, StatisticsAreFormattedAsHeaders) {
   Statistics statistics{.level = 2,
                         .vertices = 10,
                         .faces = 16,

@@ -7,9 +7,9 @@
 #include <thread>
 #include <variant>
 
-#include "proto/prepared_mesh.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"
+#include "proto/shared_mesh.h"
 #include "tests/support/random_request.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
@@ -52,11 +52,11 @@ void expect_equal(const EncodedLevel& a, const EncodedLevel& b) {
   EXPECT_EQ(a.statistics.error_pixels, b.statistics.error_pixels);
 }
 
-TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
+TEST(StoredRefinement, BytesEqualThoseOfAStream) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const std::string draco = real_draco(name);
     for (uint64_t budget : {plenty, uint64_t{2'000'000}}) {
-      const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, budget);
+      const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, budget);
       for (const QueryFields& fields : requests()) {
         const Parameters parameters = parse_query(fields);
         Refinement warm(stored, parameters, {});
@@ -68,7 +68,7 @@ TEST(StoredRefinement, IsTheSameBytesAsOneOfItsOwn) {
   }
 }
 
-/// The answer, or why there is none.
+/// Returns the result, or the error text.
 template <class Coarse>
 std::variant<EncodedLevel, std::string> answer_of(const Coarse& coarse, const Parameters& parameters) {
   try {
@@ -86,7 +86,7 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
     const TriangleMesh triangles = random_small_mesh(random);
     const std::string draco = write_draco_exact(triangles);
     const Mesh coarse = build_mesh(triangles);
-    const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, random() % 2 == 0 ? plenty : 100'000);
+    const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, random() % 2 == 0 ? plenty : 100'000);
     Parameters parameters;
     choose_rules(random, parameters.options);
     for (int request = 0; request < requests_of_one_mesh; ++request) {
@@ -111,7 +111,7 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
 
 TEST(StoredRefinement, ThreadsShareOneMesh) {
   const std::string draco = real_draco("bunny600.obj");
-  const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, plenty);
+  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, plenty);
   const std::vector<QueryFields> fields = requests();
   std::array<std::vector<EncodedLevel>, 3> answers;
   {
@@ -130,7 +130,7 @@ TEST(StoredRefinement, ThreadsShareOneMesh) {
 TEST(StoredRefinement, RulesShareTheBudget) {
   const std::string draco = real_draco("bunny600.obj");
   const auto after = [&](uint64_t budget, std::initializer_list<const char*> tensions) {
-    const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, budget);
+    const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, budget);
     for (const char* tension : tensions)
       (void)Refinement(stored, parse_query({{"levels", "3"}, {"flatness", "0.9"}, {"tension", tension}}), {}).run();
     return stored->bytes();
@@ -141,11 +141,11 @@ TEST(StoredRefinement, RulesShareTheBudget) {
   EXPECT_LT(after(one, {"off", "soft", "sharp", "off", "off"}), 2 * one);
 }
 
-TEST(StoredRefinement, IsRefusedAsOneOfItsOwn) {
+TEST(StoredRefinement, RefusalsEqualThoseOfAStream) {
   const std::string draco = write_draco_exact(icosahedron());
-  const auto stored = std::make_shared<const PreparedMesh>(draco, Limits{}, plenty);
+  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, plenty);
   EXPECT_THROW(Refinement(stored, parse_query({{"levels", "10"}}), {.max_output_faces = 1000}), Problem);
-  EXPECT_THROW(PreparedMesh("no mesh", Limits{}, plenty), Problem);
+  EXPECT_THROW(SharedMesh("no mesh", Limits{}, plenty), Problem);
   Refinement cancelled(stored, parse_query({{"levels", "3"}, {"flatness", "1"}}), {});
   EXPECT_THROW((void)cancelled.run({.cancelled = [] { return true; }}), Problem);
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// To the byte as libdraco writes them.
+// Coded symbols are byte-identical to libdraco's.
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -30,14 +30,14 @@ std::string by_us(const std::vector<uint32_t>& symbols, uint32_t components, int
   return bytes_of(out);
 }
 
-/// Up to so many bits; small ones are most.
+/// Returns random symbols of up to `bits` bits, most of them small.
 std::vector<uint32_t> random_symbols(size_t count, uint32_t bits, std::mt19937& random) {
   std::vector<uint32_t> symbols(count);
   for (uint32_t& symbol : symbols) symbol = (random() & ((uint64_t{1} << bits) - 1)) >> random() % bits;
   return symbols;
 }
 
-TEST(Symbols, AreLibdracos) {
+TEST(Symbols, BytesEqualLibdracos) {
   std::mt19937 random(3);
   bool is_tagged[2] = {false, false};
   for (const size_t values : {1, 2, 9, 100, 3000, 40000})
@@ -53,7 +53,7 @@ TEST(Symbols, AreLibdracos) {
   EXPECT_TRUE(is_tagged[0] && is_tagged[1]);
 }
 
-TEST(Symbols, AreLibdracosAtEveryLevel) {
+TEST(Symbols, BytesEqualLibdracosAtEveryLevel) {
   std::mt19937 random(4);
   for (int level = 0; level <= 10; ++level)
     for (const uint32_t bits : {3, 8, 12}) {
@@ -62,16 +62,16 @@ TEST(Symbols, AreLibdracosAtEveryLevel) {
     }
 }
 
-TEST(Symbols, AreLibdracosWhereOneIsAlmostEverything) {
+TEST(Symbols, BytesEqualLibdracosWithOneDominantSymbol) {
   std::vector<uint32_t> symbols(100000, 2);
   EXPECT_TRUE(by_us(symbols, 1, 7) == by_libdraco(symbols, 1, 7));
   symbols[77] = 900;
   EXPECT_TRUE(by_us(symbols, 1, 7) == by_libdraco(symbols, 1, 7));
 }
 
-TEST(Symbols, NoneTakeNoBytes) { EXPECT_EQ(by_us({}, 3, 7), ""); }
+TEST(Symbols, NoSymbolsTakeNoBytes) { EXPECT_EQ(by_us({}, 3, 7), ""); }
 
-TEST(Symbols, OfSeveralListsAreThoseOfOneAfterTheOther) {
+TEST(Symbols, ListsAreCodedLikeSeparateLists) {
   std::mt19937 random(5);
   std::vector<Buffer<uint32_t>> lists;
   std::string expected;

@@ -16,12 +16,12 @@ TEST(Url, DecodingUndoesEncodingOfEveryByte) {
 
 TEST(Url, DigitsMayBeOfEitherCase) { EXPECT_EQ(decode_url("%4a%4A%e2%82%AC"), "JJ€"); }
 
-TEST(Url, APlusIsASpaceInAQueryOnly) {
+TEST(Url, PlusIsASpaceOnlyInQueries) {
   EXPECT_EQ(decode_url("a+b%2B"), "a+b+");
   EXPECT_EQ(decode_url("a+b%2B", true), "a b+");
 }
 
-TEST(Url, APercentSignWantsTwoDigits) {
+TEST(Url, PercentSignNeedsTwoDigits) {
   for (const char* bad : {"%", "a%", "%4", "50% off", "%4g", "%-1", "%+1", "%0x", "%%25", "% 1"})
     EXPECT_EQ(decode_url(bad), std::nullopt) << bad;
 }

@@ -7,15 +7,15 @@
 
 namespace papilio::proto {
 
-/// Runs `work` and puts the core's refusals, and memory that is not there, into the words of the wire.
+/// Runs `work`. Throws errors of the core, and a lack of memory, as `Problem`.
 template <class Work>
-auto in_words_of_the_wire(const Work& work) {
+auto translate_errors(const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
     throw Problem(error);
   } catch (const std::bad_alloc&) {
-    throw Problem(Code::result_too_large, "There is not enough memory for this result. Ask for fewer levels.");
+    throw Problem(Code::result_too_large, "Not enough memory for the result. Request fewer levels.");
   }
 }
 
