@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# The core as a library of others: installed, found, linked.
+# The core as a library of others: installed, found, linked; and its tree of folders.
 
 load helpers
 
@@ -79,4 +79,9 @@ build_examples() {
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../../core" -B core >/dev/null
   [ "$(grep -c -- -Werror core/build.ninja)" = 0 ]
   grep -q '^option(PAPILIO_WERROR .* OFF)$' "$BATS_TEST_DIRNAME/../../CMakeLists.txt"
+}
+
+@test "the includes of the tree point one way" {
+  cd "$BATS_TEST_DIRNAME/../.."
+  python3 tests/support/core_tree.py
 }
