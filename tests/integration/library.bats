@@ -1,55 +1,87 @@
 #!/usr/bin/env bats
-# The core as a library of others: installed, found, linked.
+# The core as a library of others: installed, found, linked; and its tree of folders.
 
 load helpers
 
-# use_core FLAGS: a program that finds the core under $PWD/prefix, links it and refines.
-use_core() {
-  mkdir user
-  cat >user/CMakeLists.txt <<'END'
-cmake_minimum_required(VERSION 3.25)
-project(user LANGUAGES CXX)
-find_package(papilio 0.1 REQUIRED)
-add_executable(user main.cpp)
-target_link_libraries(user papilio::core)
-END
-  cat >user/main.cpp <<'END'
-#include <papilio/refine.h>
-
-#include <iostream>
-
-int main() {
-  const papilio::TriangleMesh tetrahedron{{{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}},
-                                          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-  std::cout << papilio::refine(papilio::build_mesh(tetrahedron), {}).mesh.topology.face_count() << '\n';
-}
-END
-  cmake -G Ninja -S user -B build -DCMAKE_PREFIX_PATH="$PWD/prefix" -DCMAKE_CXX_FLAGS="$1" >/dev/null
-  cmake --build build >/dev/null
-  [ "$(build/user)" = 64 ]
-}
-
-@test "an installed core is found by find_package and refines" {
-  cd "$BATS_TEST_TMPDIR"
-  cmake --install "$PAPILIO_BUILD" --prefix "$PWD/prefix" >/dev/null
+setup_file() {
+  export PREFIX=$BATS_FILE_TMPDIR/prefix
+  cmake --install "$PAPILIO_BUILD" --prefix "$PREFIX" >/dev/null
   # The sanitizers of the build at hand, if any, are what the library needs to link.
-  use_core "$(sed -n 's/^PAPILIO_SANITIZE:STRING=\(..*\)$/-fsanitize=\1/p' "$PAPILIO_BUILD/CMakeCache.txt")"
-  "$PWD/prefix/bin/papilio" --version
+  SANITIZERS=$(sed -n 's/^PAPILIO_SANITIZE:STRING=\(..*\)$/-fsanitize=\1/p' "$PAPILIO_BUILD/CMakeCache.txt")
+  export SANITIZERS
+}
+
+setup() { cd "$BATS_TEST_TMPDIR" || return; }
+
+examples=$BATS_TEST_DIRNAME/../../client/examples
+
+# build_examples PREFIX FLAGS: builds the examples with the core installed under PREFIX, and runs them.
+build_examples() {
+  cmake -G Ninja -S "$examples" -B examples -DCMAKE_PREFIX_PATH="$1" -DCMAKE_CXX_FLAGS="$2" >/dev/null
+  cmake --build examples >/dev/null
+  examples/example_refine_mesh "$examples/octahedron.obj" fine.obj
+  [ "$(grep -c ^f fine.obj)" -gt 8 ]
+  examples/example_levels | grep -q '^level 3: 512 faces, the last$'
+  [ "$(examples/example_views | grep -c faces)" = 3 ]
+}
+
+@test "an installed core is found by find_package, and the examples build and run with it" {
+  build_examples "$PREFIX" "$SANITIZERS"
+  "$PREFIX/bin/papilio" --version
+}
+
+@test "an installed core is found by pkg-config, also after its tree was moved" {
+  mkdir elsewhere
+  cp -r "$PREFIX"/{include,lib} elsewhere
+  for prefix in "$PREFIX" "$PWD/elsewhere"; do
+    flags=$(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --cflags --libs papilio)
+    [[ $flags == *"$prefix/lib"* ]]
+    # shellcheck disable=SC2086 # words
+    "${CXX:-c++}" -std=c++20 $SANITIZERS "$examples/levels.cpp" $flags -o levels
+    ./levels | grep -q '^level 3: 512 faces, the last$'
+  done
+  [ "$(PKG_CONFIG_PATH="$PREFIX/lib/pkgconfig" pkg-config --modversion papilio)" = "$("$PREFIX/bin/papilio" --version | grep -o '[0-9.]*$')" ]
+}
+
+@test "every installed header compiles as a first include, without a warning" {
+  for header in "$PREFIX"/include/papilio/*; do
+    echo "#include <papilio/${header##*/}>" >one.cpp
+    "${CXX:-c++}" -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$PREFIX/include" one.cpp
+  done
+}
+
+@test "installed headers have no intrinsics and no macros, and include nothing that is not installed" {
+  cd "$PREFIX/include"
+  [ "$(grep -rnE 'immintrin|_mm_|^ *# *define' . | wc -l)" = 0 ]
+  [ "$(grep -rhE '^ *# *include' . | grep -cvE '^#include (<[a-z_]+>|"papilio/[a-z_0-9]+\.h")$')" = 0 ]
+  for header in $(grep -rhoE '"papilio/[a-z_0-9]+\.h"' . | tr -d '"'); do [ -f "$header" ]; done
+  [ "$(ls .)" = papilio ]
 }
 
 @test "the core alone is built and installed without what only server and client need" {
   skip_if_sanitized
-  cd "$BATS_TEST_TMPDIR"
   options=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='' -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)")
   for package in draco spdlog nlohmann_json CLI11 OpenSSL prometheus-cpp PkgConfig GTest benchmark; do
     options+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON") # as if it were not installed
   done
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../../core" -B core "${options[@]}" >/dev/null
   cmake --build core >/dev/null
-  cmake --install core --prefix "$PWD/prefix" >/dev/null
-  use_core ""
-  # Both ways install the same version, and warnings are errors to the project alone.
-  cmake --install "$PAPILIO_BUILD" --prefix "$PWD/whole" >/dev/null
-  cmp {prefix,whole}/lib/cmake/papilio/papilioConfigVersion.cmake
-  ! grep -q -- -Werror core/build.ninja
+  cmake --install core --prefix "$PWD/alone" >/dev/null
+  build_examples "$PWD/alone" ""
+  # Both ways install the same headers and the same version.
+  diff -r {alone,"$PREFIX"}/include
+  cmp {alone,"$PREFIX"}/lib/cmake/papilio/papilioConfigVersion.cmake
+  cmp {alone,"$PREFIX"}/lib/pkgconfig/papilio.pc
+  [ "$(cd alone && find . -type f | grep -vE '^\./(include/papilio/|lib/cmake/papilio/|lib/pkgconfig/papilio\.pc$)')" = ./lib/libpapilio_core.a ]
+}
+
+@test "warnings are errors to the project's presets alone" {
+  cmake -G Ninja -S "$BATS_TEST_DIRNAME/../../core" -B core >/dev/null
+  [ "$(grep -c -- -Werror core/build.ninja)" = 0 ]
+  grep -q '^option(PAPILIO_WERROR .* OFF)$' "$BATS_TEST_DIRNAME/../../CMakeLists.txt"
+}
+
+@test "the includes of the tree point one way" {
+  cd "$BATS_TEST_DIRNAME/../.."
+  python3 tests/support/core_tree.py
 }

@@ -72,6 +72,9 @@ client/web/node_modules/.bin/prettier --log-level warn --check "${web[@]}" || fa
 echo "tsc: client/web"
 client/web/node_modules/.bin/tsc --project client/web || failed+=(tsc)
 
+echo "core_tree: the includes of the tree"
+python3 tests/support/core_tree.py || failed+=(core_tree)
+
 echo "shellcheck: ${#scripts[@]} scripts"
 shellcheck --external-sources "${scripts[@]}" || failed+=(shellcheck)
 
