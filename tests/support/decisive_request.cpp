@@ -51,7 +51,11 @@ void spoil(std::mt19937& random, TriangleMesh& mesh) {
   const auto any_face = [&] { return below(random, static_cast<uint32_t>(mesh.triangles.size())); };
   const auto any_point = [&] { return below(random, static_cast<uint32_t>(mesh.positions.size())); };
   if (one_in(random, 3) && mesh.triangles.size() > 4)
-    for (int i = 0; i < 2; ++i) mesh.triangles.erase(mesh.triangles.begin() + any_face());
+    for (int i = 0; i < 2; ++i) {
+      const uint32_t face = any_face();
+      std::copy(mesh.triangles.begin() + face + 1, mesh.triangles.end(), mesh.triangles.begin() + face);
+      mesh.triangles.pop_back();
+    }
   if (one_in(random, 4)) {
     Triangle& turned = mesh.triangles[any_face()];
     std::swap(turned[0], turned[1]);

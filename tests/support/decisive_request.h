@@ -2,9 +2,8 @@
 
 #include <random>
 
-#include "core/mesh.h"
-#include "core/options.h"
-#include "core/triangle_mesh.h"
+#include "papilio/mesh.h"
+#include "papilio/options.h"
 
 // Meshes and requests for comparisons with a reference of other precision: ties are rare, and most criteria hold in
 // part of the mesh only.

@@ -331,7 +331,7 @@ Surface with_creases(const Surface& s, double degrees, Margin& margin) {
 Outcome refine(const Mesh& mesh, const Options& options) {
   std::vector<Vec3d> at;
   for (const Vec3f& p : mesh.positions) at.push_back(to_double(p));
-  const Array<Triangle> faces = TriangleMesh(Mesh{mesh.topology, mesh.positions}.triangles()).triangles;
+  const Buffer<Triangle> faces = TriangleMesh(Mesh{mesh.topology, mesh.positions}.triangles()).triangles;
   const Box box = bounding_box(mesh.positions);
   Margin margin{box.largest_coordinate()};
   const Surface coarse = with_creases({at, {faces.begin(), faces.end()}, {}}, options.crease_angle, margin);

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 // Reference implementation of refinement, slow and obvious, to check the core against. It computes whole levels of the
 // uniform subdivision in double precision and finds neighbours in maps. It shares data types with the core, and no

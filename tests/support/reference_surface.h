@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/refine.h"
+#include "papilio/refine.h"
 
 // Connectivity and geometry of the reference implementation (reference.h).
 

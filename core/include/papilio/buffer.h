@@ -104,7 +104,7 @@ class Buffer {
   /// Inserts elements of elsewhere before `at`; returns where the first of them is.
   template <std::forward_iterator Iterator>
   T* insert(const T* at, Iterator first, Iterator last) {
-    const size_t before = static_cast<size_t>(at - begin_);
+    const auto before = static_cast<size_t>(at - begin_);
     const size_t behind = size() - before;
     resize_for_overwrite(size() + static_cast<size_t>(std::distance(first, last)));
     std::copy_backward(begin_ + before, begin_ + before + behind, end_);
