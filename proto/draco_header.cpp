@@ -37,7 +37,7 @@ class Cursor {
 
   std::string_view take(size_t size) {
     if (size > bytes_.size())
-      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Send the whole file.");
+      throw Problem(Code::mesh_not_draco, "The Draco stream ends inside its header. Provide the whole file.");
     const std::string_view taken = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return taken;
@@ -83,7 +83,7 @@ void require_within(uint64_t count, uint64_t limit, const char* what, const char
 DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
   if (!bytes.starts_with("DRACO"))
     throw Problem(Code::mesh_not_draco,
-                  bytes.empty() ? "The mesh is empty (0 bytes). Send a Draco file."
+                  bytes.empty() ? "The mesh is empty (0 bytes). Provide a Draco file."
                                 : "The mesh is not a Draco file: it does not start with DRACO. Encode it with "
                                   "draco_encoder or `papilio convert in.obj out.drc`.");
   Cursor cursor(bytes);
@@ -97,7 +97,7 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
     throw Problem(Code::mesh_unsupported, "The Draco bitstream is version " + std::to_string(major) + "." +
                                               std::to_string(minor) +
                                               "; only 2.2 is supported. Encode the mesh with Draco 1.3 or later.");
-  if (geometry != 1) throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud. Send a triangle mesh.");
+  if (geometry != 1) throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud. Provide a triangle mesh.");
   if (method > 1)
     throw Problem(Code::mesh_not_draco, "The Draco stream has encoding method " + std::to_string(method) +
                                             "; only 0 and 1 exist. Encode the mesh again.");

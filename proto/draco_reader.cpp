@@ -66,7 +66,7 @@ std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool edgebreaker) {
   } catch (const std::length_error&) {
   }
   throw Problem(Code::mesh_not_draco,
-                "The Draco stream is damaged or truncated. Send the whole file, or encode the mesh again.");
+                "The Draco stream is damaged or truncated. Provide the whole file, or encode the mesh again.");
 }
 
 const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
@@ -89,7 +89,7 @@ FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
   // Upper bound with seams: a point for every corner.
   require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
-  if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Send a triangle mesh.");
+  if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Provide a triangle mesh.");
 
   const draco::PointAttribute& attribute = position_attribute(*mesh);
   FormattedMesh out;

@@ -3,8 +3,9 @@
 #include <papilio/refine.h>
 
 #include <cstdio>
+#include <exception>
 
-int main() {
+int main() try {
   const papilio::TriangleMesh octahedron{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
       {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
@@ -23,4 +24,8 @@ int main() {
     std::printf("from %g %g %g: %u faces, %.2f pixels off\n", eye.x, eye.y, eye.z, result.mesh.topology.face_count(),
                 result.error_pixels);
   }
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }

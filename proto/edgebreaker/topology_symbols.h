@@ -125,7 +125,7 @@ class ValenceSymbols {
   CornerMesh& mesh_;
   Buffer<int> valence_;  ///< [vertices of the mesh, then vertices added by splits]
   Buffer<Moved> moved_;  ///< corners moved to a new vertex, with their vertices before
-  int last_ = -1;      ///< symbol put last, whose context is not yet known; -1: none
+  int last_ = -1;        ///< symbol put last, whose context is not yet known; -1: none
   uint32_t count_ = 0;
   std::array<Buffer<uint32_t>, max_valence - min_valence + 1> contexts_;
 };

@@ -207,7 +207,7 @@ TEST(Reference, DISABLED_CreaseThatEndsAtAPinchedVertexIsADart) {
   const uint32_t b = point_at(mesh, 2, 2);
   const uint32_t end = point_at(mesh, 2, 3);
   erase_if(mesh.triangles,
-                [&](const Triangle& t) { return std::ranges::count(t, a) == 1 && std::ranges::count(t, b) == 1; });
+           [&](const Triangle& t) { return std::ranges::count(t, a) == 1 && std::ranges::count(t, b) == 1; });
   mesh.triangles.push_back({b, point_at(mesh, 3, 2), end});
   mesh.triangles.push_back({a, end, point_at(mesh, 3, 2)});
   // A face that touches the sheet there and nowhere else.

@@ -258,7 +258,10 @@ test('a target that is not reached is said at the mesh', async () => {
   const { page } = await openPage(shared.browser, shared.server.url, { hash: hash(1) });
   await done(page, ['adaptive']);
   const note = page.locator('.panel[data-mode=adaptive] .note');
-  assert.match(await note.innerText(), /tolerance=0\.0001 is not reached: the remaining error is .* Raise levels above 1/);
+  assert.match(
+    await note.innerText(),
+    /tolerance=0\.0001 is not reached: the remaining error is .* Raise levels above 1/,
+  );
   await page.locator('[id="parameter-levels"]').fill('8');
   await page.keyboard.press('Tab');
   await page.waitForFunction(() => document.querySelector('.panel[data-mode=adaptive] .note').textContent === '');
