@@ -97,7 +97,8 @@ DracoHeader read_draco_header(std::string_view bytes, const Limits& limits) {
     throw Problem(Code::mesh_unsupported, "The Draco bitstream is version " + std::to_string(major) + "." +
                                               std::to_string(minor) +
                                               "; only 2.2 is supported. Encode the mesh with Draco 1.3 or later.");
-  if (geometry != 1) throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud. Provide a triangle mesh.");
+  if (geometry != 1)
+    throw Problem(Code::mesh_unsupported, "The Draco stream is a point cloud. Provide a triangle mesh.");
   if (method > 1)
     throw Problem(Code::mesh_not_draco, "The Draco stream has encoding method " + std::to_string(method) +
                                             "; only 0 and 1 exist. Encode the mesh again.");
