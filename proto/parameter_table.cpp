@@ -40,29 +40,30 @@ const std::array table{
                   .type = ParameterType::integer,
                   .min = 0,
                   .max = 10,
-                  .default_text = "2; with tolerance or view.error_pixels as many as it takes",
-                  .description = "How many times to subdivide; a uniform level multiplies the faces by four",
+                  .default_text = "2; with tolerance or view.error_pixels, as many as required",
+                  .description = "Number of subdivisions; a uniform level multiplies the faces by four",
                   .get =
                       [](const Parameters& p) {
                         return unless(has_default_levels(p.options), {static_cast<double>(p.options.levels)});
                       },
                   .set = [](Parameters& p, const Values& v) { p.options.levels = static_cast<int>(v[0]); }},
-    ParameterInfo{.name = "scheme",
-                  .type = ParameterType::choice,
-                  .description =
-                      "red-green: every vertex is that of the uniform result, in every view, and angles stay "
-                      "large; in-place, the paper's: each level works on the mesh that the last one left",
-                  .choices = {"red-green", "in-place"},
-                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.scheme)}; },
-                  .set = [](Parameters& p, const Values& v) { p.options.scheme = static_cast<Scheme>(v[0]); }},
+    ParameterInfo{
+        .name = "scheme",
+        .type = ParameterType::choice,
+        .description =
+            "red-green: vertices equal those of the uniform result in every view, and angles stay large; in-place, "
+            "the paper's: each level refines the mesh of the previous level",
+        .choices = {"red-green", "in-place"},
+        .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.scheme)}; },
+        .set = [](Parameters& p, const Values& v) { p.options.scheme = static_cast<Scheme>(v[0]); }},
     ParameterInfo{.name = "tolerance",
                   .type = ParameterType::number,
                   .min = 0,
                   .max = 1,
                   .default_text = "0: none",
                   .description =
-                      "Split only where the surface would move by at least this share of the box's diagonal, "
-                      "and where something that does needs it: 0.001 is fine, 0.01 coarse",
+                      "Split where the surface would move by at least this share of the bounding box's diagonal, and "
+                      "where such splits require it: 0.001 is fine, 0.01 coarse",
                   .get = [](const Parameters& p) { return Values{p.options.tolerance}; },
                   .set = [](Parameters& p, const Values& v) { p.options.tolerance = v[0]; }},
     ParameterInfo{.name = "max_faces",
@@ -70,8 +71,8 @@ const std::array table{
                   .min = 0,
                   .max = static_cast<double>(face_count_limit),
                   .unit = "faces",
-                  .default_text = "0: as many as it takes",
-                  .description = "The result never has more; the largest errors are taken first",
+                  .default_text = "0: no limit",
+                  .description = "Upper bound of the faces of the result; the largest errors are refined first",
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.max_faces)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.max_faces = static_cast<uint64_t>(v[0]); }},
     ParameterInfo{.name = "flatness",
@@ -81,22 +82,23 @@ const std::array table{
                   .min = -1,
                   .max = 1,
                   .default_text = "none: everywhere",
-                  .description = "Split edges whose faces' unit normals have a product below this; one threshold a "
-                                 "level, the last repeats; higher is finer",
+                  .description = "Split edges whose faces' unit normals have a dot product below this; one threshold "
+                                 "per level, the last repeats; higher is finer",
                   .get = [](const Parameters& p) { return p.options.flatness; },
                   .set = [](Parameters& p, const Values& v) { p.options.flatness = v; }},
     ParameterInfo{.name = "growth",
                   .type = ParameterType::integer,
                   .min = 0,
                   .max = 2,
-                  .description = "How far flatness spreads: 0 not at all, 1 to the other edges of the two faces, 2 to "
-                                 "all edges at the two ends",
+                  .description = "Spread of flatness: 0 none, 1 to the other edges of both faces, 2 to all edges at "
+                                 "both ends",
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.growth)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.growth = static_cast<Growth>(v[0]); }},
     ParameterInfo{.name = "tension",
                   .type = ParameterType::choice,
-                  .description = "soft: no overshoot over edges sharper than 60 to 90 degrees; sharp: nor along them; "
-                                 "off: the plain butterfly, which swells there",
+                  .description =
+                      "soft: no overshoot across edges sharper than 60 to 90 degrees; sharp: also none along "
+                      "them; off: the plain butterfly, which overshoots there",
                   .choices = {"soft", "off", "sharp"},
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.tension)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.tension = static_cast<Tension>(v[0]); }},
@@ -106,12 +108,12 @@ const std::array table{
                   .max = 180,
                   .unit = "degrees",
                   .default_text = "180: no creases",
-                  .description = "Edges whose faces' normals differ by more are kept sharp",
+                  .description = "Edges whose faces' normals differ by more stay sharp",
                   .get = [](const Parameters& p) { return Values{p.options.crease_angle}; },
                   .set = [](Parameters& p, const Values& v) { p.options.crease_angle = v[0]; }},
     ParameterInfo{.name = "simplify_hidden",
                   .type = ParameterType::boolean,
-                  .description = "With a view: simplifies what it does not show; the rest stays to the bit",
+                  .description = "Simplifies invisible parts and leaves the rest bit-identical; requires a view",
                   .get = [](const Parameters& p) { return Values{p.options.simplify_hidden ? 1.0 : 0.0}; },
                   .set = [](Parameters& p, const Values& v) { p.options.simplify_hidden = v[0] != 0; }},
     ParameterInfo{.name = "w",
@@ -129,9 +131,9 @@ const std::array table{
         .min = -any,
         .max = any,
         .unit = "mesh units",
-        .default_text = "where the whole mesh is in the picture, seen from +z",
-        .description = "Position of the viewer; any view parameter turns view-dependence on. With view.up along "
-                       "z the default is seen from -y",
+        .default_text = "frames the whole mesh, seen from +z",
+        .description = "Position of the viewer; any view parameter enables view dependence. With view.up along z, "
+                       "the default looks from -y",
         .get = [](const Parameters& p) { return unless(!p.options.view || p.default_eye, values(view_of(p).eye)); },
         .set =
             [](Parameters& p, const Values& v) {
@@ -146,8 +148,8 @@ const std::array table{
         .min = -any,
         .max = any,
         .unit = "mesh units",
-        .default_text = "the centre of the mesh's box",
-        .description = "The point looked at",
+        .default_text = "centre of the bounding box",
+        .description = "Point in the centre of the picture",
         .get =
             [](const Parameters& p) { return unless(!p.options.view || p.default_target, values(view_of(p).target)); },
         .set =
@@ -161,7 +163,7 @@ const std::array table{
                   .most = 3,
                   .min = -any,
                   .max = any,
-                  .description = "The direction that is up in the picture",
+                  .description = "Direction that points up in the picture",
                   .get = [](const Parameters& p) { return values(view_of(p).up); },
                   .set = [](Parameters& p, const Values& v) { view_of(p).up = vector(v); }},
     ParameterInfo{.name = "view.fov_y",
@@ -204,7 +206,7 @@ const std::array table{
                   .max = 1e6,
                   .unit = "pixels",
                   .default_text = "10; 0 with view.error_pixels",
-                  .description = "Edges that look shorter than this stay whole; 0 splits them however short",
+                  .description = "Lower bound of the screen length of split edges; 0: no bound",
                   .get =
                       [](const Parameters& p) {
                         return unless(view_of(p).edge_pixels == default_edge_pixels(view_of(p)),
@@ -217,7 +219,7 @@ const std::array table{
                   .max = 1e6,
                   .unit = "pixels",
                   .default_text = "0: none",
-                  .description = "Like tolerance, measured in pixels of the view: 0.5 cannot be seen",
+                  .description = "Like tolerance, in pixels of the view: 0.5 is invisible",
                   .get = [](const Parameters& p) { return Values{view_of(p).error_pixels}; },
                   .set = [](Parameters& p, const Values& v) { view_of(p).error_pixels = v[0]; }},
     ParameterInfo{.name = "view.lights",
@@ -229,13 +231,13 @@ const std::array table{
                   .max = any,
                   .default_text = "none",
                   .description =
-                      "Directions towards lights: with view.error_pixels or max_faces, errors count more where "
-                      "the shading changes and on the silhouette",
+                      "Directions towards lights: with view.error_pixels or max_faces, errors have more weight where "
+                      "shading changes and on the silhouette",
                   .get = [](const Parameters& p) { return values(view_of(p).lights); },
                   .set = [](Parameters& p, const Values& v) { view_of(p).lights = vectors(v); }},
     ParameterInfo{.name = "view.projection",
                   .type = ParameterType::choice,
-                  .description = "Orthographic shows at every depth what perspective shows at the target",
+                  .description = "Orthographic has at every depth the scale that perspective has at the target",
                   .choices = {"perspective", "orthographic"},
                   .get = [](const Parameters& p) { return Values{static_cast<double>(view_of(p).projection)}; },
                   .set = [](Parameters& p, const Values& v) { view_of(p).projection = static_cast<Projection>(v[0]); }},
@@ -244,8 +246,9 @@ const std::array table{
                   .min = 8,
                   .max = 16,
                   .unit = "bits",
-                  .description = "Grid of the answer's positions: 2^bits steps along the coarse mesh's longest side "
-                                 "and a quarter more",
+                  .description =
+                      "Grid of the result's positions: 2^bits steps along 1.25 times the longest side of the "
+                      "coarse mesh's box",
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.output.position_bits)}; },
                   .set = [](Parameters& p, const Values& v) { p.output.position_bits = static_cast<int>(v[0]); }},
     ParameterInfo{.name = "output.speed",
@@ -257,7 +260,7 @@ const std::array table{
                   .set = [](Parameters& p, const Values& v) { p.output.speed = static_cast<int>(v[0]); }},
     ParameterInfo{.name = "output.normals",
                   .type = ParameterType::boolean,
-                  .description = "Adds the vertices' unit normals to the answer",
+                  .description = "Adds unit vertex normals to the result",
                   .get = [](const Parameters& p) { return Values{p.output.normals ? 1.0 : 0.0}; },
                   .set = [](Parameters& p, const Values& v) { p.output.normals = v[0] != 0; }},
 };
