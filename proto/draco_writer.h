@@ -27,7 +27,7 @@ struct QuantizationBox {
 struct AttributeEncoding {
   struct Grid {
     std::vector<float> origin;  ///< [components] lowest values
-    float range = 0;            ///< widest extent of a component; 0: not quantised
+    float range = 0;            ///< widest extent of a component; 0: not quantized
   };
   MeshFormat format{};
   std::vector<Grid> grids{};  ///< one for each attribute

@@ -24,7 +24,7 @@ namespace {
 
 class Stopwatch {
  public:
-  /// Milliseconds since the last call.
+  /// Returns the milliseconds since the last call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double milliseconds = std::chrono::duration<double, std::milli>(now - last_).count();

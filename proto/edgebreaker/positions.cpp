@@ -67,7 +67,7 @@ class WrappedDifferences {
   int32_t low_, high_, range_, max_, min_;
 };
 
-/// Collects the symbols of the values' differences.
+/// Collector of the symbols of the values' differences.
 class DifferenceSymbols {
  public:
   DifferenceSymbols(const CornerMesh& mesh, const Buffer<GridPoint>& values)
@@ -78,7 +78,7 @@ class DifferenceSymbols {
   [[nodiscard]] const Buffer<uint32_t>& symbols() const { return symbols_; }
 
   void put_difference(uint32_t corner) { put(corner, last_); }
-  /// The corner must have an opposite face whose three values were put.
+  /// Puts the difference from the parallelogram over the opposite face, whose three values must have been put.
   void put_parallelogram(uint32_t corner) {
     put(corner, value(CornerMesh::next(corner)) + value(CornerMesh::previous(corner)) - value(mesh_.opposite(corner)));
   }
