@@ -14,7 +14,7 @@ struct Row {
   bool is_defect;
 };
 
-constexpr std::array table{
+constexpr std::array finding_rows{
     Row{"boundary_edges", &BuildReport::boundary_edges, false},
     Row{"non_manifold_edges", &BuildReport::non_manifold_edges, true},
     Row{"misoriented_edges", &BuildReport::misoriented_edges, true},
@@ -29,13 +29,13 @@ constexpr std::array table{
 
 Findings all_findings(const BuildReport& report) {
   Findings found;
-  for (const Row& row : table) found.emplace_back(row.name, report.*row.count);
+  for (const Row& row : finding_rows) found.emplace_back(row.name, report.*row.count);
   return found;
 }
 
 Findings defects(const BuildReport& report) {
   Findings found;
-  for (const Row& row : table)
+  for (const Row& row : finding_rows)
     if (row.is_defect && report.*row.count > 0) found.emplace_back(row.name, report.*row.count);
   return found;
 }
@@ -53,8 +53,8 @@ BuildReport parse_defects(std::string_view text) {
     const std::string_view item = text.substr(0, text.find(", "));
     text.remove_prefix(std::min(text.size(), item.size() + 2));
     const std::string_view name = item.substr(0, item.find('='));
-    const auto row = std::ranges::find(table, name, &Row::name);
-    if (row == table.end() || name.size() == item.size()) continue;
+    const auto row = std::ranges::find(finding_rows, name, &Row::name);
+    if (row == finding_rows.end() || name.size() == item.size()) continue;
     const double count = parse_number(item.substr(name.size() + 1)).value_or(0);
     report.*row->count = static_cast<uint32_t>(std::clamp(count, 0.0, double{UINT32_MAX}));
   }

@@ -14,14 +14,14 @@ namespace papilio::server {
 namespace {
 
 std::mutex mutex;
-uint64_t bound = 0;   ///< guarded by mutex; 0: there is none
-uint64_t stacks = 0;  ///< guarded by mutex; their number
+uint64_t bound = 0;        ///< guarded by mutex; 0: there is none
+uint64_t stack_count = 0;  ///< guarded by mutex; their number
 
 /// With the mutex held.
 bool apply() {
   rlimit limit{};
   ::getrlimit(RLIMIT_DATA, &limit);
-  const uint64_t bytes = bound + stacks * stack_bytes;
+  const uint64_t bytes = bound + stack_count * stack_bytes;
   limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? bytes : std::min<rlim_t>(bytes, limit.rlim_max);
   return ::setrlimit(RLIMIT_DATA, &limit) == 0;
 }
@@ -38,13 +38,13 @@ void bound_by_container(uint64_t container_bytes) {
 
 StackSpace::StackSpace() {
   const std::lock_guard lock(mutex);
-  ++stacks;
+  ++stack_count;
   if (bound > 0) apply();
 }
 
 StackSpace::~StackSpace() {
   const std::lock_guard lock(mutex);
-  --stacks;
+  --stack_count;
   if (bound > 0) apply();
 }
 

@@ -10,7 +10,7 @@
 namespace papilio {
 namespace {
 
-void check(const TriangleMesh& input) {
+void check_attributes(const TriangleMesh& input) {
   for (size_t a = 0; a < input.attributes.size(); ++a) {
     const Attribute& attribute = input.attributes[a];
     if (attribute.values.size() != input.positions.size() * attribute.components)
@@ -79,7 +79,7 @@ void append_mean(Attribute& attribute, uint32_t p, uint32_t q) {
 
 PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
                                   const std::vector<uint32_t>& corner_point) {
-  check(input);
+  check_attributes(input);
   PointAttributes out;
   if (input.attributes.empty()) return out;
   const Buffer<uint32_t> same = merge_equal_points(input, mesh, corner_point);

@@ -12,7 +12,7 @@
 namespace papilio {
 namespace {
 
-void check(const TriangleMesh& input) {
+void check_mesh(const TriangleMesh& input) {
   const size_t points = input.positions.size();
   if (points >= none) throw Error(Fault::index_out_of_range, "The mesh has more points than 32 bits can number.");
   if (input.triangles.size() > face_count_limit)
@@ -33,7 +33,7 @@ void check(const TriangleMesh& input) {
 }
 
 Mesh build(const TriangleMesh& input, BuildReport* report) {
-  check(input);
+  check_mesh(input);
   BuildReport found;
   Mesh mesh;
   Topology& topology = mesh.topology;

@@ -10,7 +10,8 @@
 namespace papilio {
 namespace {
 
-constexpr uint64_t bytes_per_face = 130;  // of a level's arrays, while those of the level before are still there
+constexpr uint64_t bytes_per_in_place_face =
+    130;  // of a level's arrays, while those of the level before are still there
 
 class InPlace {
  public:
@@ -26,7 +27,7 @@ class InPlace {
       if (level == 0) break;
       const SplitPlan plan(targets_);
       const uint64_t faces = count_children(mesh_.topology, plan);
-      const uint64_t bytes = std::max(plan_->made(faces, level, bytes_per_face), plan_->given(faces, level));
+      const uint64_t bytes = std::max(plan_->made(faces, level, bytes_per_in_place_face), plan_->given(faces, level));
       if (progress_.ends_before(faces, bytes)) {
         end_at_limit();
         break;

@@ -12,7 +12,7 @@
 namespace papilio {
 namespace {
 
-constexpr float never = -std::numeric_limits<float>::infinity();
+constexpr float no_edge = -std::numeric_limits<float>::infinity();
 
 class RedGreen {
  public:
@@ -100,7 +100,7 @@ class RedGreen {
   void carry_up(const LevelChoice& below, LevelChoice& above) const {
     const float least = selection_.threshold();
     below.visit_parents([&](uint32_t parent, const uint32_t* edges) {
-      float largest = never;
+      float largest = no_edge;
       for (uint32_t i = 0; i < 12; ++i) largest = std::max(largest, below.error[edges[i]]);
       if (!(largest >= least)) return;
       for (uint32_t i = 0; i < 3; ++i) {

@@ -16,7 +16,7 @@
 namespace papilio {
 namespace {
 
-constexpr uint64_t bytes_per_face = 70;  // of a level's arrays, while those of the level before are still there
+constexpr uint64_t bytes_per_uniform_face = 70;  // of a level's arrays, while those of the level before are still there
 
 class Uniform {
  public:
@@ -147,7 +147,8 @@ void require_room_for_uniform(const Mesh& coarse, const Options& options, const 
     const uint64_t given_before = progress.wants_levels() ? plan.given(faces, level - 1) : 0;
     faces *= 4;
     progress.require_room(
-        faces, std::max(plan.made(faces, level, bytes_per_face) + given_before, plan.given(faces, level)), level);
+        faces, std::max(plan.made(faces, level, bytes_per_uniform_face) + given_before, plan.given(faces, level)),
+        level);
   }
 }
 

@@ -16,19 +16,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view extension = ".part";
+constexpr std::string_view part_extension = ".part";
 constexpr std::chrono::minutes longest_write{10};  ///< earlier versions hold no lock while they write
 constexpr mode_t mode = 0640;
 
 /// "1234-5678.part"
 fs::path part_in(const fs::path& folder) {
   std::random_device random;
-  return folder / (std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(extension));
+  return folder / (std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(part_extension));
 }
 
 bool is_part(const fs::path& file) {
   const std::string stem = file.stem().string();
-  return file.extension() == extension && stem.find('-') != std::string::npos &&
+  return file.extension() == part_extension && stem.find('-') != std::string::npos &&
          stem.find_first_not_of("0123456789-") == std::string::npos;
 }
 

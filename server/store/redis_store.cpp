@@ -32,7 +32,7 @@ Problem no_answer() {
 }
 
 /// The operator's log has the reason.
-Problem unavailable(std::string_view reason) {
+Problem redis_unavailable(std::string_view reason) {
   log_event("error", "store", {{"kind", "redis"}, {"reason", std::string(reason)}});
   return no_answer();
 }
@@ -124,14 +124,14 @@ bool RedisStore::put(const std::string& id, std::string_view bytes) {
   const Reply reply = ask(words);
   if (has_error(*reply, "OOM"))
     throw Problem(Code::store_full, "The store of meshes is full. Delete meshes, or ask the operator for room.");
-  if (reply->type != REDIS_REPLY_STATUS) throw unavailable(text_of(*reply));
+  if (reply->type != REDIS_REPLY_STATUS) throw redis_unavailable(text_of(*reply));
   return true;
 }
 
 uint64_t RedisStore::size_of(const std::string& key) {
   const Reply reply = ask({"STRLEN", key});
   if (has_error(*reply, "WRONGTYPE")) return 0;
-  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
+  if (reply->type != REDIS_REPLY_INTEGER) throw redis_unavailable(text_of(*reply));
   return static_cast<uint64_t>(reply->integer);
 }
 
@@ -139,7 +139,7 @@ bool RedisStore::contains(const std::string& id) {
   const std::string key = key_of(id);
   const std::string seconds = std::to_string(seconds_);
   const Reply reply = seconds_ > 0 ? ask({"EXPIRE", key, seconds}) : ask({"EXISTS", key});
-  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
+  if (reply->type != REDIS_REPLY_INTEGER) throw redis_unavailable(text_of(*reply));
   return reply->integer > 0;
 }
 
@@ -152,7 +152,7 @@ MeshStore::Bytes RedisStore::get(const std::string& id) {
     auto bytes = std::make_shared<const std::string>(reply->str, reply->len);
     if (sha256(*bytes) == id) return bytes;
   } else if (!has_error(*reply, "WRONGTYPE")) {
-    throw unavailable(text_of(*reply));
+    throw redis_unavailable(text_of(*reply));
   }
   // It stays: another server may be replacing it at this moment, and what it has put must not be removed.
   log_event("error", "store", {{"key", key}, {"reason", "the content is not what the key says; send the mesh again"}});
@@ -161,7 +161,7 @@ MeshStore::Bytes RedisStore::get(const std::string& id) {
 
 bool RedisStore::remove(const std::string& id) {
   const Reply reply = ask({"DEL", key_of(id)});
-  if (reply->type != REDIS_REPLY_INTEGER) throw unavailable(text_of(*reply));
+  if (reply->type != REDIS_REPLY_INTEGER) throw redis_unavailable(text_of(*reply));
   return reply->integer > 0;
 }
 
@@ -171,7 +171,7 @@ uint64_t RedisStore::used_memory() {
   const std::string_view text = reply->type == REDIS_REPLY_STRING ? std::string_view(reply->str, reply->len) : "";
   const size_t at = text.find(field);
   uint64_t bytes = 0;
-  if (at == std::string_view::npos) throw unavailable("INFO memory was not answered");
+  if (at == std::string_view::npos) throw redis_unavailable("INFO memory was not answered");
   std::from_chars(text.data() + at + field.size(), text.data() + text.size(), bytes);
   return bytes;
 }
@@ -181,7 +181,7 @@ Problem RedisStore::away(std::string_view reason) {
   is_away_ = true;
   away_until_ = std::chrono::steady_clock::now() + away_interval;
   idle_.clear();  // lost too
-  return unavailable(reason);
+  return redis_unavailable(reason);
 }
 
 RedisStore::Context RedisStore::reach() {

@@ -10,14 +10,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view extension = ".drc";
+constexpr std::string_view mesh_extension = ".drc";
 
 bool is_absent(const std::error_code& error) { return error == std::errc::no_such_file_or_directory; }
 
 }  // namespace
 
 fs::path StoreFiles::file_of(const std::string& id) const {
-  return directory_ / id.substr(0, 2) / (id + std::string(extension));
+  return directory_ / id.substr(0, 2) / (id + std::string(mesh_extension));
 }
 
 MeshStore::Usage StoreFiles::count() {

@@ -9,4 +9,5 @@ COPY client/web/package.json client/web/package-lock.json client/web/.npmrc clie
 COPY tests/openapi/package.json tests/openapi/package-lock.json tests/openapi/.npmrc tests/openapi/
 RUN tests/support/setup.sh build page test
 COPY . .
+ENV PAPILIO_UNITY=ON
 RUN --mount=type=cache,target=/root/.cache/ccache ./dev test

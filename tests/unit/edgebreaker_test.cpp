@@ -100,9 +100,9 @@ TEST(Edgebreaker, BytesEqualLibdracosOnRefinedRealMeshes) {
 
 // Sanitizers take ten times as long and get smaller meshes only.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr uint32_t most_faces = 30'000;
+constexpr uint32_t most_round_trip_faces = 30'000;
 #else
-constexpr uint32_t most_faces = 3'000'000;
+constexpr uint32_t most_round_trip_faces = 3'000'000;
 #endif
 
 class EdgebreakerAtSpeed : public testing::TestWithParam<int> {};
@@ -120,7 +120,8 @@ TEST_P(EdgebreakerAtSpeed, BytesEqualLibdracosOnAllLevelsOfAllRealMeshes) {
       continue;  // every_real_mesh_test covers unreadable and tiny meshes
     }
     SCOPED_TRACE(entry.path());
-    const uint32_t most = GetParam() < 2 ? most_faces / 1000 : most_faces;  // libdraco is slow there
+    const uint32_t most =
+        GetParam() < 2 ? most_round_trip_faces / 1000 : most_round_trip_faces;  // libdraco is slow there
     for (int level = 0; level <= 3 && mesh.topology.face_count() <= most; ++level) {
       if (level > 0) mesh = refine(std::move(mesh), {.levels = 1}).mesh;
       ++(is_the_same(mesh, {.position_bits = 11, .speed = GetParam()}) ? same : others);

@@ -15,15 +15,15 @@ uint64_t points_of(const Mesh& mesh) {
   return mesh.attributes.empty() ? mesh.topology.vertex_count : mesh.attributes.point_count;
 }
 
-const std::vector<TriangleMesh>& meshes() {
+const std::vector<TriangleMesh>& planned_meshes() {
   static const std::vector<TriangleMesh> all{torus(8, 6),    grid(3, 4),   fan(7, false),
                                              charted_cube(), bipyramid(9), charted_faces(icosahedron())};
   return all;
 }
 
 TEST(MemoryPlan, PointsOfAUniformResultAreExact) {
-  for (size_t i = 0; i < meshes().size(); ++i) {
-    const Mesh coarse = build_mesh(meshes()[i]);
+  for (size_t i = 0; i < planned_meshes().size(); ++i) {
+    const Mesh coarse = build_mesh(planned_meshes()[i]);
     const MemoryPlan plan(coarse, {});
     for (int level = 0; level <= 4; ++level) {
       const Mesh fine = refine(coarse, {.levels = level}).mesh;
@@ -33,10 +33,10 @@ TEST(MemoryPlan, PointsOfAUniformResultAreExact) {
 }
 
 TEST(MemoryPlan, AdaptiveResultsHaveNoMorePoints) {
-  for (size_t i = 0; i < meshes().size(); ++i)
+  for (size_t i = 0; i < planned_meshes().size(); ++i)
     for (const Scheme scheme : {Scheme::red_green, Scheme::in_place})
       for (const double tolerance : {0.03, 0.01, 0.003}) {
-        const Mesh coarse = build_mesh(meshes()[i]);
+        const Mesh coarse = build_mesh(planned_meshes()[i]);
         const Result fine =
             refine(coarse, {.levels = 5, .scheme = scheme, .tension = Tension::off, .tolerance = tolerance});
         EXPECT_GE(MemoryPlan(coarse, {}).points(fine.mesh.topology.face_count(), fine.levels), points_of(fine.mesh))

@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 /// Shapes of all sizes, some faces of which have no area, or none that is a number.
-std::vector<Mesh> meshes() {
+std::vector<Mesh> meshes_with_normals() {
   std::mt19937 random(5);
   std::vector<Mesh> meshes;
   for (int i = 0; i < 60; ++i) {
@@ -34,7 +34,7 @@ bool are_same_bits(Vec3f a, Vec3f b) { return std::memcmp(&a, &b, sizeof(a)) == 
 
 TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
   size_t without = 0;
-  for (const Mesh& mesh : meshes())
+  for (const Mesh& mesh : meshes_with_normals())
     for (const int threads : {1, 2}) {
       const Buffer<Vec3f> normals = face_normals(mesh, threads);
       ASSERT_EQ(normals.size(), mesh.topology.face_count());
@@ -47,7 +47,7 @@ TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
 }
 
 TEST(FaceNormals, AreTheSameWithoutAvx2) {
-  for (const Mesh& mesh : meshes()) {
+  for (const Mesh& mesh : meshes_with_normals()) {
     const Buffer<Vec3f> with = face_normals(mesh);
     allow_avx2(false);
     const Buffer<Vec3f> without = face_normals(mesh);

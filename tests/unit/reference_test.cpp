@@ -187,7 +187,7 @@ uint32_t point_at(const TriangleMesh& mesh, float x, float y) {
 }
 
 /// Sheet with a fold of 70 degrees from its rim to the vertex (3, 3), which has six faces.
-TriangleMesh folded_sheet() {
+TriangleMesh sheet_of_two_folds() {
   TriangleMesh mesh = grid(6, 6);
   for (Vec3f& p : mesh.positions) {
     const float depth = 0.7F * std::min(1.0F, std::abs(p.y - 3)) * std::clamp(p.x - 2, 0.0F, 1.0F);
@@ -205,11 +205,11 @@ void expect_known_difference(const TriangleMesh& triangles, const Options& optio
 }
 
 TEST(Reference, CoreTakesTheKRuleAtADartOfSixFaces) {
-  expect_known_difference(folded_sheet(), {.levels = 1, .tension = Tension::off, .crease_angle = 55});
+  expect_known_difference(sheet_of_two_folds(), {.levels = 1, .tension = Tension::off, .crease_angle = 55});
 }
 
 TEST(Reference, CoreFindsNoDartAtAPinchedVertex) {
-  TriangleMesh mesh = folded_sheet();
+  TriangleMesh mesh = sheet_of_two_folds();
   // With the edge from (3, 3) to (2, 2) flipped the fold ends at (2, 3), which has seven faces.
   const uint32_t a = point_at(mesh, 3, 3);
   const uint32_t b = point_at(mesh, 2, 2);

@@ -64,7 +64,7 @@ class Stranger {
 
 /// What a call throws.
 template <class Call>
-ServerError refusal_of(Call call) {
+ServerError server_error_of(Call call) {
   try {
     call();
   } catch (const ServerError& error) {
@@ -77,7 +77,7 @@ ServerError refusal_of(Call call) {
 /// What `refine` says of an answer.
 ServerError refinement_refused(const std::string& answer) {
   const Stranger stranger(answer);
-  return refusal_of([&] { (void)Remote(stranger.url()).refine("a mesh", {}); });
+  return server_error_of([&] { (void)Remote(stranger.url()).refine("a mesh", {}); });
 }
 
 /// The real service on a free loopback port, and a client of it.
@@ -135,7 +135,7 @@ TEST_F(RemoteTest, LevelsComeOneByOneAndTheLastIsTheAnswer) {
 }
 
 TEST_F(RemoteTest, RefusalsComeWithStatusCodeAndWords) {
-  const auto refusal = [](auto call) { return refusal_of(call); };
+  const auto refusal = [](auto call) { return server_error_of(call); };
   const auto ignore = [](const proto::Part&) {};
   const proto::Parameters large = proto::parse_query({{"levels", "6"}});
   EXPECT_EQ(refusal([&] { (void)Remote(url_).refine(coarse_, large); }).status(), 507);
@@ -213,7 +213,7 @@ TEST(Remote, AnAnswerWithoutEndIsNotReadToItsEnd) {
   const std::string endless = "HTTP/1.1 500 No\r\nContent-Length: 900000000000\r\n\r\n" + std::string(100'000, 'x');
   EXPECT_THAT(refinement_refused(endless).what(), HasSubstr("more than 65536 bytes"));
   const Stranger stranger(endless);
-  EXPECT_THAT(refusal_of([&] { (void)Remote(stranger.url()).health(Health::alive); }).what(),
+  EXPECT_THAT(server_error_of([&] { (void)Remote(stranger.url()).health(Health::alive); }).what(),
               HasSubstr("more than 65536 bytes"));
 }
 
@@ -225,7 +225,7 @@ TEST(Remote, HealthIsTheWordOfAPapilioServerAlone) {
     if (body == R"({"status": "alive"})")
       EXPECT_EQ(remote.health(Health::alive), "alive");
     else
-      EXPECT_THAT(refusal_of([&] { (void)remote.health(Health::alive); }).what(), HasSubstr("no papilio-server"));
+      EXPECT_THAT(server_error_of([&] { (void)remote.health(Health::alive); }).what(), HasSubstr("no papilio-server"));
   }
 }
 

@@ -18,7 +18,7 @@ using Source = ResultCache::Source;
 
 constexpr uint64_t enough = 1 << 20;
 
-bool stays() { return false; }
+bool never_leaves() { return false; }
 
 ResultCache::Result result(const std::string& bytes) {
   return std::make_shared<const proto::EncodedLevel>(proto::EncodedLevel{bytes, {}});
@@ -31,19 +31,19 @@ TEST(ResultCache, MakesOnceAndKeeps) {
     ++made;
     return result("bytes");
   };
-  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
-  const ResultCache::Answer again = cache.get_or_make("a", make, stays);
+  EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
+  const ResultCache::Answer again = cache.get_or_make("a", make, never_leaves);
   EXPECT_EQ(again.source, Source::kept);
   EXPECT_EQ(again.result->draco, "bytes");
-  EXPECT_EQ(cache.get_or_make("b", make, stays).source, Source::made);
+  EXPECT_EQ(cache.get_or_make("b", make, never_leaves).source, Source::made);
   EXPECT_EQ(made, 2);
 }
 
 TEST(ResultCache, WithoutABudgetNothingIsKept) {
   ResultCache cache(0, 8);
   const auto make = [&](const ResultCache::Question&) { return result("bytes"); };
-  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
-  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+  EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
+  EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
 }
 
 TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
@@ -60,13 +60,13 @@ TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));  // they are at the door: let them in
     return result("bytes");
   };
-  std::jthread maker([&] { EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made); });
+  std::jthread maker([&] { EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made); });
   begun.wait();
   std::vector<std::jthread> threads;
   for (int i = 0; i < others; ++i)
     threads.emplace_back([&] {
       ++asked;
-      const ResultCache::Answer answer = cache.get_or_make("a", make, stays);
+      const ResultCache::Answer answer = cache.get_or_make("a", make, never_leaves);
       EXPECT_EQ(answer.result->draco, "bytes");
       if (answer.source == Source::shared) ++shared;
     });
@@ -81,9 +81,9 @@ TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
   const auto fail = [](const ResultCache::Question&) -> ResultCache::Result {
     throw Problem(Code::result_too_large, "Ask for fewer levels, please.");
   };
-  EXPECT_THROW((void)cache.get_or_make("a", fail, stays), Problem);
+  EXPECT_THROW((void)cache.get_or_make("a", fail, never_leaves), Problem);
   const auto make = [](const ResultCache::Question&) { return result("bytes"); };
-  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::made);
+  EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
 }
 
 /// The client of the one that makes the result goes away: the work stops when nobody waits, and goes on when somebody
@@ -106,7 +106,7 @@ TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
   std::jthread leaver([&] { (void)cache.get_or_make("b", wait_for_company, [] { return true; }); });
   begun.wait();
   const ResultCache::Answer answer = cache.get_or_make(
-      "b", [](const ResultCache::Question&) { return result("made anew"); }, stays);
+      "b", [](const ResultCache::Question&) { return result("made anew"); }, never_leaves);
   EXPECT_EQ(answer.result->draco, "for the other");
 }
 
@@ -122,7 +122,7 @@ TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
           end.wait();
           return result("bytes");
         },
-        stays);
+        never_leaves);
   });
   begun.wait();
   const auto never = [](const ResultCache::Question&) -> ResultCache::Result {
@@ -142,16 +142,16 @@ TEST(ResultCache, OnlySoManyMayWait) {
     end.wait();
     return result("bytes");
   };
-  std::jthread maker([&] { (void)cache.get_or_make("a", make, stays); });
+  std::jthread maker([&] { (void)cache.get_or_make("a", make, never_leaves); });
   begun.wait();
   std::atomic<bool> asked = false;
   std::jthread waiter(
       [&] { EXPECT_EQ(cache.get_or_make("a", make, [&] { return !(asked = true); }).source, Source::shared); });
   while (!asked) std::this_thread::yield();  // its client is asked for while it waits
-  EXPECT_THROW((void)cache.get_or_make("a", make, stays), Problem);
+  EXPECT_THROW((void)cache.get_or_make("a", make, never_leaves), Problem);
   end.count_down();
   waiter.join();
-  EXPECT_EQ(cache.get_or_make("a", make, stays).source, Source::kept);
+  EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::kept);
 }
 
 TEST(ResultCache, WhatLandsBetweenTwoLooksIsNotMadeAgain) {
@@ -168,7 +168,7 @@ TEST(ResultCache, WhatLandsBetweenTwoLooksIsNotMadeAgain) {
               ++made;
               return result("bytes");
             },
-            stays);
+            never_leaves);
     });
   threads.clear();
   EXPECT_EQ(made, results);
@@ -187,13 +187,13 @@ TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
                        std::this_thread::sleep_for(std::chrono::milliseconds(20));
                        throw Problem(Code::cancelled, "The client went away.");
                      },
-                     stays),
+                     never_leaves),
                  Problem);
   });
   begun.wait();
   waits = true;
   const ResultCache::Answer answer = cache.get_or_make(
-      "a", [](const ResultCache::Question&) { return result("made anew"); }, stays);
+      "a", [](const ResultCache::Question&) { return result("made anew"); }, never_leaves);
   EXPECT_EQ(answer.result->draco, "made anew");
 }
 

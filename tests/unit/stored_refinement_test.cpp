@@ -19,11 +19,11 @@ namespace {
 
 using namespace test;
 
-constexpr uint64_t plenty = 1'000'000'000;
+constexpr uint64_t ample_bytes = 1'000'000'000;
 
 std::string real_draco(const char* name) { return write_draco_exact(real_mesh(name)); }
 
-std::vector<QueryFields> requests() {
+std::vector<QueryFields> all_requests() {
   std::vector<QueryFields> all{{{"levels", "2"}},
                                {{"levels", "3"}, {"flatness", "0.8,0.9"}},
                                {{"levels", "3"}, {"flatness", "0.8,0.9"}, {"tension", "off"}},
@@ -55,9 +55,9 @@ void expect_equal(const EncodedLevel& a, const EncodedLevel& b) {
 TEST(StoredRefinement, BytesEqualThoseOfAStream) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const std::string draco = real_draco(name);
-    for (uint64_t budget : {plenty, uint64_t{2'000'000}}) {
+    for (uint64_t budget : {ample_bytes, uint64_t{2'000'000}}) {
       const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, budget);
-      for (const QueryFields& fields : requests()) {
+      for (const QueryFields& fields : all_requests()) {
         const Parameters parameters = parse_query(fields);
         Refinement warm(stored, parameters, {});
         Refinement cold(draco, parameters, {});
@@ -86,7 +86,7 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
     const TriangleMesh triangles = random_small_mesh(random);
     const std::string draco = write_draco_exact(triangles);
     const Mesh coarse = build_mesh(triangles);
-    const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, random() % 2 == 0 ? plenty : 100'000);
+    const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, random() % 2 == 0 ? ample_bytes : 100'000);
     Parameters parameters;
     choose_rules(random, parameters.options);
     for (int request = 0; request < requests_of_one_mesh; ++request) {
@@ -111,8 +111,8 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
 
 TEST(StoredRefinement, ThreadsShareOneMesh) {
   const std::string draco = real_draco("bunny600.obj");
-  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, plenty);
-  const std::vector<QueryFields> fields = requests();
+  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, ample_bytes);
+  const std::vector<QueryFields> fields = all_requests();
   std::array<std::vector<EncodedLevel>, 3> answers;
   {
     std::vector<std::jthread> threads;
@@ -135,17 +135,17 @@ TEST(StoredRefinement, RulesShareTheBudget) {
       (void)Refinement(stored, parse_query({{"levels", "3"}, {"flatness", "0.9"}, {"tension", tension}}), {}).run();
     return stored->bytes();
   };
-  const uint64_t one = after(plenty, {"off"});
-  EXPECT_GT(after(plenty, {"off", "soft"}), one);
-  EXPECT_GT(after(plenty, {"off", "soft", "sharp"}), after(plenty, {"off", "soft"}));
+  const uint64_t one = after(ample_bytes, {"off"});
+  EXPECT_GT(after(ample_bytes, {"off", "soft"}), one);
+  EXPECT_GT(after(ample_bytes, {"off", "soft", "sharp"}), after(ample_bytes, {"off", "soft"}));
   EXPECT_LT(after(one, {"off", "soft", "sharp", "off", "off"}), 2 * one);
 }
 
 TEST(StoredRefinement, RefusalsEqualThoseOfAStream) {
   const std::string draco = write_draco_exact(icosahedron());
-  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, plenty);
+  const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, ample_bytes);
   EXPECT_THROW(Refinement(stored, parse_query({{"levels", "10"}}), {.max_output_faces = 1000}), Problem);
-  EXPECT_THROW(SharedMesh("no mesh", Limits{}, plenty), Problem);
+  EXPECT_THROW(SharedMesh("no mesh", Limits{}, ample_bytes), Problem);
   Refinement cancelled(stored, parse_query({{"levels", "3"}, {"flatness", "1"}}), {});
   EXPECT_THROW((void)cancelled.run({.cancelled = [] { return true; }}), Problem);
 }

@@ -33,12 +33,12 @@ LevelChoice choice_of(std::shared_ptr<HierarchyLevel> level, const std::vector<u
   return choice;
 }
 
-struct Count {
+struct PartSplit {
   size_t faces = 0, second_diagonals = 0, divided = 0;
 };
 
 /// Splits random edges, and compares what becomes of the faces in part split.
-void compare(const Mesh& mesh, const Buffer<Vec3f>& made, double most_cosine, std::mt19937& random, Count& count) {
+void compare(const Mesh& mesh, const Buffer<Vec3f>& made, double most_cosine, std::mt19937& random, PartSplit& count) {
   std::vector<uint32_t> edges;
   for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e)
     if (random() % 2 == 0) edges.push_back(e);
@@ -68,7 +68,7 @@ Buffer<Vec3f> middles(const Mesh& mesh) {
 
 TEST(Transitions, AreTheSameJudgedFourAtATime) {
   std::mt19937 random(11);
-  Count count;
+  PartSplit count;
   for (int i = 0; i < 400; ++i) {
     // Of any size, wherever; at times stretched until faces are needles.
     const float size = std::pow(10.0F, std::uniform_real_distribution<float>(-14, 14)(random));
@@ -90,7 +90,7 @@ TEST(Transitions, AreTheSameJudgedFourAtATime) {
 
 TEST(Transitions, AreTheSameWhereDiagonalsAreEqualAndAnglesJustTheSmallest) {
   std::mt19937 random(12);
-  Count count;
+  PartSplit count;
   for (int i = 0; i < 40; ++i)
     for (const TriangleMesh& triangles : {grid(9, 7), torus(12, 9), icosahedron(), box({3, 3, 3}, {1, 1, 1})}) {
       const Mesh mesh = build_mesh(triangles);

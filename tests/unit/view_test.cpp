@@ -43,7 +43,7 @@ EdgeMarks seen(const Mesh& mesh, const View& view, double edge_pixels = 0) {
   return marks;
 }
 
-size_t count(const EdgeMarks& marks) { return static_cast<size_t>(std::count(marks.begin(), marks.end(), 1)); }
+size_t marked_count(const EdgeMarks& marks) { return static_cast<size_t>(std::count(marks.begin(), marks.end(), 1)); }
 
 TEST(Camera, RefusesViewsThatDefineNoPicture) {
   View view = looking_down_z();
@@ -192,7 +192,7 @@ TEST(CullByView, KeepsTheFrontAndItsSilhouette) {
   view.eye = {0.5, 0.5, 5};
   view.target = {0.5, 0.5, 0};
   const EdgeMarks marks = seen(mesh, view);
-  EXPECT_EQ(count(marks), 5U);  // the front's four edges, which are the silhouette, and its diagonal
+  EXPECT_EQ(marked_count(marks), 5U);  // the front's four edges, which are the silhouette, and its diagonal
   for (uint32_t e = 0; e < marks.size(); ++e) {
     const uint32_t h = mesh.topology.half_edge[e];
     const bool front = mesh.positions[mesh.topology.origin[h]].z == 1 && mesh.positions[mesh.topology.tip(h)].z == 1;
@@ -227,9 +227,9 @@ TEST(CullByView, DropsEdgesThatLookShort) {
   View view = looking_down_z();  // 25 pixels a unit: edges of 25, diagonals of 35
   view.eye = {2, 2, 10};
   view.target = {2, 2, 0};
-  EXPECT_EQ(count(seen(mesh, view, 24)), mesh.topology.edge_count());
-  EXPECT_EQ(count(seen(mesh, view, 30)), 16U);
-  EXPECT_EQ(count(seen(mesh, view, 36)), 0U);
+  EXPECT_EQ(marked_count(seen(mesh, view, 24)), mesh.topology.edge_count());
+  EXPECT_EQ(marked_count(seen(mesh, view, 30)), 16U);
+  EXPECT_EQ(marked_count(seen(mesh, view, 36)), 0U);
 }
 
 TEST(LongestEdges, AreTheSameByFours) {
@@ -265,7 +265,7 @@ TEST(Camera, FacingIsTheCosineToTheViewer) {
 
 TEST(CullByView, FaceWithoutAreaIsNeverAway) {
   const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
-  EXPECT_EQ(count(seen(mesh, looking_down_z())), 3U);
+  EXPECT_EQ(marked_count(seen(mesh, looking_down_z())), 3U);
 }
 
 }  // namespace
