@@ -34,7 +34,7 @@ clang_stubs() {
     options+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON") # as if it were not installed
   done
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../.." -B "$BATS_TEST_TMPDIR/build" "${options[@]}" \
-    -DPAPILIO_TESTS=OFF -DPAPILIO_WEB=OFF -DPAPILIO_DEMO=ON >/dev/null
+    -DPAPILIO_TESTS=OFF -DPAPILIO_WEB=OFF -DPAPILIO_DEMO=ON -DPAPILIO_UNITY=OFF >/dev/null
   ! grep -qi openmesh "$BATS_TEST_TMPDIR/build/CMakeCache.txt"
   # How much there is to compile is said before it begins; nothing is compiled here.
   mkdir "$BATS_TEST_TMPDIR/stubs"
