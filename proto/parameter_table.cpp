@@ -102,12 +102,21 @@ const std::array table{
                   .choices = {"soft", "off", "sharp"},
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.tension)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.tension = static_cast<Tension>(v[0]); }},
+    ParameterInfo{.name = "shape",
+                  .type = ParameterType::choice,
+                  .description =
+                      "mechanical: flat sides, edges over 31 degrees and outlines of broad flats stay as they are; "
+                      "organic: only flats stay flat; auto: decided for each component; plain: the published scheme, "
+                      "as always with tension=off",
+                  .choices = {"auto", "organic", "mechanical", "plain"},
+                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.shape)}; },
+                  .set = [](Parameters& p, const Values& v) { p.options.shape = static_cast<Shape>(v[0]); }},
     ParameterInfo{.name = "crease_angle",
                   .type = ParameterType::number,
                   .min = 0,
                   .max = 180,
                   .unit = "degrees",
-                  .default_text = "180: no creases",
+                  .default_text = "180: those of shape",
                   .description = "Edges whose faces' normals differ by more stay sharp",
                   .get = [](const Parameters& p) { return Values{p.options.crease_angle}; },
                   .set = [](Parameters& p, const Values& v) { p.options.crease_angle = v[0]; }},

@@ -180,6 +180,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   made.statistics.error = result.error;
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
   made.statistics.unreached = unreached_text(options_, made.statistics);
+  made.statistics.shape = shape_text(result.shape);
   if (hooks.on_level) hooks.on_level(made);
   return made;
 }
@@ -210,6 +211,16 @@ std::optional<StopReason> stop_reason_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::string shape_text(const ShapeReport& shape) {
+  if (shape.components == 0) return "plain";
+  const auto count = [](uint32_t number, const std::string& what) {
+    return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+  };
+  const std::string creases = shape.creases == 0 ? "" : ", " + count(shape.creases, "crease");
+  if (shape.mechanical == 0) return "organic: " + count(shape.components, "component") + creases;
+  return "mechanical: " + std::to_string(shape.mechanical) + " of " + count(shape.components, "component") + creases;
+}
+
 std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics) {
   std::vector<std::pair<std::string, std::string>> headers{
       {"Papilio-Vertices", std::to_string(statistics.vertices)},
@@ -221,6 +232,7 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
     headers.emplace_back("Papilio-Error", format_rounded(statistics.error));
     if (statistics.error_pixels) headers.emplace_back("Papilio-Error-Pixels", format_rounded(*statistics.error_pixels));
   }
+  if (!statistics.shape.empty()) headers.emplace_back("Papilio-Shape", statistics.shape);
   if (const std::string found = defects_text(statistics.found); !found.empty())
     headers.emplace_back("Papilio-Found", found);
   headers.emplace_back("Server-Timing", "decode;dur=" + milliseconds_text(statistics.times.decode) +
@@ -239,6 +251,7 @@ std::string statistics_json(const Statistics& statistics) {
       document["error_pixels"] = parse_number(format_rounded(*statistics.error_pixels)).value();
   }
   if (!statistics.unreached.empty()) document["unreached"] = statistics.unreached;
+  if (!statistics.shape.empty()) document["shape"] = statistics.shape;
   for (const auto& [name, count] : defects(statistics.found)) document["found"][std::string(name)] = count;
   const auto rounded = [](double milliseconds) { return std::round(milliseconds * 1000) / 1000; };
   document["milliseconds"] = {{"decode", rounded(statistics.times.decode)},

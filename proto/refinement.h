@@ -33,6 +33,7 @@ struct Statistics {
   double error = 0;                       ///< largest remaining deviation, relative to the coarse mesh's diagonal
   std::optional<double> error_pixels{};   ///< largest remaining deviation in pixels, with a view
   std::string unreached{};                ///< description of unreached targets (unreached.h)
+  std::string shape{};                    ///< what the mesh was taken for (shape_text); of the last level only
   BuildReport found{};                    ///< findings in the coarse mesh
   StageTimes times;
 };
@@ -100,7 +101,10 @@ class Refinement {
 /// Formats statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Found
 /// (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// Formats statistics as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, found
+/// Formats what a mesh was taken for: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain".
+[[nodiscard]] std::string shape_text(const ShapeReport& shape);
+/// Formats statistics as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, shape,
+/// found
 /// {...}, milliseconds {decode, refine, encode}.
 [[nodiscard]] std::string statistics_json(const Statistics& statistics);
 

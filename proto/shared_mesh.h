@@ -30,8 +30,8 @@ class SharedMesh {
   SharedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
-  /// Returns the mesh for the rules (tension, w, crease angle) of the options, computed on first use. Least recently
-  /// used meshes are evicted beyond the budget.
+  /// Returns the mesh for the rules (tension, shape, w, crease angle) of the options, computed on first use. Least
+  /// recently used meshes are evicted beyond the budget.
   [[nodiscard]] std::shared_ptr<const papilio::PreparedMesh> for_rules_of(const Options& options) const;
   /// Returns the bytes in memory.
   [[nodiscard]] uint64_t bytes() const;

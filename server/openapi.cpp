@@ -176,6 +176,7 @@ ordered_json headers() {
             {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget", "limits"}}}}}},
           {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
+          {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept")},
           {"Papilio-Found", header("string", "Defects of the coarse mesh and how many of each")},
           {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
           {"ETag", header("string", "Strong")},
@@ -210,11 +211,12 @@ ordered_json refined_answer() {
   types[multipart_type]["schema"]["description"] =
       "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
       "and a JSON summary. A problem after the stream has begun is its last part.";
-  return {{"description", "The refined mesh"},
-          {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
-                                         "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
-                                         "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
-          {"content", types}};
+  return {
+      {"description", "The refined mesh"},
+      {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
+                                     "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels", "Papilio-Shape",
+                                     "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
+      {"content", types}};
 }
 
 ordered_json json_answer(const std::string& description, const std::string& schema) {

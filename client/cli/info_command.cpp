@@ -3,8 +3,9 @@
 
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
-#include "papilio/mesh.h"
+#include "papilio/refine.h"
 #include "proto/findings.h"
+#include "proto/refinement.h"
 #include "proto/text.h"
 
 namespace papilio::client {
@@ -27,6 +28,7 @@ ordered_json describe(const MeshPlace& input) {
       {"edges", topology.edge_count()},
       {"euler_characteristic", topology.euler_characteristic()},
       {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0}};
+  description["shape"] = proto::shape_text(shape_of(mesh));
   for (const auto& [name, count] : proto::all_findings(report)) description[std::string(name)] = count;
   description["box"] = {{"min", triple(box.min)}, {"max", triple(box.max)}, {"diagonal", box.diagonal()}};
   return description;

@@ -161,6 +161,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
   statistics.error = proto::parse_number(field("Papilio-Error")).value_or(0);
   statistics.error_pixels = proto::parse_number(field("Papilio-Error-Pixels"));
+  statistics.shape = field("Papilio-Shape");
   statistics.found = proto::parse_defects(field("Papilio-Found"));
   const std::string timing = field("Server-Timing");
   statistics.times = {stage_time(timing, "decode"), stage_time(timing, "refine"), stage_time(timing, "encode")};

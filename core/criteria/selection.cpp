@@ -40,7 +40,7 @@ Buffer<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, c
   return made;
 }
 
-std::optional<TensionField> find_tension(const Topology& mesh, const Buffer<Vec3f>& normals, const Options& options) {
+std::optional<TensionField> find_tension(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options) {
   if (options.tension == Tension::off) return std::nullopt;
   return tension_field(mesh, normals, options.tension);
 }
@@ -55,7 +55,7 @@ Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const T
 Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
                             const SplitPlan& plan, const TrialContext& context) {
   const Topology& topology = mesh.topology;
-  const std::optional<TensionField> field = find_tension(topology, normals, options);
+  const std::optional<TensionField> field = find_tension(mesh, normals, options);
   const TensionField* tension = field ? &*field : nullptr;
   constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
   if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
@@ -76,7 +76,7 @@ Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_e
 
 Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context) {
   Trial trial{.normals = normals_asked_of(mesh, options, context)};
-  const std::optional<TensionField> tension = find_tension(mesh.topology, trial.normals, options);
+  const std::optional<TensionField> tension = find_tension(mesh, trial.normals, options);
   trial.made = make_all_vertices(mesh, tension ? &*tension : nullptr, context);
   trial.is_of_some = context.asked_of != nullptr || context.part != nullptr;
   return trial;

@@ -66,6 +66,7 @@ class Assembler {
     topology.vertex_count = vertices;
     topology.pinched = coarse.pinched;
     topology.darts = coarse.darts;
+    topology.shape = coarse.shape;
     const uint32_t half_edges = 3 * static_cast<uint32_t>(count_assembled(levels));
     topology.origin.resize_for_overwrite(half_edges);
     topology.twin.resize_for_overwrite(size_t{half_edges} + 1);

@@ -4,6 +4,7 @@
 
 #include "mesh/ranks.h"
 #include "mesh/region.h"
+#include "rules/shape_rules.h"
 #include "simd/vec3fa.h"
 #include "split/split_in_four.h"
 
@@ -72,6 +73,8 @@ class LevelMaker {
     };
     carry(mesh_.pinched, part.pinched);
     carry(mesh_.darts, part.darts);
+    part.shape = {mesh_.shape.has_rules, mesh_.shape.is_mechanical, mesh_.shape.flat_distance, {}};
+    carry(mesh_.shape.corners, part.shape.corners);
     return part;
   }
 
@@ -153,8 +156,12 @@ class LevelMaker {
 }  // namespace
 
 bool HierarchyLevel::is_complete(uint32_t edge) const {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  return complete[mesh.topology.origin[h]] != 0 && complete[mesh.topology.tip(h)] != 0;
+  const Topology& t = mesh.topology;
+  const uint32_t h = t.half_edge[edge];
+  const auto is_complete_at = [&](uint32_t vertex) { return complete[vertex] != 0; };
+  if (!is_complete_at(t.origin[h]) || !is_complete_at(t.tip(h))) return false;
+  return !t.shape.has_rules || sides_of_strip(t, h)[0] == none ||
+         (is_complete_at(t.apex(h)) && is_complete_at(t.apex(t.twin[h])));
 }
 
 uint64_t HierarchyLevel::bytes() const {

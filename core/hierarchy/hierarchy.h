@@ -48,7 +48,7 @@ struct HierarchyLevel {
   [[nodiscard]] bool is_tried_whole() const {
     return is_whole && !trial.is_of_some && trial.made.size() == mesh.topology.edge_count();
   }
-  /// Whether every face at the edge is held, and so are the rings round its ends.
+  /// Whether every face at the edge is held, and so are the rings round its ends, and all that its rule looks at.
   [[nodiscard]] bool is_complete(uint32_t edge) const;
   /// What it takes in memory.
   [[nodiscard]] uint64_t bytes() const;

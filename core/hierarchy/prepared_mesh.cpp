@@ -6,7 +6,7 @@
 #include "criteria/view_culling.h"
 #include "hierarchy/prepared_state.h"
 #include "hierarchy/transition.h"
-#include "mesh/crease.h"
+#include "mesh/shape.h"
 
 namespace papilio {
 namespace {
@@ -20,10 +20,11 @@ uint64_t bytes_of(const KeptLevels& levels) {
 }  // namespace
 
 PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budget)
-    : rules_{.tension = rules.tension, .w = rules.w, .crease_angle = rules.crease_angle}, budget_(byte_budget) {
+    : rules_{.tension = rules.tension, .shape = rules.shape, .w = rules.w, .crease_angle = rules.crease_angle},
+      budget_(byte_budget) {
   check_options(rules_);
   guard_memory([&] {
-    mark_creases(coarse, rules_.crease_angle);
+    shape_ = mark_shape(coarse, rules_);
     smallest_angle_ = papilio::smallest_angle(coarse);
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
@@ -60,7 +61,8 @@ const Mesh& PreparedMesh::coarse() const { return state_->kept()[0]->mesh; }
 
 bool PreparedMesh::suits(const Options& options) const {
   const Options& rules = state_->rules();
-  return options.tension == rules.tension && options.w == rules.w && options.crease_angle == rules.crease_angle;
+  return options.tension == rules.tension && options.shape == rules.shape && options.w == rules.w &&
+         options.crease_angle == rules.crease_angle;
 }
 
 uint64_t PreparedMesh::bytes() const { return state_->bytes(); }

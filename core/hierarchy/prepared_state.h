@@ -7,6 +7,7 @@
 
 #include "hierarchy/hierarchy.h"
 #include "papilio/prepared_mesh.h"
+#include "papilio/result.h"
 
 namespace papilio {
 
@@ -21,6 +22,7 @@ class PreparedMesh::State {
   [[nodiscard]] const Options& rules() const { return rules_; }
   [[nodiscard]] uint64_t budget() const { return budget_; }
   [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
+  [[nodiscard]] const ShapeReport& shape() const { return shape_; }
   [[nodiscard]] KeptLevels kept() const;
   [[nodiscard]] uint64_t bytes() const;
   /// Replaces what is kept, as far as the budget holds it.
@@ -29,6 +31,7 @@ class PreparedMesh::State {
  private:
   Options rules_;
   uint64_t budget_;
+  ShapeReport shape_;
   double smallest_angle_;      ///< of the coarse mesh, in radians
   mutable std::mutex access_;  ///< to the two below
   mutable KeptLevels kept_;    ///< the coarse level first

@@ -6,7 +6,6 @@
 #include "mesh/normals.h"
 
 namespace papilio {
-namespace {
 
 std::vector<uint32_t> find_darts(const Topology& mesh) {
   std::vector<uint8_t> curves(mesh.vertex_count, 0);
@@ -21,8 +20,6 @@ std::vector<uint32_t> find_darts(const Topology& mesh) {
     if (curves[v] == 1 && !std::ranges::binary_search(mesh.pinched, v)) darts.push_back(v);
   return darts;
 }
-
-}  // namespace
 
 void mark_creases(Mesh& mesh, double degrees) {
   if (degrees >= 180) return;

@@ -9,4 +9,7 @@ namespace papilio {
 /// are curves to the rules: kept sharp, split by the rule along the curve. Where three or more curves meet, each ends.
 void mark_creases(Mesh& mesh, double degrees);
 
+/// The vertices inside the surface at which a single crease ends, in ascending order.
+[[nodiscard]] std::vector<uint32_t> find_darts(const Topology& mesh);
+
 }  // namespace papilio

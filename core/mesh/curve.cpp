@@ -15,12 +15,13 @@ CurveNeighbours::CurveNeighbours(const Topology& mesh)
     join(a, b);
     join(b, a);
   }
+  for (uint32_t v : mesh.shape.corners) degree_[v] = ends_here;
 }
 
 uint32_t CurveNeighbours::before(uint32_t h) const {
   const uint32_t vertex = mesh_.origin[h];
   if (passes_through(vertex)) return neighbours_[vertex] ^ mesh_.tip(h);
-  if (mesh_.kind[mesh_.edge[h]] != EdgeKind::boundary) return none;
+  if (mesh_.kind[mesh_.edge[h]] != EdgeKind::boundary || degree_[vertex] == ends_here) return none;
   uint32_t incoming = Topology::previous(h);
   while (mesh_.twin[incoming] != none) incoming = Topology::previous(mesh_.twin[incoming]);
   return mesh_.origin[incoming];
@@ -29,7 +30,7 @@ uint32_t CurveNeighbours::before(uint32_t h) const {
 uint32_t CurveNeighbours::after(uint32_t h) const {
   const uint32_t vertex = mesh_.tip(h);
   if (passes_through(vertex)) return neighbours_[vertex] ^ mesh_.origin[h];
-  if (mesh_.kind[mesh_.edge[h]] != EdgeKind::boundary) return none;
+  if (mesh_.kind[mesh_.edge[h]] != EdgeKind::boundary || degree_[vertex] == ends_here) return none;
   uint32_t outgoing = Topology::next(h);
   while (mesh_.twin[outgoing] != none) outgoing = Topology::next(mesh_.twin[outgoing]);
   return mesh_.tip(outgoing);

@@ -6,6 +6,8 @@ namespace papilio {
 
 bool is_dart(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.darts, vertex); }
 
+bool is_corner(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.shape.corners, vertex); }
+
 namespace {
 
 /// Steps from spoke to spoke, `none` across a curve; round a dart its crease does not count. (A cut does: beyond it no

@@ -22,6 +22,9 @@ struct Fan {
 /// clockwise end, a closed one at h. Round a dart it is closed.
 void collect_fan(const Topology& mesh, uint32_t h, Fan& fan);
 
+/// Whether curves end at the vertex, and open fans have the midpoint rule (`ShapeMarks::corners`).
+[[nodiscard]] bool is_corner(const Topology& mesh, uint32_t vertex);
+
 /// Whether a single crease ends at the vertex (`Topology::darts`).
 [[nodiscard]] bool is_dart(const Topology& mesh, uint32_t vertex);
 

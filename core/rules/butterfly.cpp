@@ -31,7 +31,7 @@ class Butterfly {
         out_[rank] = Real(0.5) * out_[rank];
       else if (irregular_ends_[rank] == 0)
         out_[rank] = rules_.regular(mesh_.half_edge[e]);
-      out_[rank] = rules_.finish(mesh_.half_edge[e], out_[rank]);
+      out_[rank] = rules_.finish(mesh_.half_edge[e], out_[rank], &curves);
     }
     return std::move(out_);
   }

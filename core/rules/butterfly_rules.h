@@ -189,8 +189,13 @@ class ButterflyRules {
     return w_ == 0 ? q : q + tensed_->least_factor(h) * (interior_interior(h, t) - eight_points(h, t));
   }
 
-  /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge.
-  [[nodiscard]] Point finish(uint32_t h, Point q) const { return tensed_ ? tensed_->finish(h, q) : q; }
+  /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge; `curves` may be null where there
+  /// are none.
+  [[nodiscard]] Point finish(uint32_t h, Point q, const CurveNeighbours* curves) const {
+    if (!tensed_) return q;
+    if (curves != nullptr && tensed_->is_diagonal_of_strip(h)) q = across_strip(*curves, h);
+    return tensed_->finish(h, q);
+  }
 
   /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
   /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in edge_accumulator.h.
@@ -250,6 +255,10 @@ class ButterflyRules {
   void split_curve_spokes(const Fan& fan, const Add& add) const {
     const uint32_t k = fan.valence();
     if (k < 2) return;  // none lies inside
+    if (is_corner(mesh_, fan.centre)) {
+      for (uint32_t i = 1; i < k; ++i) add(fan.spokes[i], Real(0.5) * (p_[fan.centre] + p_[fan.ring[i]]));
+      return;
+    }
     const stencil::CurveRule rules(k);
     Vec3d sum_1, sum_2;
     for (uint32_t j = 1; j < k; ++j) {
@@ -285,6 +294,16 @@ class ButterflyRules {
     if (a_left && b_left) return curve_curve(h, t);
     if (a_right && b_right) return curve_curve(t, h);
     return Real(0.5) * (p_[mesh_.origin[h]] + p_[mesh_.origin[t]]);
+  }
+
+  /// The diagonal of a flat quadrangle between two curves moves as they do, half as far as both together: so the wall
+  /// of a drum is as round as its rims. (The published rule is the midpoint, which leaves it faceted.)
+  [[nodiscard]] Point across_strip(const CurveNeighbours& curves, uint32_t h) const {
+    const auto [one, other] = sides_of_strip(mesh_, h);
+    const auto moved = [&](uint32_t side) {
+      return along_curve(curves, mesh_.edge[side]) - Real(0.5) * (at(mesh_.origin[side]) + at(mesh_.tip(side)));
+    };
+    return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))) + Real(0.5) * (moved(one) + moved(other));
   }
 
   /// The vertex across the edge of h from h's face.

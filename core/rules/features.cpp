@@ -8,8 +8,8 @@
 namespace papilio {
 
 bool is_regular(const Topology& mesh, const Fan& fan) {
-  return fan.valence() == (fan.closed ? stencil::regular_valence : stencil::regular_curve_triangles) &&
-         !is_dart(mesh, fan.centre);
+  if (fan.closed) return fan.valence() == stencil::regular_valence && !is_dart(mesh, fan.centre);
+  return fan.valence() == stencil::regular_curve_triangles && !is_corner(mesh, fan.centre);
 }
 
 void Features::fan(const Topology& mesh, size_t i, Fan& fan) const {

@@ -50,7 +50,7 @@ struct Features {
 };
 
 /// Whether the regular rules apply to its spokes: closed with six faces, or open with three. To a dart they never do:
-/// they look for curves edge by edge.
+/// they look for curves edge by edge. Nor to a corner, where a curve ends.
 [[nodiscard]] bool is_regular(const Topology& mesh, const Fan& fan);
 
 /// Of the vertices that are not at cuts. O(F + E).

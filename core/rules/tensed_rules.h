@@ -122,23 +122,70 @@ class TensedRules {
                                                  turn_factor(a, b, after) * (after + a - Real(2) * b));
   }
 
-  /// What comes last for every edge: sharp edges follow their feature, and nothing goes far.
+  /// Whether the shape rules hold, and h is the diagonal of a flat quadrangle two of whose sides are curves.
+  [[nodiscard]] bool is_diagonal_of_strip(uint32_t h) const {
+    return field_.shape && field_.shape->is_flat[mesh_.edge[h]] != 0 && sides_of_strip(mesh_, h)[0] != none;
+  }
+
+  /// What comes last for every edge: sharp edges follow their feature, nothing goes far, and flat stays flat.
   [[nodiscard]] Point finish(uint32_t h, Point q) const {
     if (field_.follow_features && mesh_.twin[h] != none) {
       const auto factor = Real(field_.factor[mesh_.edge[h]]);
       if (factor < 1) q = factor * q + (1 - factor) * along_feature(h);
     }
+    if (!field_.shape) return bounded(h, q);
+    if (field_.shape->is_flat[mesh_.edge[h]] != 0 && has_flat_stencil(mesh_, *field_.shape, h)) return midpoint(h);
+    return is_surely_within_bounds(h, q) ? q : unfolded(h, bounded(h, q));
+  }
+
+ private:
+  [[nodiscard]] Point bounded(uint32_t h, Point q) const {
     const Point m = midpoint(h);
     const Vec3d off = widen(q - m);
     const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
-    constexpr double sure = 0.99;  // most are, and spare the roots
     if (dot(off, off) < sure * tension_bound * tension_bound * dot(along, along)) return q;
     const double moved = length(off);
     const double most = tension_bound * length(along);
     return moved > most ? m + Real(most / moved) * (q - m) : q;
   }
 
- private:
+  /// Most are, and spare the roots.
+  static constexpr double sure = 0.99;
+  [[nodiscard]] bool is_surely_within_bounds(uint32_t h, Point q) const {
+    const Vec3d off = widen(q - midpoint(h));
+    const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
+    const double size = dot(along, along);
+    const double slid = dot(off, along);
+    return dot(off, off) < sure * tension_bound * tension_bound * size &&
+           dot(off, off) * size - slid * slid < sure * inward_bound * inward_bound * least_squared_height(h) * size;
+  }
+
+  /// Of the faces at h.
+  [[nodiscard]] double least_squared_height(uint32_t h) const {
+    const uint32_t t = mesh_.twin[h];
+    const Buffer<double>& height = field_.shape->squared_height;
+    return t == none ? height[Topology::face(h)] : std::min(height[Topology::face(h)], height[Topology::face(t)]);
+  }
+
+  /// At shared edges the faces are not all known here: they stay as they are.
+  [[nodiscard]] Point unfolded(uint32_t h, Point q) const {
+    const EdgeKind kind = mesh_.kind[mesh_.edge[h]];
+    if (kind == EdgeKind::shared || kind == EdgeKind::cut) return q;
+    const uint32_t t = mesh_.twin[h];
+    const auto face_at = [&](uint32_t side) {
+      return FaceAtEdge{widen(p_[mesh_.apex(side)]), std::sqrt(field_.shape->squared_height[Topology::face(side)])};
+    };
+    const std::array<FaceAtEdge, 2> faces{face_at(h), face_at(t == none ? h : t)};
+    const Point m = midpoint(h);
+    const Vec3d off = widen(q) - widen(m);
+    const Vec3d kept = keep_unfolded(off, widen(p_[mesh_.origin[h]]), widen(p_[mesh_.tip(h)]),
+                                     std::span(faces).first(t == none ? 1 : 2),
+                                     mesh_.shape.is_mechanical ? mechanical_across_bound : organic_across_bound);
+    if (kept == off) return q;
+    const Vec3d at = widen(m) + kept;
+    return {static_cast<Real>(at.x), static_cast<Real>(at.y), static_cast<Real>(at.z)};
+  }
+
   /// Squares of small floats would be nothing.
   [[nodiscard]] static Vec3d widen(Point p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};

@@ -31,7 +31,8 @@ double hinge_factor(double normal_product) {
   return s * s * (3 - 2 * s);
 }
 
-TensionField tension_field(const Topology& mesh, const Buffer<Vec3f>& normals, Tension tension) {
+TensionField tension_field(const Mesh& of, const Buffer<Vec3f>& normals, Tension tension) {
+  const Topology& mesh = of.topology;
   TensionField field{.factor = Buffer<float>(mesh.edge_count(), 1), .follow_features = tension == Tension::sharp};
   for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
     if (mesh.kind[e] != EdgeKind::smooth) continue;
@@ -41,6 +42,7 @@ TensionField tension_field(const Topology& mesh, const Buffer<Vec3f>& normals, T
     if (has_normal(n1) && has_normal(n2)) field.factor[e] = static_cast<float>(hinge_factor(dot(n1, n2)));
   }
   if (field.follow_features) find_features(mesh, field);
+  if (mesh.shape.has_rules) field.shape = shape_field(of, normals);
   return field;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "papilio/mesh.h"
 #include "papilio/options.h"
+#include "rules/shape_rules.h"
 
 // Tension: no overshoot at sharp edges. The paper lowers stencil weights by factors t_i that it takes from another
 // paper, which cannot be found; the definition here is this project's own. A butterfly rule is the edge's midpoint less
@@ -27,11 +29,12 @@ struct TensionField {
   /// exclusive or of their other ends.
   std::vector<uint8_t> feature_degree{};
   std::vector<uint32_t> feature_neighbours{};
+  std::optional<ShapeField> shape{};  ///< where the mesh has shape rules
 
   [[nodiscard]] bool is_sharp(uint32_t e) const { return factor[e] < 0.5F; }
 };
 
 /// The field of a level; `normals` [F] are its faces'. O(V + E).
-[[nodiscard]] TensionField tension_field(const Topology& mesh, const Buffer<Vec3f>& normals, Tension tension);
+[[nodiscard]] TensionField tension_field(const Mesh& mesh, const Buffer<Vec3f>& normals, Tension tension);
 
 }  // namespace papilio

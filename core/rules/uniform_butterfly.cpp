@@ -131,9 +131,13 @@ void uniform_butterfly(const Topology& topology, const Features& features, const
   };
   split_at_irregular_vertices(features, positions, &topology, &rules, add_opinion);
   if (tension == nullptr) return;
+  std::optional<CurveNeighbours> found;
+  if (tension->shape && !features.curve_half_edges.empty()) found.emplace(topology);
+  const CurveNeighbours* curves = found ? &*found : nullptr;
   for_each_part(parts_of(topology.edge_count(), threads), topology.edge_count(),
                 [&](uint32_t, uint32_t first, uint32_t last) {
-                  for (uint32_t e = first; e < last; ++e) made[e] = rules.finish(topology.half_edge[e], made[e]);
+                  for (uint32_t e = first; e < last; ++e)
+                    made[e] = rules.finish(topology.half_edge[e], made[e], curves);
                 });
 }
 

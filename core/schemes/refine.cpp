@@ -7,7 +7,7 @@
 #include "hierarchy/memory_plan.h"
 #include "hierarchy/progress.h"
 #include "mesh/connect.h"
-#include "mesh/crease.h"
+#include "mesh/shape.h"
 #include "schemes/in_place.h"
 #include "schemes/red_green.h"
 #include "schemes/uniform.h"
@@ -64,6 +64,14 @@ void check_room(const Mesh& coarse, const Options& options) {
   if (Selection(options, 1).is_uniform()) require_room_for_uniform(coarse, options, progress);
 }
 
+ShapeReport shape_of(Mesh coarse, const Options& options) {
+  check_options(options);
+  return guard_memory([&] {
+    number_edges(coarse.topology);
+    return mark_shape(coarse, options);
+  });
+}
+
 bool uses_hierarchy(const Options& options) {
   return options.scheme == Scheme::red_green && (options.levels == 0 || !Selection(options, 1).is_uniform());
 }
@@ -74,17 +82,23 @@ Result refine(Mesh coarse, const Options& options, const Hooks& hooks) {
   return guard_memory([&] {
     const double diagonal = bounding_box(coarse.positions).diagonal();
     number_edges(coarse.topology);
-    mark_creases(coarse, options.crease_angle);
-    return run(std::move(coarse), diagonal, options, hooks);
+    const ShapeReport shape = mark_shape(coarse, options);
+    Result result = run(std::move(coarse), diagonal, options, hooks);
+    result.shape = shape;
+    return result;
   });
 }
 
 Result refine(const PreparedMesh& coarse, const Options& options, const Hooks& hooks) {
   check_options(options);
   if (!coarse.suits(options))
-    throw Error(Fault::bad_option, "The mesh was prepared for another tension, w or crease angle.", "tension");
+    throw Error(Fault::bad_option, "The mesh was prepared for another tension, shape, w or crease angle.", "tension");
   check_room(coarse.coarse(), options);
-  return guard_memory([&] { return run(coarse, bounding_box(coarse.coarse().positions).diagonal(), options, hooks); });
+  return guard_memory([&] {
+    Result result = run(coarse, bounding_box(coarse.coarse().positions).diagonal(), options, hooks);
+    result.shape = coarse.state().shape();
+    return result;
+  });
 }
 
 }  // namespace papilio

@@ -57,7 +57,7 @@ class Uniform {
     const Buffer<Vec3f> normals =
         options_.tension == Tension::off ? Buffer<Vec3f>{} : face_normals(mesh_, progress_.threads());
     if (options_.w == 0) {
-      const TensionField field = tension_field(topology, normals, options_.tension);
+      const TensionField field = tension_field(mesh_, normals, options_.tension);
       Vec3f* made = make_room(topology.edge_count());
       uniform_butterfly(topology, features_, mesh_.positions.data(), made, &field, progress_.threads());
     } else {

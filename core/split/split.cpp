@@ -18,6 +18,7 @@ class Splitter {
     child_.vertex_count = mesh_.vertex_count + plan_.count();
     child_.pinched = mesh_.pinched;
     child_.darts = mesh_.darts;
+    child_.shape = mesh_.shape;
     child_.origin.resize_for_overwrite(size_t{3} * faces);
     child_.twin.resize_for_overwrite(size_t{3} * faces);
     child_.edge.resize_for_overwrite(size_t{3} * faces);

@@ -55,6 +55,7 @@ Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, si
   below.vertex_count = vertices + edges;
   below.pinched = mesh.pinched;
   below.darts = mesh.darts;
+  below.shape = mesh.shape;
   below.origin.resize_for_overwrite(half_edges);
   below.twin.resize_for_overwrite(half_edges);
   return below;

@@ -125,6 +125,7 @@ Options decisive_request(std::mt19937& random, const Mesh& mesh, uint64_t most_f
   while (options.levels > 0 && faces << 2U * options.levels > most_faces) --options.levels;
   options.scheme = one_in(random, 3) ? Scheme::in_place : Scheme::red_green;
   options.tension = static_cast<Tension>(below(random, 3));
+  options.shape = Shape::plain;
   options.w = one_in(random, 4) ? between(random, -0.0625, 0.125) : 0;
   options.crease_angle = one_in(random, 3) ? between(random, 10, 90) : 180;
   options.growth = static_cast<Growth>(below(random, 3));

@@ -122,6 +122,8 @@ void choose_rules(std::mt19937& random, Options& options) {
   options.tension = dice.one_of(std::array{Tension::soft, Tension::off, Tension::off, Tension::sharp});
   options.w = dice.one_in(4) ? dice.between(-0.0625, 0.125) : 0;
   options.crease_angle = dice.one_in(3) ? dice.between(0, 90) : 180;
+  options.shape =
+      dice.one_of(std::array{Shape::automatic, Shape::automatic, Shape::organic, Shape::mechanical, Shape::plain});
 }
 
 void choose_request(std::mt19937& random, const Mesh& mesh, Options& options) {

@@ -24,6 +24,7 @@ UniformHierarchy::UniformHierarchy(const Mesh& coarse, const Options& options) {
   Options uniform;
   uniform.levels = options.levels;
   uniform.tension = options.tension;
+  uniform.shape = options.shape;
   uniform.w = options.w;
   uniform.crease_angle = options.crease_angle;
   const auto add = [&](const Level& level) { add_level(level.mesh.topology, level.level, !level.last); };

@@ -62,7 +62,8 @@ TEST(Attributes, ChartsOfACubeAreTiledAndPositionsStayClosed) {
   const Mesh coarse = build_mesh(charted_cube());
   EXPECT_EQ(coarse.topology.vertex_count, 8U);
   EXPECT_EQ(coarse.attributes.point_count, 24U);
-  for (const Options& options : ways()) {
+  for (Options options : ways()) {
+    options.shape = Shape::plain;  // else a cube is done at once
     const Mesh refined = refine(coarse, options).mesh;
     expect_sound(refined, refine(without_attributes(coarse), options).mesh, 1);
     EXPECT_EQ(refined.topology.euler_characteristic(), 2);

@@ -139,7 +139,7 @@ TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
       Features features = find_features(level.topology);
       for (int k = 0; k < 3; ++k) {
         std::optional<TensionField> field;
-        if (tension != Tension::off) field = tension_field(level.topology, face_normals(level), tension);
+        if (tension != Tension::off) field = tension_field(level, face_normals(level), tension);
         const TensionField* const used = field ? &*field : nullptr;
         const Buffer<Vec3f> expected = butterfly(level.topology, level.positions, everything(level), 0.0F, used);
         const uint32_t vertices = level.topology.vertex_count;

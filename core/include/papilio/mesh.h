@@ -54,6 +54,16 @@ enum class EdgeKind : uint8_t {
   cut,       ///< faces of the uniform mesh are missing here: the border of what a red-green level holds (hierarchy.h)
 };
 
+/// What the shape rules found on the coarse mesh (mesh/shape.h). Every level inherits it.
+struct ShapeMarks {
+  bool has_rules = false;      ///< whether new vertices follow the shape rules (rules/shape_rules.h)
+  bool is_mechanical = false;  ///< whether any component is
+  double flat_distance = 0;    ///< a point this close to a face's plane lies in it; in the mesh's unit
+  /// Vertices of mechanical components at which curves end, in ascending order: corners of a curve, and where other
+  /// than two curve edges meet.
+  std::vector<uint32_t> corners;
+};
+
 /// Connectivity. Shapes: F faces, H = 3F half-edges, E edges, V vertices. Edges may be left out: then `edge`,
 /// `half_edge` and `kind` are empty.
 struct Topology {
@@ -69,6 +79,7 @@ struct Topology {
   /// Vertices inside the surface at which a single crease ends, in ascending order. To the rules they are vertices
   /// without a crease.
   std::vector<uint32_t> darts;
+  ShapeMarks shape;
 
   [[nodiscard]] bool has_edges() const { return edge.size() == origin.size(); }
   [[nodiscard]] uint32_t face_count() const { return static_cast<uint32_t>(origin.size() / 3); }

@@ -32,6 +32,16 @@ enum class Tension {
   sharp,  ///< soft, and sharp edges themselves follow the four-point rule along their feature
 };
 
+/// What the mesh is taken for. The published rules round everything that no crease holds: flat sides bulge, slivers
+/// fold over. The shape rules (mesh/shape.h, rules/shape_rules.h) keep from that, and need tension: without it all is
+/// `plain`.
+enum class Shape {
+  automatic,   ///< each component by its angles: mechanical if its faces lie flat or meet sharply, else organic
+  organic,     ///< round everywhere; flat parts stay flat, and no face turns over
+  mechanical,  ///< also keeps edges over 31 degrees and the outlines of broad flats as creases, and their corners
+  plain,       ///< the scheme and tension as published, and nothing else
+};
+
 /// Memory that a caller needs for a level that it is given, beside the level's own: to encode it, say.
 struct OutputBytes {
   uint64_t face = 0;   ///< bytes a face
@@ -49,8 +59,10 @@ struct Options {
   Growth growth = Growth::faces;    ///< how far targets spread, after flatness; more is smoother and larger
   std::optional<View> view{};       ///< when set, only what this view shows is refined
   Tension tension = Tension::soft;  ///< what keeps the surface from overshooting at sharp edges
+  Shape shape = Shape::automatic;   ///< what the mesh is taken for, and so what of it is kept
   double w = 0;                     ///< -1/16..1/8, the ten-point rule's free parameter; 0 is the eight-point rule
-  double crease_angle = 180;        ///< degrees, 0..180: edges whose faces' normals differ by more are kept sharp
+  double crease_angle = 180;        ///< degrees, 0..180: edges whose faces' normals differ by more are kept sharp;
+                                    ///< 180: those that `shape` finds
   /// Edges are split only where the surface would move by at least this share (0..1) of the coarse mesh's bounding
   /// box's diagonal; 0: wherever the other criteria say. See `deviation.h`.
   double tolerance = 0;

@@ -24,6 +24,9 @@ struct Hooks {
 /// any work is done.
 void check_room(const Mesh& coarse, const Options& options);
 
+/// What `refine` takes the mesh for under these options.
+[[nodiscard]] ShapeReport shape_of(Mesh coarse, const Options& options = {});
+
 /// Whether a prepared mesh makes this request cheaper: it is neither uniform nor in place.
 [[nodiscard]] bool uses_hierarchy(const Options& options);
 

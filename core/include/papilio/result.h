@@ -18,6 +18,15 @@ enum class StopReason {
   limits,     ///< a further level would have passed a limit (`Options::stop_at_limits`)
 };
 
+/// What the mesh was taken for (`Options::shape`).
+struct ShapeReport {
+  uint32_t components = 0;  ///< connected by edges; 0 where no shape rules hold
+  uint32_t mechanical = 0;  ///< of these
+  uint32_t creases = 0;     ///< edges of the coarse mesh
+
+  friend bool operator==(const ShapeReport&, const ShapeReport&) = default;
+};
+
 struct Result {
   Mesh mesh;       ///< with edges if `Options::edges`
   int levels = 0;  ///< the last level that changed the mesh
@@ -28,6 +37,7 @@ struct Result {
   /// `Options::measure_error`.
   double error = 0;
   double error_pixels = 0;  ///< the same in pixels of the view; 0 without one
+  ShapeReport shape;
 };
 
 }  // namespace papilio

@@ -1,0 +1,222 @@
+#include "mesh/shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/trigonometry.h"
+#include "mesh/crease.h"
+#include "mesh/hinge.h"
+
+namespace papilio {
+namespace {
+
+constexpr double flat_degrees = 0.5, least_outline_degrees = 3, sharp_degrees = 31;
+constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;
+constexpr double broader = 1.5;              // by so much a flat must be broader than what it ends at
+constexpr double flat_share_of_size = 2e-6;  // of the diagonal or the largest coordinate
+
+/// Sets of faces, joined one by one.
+class FaceSets {
+ public:
+  explicit FaceSets(uint32_t faces) : above_(faces) { std::iota(above_.begin(), above_.end(), 0U); }
+  /// The face that stands for the set that f is in.
+  uint32_t find(uint32_t f) {
+    while (above_[f] != f) f = above_[f] = above_[above_[f]];
+    return f;
+  }
+  void join(uint32_t a, uint32_t b) {
+    a = find(a);
+    b = find(b);
+    above_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  Buffer<uint32_t> above_;
+};
+
+class ShapeFinder {
+ public:
+  explicit ShapeFinder(Mesh& mesh)
+      : mesh_(mesh),
+        topology_(mesh.topology),
+        components_(topology_.face_count()),
+        cosines_(Buffer<double>::for_overwrite(topology_.edge_count())) {}
+
+  ShapeReport run(const Options& options) {
+    set_distance();
+    find_cosines();
+    find_components();
+    choose_mechanical(options.shape);
+    topology_.shape.has_rules = true;
+    topology_.shape.is_mechanical = std::ranges::find(is_mechanical_, 1) != is_mechanical_.end();
+    if (options.crease_angle < 180)
+      mark_creases(mesh_, options.crease_angle);
+    else if (topology_.shape.is_mechanical)
+      find_creases();
+    topology_.darts = find_darts(topology_);
+    if (topology_.shape.is_mechanical) find_corners();
+    return report();
+  }
+
+ private:
+  void set_distance() {
+    const Box box = bounding_box(mesh_.positions);
+    const double size = std::max(box.diagonal(), static_cast<double>(box.largest_coordinate()));
+    topology_.shape.flat_distance = flat_share_of_size * size;
+  }
+
+  [[nodiscard]] bool has_two_faces(uint32_t e) const { return topology_.kind[e] == EdgeKind::smooth; }
+  [[nodiscard]] uint32_t face_of(uint32_t e) const { return Topology::face(topology_.half_edge[e]); }
+  [[nodiscard]] uint32_t other_face_of(uint32_t e) const {
+    return Topology::face(topology_.twin[topology_.half_edge[e]]);
+  }
+
+  void find_cosines() {
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e)
+      if (has_two_faces(e)) {
+        const Hinge hinge(topology_, mesh_.positions.data(), topology_.half_edge[e]);
+        cosines_[e] = hinge.is_flat(topology_.shape.flat_distance) ? 1 : hinge.cosine();
+      }
+  }
+
+  void find_components() {
+    Buffer<uint32_t> first(topology_.edge_count(), none);  // face at the edge
+    for (uint32_t h = 0; h < topology_.half_edge_count(); ++h) {
+      uint32_t& face = first[topology_.edge[h]];
+      if (face == none)
+        face = Topology::face(h);
+      else
+        components_.join(face, Topology::face(h));
+    }
+  }
+
+  void choose_mechanical(Shape shape) {
+    const uint32_t faces = topology_.face_count();
+    is_mechanical_.assign(faces, shape == Shape::mechanical ? 1 : 0);
+    if (shape != Shape::automatic) return;
+    struct Edges {
+      uint32_t all = 0, flat = 0, sharp = 0;
+    };
+    std::vector<Edges> of(faces);  // of the component that this face stands for
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+      if (!has_two_faces(e)) continue;
+      Edges& edges = of[components_.find(face_of(e))];
+      ++edges.all;
+      edges.flat += is_flat(e) ? 1 : 0;
+      edges.sharp += is_sharp(e) ? 1 : 0;
+    }
+    for (uint32_t f = 0; f < faces; ++f) {
+      const Edges& edges = of[components_.find(f)];
+      const bool is_flat_enough = edges.flat >= least_flat_share * edges.all;
+      is_mechanical_[f] =
+          edges.all > 0 && is_flat_enough && edges.flat + edges.sharp >= least_flat_or_sharp_share * edges.all ? 1 : 0;
+    }
+  }
+
+  [[nodiscard]] bool is_flat(uint32_t e) const { return cosines_[e] > flat_cosine_; }
+  [[nodiscard]] bool is_sharp(uint32_t e) const { return cosines_[e] < sharp_cosine_; }
+
+  void find_creases() {
+    FaceSets flats(topology_.face_count());
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e)
+      if (has_two_faces(e) && is_flat(e)) flats.join(face_of(e), other_face_of(e));
+    const std::vector<Flat> of = measure(flats);
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+      if (!has_two_faces(e) || is_mechanical_[face_of(e)] == 0) continue;
+      const Flat& one = of[flats.find(face_of(e))];
+      const Flat& other = of[flats.find(other_face_of(e))];
+      if (is_sharp(e) || (cosines_[e] < outline_cosine_ && (one.is_broader(other) || other.is_broader(one))))
+        topology_.kind[e] = EdgeKind::crease;
+    }
+  }
+
+  struct Flat {
+    uint32_t faces = 0;
+    double area = 0, perimeter = 0;
+    /// By area over perimeter; neither need be known to be more than nothing.
+    [[nodiscard]] bool is_broader(const Flat& other) const {
+      return faces >= 2 && area * other.perimeter >= broader * other.area * perimeter;
+    }
+  };
+
+  std::vector<Flat> measure(FaceSets& flats) const {
+    std::vector<Flat> of(topology_.face_count());  // of the flat that this face stands for
+    const auto at = [&](uint32_t h) { return to_double(mesh_.positions[topology_.origin[h]]); };
+    for (uint32_t f = 0; f < topology_.face_count(); ++f) {
+      Flat& flat = of[flats.find(f)];
+      ++flat.faces;
+      flat.area += 0.5 * length(cross(at(3 * f + 1) - at(3 * f), at(3 * f + 2) - at(3 * f)));
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        const uint32_t t = topology_.twin[h];
+        if (t == none || flats.find(Topology::face(t)) != flats.find(f))
+          flat.perimeter += length(at(Topology::next(h)) - at(h));
+      }
+    }
+    return of;
+  }
+
+  void find_corners() {
+    struct Curve {
+      uint32_t edges = 0;  // that meet here
+      std::array<uint32_t, 2> ends{none, none};
+    };
+    std::vector<Curve> curves(topology_.vertex_count);
+    Buffer<uint8_t> is_mechanical(topology_.vertex_count, 0);
+    const auto join = [&](uint32_t v, uint32_t other) {
+      Curve& curve = curves[v];
+      if (curve.edges < 2) curve.ends[curve.edges] = other;
+      ++curve.edges;
+    };
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+      if (topology_.kind[e] == EdgeKind::smooth) continue;
+      const uint32_t h = topology_.half_edge[e];
+      join(topology_.origin[h], topology_.tip(h));
+      join(topology_.tip(h), topology_.origin[h]);
+    }
+    for (uint32_t h = 0; h < topology_.half_edge_count(); ++h)
+      is_mechanical[topology_.origin[h]] |= is_mechanical_[Topology::face(h)];
+    const auto turns = [&](uint32_t v, uint32_t before, uint32_t after) {
+      const auto at = [&](uint32_t vertex) { return to_double(mesh_.positions[vertex]); };
+      const Vec3d u = at(v) - at(before);
+      const Vec3d w = at(after) - at(v);
+      return dot(u, w) < sharp_cosine_ * length(u) * length(w);
+    };
+    for (uint32_t v = 0; v < topology_.vertex_count; ++v) {
+      const auto& [edges, ends] = curves[v];
+      if (is_mechanical[v] == 0 || edges == 0 || std::ranges::binary_search(topology_.darts, v)) continue;
+      if (edges != 2 || turns(v, ends[0], ends[1])) topology_.shape.corners.push_back(v);
+    }
+  }
+
+  ShapeReport report() {
+    ShapeReport report;
+    for (uint32_t f = 0; f < topology_.face_count(); ++f) {
+      if (components_.find(f) != f) continue;
+      ++report.components;
+      report.mechanical += is_mechanical_[f];
+    }
+    report.creases = static_cast<uint32_t>(std::ranges::count(topology_.kind, EdgeKind::crease));
+    return report;
+  }
+
+  const double flat_cosine_ = cosine_of_degrees(flat_degrees);
+  const double outline_cosine_ = cosine_of_degrees(least_outline_degrees);
+  const double sharp_cosine_ = cosine_of_degrees(sharp_degrees);
+  Mesh& mesh_;
+  Topology& topology_;
+  FaceSets components_;
+  Buffer<double> cosines_;         ///< [E] of the angle between the two faces' normals
+  Buffer<uint8_t> is_mechanical_;  ///< [F]
+};
+
+}  // namespace
+
+ShapeReport mark_shape(Mesh& mesh, const Options& options) {
+  if (options.shape != Shape::plain && options.tension != Tension::off) return ShapeFinder(mesh).run(options);
+  mark_creases(mesh, options.crease_angle);
+  return {};
+}
+
+}  // namespace papilio

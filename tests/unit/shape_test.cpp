@@ -1,0 +1,205 @@
+#include "core/mesh/shape.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/mesh/hinge.h"
+#include "core/rules/shape_rules.h"
+#include "papilio/refine.h"
+#include "papilio/trigonometry.h"
+#include "tests/support/invariants.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/shapes.h"
+#include "tests/support/uniform_hierarchy.h"
+
+namespace papilio::test {
+namespace {
+
+/// Edges at which the surface turns by more than 120 degrees.
+uint32_t count_folds(const Mesh& mesh) {
+  uint32_t folds = 0;
+  for (uint32_t h : mesh.topology.half_edge)
+    if (mesh.topology.twin[h] != none) folds += Hinge(mesh.topology, mesh.positions.data(), h).cosine() < -0.5 ? 1 : 0;
+  return folds;
+}
+
+Mesh refined(const TriangleMesh& mesh, Shape shape = Shape::automatic) {
+  return refine(build_mesh(mesh), {.levels = 3, .shape = shape}).mesh;
+}
+
+double radius(Vec3f p) { return std::hypot(double{p.x}, double{p.y}); }
+
+/// Of the outer wall of a drum of radius 1 and height 0.5.
+double least_radius_of_wall(const Mesh& mesh) {
+  double least = 2;
+  for (Vec3f p : mesh.positions)
+    if (p.z > 0.01F && p.z < 0.49F && radius(p) > 0.8) least = std::min(least, radius(p));
+  return least;
+}
+
+/// A square sheet with a small round hole: slivers run from its rim to the corners.
+TriangleMesh sheet_with_hole() {
+  constexpr uint32_t quarter = 12;
+  constexpr uint32_t n = 4 * quarter;
+  TriangleMesh sheet;
+  for (uint32_t i = 0; i < n; ++i) {
+    const SineCosine turn = sine_and_cosine_of_turn(2 * i + 1, 2 * n);
+    sheet.positions.push_back(to_float(0.05 * Vec3d{turn.cosine, turn.sine, 0}));
+  }
+  for (Vec3f corner : {Vec3f{1, 1, 0}, Vec3f{-1, 1, 0}, Vec3f{-1, -1, 0}, Vec3f{1, -1, 0}})
+    sheet.positions.push_back(corner);
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t next = (i + 1) % n;
+    const uint32_t corner = n + i / quarter;
+    sheet.triangles.push_back({next, i, corner});
+    if (next % quarter == 0) sheet.triangles.push_back({next, corner, n + next / quarter});
+  }
+  return sheet;
+}
+
+TEST(Shape, BoxStaysTheBox) {
+  for (const TriangleMesh& shape : {cube(), box({4, 4, 1}, {1, 1, 0.1F}), box({1, 1, 6}, {1, 1, 6})}) {
+    const Box before = bounding_box(build_mesh(shape).positions);
+    const Mesh fine = refined(shape);
+    for (Vec3f p : fine.positions) {
+      const std::vector<double> gaps{p.x - before.min.x, p.y - before.min.y, p.z - before.min.z,
+                                     before.max.x - p.x, before.max.y - p.y, before.max.z - p.z};
+      ASSERT_NEAR(*std::ranges::min_element(gaps), 0, 1e-6);  // on a side, and inside all others
+    }
+    EXPECT_EQ(count_folds(fine), 0U);
+  }
+}
+
+TEST(Shape, SaysWhatItFinds) {
+  EXPECT_EQ(shape_of(build_mesh(box({4, 4, 1}, {1, 1, 0.1F}))), (ShapeReport{1, 1, 8 * 4 + 4 * 1}));
+  EXPECT_EQ(shape_of(build_mesh(icosahedron())), (ShapeReport{1, 0, 0}));
+  EXPECT_EQ(shape_of(build_mesh(join(cube(), torus(24, 16), 5))), (ShapeReport{2, 1, 12}));
+  EXPECT_EQ(shape_of(build_mesh(cube()), {.shape = Shape::organic}), (ShapeReport{1, 0, 0}));
+  EXPECT_EQ(shape_of(build_mesh(icosahedron()), {.shape = Shape::mechanical}), (ShapeReport{1, 1, 30}));
+  EXPECT_EQ(shape_of(build_mesh(cube()), {.shape = Shape::plain}), ShapeReport{});
+  EXPECT_EQ(shape_of(build_mesh(cube()), {.tension = Tension::off}), ShapeReport{});
+  EXPECT_EQ(refine(build_mesh(cube()), {}).shape, (ShapeReport{1, 1, 12}));
+  EXPECT_EQ(refine(PreparedMesh(build_mesh(cube()), {}, 0), {.tolerance = 0.1}).shape, (ShapeReport{1, 1, 12}));
+}
+
+// Its sides meet at 30 degrees, and are round; those of an octagon, at 45, are flat.
+TEST(Shape, DrumOfTwelveSidesBecomesRoundAndOneOfEightStays) {
+  EXPECT_GT(least_radius_of_wall(refined(square_ring(12, 0.6F, 1, 0.5F))), 0.99);
+  EXPECT_NEAR(least_radius_of_wall(refined(square_ring(8, 0.6F, 1, 0.5F))), std::cos(std::acos(-1.0) / 8), 1e-6);
+}
+
+TEST(Shape, SliversInAPlaneDoNotTurnOver) {
+  EXPECT_GT(count_folds(refined(sheet_with_hole(), Shape::plain)), 0U);
+  for (Shape shape : {Shape::automatic, Shape::organic}) {
+    const Mesh fine = refined(sheet_with_hole(), shape);
+    EXPECT_EQ(count_folds(fine), 0U);
+    for (Vec3f p : fine.positions) ASSERT_EQ(p.z, 0);
+  }
+}
+
+TEST(Shape, OpenSheetKeepsItsCornersAndStraightSides) {
+  for (Vec3f p : refined(grid(3, 2)).positions) {
+    ASSERT_EQ(p.z, 0);
+    ASSERT_TRUE(p.x >= 0 && p.x <= 3 && p.y >= 0 && p.y <= 2);
+  }
+}
+
+TEST(Shape, MechanicalByOptionKeepsEverySharpEdge) {
+  const Mesh coarse = build_mesh(icosahedron());
+  const Mesh fine = refined(icosahedron(), Shape::mechanical);
+  const double height =
+      0.7557613141 / 0.9510565163 * length(to_double(coarse.positions[0]));  // of a face over the middle
+  for (uint32_t f = 0; f < fine.topology.face_count(); ++f) {
+    const auto at = [&](uint32_t i) { return to_double(fine.positions[fine.topology.origin[3 * f + i]]); };
+    const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
+    ASSERT_NEAR(dot(normal, at(0)) / length(normal), height, 1e-5);
+  }
+}
+
+TEST(Shape, OrganicIsAsSmoothAsWithoutRules) {
+  const Mesh sphere = refine(build_mesh(icosahedron()), {.levels = 2, .tension = Tension::off}).mesh;
+  for (const TriangleMesh& shape : {sphere.triangles(), torus(24, 16)})
+    EXPECT_EQ(refined(shape).positions, refined(shape, Shape::plain).positions);
+}
+
+TEST(Shape, CreaseAngleGoesBeforeTheRules) {
+  const Mesh coarse = build_mesh(cube());
+  EXPECT_EQ(refine(coarse, {.crease_angle = 60}).shape.creases, 12U);
+  const Result round = refine(coarse, {.levels = 3, .crease_angle = 100});
+  EXPECT_EQ(round.shape.creases, 0U);
+  EXPECT_NE(round.mesh.positions, refined(cube()).positions);
+}
+
+TEST(Shape, WithoutTensionIsPlain) {
+  const Mesh coarse = build_mesh(cube());
+  for (Shape shape : {Shape::automatic, Shape::organic, Shape::mechanical})
+    EXPECT_EQ(refine(coarse, {.tension = Tension::off, .shape = shape}).mesh.positions,
+              refine(coarse, {.tension = Tension::off, .shape = Shape::plain}).mesh.positions);
+}
+
+class ShapeOnRealMeshes : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShapeOnRealMeshes, AdaptiveIsPartOfUniformAndNothingFolds) {
+  const Mesh coarse = build_mesh(real_mesh(GetParam()));
+  for (Tension tension : {Tension::soft, Tension::sharp}) {
+    Options options{.levels = 3, .tension = tension};
+    const UniformHierarchy uniform(coarse, options);
+    const uint32_t coarse_folds = count_folds(refine(coarse, {.levels = 0}).mesh);
+    EXPECT_LE(count_folds(refine(coarse, options).mesh), coarse_folds << options.levels);
+    for (double tolerance : {1e-3, 1e-4}) {
+      options.tolerance = tolerance;
+      const Result result = refine(coarse, options);
+      EXPECT_TRUE(is_consistent(result.mesh));
+      EXPECT_GT(result.shape.mechanical, 0U);
+      EXPECT_TRUE(uniform.contains(result.mesh));
+      const PreparedMesh prepared(coarse, options, 1'000'000'000);
+      EXPECT_EQ(refine(prepared, options).mesh.triangles(), result.mesh.triangles());
+      Options in_place = options;
+      in_place.scheme = Scheme::in_place;
+      EXPECT_TRUE(is_consistent(refine(coarse, in_place).mesh));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShapeOnRealMeshes,
+                         ::testing::Values("cgal/anchor.off", "cgal/joint.off", "cgal/pinion_small.off",
+                                           "cgal/couplingdown.off", "cgal/rotor_small.off", "cgal/dragknob.off"));
+
+TEST(Hinge, ApexInTheLargerFacesPlaneIsFlat) {
+  // A sliver whose own normal says nothing.
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5F, 1, 0}, {0.5F, 0, 1e-7F}}, {{0, 1, 2}, {1, 0, 3}}};
+  const Mesh built = build_mesh(mesh);
+  uint32_t h = 0;
+  while (built.topology.twin[h] == none) ++h;
+  const Hinge hinge(built.topology, built.positions.data(), h);
+  EXPECT_NEAR(hinge.cosine(), 0, 1e-6);
+  EXPECT_TRUE(hinge.is_flat(2e-7));
+  EXPECT_FALSE(hinge.is_flat(5e-8));
+}
+
+TEST(ShapeRules, KeepNewVerticesFromTurningFacesOver) {
+  const Vec3d a{0, 0, 0};
+  const Vec3d b{2, 0, 0};
+  const std::vector<FaceAtEdge> one{{{1, 1, 0}, 1}};
+  const std::vector<FaceAtEdge> two{{{1, 1, 0}, 1}, {{1, -0.5, 0.3}, 0.4}};
+  constexpr double any = 1e9;
+  const auto expect_near = [](Vec3d found, Vec3d expected) { EXPECT_LT(length(found - expected), 1e-15); };
+  expect_near(keep_unfolded({0.1, 0.1, 0.1}, a, b, one, any), {0.1, 0.1, 0.1});
+  expect_near(keep_unfolded({0.1, 0.5, 0.3}, a, b, one, any), {0.1, 0.2, 0.3});    // no further into the face
+  expect_near(keep_unfolded({0.1, -0.5, 0.3}, a, b, one, any), {0.1, -0.5, 0.3});  // away from it
+  expect_near(keep_unfolded({0.3, 0.3, 0.4}, a, b, one, 0.1),
+              {0.3, 0.1 * 0.2 / std::hypot(0.2, 0.4), 0.1 * 0.4 / std::hypot(0.2, 0.4)});
+  for (Vec3d off : {Vec3d{0.1, 0.5, 0.3}, Vec3d{-0.4, -0.7, 0.9}, Vec3d{0, 0.3, -2}}) {
+    const Vec3d kept = keep_unfolded(off, a, b, two, mechanical_across_bound);
+    EXPECT_EQ(kept, keep_unfolded(off, b, a, two, mechanical_across_bound));
+    EXPECT_EQ(kept, keep_unfolded(off, a, b, std::vector{two[1], two[0]}, mechanical_across_bound));
+    EXPECT_LE(std::hypot(kept.y, kept.z), mechanical_across_bound * 0.4 + 1e-15);
+    EXPECT_EQ(keep_unfolded(off, a, a, two, any), off);  // an edge without length
+  }
+}
+
+}  // namespace
+}  // namespace papilio::test
