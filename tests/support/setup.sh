@@ -44,7 +44,7 @@ for purpose in "$@"; do
     *) die "unknown purpose '$purpose'" ;;
   esac
 done
-[[ $libraries == no ]] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev)
+[[ $libraries == no ]] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev libpng-dev)
 [[ $page$manifests == nono && " ${meshes[*]} " != *" bunny "* ]] || programs+=(node:nodejs npm:npm)
 if [[ $list == yes ]]; then
   printf '%s\n' "${packages[@]}" "${programs[@]#*:}" | sort -u

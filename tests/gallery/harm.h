@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "papilio/mesh.h"
+
+namespace papilio::test {
+
+/// What refining did to a mesh that it should not. Distances are shares of the coarse mesh's diagonal.
+struct Harm {
+  uint32_t folds =
+      0;  ///< edges at which the surface turns by over 120 degrees, less those that are parts of coarse ones
+  double overshoot = 0;  ///< how far the surface leaves the coarse mesh's box
+  double distance = 0;   ///< root mean square distance of the middles of its faces from the coarse surface
+};
+
+/// `fine` is `coarse` after so many uniform levels.
+[[nodiscard]] Harm harm_of(const Mesh& coarse, const Mesh& fine, int levels);
+
+/// Root mean square distance of the middles of the first mesh's faces, weighted by area, from the second's surface, as
+/// a share of the second's diagonal.
+[[nodiscard]] double rms_distance(const Mesh& from, const Mesh& to);
+
+}  // namespace papilio::test
