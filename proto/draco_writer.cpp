@@ -54,8 +54,8 @@ AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format) {
 
 std::string write_draco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                         const AttributeEncoding& attributes, const std::function<void()>& poll) {
-  return edgebreaker::write(mesh, box, options, attributes.format.position_id,
-                            output_attributes(mesh, options, attributes), poll);
+  return edgebreaker::write(mesh, box, options, attributes.format.position_id, output_attributes(mesh, attributes),
+                            poll);
 }
 
 std::string write_draco_exact(const TriangleMesh& triangles, const MeshFormat& format) {

@@ -38,7 +38,6 @@ struct AttributeEncoding {
 struct OutputOptions {
   int position_bits = 14;  ///< bits of a coordinate, 8 to 16
   int speed = 7;           ///< Draco's encoding speed: 0 smallest, 10 fastest
-  bool normals = false;    ///< vertex normals of 10 bits in place of the mesh's own normals
 };
 
 /// Encodes the mesh as a Draco 2.2 edgebreaker stream (edgebreaker/writer.h). The mesh must have faces and finite

@@ -16,6 +16,8 @@ constexpr uint64_t attribute_point_bytes = 8;  // value indices of the points
 constexpr uint64_t value_point_bytes = 12;     // order of the values
 constexpr uint64_t component_point_bytes = 8;  // integers and symbols of one attribute
 constexpr uint64_t stream_copies = 3;          // growth and hand-over of the stream
+constexpr uint64_t dressed_face_bytes = 60;    // copy of the mesh, and whose normal each corner has
+constexpr uint64_t dressed_point_bytes = 70;   // new normals and their sums
 constexpr uint64_t coded_component_bytes = 2;  // a predicted component in the stream
 
 /// Returns the bytes of a component as Draco stores it.
@@ -25,7 +27,7 @@ uint64_t size_of(ValueType type) {
 
 }  // namespace
 
-OutputBytes encoding_bytes(const Mesh& coarse, const OutputOptions& options, const AttributeEncoding& encoding) {
+OutputBytes encoding_bytes(const Mesh& coarse, bool adds_normals, const AttributeEncoding& encoding) {
   OutputBytes bytes{.face = face_bytes, .point = 0};
   uint64_t most_components = 0;
   const auto add = [&](ValueType type, uint64_t components) {
@@ -36,8 +38,15 @@ OutputBytes encoding_bytes(const Mesh& coarse, const OutputOptions& options, con
   };
   for (size_t a = 0; a < encoding.format.attributes.size(); ++a)
     add(encoding.format.attributes[a].type, coarse.attributes.attributes[a].components);
-  if (!encoding.format.attributes.empty()) bytes.face += seam_face_bytes;
-  if (options.normals) add(ValueType::float32, 3);
+  if (adds_normals) add(ValueType::float32, 3);
+  if (most_components > 0) bytes.face += seam_face_bytes;
+  const auto is_normal = [](const AttributeFormat& format) { return format.kind == AttributeKind::normal; };
+  if (adds_normals || std::ranges::any_of(encoding.format.attributes, is_normal)) {
+    bytes.face += dressed_face_bytes;
+    bytes.point += dressed_point_bytes;
+    for (const Attribute& attribute : coarse.attributes.attributes)
+      bytes.point += sizeof(double) * attribute.components;
+  }
   if (most_components > 0) bytes.point += value_point_bytes + component_point_bytes * most_components;
   return bytes;
 }

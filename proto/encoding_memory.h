@@ -6,7 +6,7 @@
 namespace papilio::proto {
 
 /// Returns an upper bound of the memory of `write_draco` for a mesh refined from `coarse`, including the stream.
-[[nodiscard]] OutputBytes encoding_bytes(const Mesh& coarse, const OutputOptions& options,
-                                         const AttributeEncoding& encoding);
+/// `adds_normals`: to those that `encoding` describes.
+[[nodiscard]] OutputBytes encoding_bytes(const Mesh& coarse, bool adds_normals, const AttributeEncoding& encoding);
 
 }  // namespace papilio::proto

@@ -1,7 +1,6 @@
 #include "proto/output_attribute.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "papilio/mesh.h"
@@ -37,26 +36,6 @@ void choose_coding(OutputAttribute& output, const Attribute& attribute, const At
   }
 }
 
-/// Returns the id of the replaced normals, or the lowest free id.
-uint32_t id_for_normals(const MeshFormat& format) {
-  const auto& attributes = format.attributes;
-  const auto own = std::ranges::find(attributes, AttributeKind::normal, &AttributeFormat::kind);
-  if (own != attributes.end()) return own->id;
-  uint32_t id = 0;
-  while (id == format.position_id || std::ranges::count(attributes, id, &AttributeFormat::id) > 0) ++id;
-  return id;
-}
-
-OutputAttribute new_normals(const Mesh& mesh, const MeshFormat& format) {
-  const Buffer<Vec3f> normals = vertex_normals(mesh);
-  OutputAttribute output{.format = {.kind = AttributeKind::normal, .id = id_for_normals(format)},
-                         .coding = Coding::octahedral,
-                         .bits = normal_bits};
-  output.values.bytes.resize(normals.size() * sizeof(Vec3f));
-  std::memcpy(output.values.bytes.data(), normals.data(), output.values.bytes.size());
-  return output;
-}
-
 }  // namespace
 
 OutputAttribute exact_attribute(const Attribute& attribute, const AttributeFormat& format, const VertexPoints& points) {
@@ -67,18 +46,15 @@ OutputAttribute exact_attribute(const Attribute& attribute, const AttributeForma
           .values = store_values(attribute, format, points)};
 }
 
-std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const OutputOptions& options,
-                                               const AttributeEncoding& encoding) {
+std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const AttributeEncoding& encoding) {
   std::vector<OutputAttribute> outputs;
   std::optional<VertexPoints> points;
   for (size_t a = 0; a < encoding.format.attributes.size(); ++a) {
     const AttributeFormat& format = encoding.format.attributes[a];
-    if (options.normals && format.kind == AttributeKind::normal) continue;
     if (!points) points.emplace(mesh);
     const Attribute& attribute = mesh.attributes.attributes[a];
     choose_coding(outputs.emplace_back(exact_attribute(attribute, format, *points)), attribute, encoding.grids[a]);
   }
-  if (options.normals) outputs.push_back(new_normals(mesh, encoding.format));
   return outputs;
 }
 

@@ -25,15 +25,11 @@ struct OutputAttribute {
   int bits = 0;                    ///< bits of a component on the grid or octahedron
   AttributeEncoding::Grid grid{};  ///< grid of Coding::grid
   bool is_too_large = false;       ///< whether integers exceed the range of Draco's entropy coder
-  /// Values; `value` is empty for one value per vertex, in vertex order (new normals).
   StoredValues values{};
-
-  [[nodiscard]] bool has_value_per_vertex() const { return values.value.empty(); }
 };
 
-/// Returns the attributes that `encoding` describes. With `options.normals`, new vertex normals replace the mesh's own.
-[[nodiscard]] std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const OutputOptions& options,
-                                                             const AttributeEncoding& encoding);
+/// Returns the attributes that `encoding` describes.
+[[nodiscard]] std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const AttributeEncoding& encoding);
 
 /// Returns an attribute of the mesh with exact values.
 [[nodiscard]] OutputAttribute exact_attribute(const Attribute& attribute, const AttributeFormat& format,

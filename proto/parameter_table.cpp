@@ -267,11 +267,14 @@ const std::array table{
                   .description = "Draco's encoding speed: lower is smaller and slower",
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.output.speed)}; },
                   .set = [](Parameters& p, const Values& v) { p.output.speed = static_cast<int>(v[0]); }},
-    ParameterInfo{.name = "output.normals",
-                  .type = ParameterType::boolean,
-                  .description = "Adds unit vertex normals to the result",
-                  .get = [](const Parameters& p) { return Values{p.output.normals ? 1.0 : 0.0}; },
-                  .set = [](Parameters& p, const Values& v) { p.output.normals = v[0] != 0; }},
+    ParameterInfo{
+        .name = "output.normals",
+        .type = ParameterType::boolean,
+        .description =
+            "Adds unit normals, apart at creases, to a mesh without normals; a mesh's own always become those of the "
+            "refined surface",
+        .get = [](const Parameters& p) { return Values{p.normals ? 1.0 : 0.0}; },
+        .set = [](Parameters& p, const Values& v) { p.normals = v[0] != 0; }},
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ using QueryFields = std::vector<std::pair<std::string, std::string>>;
 struct Parameters {
   Options options;  ///< `options.view` is set when any view parameter was given
   OutputOptions output;
+  bool normals = false;         ///< whether a mesh without normals gets them
   bool default_eye = false;     ///< whether view.eye is omitted and follows from the mesh
   bool default_target = false;  ///< whether view.target is omitted and is the centre of the mesh's box
 

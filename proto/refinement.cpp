@@ -68,6 +68,17 @@ class BackgroundTask {
   std::future<void> running_;  // last member: its destructor waits
 };
 
+/// Appends unit normals with the lowest free id.
+void append_normals(AttributeEncoding& encoding) {
+  MeshFormat& format = encoding.format;
+  AttributeFormat normals{.kind = AttributeKind::normal};
+  while (normals.id == format.position_id ||
+         std::ranges::count(format.attributes, normals.id, &AttributeFormat::id) > 0)
+    ++normals.id;
+  format.attributes.push_back(normals);
+  encoding.grids.emplace_back();
+}
+
 std::string milliseconds_text(double milliseconds) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), milliseconds, std::chars_format::fixed, 3).ptr;
@@ -77,14 +88,18 @@ std::string milliseconds_text(double milliseconds) {
 }  // namespace
 
 Refinement::Refinement(const Parameters& parameters, const Limits& limits)
-    : output_(parameters.output), most_seconds_(limits.max_compute_seconds) {}
+    : output_(parameters.output), adds_normals_(parameters.normals), most_seconds_(limits.max_compute_seconds) {}
 
 void Refinement::set_options(const Parameters& parameters, const Limits& limits) {
   options_ = options_for(parameters, bounding_box(coarse().mesh.positions));
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
-  options_.output = encoding_bytes(coarse().mesh, output_, coarse().attributes);
-  options_.edges = false;
+  encoding_ = coarse().attributes;
+  const auto& formats = encoding_.format.attributes;
+  if (std::ranges::find(formats, AttributeKind::normal, &AttributeFormat::kind) != formats.end()) adds_normals_ = false;
+  options_.output = encoding_bytes(coarse().mesh, adds_normals_, encoding_);
+  options_.edges = adds_normals_;  // they are divided at creases
+  if (adds_normals_) append_normals(encoding_);
   translate_errors([&] { check_room(coarse().mesh, options_); });
 }
 
@@ -112,11 +127,24 @@ Result Refinement::refine_coarse(const Hooks& hooks) {
   return refine(*shared_->for_rules_of(options_), options_, hooks);
 }
 
+std::optional<Mesh> Refinement::with_normals(const Mesh& mesh, int level) const {
+  std::optional<Mesh> dressed;
+  if (adds_normals_) add_normals(dressed.emplace(mesh));
+  if (level == 0) return dressed;  // its own are the author's
+  for (size_t a = 0; a < mesh.attributes.attributes.size(); ++a) {
+    if (!is_unit_normal(encoding_.format.attributes[a], mesh.attributes.attributes[a].components)) continue;
+    if (!dressed) dressed = mesh;
+    renew_normals(*dressed, a);
+  }
+  return dressed;
+}
+
 EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,
                                 const std::function<void()>& poll) const {
   Stopwatch watch;
   EncodedLevel made;
-  made.draco = write_draco(mesh, coarse().box, output_, coarse().attributes, poll);
+  const std::optional<Mesh> dressed = with_normals(mesh, level);
+  made.draco = write_draco(dressed ? *dressed : mesh, coarse().box, output_, encoding_, poll);
   times.encode += watch.lap();
   made.statistics.level = level;
   made.statistics.vertices = mesh.topology.vertex_count;

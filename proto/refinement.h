@@ -80,11 +80,15 @@ class Refinement {
   /// Encodes a level. `times`: time spent before.
   [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times,
                                     const std::function<void()>& poll) const;
+  /// Returns a copy of a level with normals of its own surface, where its encoding has normals.
+  [[nodiscard]] std::optional<Mesh> with_normals(const Mesh& mesh, int level) const;
   void require_time() const;
   Result refine_coarse(const Hooks& hooks);
 
   Options options_;
   OutputOptions output_;
+  bool adds_normals_;                         ///< the mesh has none, and they are asked for
+  AttributeEncoding encoding_;                ///< of all levels
   DecodedMesh decoded_;                       ///< unused with `shared_`
   std::shared_ptr<const SharedMesh> shared_;  ///< null: `decoded_` is used
   StageTimes times_;

@@ -13,11 +13,6 @@ namespace papilio {
 namespace {
 
 /// Normal of face f, its length twice the face's area.
-Vec3d area_normal(const Mesh& mesh, uint32_t f) {
-  const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
-  const Vec3d a = to_double(mesh.positions[corner[0]]);
-  return cross(to_double(mesh.positions[corner[1]]) - a, to_double(mesh.positions[corner[2]]) - a);
-}
 
 /// Some vectors, each with a place in the registers of x, y and z: two or four doubles.
 template <class Doubles>
@@ -124,6 +119,12 @@ Buffer<Vec3f> normals_of_fours(const Mesh& mesh, const Buffer<uint32_t>& fours, 
   auto normals = Buffer<Vec3f>::for_overwrite(mesh.topology.face_count());
   write_all(mesh, IndexRange(fours), threads, normals);
   return normals;
+}
+
+Vec3d area_normal(const Mesh& mesh, uint32_t f) {
+  const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
+  const Vec3d a = to_double(mesh.positions[corner[0]]);
+  return cross(to_double(mesh.positions[corner[1]]) - a, to_double(mesh.positions[corner[2]]) - a);
 }
 
 Buffer<Vec3f> vertex_normals(const Mesh& mesh) {

@@ -20,6 +20,9 @@ namespace papilio {
 /// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
 inline constexpr double product_rounding = 4e-7;
 
+/// Normal of a face, as long as twice its area.
+[[nodiscard]] Vec3d area_normal(const Mesh& mesh, uint32_t face);
+
 [[nodiscard]] inline bool has_normal(Vec3f n) { return n != Vec3f{}; }
 
 }  // namespace papilio

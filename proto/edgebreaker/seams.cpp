@@ -2,12 +2,10 @@
 
 namespace papilio::proto::edgebreaker {
 
-Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Buffer<uint32_t>& corner_point,
-                 const OutputAttribute& attribute) {
+Seams find_seams(const CornerMesh& mesh, const Buffer<uint32_t>& corner_point, const OutputAttribute& attribute) {
   Seams seams;
   seams.value.resize_for_overwrite(mesh.corner_count());
-  for (uint32_t c = 0; c < mesh.corner_count(); ++c)
-    seams.value[c] = attribute.has_value_per_vertex() ? topology.origin[c] : attribute.values.value[corner_point[c]];
+  for (uint32_t c = 0; c < mesh.corner_count(); ++c) seams.value[c] = attribute.values.value[corner_point[c]];
   for (uint32_t c = 0; c < mesh.corner_count(); ++c) {
     const uint32_t other = mesh.opposite(c);
     if (other == none || other < c) continue;

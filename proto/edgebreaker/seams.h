@@ -12,7 +12,7 @@ struct Seams {
   [[nodiscard]] bool empty() const { return is_seam.empty(); }
 };
 /// Finds the seams of an attribute. `corner_point` [corners]: the point at each corner.
-[[nodiscard]] Seams find_seams(const CornerMesh& mesh, const Topology& topology, const Buffer<uint32_t>& corner_point,
+[[nodiscard]] Seams find_seams(const CornerMesh& mesh, const Buffer<uint32_t>& corner_point,
                                const OutputAttribute& attribute);
 
 /// Cuts the surface open along an attribute's seams: a vertex becomes one vertex for each fan between two seams.

@@ -39,7 +39,7 @@ class StreamWriter {
     poller_.call();
     std::vector<Seams> seams;
     for (const OutputAttribute& attribute : attributes_)
-      seams.push_back(find_seams(surface_.mesh, mesh_.topology, mesh_.attributes.point, attribute));
+      seams.push_back(find_seams(surface_.mesh, mesh_.attributes.point, attribute));
     const std::span<const Seams> separate = single_connectivity_ ? std::span<const Seams>() : seams;
     write_header();
     const Buffer<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), separate, poller_, out_);
@@ -59,14 +59,12 @@ class StreamWriter {
   /// Returns whether one encoder writes all attributes with the connectivity of the positions. Draco does so at high
   /// speeds if no attribute has seams.
   [[nodiscard]] bool is_single_connectivity() const {
-    return options_.speed >= min_single_connectivity_speed &&
-           std::ranges::all_of(attributes_, &OutputAttribute::has_value_per_vertex);
+    return options_.speed >= min_single_connectivity_speed && attributes_.empty();
   }
   [[nodiscard]] bool is_by_prediction_degree() const { return options_.speed <= max_prediction_degree_speed; }
   /// Returns the number of points of the mesh in libdraco.
   [[nodiscard]] uint32_t point_count() const {
-    const bool has_points = !std::ranges::all_of(attributes_, &OutputAttribute::has_value_per_vertex);
-    return has_points ? mesh_.attributes.point_count : mesh_.topology.vertex_count;
+    return !attributes_.empty() ? mesh_.attributes.point_count : mesh_.topology.vertex_count;
   }
 
   void write_header() {

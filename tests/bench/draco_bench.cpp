@@ -23,7 +23,7 @@ void add_row(const std::string& name, const Mesh& made, int speed, const proto::
   const proto::OutputOptions options{.position_bits = 11, .speed = speed};
   const proto::AttributeEncoding encoding = proto::attribute_encoding(*mesh, format);
   const auto by_libdraco = [=] {
-    return test::write_with_libdraco(*mesh, box, options, 0, proto::output_attributes(*mesh, options, encoding));
+    return test::write_with_libdraco(*mesh, box, options, 0, proto::output_attributes(*mesh, encoding));
   };
   if (proto::write_draco(*mesh, box, options, encoding) != by_libdraco())
     throw std::runtime_error("the two writers differ");

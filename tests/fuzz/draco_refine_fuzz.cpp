@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   proto::Parameters parameters;
   parameters.options.levels = 1;
   parameters.output.speed = static_cast<int>(size % 11);
-  parameters.output.normals = size / 11 % 2 == 1;
+  parameters.normals = size / 11 % 2 == 1;
   proto::EncodedLevel made;
   if (!fuzz::unless_refused([&] { made = proto::Refinement(fuzz::text_of(data, size), parameters, limits).run(); }))
     return 0;

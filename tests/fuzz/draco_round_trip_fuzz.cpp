@@ -29,7 +29,7 @@ void require_near(const Buffer<Vec3f>& some, const Buffer<Vec3f>& others, double
 
 void require_libdracos_faces(const Mesh& mesh, const proto::QuantizationBox& box, const proto::OutputOptions& output,
                              const proto::AttributeEncoding& encoding) {
-  const auto attributes = proto::output_attributes(mesh, output, encoding);
+  const auto attributes = proto::output_attributes(mesh, encoding);
   const uint32_t id = encoding.format.position_id;
   fuzz::require(test::faces_of(proto::edgebreaker::write(mesh, box, output, id, attributes)) ==
                     test::faces_of(test::write_with_libdraco(mesh, box, output, id, attributes)),
@@ -63,8 +63,7 @@ void write_and_read(const proto::FormattedMesh& soup, const proto::OutputOptions
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fuzz::ByteSource bytes(data, size);
   fuzz::unless_refused([&] {
-    const proto::OutputOptions output{8 + static_cast<int>(bytes.up_to(8)), static_cast<int>(bytes.up_to(10)),
-                                      bytes.flag()};
+    const proto::OutputOptions output{8 + static_cast<int>(bytes.up_to(8)), static_cast<int>(bytes.up_to(10))};
     const proto::FormattedMesh soup = fuzz::take_soup(bytes);
     const Mesh exact = build_mesh(proto::read_draco(proto::write_draco_exact(soup, soup.format), {}));
     fuzz::require(exact.topology.face_count() == build_mesh(soup).topology.face_count(), "faces are kept exactly");

@@ -63,8 +63,8 @@ void add_meshes(Seeds& seeds) {
       streams.push_back(proto::write_draco(mesh, proto::quantization_box(mesh.positions), {.speed = speed},
                                            proto::attribute_encoding(mesh, charted.format)));
       const Mesh plain = build_mesh(shape);
-      streams.push_back(proto::write_draco(plain, proto::quantization_box(plain.positions),
-                                           {.position_bits = 9, .speed = speed, .normals = true}));
+      streams.push_back(
+          proto::write_draco(plain, proto::quantization_box(plain.positions), {.position_bits = 9, .speed = speed}));
     }
   }
   for (const std::string& stream : streams)

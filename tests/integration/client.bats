@@ -57,8 +57,8 @@ END
   "$papilio" refine square.obj -o fine.obj
   [ "$(grep -c '^v ' fine.obj)" = 25 ]
   [ "$(grep -c '^vt ' fine.obj)" = 29 ]
-  [ "$(grep -c '^vn ' fine.obj)" = 1 ]
-  [ "$(grep -Ec '^f [0-9]+/[0-9]+/1 [0-9]+/[0-9]+/1 [0-9]+/[0-9]+/1$' fine.obj)" = 32 ]
+  [ "$(grep -c '^vn ' fine.obj)" -gt 1 ] # those of the bent surface, where the input had one
+  [ "$(grep -Ec '^f [0-9]+/[0-9]+/[0-9]+ [0-9]+/[0-9]+/[0-9]+ [0-9]+/[0-9]+/[0-9]+$' fine.obj)" = 32 ]
   "$papilio" convert square.obj all.drc
   "$papilio" convert --exact square.obj exact.drc
   for name in all exact; do

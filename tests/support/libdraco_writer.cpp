@@ -89,9 +89,7 @@ class Encoding {
   [[nodiscard]] const VertexPoints* points() const { return points_ ? &*points_ : nullptr; }
 
   void add(const OutputAttribute& attribute) {
-    const int number = attribute.has_value_per_vertex()
-                           ? add_at_vertices(attribute)
-                           : add_point_attribute(out_, attribute.values, attribute.components, attribute.format);
+    const int number = add_point_attribute(out_, attribute.values, attribute.components, attribute.format);
     if (attribute.coding == Coding::octahedral) options().SetAttributeInt(number, "quantization_bits", attribute.bits);
     if (attribute.coding == Coding::grid)
       options().SetAttributeOptions(number,
@@ -120,14 +118,6 @@ class Encoding {
   }
 
  private:
-  int add_at_vertices(const OutputAttribute& attribute) {
-    Buffer<Vec3f> values(mesh_.topology.vertex_count);
-    std::memcpy(values.data(), attribute.values.bytes.data(), attribute.values.bytes.size());
-    const int number = add_vertex_attribute(out_, draco_type(attribute.format.kind), values, points());
-    out_.attribute(number)->set_unique_id(attribute.format.id);
-    return number;
-  }
-
   const Mesh& mesh_;
   draco::Mesh out_;
   draco::ExpertEncoder encoder_;
@@ -138,8 +128,7 @@ class Encoding {
 
 std::string write_with_libdraco(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                                 uint32_t position_id, std::span<const OutputAttribute> attributes) {
-  const bool has_points = !std::ranges::all_of(attributes, &OutputAttribute::has_value_per_vertex);
-  Encoding encoding(mesh, has_points, position_id);
+  Encoding encoding(mesh, !attributes.empty(), position_id);
   encoding.options().SetSpeed(options.speed, options.speed);
   encoding.options().SetAttributeOptions(
       0, explicit_quantization({box.origin.x, box.origin.y, box.origin.z}, box.range, options.position_bits));

@@ -278,22 +278,6 @@ TEST(DracoAttributes, MeshesOfEveryKindKeepFacesAndCharts) {
   }
 }
 
-TEST(DracoAttributes, NewNormalsReplaceExistingNormals) {
-  const FormattedMesh input = repeat(decorated_cube(), AttributeKind::normal, ValueType::float32, {0, 0, 1});
-  const Mesh coarse = build_mesh(input);
-  const FormattedMesh read = read_draco(write(coarse, coarse, input.format, {.normals = true}), {});
-  EXPECT_EQ(std::ranges::count(read.format.attributes, AttributeKind::normal, &AttributeFormat::kind), 1);
-  EXPECT_EQ(read.format.attributes.back(), input.format.attributes.back());
-  for (double component : read.attributes.back().values) EXPECT_NEAR(std::abs(component), std::sqrt(1.0 / 3), 0.3);
-  EXPECT_EQ(build_mesh(read).attributes.point_count, 24U) << "smooth normals make no seam";
-
-  FormattedMesh alone = input;
-  alone.attributes = {input.attributes.back()};
-  alone.format.attributes = {input.format.attributes.back()};
-  const Mesh plain = build_mesh(alone);
-  EXPECT_EQ(read_draco(write(plain, plain, alone.format, {.normals = true}), {}).format, alone.format);
-}
-
 TEST(DracoAttributes, ExactKeepsValuesToTheBit) {
   const FormattedMesh input = decorated_cube();
   const FormattedMesh read = read_draco(write_draco_exact(input, input.format), {});

@@ -166,15 +166,6 @@ TEST(DracoWriter, TinyAndHugeMeshesKeepTheirShape) {
   }
 }
 
-TEST(DracoWriter, NormalsAreAddedOnRequest) {
-  const Mesh mesh = build_mesh(icosahedron());
-  const QuantizationBox box = quantization_box(mesh.positions);
-  const std::string plain = write_draco(mesh, box, {});
-  const std::string with_normals = write_draco(mesh, box, {.normals = true});
-  EXPECT_GT(with_normals.size(), plain.size());
-  EXPECT_EQ(decode_with_draco_decoder(with_normals).triangles.size(), 20U);
-}
-
 TEST(DracoWriter, ExactKeepsPositionsToTheBit) {
   for (const TriangleMesh& mesh : {real_mesh("bunny600.obj"), icosahedron(), grid(3, 3)}) {
     const TriangleMesh read = read_draco(write_draco_exact(mesh), {});

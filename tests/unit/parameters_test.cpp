@@ -61,7 +61,7 @@ TEST(Parameters, QueryAndJsonGiveEqualParameters) {
   EXPECT_EQ(query.options.view->projection, Projection::orthographic);
   EXPECT_EQ(query.options.view->edge_pixels, 10);
   EXPECT_EQ(query.output.position_bits, 16);
-  EXPECT_TRUE(query.output.normals);
+  EXPECT_TRUE(query.normals);
 }
 
 TEST(Parameters, EqualParametersHaveOneCanonicalFormThatRoundTrips) {

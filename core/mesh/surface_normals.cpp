@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "mesh/normals.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+namespace {
+
+Vec3d value_at(const Attribute& attribute, uint32_t point) {
+  const double* v = &attribute.values[size_t{3} * point];
+  return {v[0], v[1], v[2]};
+}
+
+void put_value(Attribute& attribute, uint32_t point, Vec3d value) {
+  double* v = &attribute.values[size_t{3} * point];
+  std::tie(v[0], v[1], v[2]) = std::tuple{value.x, value.y, value.z};
+}
+
+/// For each point the lowest one of its vertex that has the same value.
+std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attribute) {
+  const PointAttributes& points = mesh.attributes;
+  std::vector<uint32_t> vertex(points.point_count, none);
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) vertex[points.point[h]] = mesh.topology.origin[h];
+  const auto key = [&](uint32_t p) {
+    const Vec3d v = value_at(attribute, p);
+    return std::tuple{vertex[p], v.x, v.y, v.z};
+  };
+  std::vector<uint32_t> order(points.point_count);
+  std::vector<uint32_t> equal(points.point_count);
+  for (uint32_t p = 0; p < order.size(); ++p) order[p] = equal[p] = p;
+  if (points.point_count == mesh.topology.vertex_count) return equal;
+  std::ranges::stable_sort(order, {}, key);
+  for (size_t i = 1; i < order.size(); ++i)
+    if (key(order[i]) == key(order[i - 1])) equal[order[i]] = equal[order[i - 1]];
+  return equal;
+}
+
+/// The corners of one vertex between creases, all the way round or from curve to curve: their numbers [H].
+std::vector<uint32_t> find_sectors(const Topology& mesh, uint32_t& count) {
+  std::vector<uint32_t> sector(mesh.half_edge_count(), none);
+  const auto clockwise = [&](uint32_t h) { return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]); };
+  const auto counter_clockwise = [&](uint32_t h) {
+    const uint32_t incoming = Topology::previous(h);
+    return mesh.is_curve(incoming) ? none : mesh.twin[incoming];
+  };
+  count = 0;
+  for (uint32_t start = 0; start < mesh.half_edge_count(); ++start) {
+    if (sector[start] != none) continue;
+    for (uint32_t h = start; h != none && sector[h] == none; h = counter_clockwise(h)) sector[h] = count;
+    for (uint32_t h = clockwise(start); h != none && sector[h] == none; h = clockwise(h)) sector[h] = count;
+    ++count;
+  }
+  return sector;
+}
+
+/// The sums of the faces' normals, by area, of what the corners belong to. `of(h)` is below `count`. [count]
+template <class Of>
+std::vector<Vec3d> sum_normals(const Mesh& mesh, uint32_t count, const Of& of) {
+  std::vector<Vec3d> sums(count);
+  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+    const Vec3d normal = area_normal(mesh, f);
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += normal;
+  }
+  return sums;
+}
+
+}  // namespace
+
+void renew_normals(Mesh& mesh, size_t number) {
+  Attribute& attribute = mesh.attributes.attributes[number];
+  const Buffer<uint32_t>& point = mesh.attributes.point;
+  const std::vector<uint32_t> equal = find_equal_points(mesh, attribute);
+  const std::vector<Vec3d> sums =
+      sum_normals(mesh, mesh.attributes.point_count, [&](uint32_t h) { return equal[point[h]]; });
+  double agreement = 0;
+  for (uint32_t p = 0; p < sums.size(); ++p) agreement += dot(sums[p], value_at(attribute, p));
+  for (uint32_t p = 0; p < sums.size(); ++p) {
+    const Vec3d sum = sums[equal[p]];
+    const double size = length(sum);
+    if (size > 0) put_value(attribute, p, (agreement < 0 ? -1 : 1) / size * sum);
+  }
+}
+
+void add_normals(Mesh& mesh) {
+  PointAttributes& attributes = mesh.attributes;
+  uint32_t sectors = 0;
+  const std::vector<uint32_t> sector = find_sectors(mesh.topology, sectors);
+  std::vector<uint32_t> sector_of;  // of each new point
+  std::vector<uint32_t> old_point;  // where there are attributes
+  if (attributes.empty()) {
+    attributes.point.assign(sector.size(), 0);
+    std::ranges::copy(sector, attributes.point.begin());
+    for (uint32_t s = 0; s < sectors; ++s) sector_of.push_back(s);
+  } else {
+    std::vector<std::pair<uint64_t, uint32_t>> corners(sector.size());  // sector and old point; the half-edge
+    for (uint32_t h = 0; h < sector.size(); ++h) corners[h] = {uint64_t{sector[h]} << 32 | attributes.point[h], h};
+    std::ranges::sort(corners);
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const auto [both, h] = corners[i];
+      if (i == 0 || both != corners[i - 1].first) {
+        sector_of.push_back(static_cast<uint32_t>(both >> 32));
+        old_point.push_back(static_cast<uint32_t>(both));
+      }
+      attributes.point[h] = static_cast<uint32_t>(sector_of.size() - 1);
+    }
+  }
+  attributes.point_count = static_cast<uint32_t>(sector_of.size());
+  for (Attribute& attribute : attributes.attributes) {
+    std::vector<double> values;
+    values.reserve(old_point.size() * attribute.components);
+    for (uint32_t p : old_point) {
+      const double* value = &attribute.values[size_t{p} * attribute.components];
+      values.insert(values.end(), value, value + attribute.components);
+    }
+    attribute.values = std::move(values);
+  }
+  const std::vector<Vec3d> sums = sum_normals(mesh, sectors, [&](uint32_t h) { return sector[h]; });
+  Attribute normals{.components = 3, .unit_length = true, .values = std::vector<double>(3 * sector_of.size())};
+  for (uint32_t p = 0; p < sector_of.size(); ++p) {
+    const Vec3d sum = sums[sector_of[p]];
+    const double size = length(sum);
+    put_value(normals, p, size > 0 ? 1 / size * sum : Vec3d{0, 0, 1});
+  }
+  attributes.attributes.push_back(std::move(normals));
+}
+
+}  // namespace papilio
