@@ -31,18 +31,18 @@ double hinge_factor(double normal_product) {
   return s * s * (3 - 2 * s);
 }
 
-TensionField tension_field(const Mesh& of, const Buffer<Vec3f>& normals, Tension tension) {
-  const Topology& mesh = of.topology;
-  TensionField field{.factor = Buffer<float>(mesh.edge_count(), 1), .follow_features = tension == Tension::sharp};
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-    if (mesh.kind[e] != EdgeKind::smooth) continue;
-    const uint32_t h = mesh.half_edge[e];
+TensionField tension_field(const Mesh& mesh, const Buffer<Vec3f>& normals, Tension tension) {
+  const Topology& topology = mesh.topology;
+  TensionField field{.factor = Buffer<float>(topology.edge_count(), 1), .follow_features = tension == Tension::sharp};
+  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+    if (topology.kind[e] != EdgeKind::smooth) continue;
+    const uint32_t h = topology.half_edge[e];
     const Vec3f n1 = normals[Topology::face(h)];
-    const Vec3f n2 = normals[Topology::face(mesh.twin[h])];
+    const Vec3f n2 = normals[Topology::face(topology.twin[h])];
     if (has_normal(n1) && has_normal(n2)) field.factor[e] = static_cast<float>(hinge_factor(dot(n1, n2)));
   }
-  if (field.follow_features) find_features(mesh, field);
-  if (mesh.shape.has_rules) field.shape = shape_field(of, normals);
+  if (field.follow_features) find_features(topology, field);
+  if (topology.shape.has_rules) field.shape = shape_field(mesh, normals);
   return field;
 }
 
