@@ -73,7 +73,7 @@ draco::Options explicit_quantization(const std::vector<float>& origin, float ran
 class Encoding {
  public:
   /// With `attributes` points are what the faces name, else vertices.
-  Encoding(const Mesh& mesh, bool attributes, uint32_t position_id) : mesh_(mesh), encoder_(out_) {
+  Encoding(const Mesh& mesh, bool attributes, uint32_t position_id) : encoder_(out_) {
     if (attributes) points_.emplace(mesh);
     const Buffer<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
     out_.set_num_points(attributes ? mesh.attributes.point_count : mesh.topology.vertex_count);
@@ -118,7 +118,6 @@ class Encoding {
   }
 
  private:
-  const Mesh& mesh_;
   draco::Mesh out_;
   draco::ExpertEncoder encoder_;
   std::optional<VertexPoints> points_;
