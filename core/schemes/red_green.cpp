@@ -213,7 +213,8 @@ class RedGreen {
   }
 
   /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
-  /// error were tried too, and a tenth: results were the same.)
+  /// error were tried too, and a tenth: results were the same.) In a mechanical mesh an edge that stays in a flat may
+  /// bend a level further, once the faces beside it have: there their neighbours are looked into, too.
   [[nodiscard]] Buffer<uint32_t> faces_to_look_into() const {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
@@ -222,6 +223,14 @@ class RedGreen {
       const uint32_t* edge = &mesh.edge[size_t{3} * f];
       if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
         for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+    }
+    if (mesh.shape.is_mechanical) {
+      const Buffer<uint8_t> near = touched;
+      for (uint32_t f : choice.region.faces) {
+        const uint32_t* corner = &mesh.origin[size_t{3} * f];
+        if ((near[corner[0]] | near[corner[1]] | near[corner[2]]) != 0)
+          for (uint32_t i = 0; i < 3; ++i) touched[corner[i]] = 1;
+      }
     }
     Buffer<uint32_t> faces = choice.region.faces;
     keep_if(faces, [&](uint32_t f) {

@@ -10,6 +10,7 @@
 #include "core/rules/shape_rules.h"
 #include "papilio/refine.h"
 #include "papilio/trigonometry.h"
+#include "server/samples/models.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
@@ -138,6 +139,18 @@ TEST(Shape, WithoutTensionIsPlain) {
   for (Shape shape : {Shape::automatic, Shape::organic, Shape::mechanical})
     EXPECT_EQ(refine(coarse, {.tension = Tension::off, .shape = shape}).mesh.positions,
               refine(coarse, {.tension = Tension::off, .shape = Shape::plain}).mesh.positions);
+}
+
+// Edges beside what moves move a level later.
+TEST(Shape, ToleranceIsReachedWhereFlatsBendLater) {
+  for (const TriangleMesh& shape : {server::mug(), server::wheel()}) {
+    const Mesh coarse = build_mesh(shape);
+    const double tolerance = 1e-4;
+    const Result result = refine(coarse, {.levels = 8, .tolerance = tolerance});
+    EXPECT_GT(result.shape.mechanical, 0U);
+    EXPECT_EQ(result.stop_reason, StopReason::converged);
+    EXPECT_LE(result.error, tolerance);
+  }
 }
 
 class ShapeOnRealMeshes : public ::testing::TestWithParam<const char*> {};

@@ -254,7 +254,7 @@ test('the command shown gives the bytes that are on screen', async () => {
 });
 
 test('a target that is not reached is said at the mesh', async () => {
-  const hash = (levels) => `mesh=mug&show=adaptive&levels=${levels}&tolerance=0.0001&shape=plain`;
+  const hash = (levels) => `mesh=mug&show=adaptive&levels=${levels}&tolerance=0.0001`;
   const { page } = await openPage(shared.browser, shared.server.url, { hash: hash(1) });
   await done(page, ['adaptive']);
   const note = page.locator('.panel[data-mode=adaptive] .note');
