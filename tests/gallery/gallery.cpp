@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "client/lib/compare.h"
-#include "client/mesh_file/mesh_file.h"
+#include "client/lib/mesh_stream.h"
 #include "papilio/refine.h"
 #include "proto/refinement.h"
 #include "tests/gallery/harm.h"
@@ -90,7 +90,7 @@ struct Model {
 Model refine_both(const std::filesystem::path& file) {
   Model model;
   model.name = file.filename().string();
-  model.coarse = build_mesh(client::read_triangles(file, client::format_of(file)));
+  model.coarse = build_mesh(client::triangles_of(client::read_mesh({file})));
   while (model.levels > 1 && (uint64_t{model.coarse.topology.face_count()} << (2 * model.levels)) > most_faces)
     --model.levels;
   model.plain = refine(model.coarse, {.levels = model.levels, .shape = Shape::plain}).mesh;
