@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "papilio/mesh.h"
@@ -10,12 +9,8 @@ namespace papilio {
 /// The two faces at a half-edge that has a twin.
 class Hinge {
  public:
-  template <class Point>
-  Hinge(const Topology& mesh, const Point* positions, uint32_t h) {
-    const auto at = [&](uint32_t vertex) {
-      const Point& p = positions[vertex];
-      return Vec3d{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-    };
+  Hinge(const Topology& mesh, const Buffer<Vec3f>& positions, uint32_t h) {
+    const auto at = [&](uint32_t vertex) { return to_double(positions[vertex]); };
     const Vec3d a = at(mesh.origin[h]);
     const Vec3d along = at(mesh.tip(h)) - a;
     const Vec3d apex = at(mesh.apex(h)) - a;

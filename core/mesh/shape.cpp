@@ -76,7 +76,7 @@ class ShapeFinder {
   void find_cosines() {
     for (uint32_t e = 0; e < topology_.edge_count(); ++e)
       if (has_two_faces(e)) {
-        const Hinge hinge(topology_, mesh_.positions.data(), topology_.half_edge[e]);
+        const Hinge hinge(topology_, mesh_.positions, topology_.half_edge[e]);
         cosines_[e] = hinge.is_flat(topology_.shape.flat_distance) ? 1 : hinge.cosine();
       }
   }

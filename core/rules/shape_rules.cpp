@@ -41,7 +41,7 @@ ShapeField shape_field(const Mesh& mesh, const Buffer<Vec3f>& normals) {
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t h = topology.half_edge[e];
     if (topology.kind[e] != EdgeKind::smooth || is_surely_bent(mesh, normals, h)) continue;
-    field.is_flat[e] = Hinge(topology, mesh.positions.data(), h).is_flat(topology.shape.flat_distance) ? 1 : 0;
+    field.is_flat[e] = Hinge(topology, mesh.positions, h).is_flat(topology.shape.flat_distance) ? 1 : 0;
   }
   return field;
 }

@@ -13,16 +13,6 @@ namespace {
 
 constexpr double fold_cosine = -0.5;  // of 120 degrees
 
-uint32_t count_folds(const Mesh& mesh) {
-  uint32_t folds = 0;
-  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
-    const uint32_t h = mesh.topology.half_edge[e];
-    if (mesh.topology.twin[h] == none) continue;
-    folds += Hinge(mesh.topology, mesh.positions.data(), h).cosine() < fold_cosine ? 1 : 0;
-  }
-  return folds;
-}
-
 double overshoot(const Box& coarse, const Box& fine) {
   const std::array<float, 6> out{coarse.min.x - fine.min.x, coarse.min.y - fine.min.y, coarse.min.z - fine.min.z,
                                  fine.max.x - coarse.max.x, fine.max.y - coarse.max.y, fine.max.z - coarse.max.z};
@@ -30,6 +20,16 @@ double overshoot(const Box& coarse, const Box& fine) {
 }
 
 }  // namespace
+
+uint32_t count_folds(const Mesh& mesh) {
+  uint32_t folds = 0;
+  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
+    const uint32_t h = mesh.topology.half_edge[e];
+    if (mesh.topology.twin[h] == none) continue;
+    folds += Hinge(mesh.topology, mesh.positions, h).cosine() < fold_cosine ? 1 : 0;
+  }
+  return folds;
+}
 
 Harm harm_of(const Mesh& coarse, const Mesh& fine, int levels) {
   const uint32_t there = count_folds(coarse) << levels;

@@ -14,6 +14,9 @@ struct Harm {
   double distance = 0;   ///< root mean square distance of the middles of its faces from the coarse surface
 };
 
+/// The edges at which the surface turns by over 120 degrees.
+[[nodiscard]] uint32_t count_folds(const Mesh& mesh);
+
 /// `fine` is `coarse` after so many uniform levels.
 [[nodiscard]] Harm harm_of(const Mesh& coarse, const Mesh& fine, int levels);
 

@@ -11,6 +11,7 @@
 #include "papilio/refine.h"
 #include "papilio/trigonometry.h"
 #include "server/samples/models.h"
+#include "tests/gallery/harm.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
@@ -18,14 +19,6 @@
 
 namespace papilio::test {
 namespace {
-
-/// Edges at which the surface turns by more than 120 degrees.
-uint32_t count_folds(const Mesh& mesh) {
-  uint32_t folds = 0;
-  for (uint32_t h : mesh.topology.half_edge)
-    if (mesh.topology.twin[h] != none) folds += Hinge(mesh.topology, mesh.positions.data(), h).cosine() < -0.5 ? 1 : 0;
-  return folds;
-}
 
 Mesh refined(const TriangleMesh& mesh, Shape shape = Shape::automatic) {
   return refine(build_mesh(mesh), {.levels = 3, .shape = shape}).mesh;
@@ -187,7 +180,7 @@ TEST(Hinge, ApexInTheLargerFacesPlaneIsFlat) {
   const Mesh built = build_mesh(mesh);
   uint32_t h = 0;
   while (built.topology.twin[h] == none) ++h;
-  const Hinge hinge(built.topology, built.positions.data(), h);
+  const Hinge hinge(built.topology, built.positions, h);
   EXPECT_NEAR(hinge.cosine(), 0, 1e-6);
   EXPECT_TRUE(hinge.is_flat(2e-7));
   EXPECT_FALSE(hinge.is_flat(5e-8));

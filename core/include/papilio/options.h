@@ -37,7 +37,7 @@ enum class Tension {
 /// `plain`.
 enum class Shape {
   automatic,   ///< each component by its angles: mechanical if its faces lie flat or meet sharply, else organic
-  organic,     ///< round everywhere; flat parts stay flat, and no face turns over
+  organic,     ///< round everywhere; flat parts stay flat, and faces rarely turn over
   mechanical,  ///< also keeps edges over 31 degrees and the outlines of broad flats as creases, and their corners
   plain,       ///< the scheme and tension as published, and nothing else
 };
