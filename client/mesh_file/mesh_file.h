@@ -30,7 +30,7 @@ enum class Format { drc, obj, ply, off, stl };
 inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 
 /// Positions and triangles as they stand in the file: repeated, degenerate and non-manifold faces are kept,
-/// unused positions too. Polygons become fans around their first corner; polygons of one or two corners,
+/// unused positions too. Polygons are cut into triangles (polygon.h); polygons of one or two corners,
 /// which OFF and PLY allow, are left out. Text may begin with the byte order mark of UTF-8. A binary STL file may be
 /// longer than its count asks for, but not by a whole number of triangles. OBJ's texture coordinates (`vt`, of two or
 /// three numbers) and normals (`vn`) are attributes: each position is then one point for each pair of them that faces

@@ -33,7 +33,7 @@ struct Corner {
 struct Lists {
   Buffer<Vec3f> positions, textures, normals;
   std::vector<Corner> corners;
-  Buffer<Triangle> triangles;  ///< of numbers of corners
+  PolygonList faces;  ///< of numbers of corners
 };
 
 uint32_t from_zero(int64_t index, size_t so_far) {
@@ -94,10 +94,19 @@ Lists parse_lists(std::string_view bytes) {
         lists.corners.push_back(parse_corner(scanner, word, lists));
       }
       if (face.size() < 3) scanner.fail("a face has fewer than three corners");
-      append_fan(face, lists.triangles);
+      lists.faces.add(face);
     }
   }
   return lists;
+}
+
+/// Returns the triangles of all faces. Corners without a position have NaN.
+Buffer<Triangle> triangulate(const Lists& lists) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  return lists.faces.triangles([&](uint32_t corner) {
+    const uint32_t position = lists.corners[corner].position;
+    return position < lists.positions.size() ? lists.positions[position] : Vec3f{nan, nan, nan};
+  });
 }
 
 /// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
@@ -155,7 +164,7 @@ proto::FormattedMesh parse_obj(std::string_view bytes) {
   const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");
   const bool normals = are_used(lists.corners, &Corner::normal, lists.normals, "normal (vn)");
   proto::FormattedMesh mesh;
-  mesh.triangles = std::move(lists.triangles);
+  mesh.triangles = triangulate(lists);
   const bool sound =
       std::ranges::all_of(lists.corners, [&](const Corner& c) { return c.position < lists.positions.size(); });
   if (!sound || (!textures && !normals)) {  // of indices out of range the caller tells

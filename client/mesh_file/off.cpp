@@ -57,6 +57,7 @@ TriangleMesh parse_off(std::string_view bytes) {
     const float x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
     mesh.positions.push_back({x, y, z});
   }
+  const auto position = [&](uint32_t vertex) { return mesh.positions[vertex]; };
   std::vector<uint32_t> corners;
   for (size_t i = 0; i < faces; ++i) {
     if (!scanner.next_line()) scanner.fail("the file ends within its faces");
@@ -67,7 +68,7 @@ TriangleMesh parse_off(std::string_view bytes) {
         scanner.fail("there is no vertex " + std::to_string(vertex));
       corners.push_back(static_cast<uint32_t>(vertex));
     }
-    append_fan(corners, mesh.triangles);
+    append_polygon(corners, position, mesh.triangles);
   }
   if (scanner.next_line()) scanner.fail("the file goes on after the faces that it declares");
   return mesh;

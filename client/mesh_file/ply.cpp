@@ -133,19 +133,18 @@ void read_vertices(PlyNumbers& numbers, const PlyElement& element, proto::Format
   attributes.move_to(mesh);
 }
 
-void read_faces(PlyNumbers& numbers, const PlyElement& element, Buffer<Triangle>& triangles) {
+void read_faces(PlyNumbers& numbers, const PlyElement& element, PolygonList& faces) {
   const auto indices = element.find({"vertex_indices", "vertex_index"});
   if (!indices) throw ParseError("has faces without vertex_indices");
   std::vector<double> values;
   std::vector<uint32_t> corners;
-  triangles.reserve(triangles.size() + element.count);
   for (uint64_t i = 0; i < element.count; ++i) {
     for (size_t k = 0; k < element.properties.size(); ++k) {
       read_property(numbers, element.properties[k], values);
       if (k != *indices) continue;
       corners.clear();
       std::ranges::transform(values, std::back_inserter(corners), to_index);
-      append_fan(corners, triangles);
+      faces.add(corners);
     }
   }
 }
@@ -157,13 +156,14 @@ proto::FormattedMesh parse_ply(std::string_view bytes) {
   const PlyHeader header = parse_ply_header(bytes);
   PlyNumbers numbers(bytes, header);
   proto::FormattedMesh mesh;
+  PolygonList faces;
   for (const PlyElement& element : header.elements) {
     numbers.require(element);
     if (element.name == "vertex") {
       if (!mesh.positions.empty()) throw ParseError("has vertices twice");
       read_vertices(numbers, element, mesh);
     } else if (element.name == "face") {
-      read_faces(numbers, element, mesh.triangles);
+      read_faces(numbers, element, faces);
     } else if (element.name == "tristrips") {
       throw ParseError("has triangle strips, which are not read: export it with faces");
     } else {
@@ -171,6 +171,10 @@ proto::FormattedMesh parse_ply(std::string_view bytes) {
     }
   }
   numbers.require_end();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  mesh.triangles = faces.triangles([&](uint32_t vertex) {
+    return vertex < mesh.positions.size() ? mesh.positions[vertex] : Vec3f{nan, nan, nan};
+  });
   return mesh;
 }
 

@@ -99,7 +99,8 @@ void parse_facet(TextScanner& scanner, TriangleMesh& mesh) {
   if (!equals_ignoring_case(word, "endloop")) scanner.fail("expected 'vertex' or 'endloop', found " + quoted(word));
   if (corners.size() < 3) scanner.fail("a facet has fewer than three corners");
   expect(scanner, "endfacet");
-  append_fan(corners, mesh.triangles);
+  append_polygon(
+      corners, [&](uint32_t corner) { return mesh.positions[corner]; }, mesh.triangles);
 }
 
 /// One or more solids: `solid NAME`, facets, `endsolid NAME`. The name may have many words.

@@ -136,6 +136,27 @@ END
   cmp <(grep '^v ' back.obj | sort) <(grep '^v ' once.obj | sort)
 }
 
+@test "concave polygons of a file are cut inside, and nothing folds" {
+  cat >plate.obj <<'END'
+v 0 0 0
+v 4 0 0
+v 4 4 0
+v 3 4 0
+v 3 1 0
+v 1 1 0
+v 1 4 0
+v 0 4 0
+f 5 6 7 8 1 2 3 4
+END
+  "$papilio" refine plate.obj -o fine.obj --levels 3
+  # Shoelace over all faces: the area of a U, and no face turned over.
+  awk '$1 == "v" { x[++n] = $2; y[n] = $3 }
+    $1 == "f" { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); i = a[1]; j = b[1]; k = c[1]
+      s = ((x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i])) / 2; sum += s; if (s < 0) turned++ }
+    END { print turned + 0, (sum > 9.9 && sum < 10.1) }' fine.obj >figures
+  [ "$(cat figures)" = "0 1" ]
+}
+
 @test "compare measures distances" {
   "$papilio" refine "$coarse" -o fine.drc --levels 2
   "$papilio" compare --json fine.drc fine.drc | jq -e '.hausdorff < 1e-12 * .diagonal'

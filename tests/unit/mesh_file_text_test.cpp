@@ -64,17 +64,22 @@ TEST_F(mesh_file, other_unicode_encodings_are_refused_by_name) {
   }
 }
 
-TEST_F(mesh_file, polygons_become_fans) {
-  const std::string pentagon = "0 0 0\n2 0 0\n3 1 0\n1 2 0\n0 1 0\n";
-  const auto fan = ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4});
-  EXPECT_THAT(read(Format::obj, "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n").triangles, fan);
-  EXPECT_THAT(read(Format::off, "OFF\n5 1 0\n" + pentagon + "5 0 1 2 3 4\n").triangles, fan);
-  EXPECT_THAT(read(Format::ply,
-                   "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-                   "element face 1\nproperty list uchar int vertex_index\nend_header\n" +
-                       pentagon + "5 0 1 2 3 4\n")
+TEST_F(mesh_file, concave_polygons_are_cut_inside) {
+  const std::string arrow = "0 0 0\n4 2 0\n0 4 0\n1 2 0\n";
+  const auto inside = ElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3});
+  EXPECT_THAT(read(Format::obj, "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\nf 1 2 3 4\n").triangles, inside);
+  EXPECT_THAT(read(Format::obj, "f 1 2 3 4\nv 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\n").triangles, inside);
+  EXPECT_THAT(read(Format::off, "OFF\n4 1 0\n" + arrow + "4 0 1 2 3\n").triangles, inside);
+  const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_index\n";
+  const std::string ply = "ply\nformat ascii 1.0\n";
+  EXPECT_THAT(read(Format::ply, ply + vertices + faces + "end_header\n" + arrow + "4 0 1 2 3\n").triangles, inside);
+  EXPECT_THAT(read(Format::ply, ply + faces + vertices + "end_header\n4 0 1 2 3\n" + arrow).triangles, inside);
+  EXPECT_THAT(read(Format::stl,
+                   "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 2 0\nvertex 0 4 0\n"
+                   "vertex 1 2 0\nendloop\nendfacet\nendsolid s\n")
                   .triangles,
-              fan);
+              inside);
 }
 
 TEST_F(mesh_file, a_number_is_read_as_the_nearest_float) {
