@@ -23,7 +23,7 @@ DecodedMesh decode_mesh(std::string_view draco, const Limits& limits) {
   DecodedMesh decoded;
   translate_errors([&] {
     FormattedMesh input = read_draco(draco, limits);
-    decoded.mesh = build_mesh(input, &decoded.found);
+    decoded.mesh = build_mesh(input, &decoded.found, rounding_gap);
     decoded.attributes = attribute_encoding(decoded.mesh, std::move(input.format));
   });
   decoded.box = quantization_box(decoded.mesh.positions);

@@ -116,7 +116,7 @@ ordered_json description_schema() {
             {"faces", integer_schema("Without degenerate ones")},
             {"found",
              {{"type", "object"},
-              {"description", "Defects by name, and how many of each"},
+              {"description", "Defects by name, and how many of each. Mended: near_duplicates"},
               {"additionalProperties", {{"type", "integer"}}}}},
             {"refined", {{"type", "string"}, {"description", "Path of its refinements"}}}}}};
 }
@@ -177,7 +177,7 @@ ordered_json headers() {
           {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
           {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept")},
-          {"Papilio-Found", header("string", "Defects of the coarse mesh and how many of each")},
+          {"Papilio-Found", header("string", "Defects of the coarse mesh, mended ones included, and how many")},
           {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
           {"ETag", header("string", "Strong")},
           {"Cache-Control", header("string", "What caches may do with the answer")},

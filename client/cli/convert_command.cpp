@@ -15,7 +15,7 @@ void convert_command(const ConvertFlags& flags) {
   }
   save_bytes(flags.output, in_words_of_the_file(file.name, [&] {
                if (flags.exact) return proto::write_draco_exact(triangles, triangles.format);
-               const Mesh mesh = build_mesh(triangles);
+               const Mesh mesh = build_mesh(triangles, nullptr, rounding_gap);
                return proto::write_draco(mesh, proto::quantization_box(mesh.positions), flags.options,
                                          proto::attribute_encoding(mesh, triangles.format));
              }));

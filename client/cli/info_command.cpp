@@ -16,7 +16,8 @@ using nlohmann::ordered_json;
 ordered_json describe(const MeshPlace& input) {
   const MeshBytes file = read_mesh(input);
   BuildReport report;
-  const Mesh mesh = in_words_of_the_file(file.name, [&] { return build_mesh(triangles_of(file), &report); });
+  const Mesh mesh =
+      in_words_of_the_file(file.name, [&] { return build_mesh(triangles_of(file), &report, rounding_gap); });
   const Topology& topology = mesh.topology;
   const Box box = bounding_box(mesh.positions);
   const auto triple = [](Vec3f p) { return ordered_json{p.x, p.y, p.z}; };

@@ -27,7 +27,7 @@ void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output
             << statistics.times.decode << " ms, refine " << statistics.times.refine << " ms, encode "
             << statistics.times.encode << " ms\n";
   if (const std::string found = proto::defects_text(statistics.found); !found.empty())
-    std::cerr << proto::escape_controls(flags.input.name()) << ": worked round " << found << '\n';
+    std::cerr << proto::escape_controls(flags.input.name()) << ": mended or worked round " << found << '\n';
   if (!statistics.unreached.empty()) std::cerr << "warning: " << statistics.unreached << '\n';
 }
 

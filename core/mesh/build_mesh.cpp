@@ -2,9 +2,11 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "mesh/attributes.h"
-#include "mesh/connect.h"
+#include "mesh/close_gaps.h"
+#include "mesh/draft.h"
 #include "mesh/weld.h"
 #include "papilio/error.h"
 #include "papilio/mesh.h"
@@ -32,34 +34,28 @@ void check_mesh(const TriangleMesh& input) {
   }
 }
 
-Mesh build(const TriangleMesh& input, BuildReport* report) {
+Mesh build(const TriangleMesh& input, BuildReport* report, double gap) {
   check_mesh(input);
-  BuildReport found;
-  Mesh mesh;
-  Topology& topology = mesh.topology;
-  std::vector<uint32_t> corner_point;
-  topology.origin = weld(input, mesh.positions, found, corner_point);
-  topology.vertex_count = static_cast<uint32_t>(mesh.positions.size());
-
-  if (topology.origin.empty()) {
+  Draft draft;
+  draft.topology.origin = weld(input, draft.positions, draft.report, draft.corner_point);
+  if (draft.topology.origin.empty()) {
     throw Error(Fault::no_faces, input.triangles.empty()
                                      ? "The mesh has no faces. Use a triangle mesh."
                                      : "Every face of the mesh has two corners in one place, so there is no surface "
                                        "to refine. Check the mesh's scale and precision.");
   }
-  connect(topology, corner_point, found);
-  topology.pinched = find_pinched(topology);
-  mesh.attributes = gather_attributes(input, topology, corner_point);
-  found.pinched_vertices = static_cast<uint32_t>(topology.pinched.size());
-  if (report != nullptr) *report = found;
-  return mesh;
+  connect(draft);
+  if (gap > 0) close_gaps(draft, gap * bounding_box(draft.positions).diagonal());
+  if (report != nullptr) *report = draft.report;
+  PointAttributes attributes = gather_attributes(input, draft.topology, draft.corner_point);
+  return {std::move(draft.topology), std::move(draft.positions), std::move(attributes)};
 }
 
 }  // namespace
 
-Mesh build_mesh(const TriangleMesh& input, BuildReport* report) {
+Mesh build_mesh(const TriangleMesh& input, BuildReport* report, double gap) {
   try {
-    return build(input, report);
+    return build(input, report, gap);
   } catch (const std::bad_alloc&) {
     throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
   } catch (const std::length_error&) {

@@ -90,7 +90,7 @@ struct Model {
 Model refine_both(const std::filesystem::path& file) {
   Model model;
   model.name = file.filename().string();
-  model.coarse = build_mesh(client::triangles_of(client::read_mesh({file})));
+  model.coarse = build_mesh(client::triangles_of(client::read_mesh({file})), nullptr, rounding_gap);
   while (model.levels > 1 && (uint64_t{model.coarse.topology.face_count()} << (2 * model.levels)) > most_faces)
     --model.levels;
   model.plain = refine(model.coarse, {.levels = model.levels, .shape = Shape::plain}).mesh;

@@ -104,6 +104,40 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" = 48 ]
 }
 
+@test "gaps of rounding are closed and counted" {
+  # A cube. Its lid has corners of its own, three ten-millionths too high.
+  cat >"$BATS_TEST_TMPDIR/torn.obj" <<'END'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+v 0 0 1.0000003
+v 1 0 1.0000003
+v 1 1 1.0000003
+v 0 1 1.0000003
+f 4 3 2 1
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+f 9 10 11 12
+END
+  "$papilio" info --json "$BATS_TEST_TMPDIR/torn.obj" >"$BATS_TEST_TMPDIR/info.json"
+  [ "$(jq -c '[.closed, .euler_characteristic, .vertices, .faces, .near_duplicates]' \
+    "$BATS_TEST_TMPDIR/info.json")" = '[true,2,8,12,4]' ]
+  "$papilio" convert --exact "$BATS_TEST_TMPDIR/torn.obj" "$BATS_TEST_TMPDIR/torn.drc"
+  request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/torn.drc" "$url/v1/refine?levels=2"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Found)" = "near_duplicates=4" ]
+  [ "$(header Papilio-Faces)" = $((12 * 16)) ]
+  cp "$body" "$BATS_TEST_TMPDIR/fine.drc"
+  [ "$("$papilio" info --json "$BATS_TEST_TMPDIR/fine.drc" | jq -c '[.closed, .euler_characteristic]')" = '[true,2]' ]
+}
+
 @test "a form with mesh and params answers the same bytes as body and query" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9&output.speed=3"
   cp "$body" "$BATS_TEST_TMPDIR/raw"

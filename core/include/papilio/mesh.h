@@ -131,6 +131,7 @@ struct BuildReport {
   uint32_t non_manifold_edges = 0;  ///< edges with three faces or more
   uint32_t misoriented_edges = 0;   ///< edges whose two faces run along them in the same direction
   uint32_t pinched_vertices = 0;    ///< vertices at which several fans of faces touch
+  uint32_t near_duplicates = 0;     ///< boundary vertices dropped because another within the gap takes their place
 };
 
 /// Largest magnitude of a coordinate, so that no later sum or square overflows.
@@ -143,7 +144,13 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// which the faces name them, drops what cannot be refined and counts it. Face order is kept. O(n log n) at
 /// worst. Throws `Error`: index_out_of_range, not_finite (NaN, infinite or beyond `coordinate_limit`),
 /// no_faces, out_of_memory.
-[[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr);
+///
+/// `gap`, a share of the bounding box's diagonal, closes what rounding leaves open (core/mesh/close_gaps.h): boundary
+/// vertices are welded. 0 closes nothing. A mesh without such gaps is built to the bit as with 0.
+[[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr, double gap = 0);
+
+/// Gap that rounding to floats explains and no design needs.
+inline constexpr double rounding_gap = 1e-6;
 
 /// An axis-parallel box. Of no points: `min` above `max`.
 struct Box {
