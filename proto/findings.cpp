@@ -20,6 +20,7 @@ constexpr std::array finding_rows{
     Row{"misoriented_edges", &BuildReport::misoriented_edges, true},
     Row{"pinched_vertices", &BuildReport::pinched_vertices, true},
     Row{"near_duplicates", &BuildReport::near_duplicates, true},
+    Row{"t_junctions", &BuildReport::t_junctions, true},
     Row{"welded_points", &BuildReport::welded_points, false},
     Row{"isolated_points", &BuildReport::isolated_points, true},
     Row{"degenerate_faces", &BuildReport::degenerate_faces, true},

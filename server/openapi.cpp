@@ -116,7 +116,7 @@ ordered_json description_schema() {
             {"faces", integer_schema("Without degenerate ones")},
             {"found",
              {{"type", "object"},
-              {"description", "Defects by name, and how many of each. Mended: near_duplicates"},
+              {"description", "Defects by name, and how many of each. Mended: near_duplicates, t_junctions"},
               {"additionalProperties", {{"type", "integer"}}}}},
             {"refined", {{"type", "string"}, {"description", "Path of its refinements"}}}}}};
 }

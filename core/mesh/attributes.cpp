@@ -8,8 +8,6 @@
 #include "papilio/error.h"
 
 namespace papilio {
-namespace {
-
 void check_attributes(const TriangleMesh& input) {
   for (size_t a = 0; a < input.attributes.size(); ++a) {
     const Attribute& attribute = input.attributes[a];
@@ -22,6 +20,8 @@ void check_attributes(const TriangleMesh& input) {
                                          "Repair the mesh, or leave the attribute out.");
   }
 }
+
+namespace {
 
 std::span<const double> values_of(const Attribute& attribute, uint32_t point) {
   return {attribute.values.data() + size_t{point} * attribute.components, attribute.components};

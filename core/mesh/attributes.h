@@ -7,6 +7,9 @@
 
 namespace papilio {
 
+/// Throws `Error`: not_finite (a value of an attribute), index_out_of_range (not one value a point).
+void check_attributes(const TriangleMesh& input);
+
 /// The attributes of a mesh built from `input`: corner_point [H] names the input's point at each half-edge's origin.
 /// Points of one vertex with equal values become one point, so that only true seams remain. Empty where the input has
 /// no attributes. Throws `Error`: not_finite (a value), index_out_of_range (not one value a point).

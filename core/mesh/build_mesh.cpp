@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/attributes.h"
+#include "mesh/blended_points.h"
 #include "mesh/close_gaps.h"
 #include "mesh/draft.h"
 #include "mesh/weld.h"
@@ -45,9 +46,10 @@ Mesh build(const TriangleMesh& input, BuildReport* report, double gap) {
                                        "to refine. Check the mesh's scale and precision.");
   }
   connect(draft);
-  if (gap > 0) close_gaps(draft, gap * bounding_box(draft.positions).diagonal());
+  BlendedPoints points(input);
+  if (gap > 0) close_gaps(draft, points, gap * bounding_box(draft.positions).diagonal());
   if (report != nullptr) *report = draft.report;
-  PointAttributes attributes = gather_attributes(input, draft.topology, draft.corner_point);
+  PointAttributes attributes = gather_attributes(points.mesh(), draft.topology, draft.corner_point);
   return {std::move(draft.topology), std::move(draft.positions), std::move(attributes)};
 }
 

@@ -29,6 +29,7 @@ void settle(Draft& draft) {
     vertex = number[vertex];
   }
   draft.positions = std::move(positions);
+  for (uint32_t& vertex : draft.tracked) vertex = number[vertex];
   for (Buffer<uint32_t>* of_edges : {&draft.topology.twin, &draft.topology.edge, &draft.topology.half_edge})
     of_edges->clear();
   draft.topology.kind.clear();

@@ -12,6 +12,7 @@ struct Draft {
   Buffer<Vec3f> positions;             ///< [V]
   std::vector<uint32_t> corner_point;  ///< [H] the input's point at each half-edge's origin; empty without attributes
   BuildReport report;
+  std::vector<uint32_t> tracked;  ///< vertices whose numbers are kept up to date
 };
 
 /// Connects the faces of a draft, of which only `Topology::origin` and `positions` must be right, and counts what is

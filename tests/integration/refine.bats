@@ -104,8 +104,9 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" = 48 ]
 }
 
-@test "gaps of rounding are closed and counted" {
-  # A cube. Its lid has corners of its own, three ten-millionths too high.
+@test "gaps of rounding and T-junctions are closed and counted" {
+  # A cube. Its lid has corners of its own, three ten-millionths too high; on the side of its floor lies a corner of two
+  # faces of the front.
   cat >"$BATS_TEST_TMPDIR/torn.obj" <<'END'
 v 0 0 0
 v 1 0 0
@@ -119,21 +120,24 @@ v 0 0 1.0000003
 v 1 0 1.0000003
 v 1 1 1.0000003
 v 0 1 1.0000003
+v 0.5 0 0
 f 4 3 2 1
-f 1 2 6 5
+f 1 13 5
+f 13 2 6
+f 13 6 5
 f 2 3 7 6
 f 3 4 8 7
 f 4 1 5 8
 f 9 10 11 12
 END
   "$papilio" info --json "$BATS_TEST_TMPDIR/torn.obj" >"$BATS_TEST_TMPDIR/info.json"
-  [ "$(jq -c '[.closed, .euler_characteristic, .vertices, .faces, .near_duplicates]' \
-    "$BATS_TEST_TMPDIR/info.json")" = '[true,2,8,12,4]' ]
+  [ "$(jq -c '[.closed, .euler_characteristic, .vertices, .faces, .near_duplicates, .t_junctions]' \
+    "$BATS_TEST_TMPDIR/info.json")" = '[true,2,9,14,4,1]' ]
   "$papilio" convert --exact "$BATS_TEST_TMPDIR/torn.obj" "$BATS_TEST_TMPDIR/torn.drc"
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/torn.drc" "$url/v1/refine?levels=2"
   [ "$status" = 200 ]
-  [ "$(header Papilio-Found)" = "near_duplicates=4" ]
-  [ "$(header Papilio-Faces)" = $((12 * 16)) ]
+  [ "$(header Papilio-Found)" = "near_duplicates=4, t_junctions=1" ]
+  [ "$(header Papilio-Faces)" = $((14 * 16)) ]
   cp "$body" "$BATS_TEST_TMPDIR/fine.drc"
   [ "$("$papilio" info --json "$BATS_TEST_TMPDIR/fine.drc" | jq -c '[.closed, .euler_characteristic]')" = '[true,2]' ]
 }

@@ -132,6 +132,7 @@ struct BuildReport {
   uint32_t misoriented_edges = 0;   ///< edges whose two faces run along them in the same direction
   uint32_t pinched_vertices = 0;    ///< vertices at which several fans of faces touch
   uint32_t near_duplicates = 0;     ///< boundary vertices dropped because another within the gap takes their place
+  uint32_t t_junctions = 0;         ///< boundary vertices inserted in the boundary edges that they lay on
 };
 
 /// Largest magnitude of a coordinate, so that no later sum or square overflows.
@@ -146,7 +147,8 @@ inline constexpr uint64_t face_count_limit = 1ULL << 30;
 /// no_faces, out_of_memory.
 ///
 /// `gap`, a share of the bounding box's diagonal, closes what rounding leaves open (core/mesh/close_gaps.h): boundary
-/// vertices are welded. 0 closes nothing. A mesh without such gaps is built to the bit as with 0.
+/// vertices are welded, those of T-junctions divide faces. 0 closes nothing. A mesh without such gaps is built to the
+/// bit as with 0.
 [[nodiscard]] Mesh build_mesh(const TriangleMesh& input, BuildReport* report = nullptr, double gap = 0);
 
 /// Gap that rounding to floats explains and no design needs.
