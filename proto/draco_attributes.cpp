@@ -128,6 +128,7 @@ void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
     Attribute& read = out.attributes.emplace_back();
     read.components = attribute.num_components();
     read.unit_length = is_unit_normal(format, read.components);
+    read.is_smoothing_group = is_smoothing_group(format, read.components);
     read.values = with_number(format.type, [&](auto zero) {
       return read_values<decltype(zero)>(attribute, static_cast<uint32_t>(out.positions.size()));
     });

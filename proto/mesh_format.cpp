@@ -8,6 +8,11 @@ bool is_unit_normal(const AttributeFormat& format, uint32_t components) {
   return format.kind == AttributeKind::normal && format.type == ValueType::float32 && components == 3;
 }
 
+bool is_smoothing_group(const AttributeFormat& format, uint32_t components) {
+  return format.kind == AttributeKind::generic && format.type <= ValueType::uint64 && components == 1 &&
+         format.name == smoothing_group_name;
+}
+
 double unit_value(const AttributeFormat& format) {
   if (!format.normalized || format.type > ValueType::uint64) return 1;
   const auto number = static_cast<unsigned>(format.type);  // int8, uint8, int16, uint16, ...

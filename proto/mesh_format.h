@@ -30,6 +30,12 @@ struct AttributeFormat {
 /// Returns whether an attribute of so many components holds unit normals that Draco codes on an octahedron.
 [[nodiscard]] bool is_unit_normal(const AttributeFormat& format, uint32_t components);
 
+/// Name of the generic attribute of one integer that holds each face's smoothing group, at all its points.
+inline constexpr const char* smoothing_group_name = "smoothing_group";
+
+/// Returns whether an attribute of so many components holds smoothing groups.
+[[nodiscard]] bool is_smoothing_group(const AttributeFormat& format, uint32_t components);
+
 /// Returns the stored number that represents 1: the maximum of a normalized integer type, else 1.
 [[nodiscard]] double unit_value(const AttributeFormat& format);
 

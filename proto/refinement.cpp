@@ -240,11 +240,13 @@ std::optional<StopReason> stop_reason_named(std::string_view name) {
 }
 
 std::string shape_text(const ShapeReport& shape) {
-  if (shape.components == 0) return "plain";
   const auto count = [](uint32_t number, const std::string& what) {
     return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
   };
-  const std::string creases = shape.creases == 0 ? "" : ", " + count(shape.creases, "crease");
+  const std::string marked =
+      shape.marked == 0 ? "" : ", " + std::to_string(shape.marked) + " marked by smoothing groups";
+  const std::string creases = (shape.creases == 0 ? "" : ", " + count(shape.creases, "crease")) + marked;
+  if (shape.components == 0) return "plain" + marked;
   if (shape.mechanical == 0) return "organic: " + count(shape.components, "component") + creases;
   return "mechanical: " + std::to_string(shape.mechanical) + " of " + count(shape.components, "component") + creases;
 }

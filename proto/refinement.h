@@ -105,7 +105,8 @@ class Refinement {
 /// Formats statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Shape,
 /// -Found (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// Formats what a mesh was taken for: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain".
+/// Formats what a mesh was taken for: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain";
+/// with smoothing groups also ", 24 marked by smoothing groups".
 [[nodiscard]] std::string shape_text(const ShapeReport& shape);
 /// Formats statistics as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, shape,
 /// found {...}, milliseconds {decode, refine, encode}.

@@ -176,7 +176,7 @@ ordered_json headers() {
             {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget", "limits"}}}}}},
           {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
-          {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept")},
+          {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept or marked")},
           {"Papilio-Found", header("string", "Defects of the coarse mesh, mended ones included, and how many")},
           {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
           {"ETag", header("string", "Strong")},

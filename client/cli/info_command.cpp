@@ -29,7 +29,9 @@ ordered_json describe(const MeshPlace& input) {
       {"edges", topology.edge_count()},
       {"euler_characteristic", topology.euler_characteristic()},
       {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0}};
-  description["shape"] = proto::shape_text(shape_of(mesh));
+  const ShapeReport shape = shape_of(mesh);
+  description["shape"] = proto::shape_text(shape);
+  description["marked_creases"] = shape.marked;
   for (const auto& [name, count] : proto::all_findings(report)) description[std::string(name)] = count;
   description["box"] = {{"min", triple(box.min)}, {"max", triple(box.max)}, {"diagonal", box.diagonal()}};
   return description;

@@ -34,9 +34,10 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 /// which OFF and PLY allow, are left out. Text may begin with the byte order mark of UTF-8. A binary STL file may be
 /// longer than its count asks for, but not by a whole number of triangles. OBJ's texture coordinates (`vt`, of two or
 /// three numbers) and normals (`vn`) are attributes: each position is then one point for each pair of them that faces
-/// name with it; where a corner lacks one it is zero. PLY's normals, colours and texture coordinates of vertices are
-/// attributes. Those of OFF and STL, and all materials, are not read. STL has no shared vertices: three new positions
-/// for each triangle. Coordinates that are NaN or infinite are passed on.
+/// name with it; where a corner lacks one it is zero. OBJ's
+/// smoothing groups (`s`) are an attribute named smoothing_group if faces are in different ones. PLY's normals, colours
+/// and texture coordinates of vertices are attributes. Those of OFF and STL, and all materials, are not read. STL has
+/// no shared vertices: three new positions for each triangle. Coordinates that are NaN or infinite are passed on.
 ///
 /// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
 /// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,
@@ -49,8 +50,9 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 /// Writes through `write_atomically`. OBJ and OFF as text, in the shortest digits that give back the same
 /// float; PLY and STL binary, little-endian. Positions survive to the bit in all four; STL loses what is
 /// shared between triangles, and gives degenerate ones a zero normal. OBJ keeps the first texture coordinates of at
-/// most three numbers and the first normals that `mesh_format` describes, as floats; PLY such normals, texture
-/// coordinates of two numbers and the first colours, with a vertex for each point; OFF and STL keep positions alone.
+/// most three numbers and the first normals that `mesh_format` describes, as floats, and smoothing groups; PLY such
+/// normals, texture coordinates of two numbers and the first colours, with a vertex for each point; OFF and STL keep
+/// positions alone.
 ///
 /// Throws `FileError` if it cannot be written; `std::invalid_argument` if a triangle names a vertex that does
 /// not exist; `std::logic_error` for `Format::drc`.

@@ -1,9 +1,11 @@
 // Wavefront OBJ: `v x y z`, `vt u v`, `vn x y z` and `f 1/1/1 2/2/2 3/3/3`, indices from 1 or, negative, back from the
-// latest. A face may come before what it names. All other keywords are passed over.
+// latest. A face may come before what it names. `s 1` and `s off` say which smoothing group the faces after them are
+// in. All other keywords are passed over.
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -20,12 +22,13 @@ using proto::AttributeKind;
 
 constexpr uint32_t nowhere = none - 1;  ///< an index that is sure to be out of range
 
-/// Position, texture coordinate and normal of a face's corner, from zero; `none` for one that is not named.
+/// Position, texture coordinate and normal of a face's corner, from zero; `none` for one that is not named. `group` is
+/// the face's smoothing group.
 struct Corner {
-  uint32_t position = none, texture = none, normal = none;
+  uint32_t position = none, texture = none, normal = none, group = 0;
   friend bool operator==(const Corner&, const Corner&) = default;
   friend bool operator<(const Corner& a, const Corner& b) {
-    return std::tie(a.position, a.texture, a.normal) < std::tie(b.position, b.texture, b.normal);
+    return std::tie(a.position, a.texture, a.normal, a.group) < std::tie(b.position, b.texture, b.normal, b.group);
   }
 };
 
@@ -76,10 +79,31 @@ Vec3f parse_texture(TextScanner& scanner) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+/// Numbers the smoothing groups of a file: 0 for `off`, else from 1 in the order in which they come, as the author's
+/// numbers may be bit masks. Faces before the first `s` are a group of their own.
+class SmoothingGroups {
+ public:
+  [[nodiscard]] uint32_t current() const { return current_; }
+  /// Takes what follows an `s`; what is no number is passed over.
+  void set(std::string_view word) {
+    int64_t number = 0;
+    if (word == "off")
+      number = 0;
+    else if (!parse_number(word, number))
+      return;
+    current_ = number == 0 ? 0 : numbers_.try_emplace(number, numbers_.size() + 2).first->second;
+  }
+
+ private:
+  std::map<int64_t, uint32_t> numbers_;
+  uint32_t current_ = 1;
+};
+
 Lists parse_lists(std::string_view bytes) {
   TextScanner scanner(bytes, {.hash_comments = true, .backslash_continues = true});
   Lists lists;
   std::vector<uint32_t> face;
+  SmoothingGroups groups;
   for (bool more = scanner.to_word(); more; more = scanner.next_line()) {
     const std::string_view keyword = scanner.word();
     if (keyword == "v" || keyword == "vn") {
@@ -87,11 +111,14 @@ Lists parse_lists(std::string_view bytes) {
       (keyword == "v" ? lists.positions : lists.normals).push_back({x, y, z});
     } else if (keyword == "vt") {
       lists.textures.push_back(parse_texture(scanner));
+    } else if (keyword == "s") {
+      groups.set(scanner.word());
     } else if (keyword == "f") {
       face.clear();
       for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
         face.push_back(static_cast<uint32_t>(lists.corners.size()));
         lists.corners.push_back(parse_corner(scanner, word, lists));
+        lists.corners.back().group = groups.current();
       }
       if (face.size() < 3) scanner.fail("a face has fewer than three corners");
       lists.faces.add(face);
@@ -119,6 +146,14 @@ bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Buff
     if (corner.*member >= listed.size()) throw ParseError(std::string("a face names a ") + what + " that is not there");
   }
   return used;
+}
+
+/// Returns whether faces are in different smoothing groups; if not, forgets the groups.
+bool have_groups(std::vector<Corner>& corners) {
+  const bool differ = std::ranges::any_of(corners, [&](const Corner& c) { return c.group != corners[0].group; });
+  if (!differ)
+    for (Corner& corner : corners) corner.group = 0;
+  return differ;
 }
 
 /// Makes each of `corners` the number of its point. Points are in the order of their positions, at least one each.
@@ -155,6 +190,16 @@ void add_attribute(proto::FormattedMesh& mesh, AttributeKind kind, uint32_t comp
   mesh.format.attributes.push_back({.kind = kind, .id = static_cast<uint32_t>(mesh.attributes.size())});
 }
 
+void add_groups(proto::FormattedMesh& mesh, const std::vector<Corner>& points) {
+  Attribute& attribute = mesh.attributes.emplace_back();
+  attribute.is_smoothing_group = true;
+  for (const Corner& point : points) attribute.values.push_back(point.group);
+  mesh.format.attributes.push_back({.kind = AttributeKind::generic,
+                                    .type = proto::ValueType::int32,
+                                    .id = static_cast<uint32_t>(mesh.attributes.size()),
+                                    .name = proto::smoothing_group_name});
+}
+
 }  // namespace
 
 proto::FormattedMesh parse_obj(std::string_view bytes) {
@@ -163,11 +208,12 @@ proto::FormattedMesh parse_obj(std::string_view bytes) {
   Lists lists = parse_lists(bytes);
   const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");
   const bool normals = are_used(lists.corners, &Corner::normal, lists.normals, "normal (vn)");
+  const bool groups = have_groups(lists.corners);
   proto::FormattedMesh mesh;
   mesh.triangles = triangulate(lists);
   const bool sound =
       std::ranges::all_of(lists.corners, [&](const Corner& c) { return c.position < lists.positions.size(); });
-  if (!sound || (!textures && !normals)) {  // of indices out of range the caller tells
+  if (!sound || (!textures && !normals && !groups)) {  // of indices out of range the caller tells
     for (Triangle& triangle : mesh.triangles)
       for (uint32_t& corner : triangle) corner = lists.corners[corner].position;
     mesh.positions = std::move(lists.positions);
@@ -181,6 +227,7 @@ proto::FormattedMesh parse_obj(std::string_view bytes) {
   const bool three = std::ranges::any_of(lists.textures, [](Vec3f t) { return t.z != 0; });
   if (textures) add_attribute(mesh, AttributeKind::tex_coord, three ? 3 : 2, points, &Corner::texture, lists.textures);
   if (normals) add_attribute(mesh, AttributeKind::normal, 3, points, &Corner::normal, lists.normals);
+  if (groups) add_groups(mesh, points);
   return mesh;
 }
 

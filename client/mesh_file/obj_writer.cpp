@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "client/mesh_file/formats.h"
@@ -33,6 +35,24 @@ Buffer<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& 
     return found;
   }
   return {};
+}
+
+/// Returns the values of the smoothing groups, one a point; nothing if there are none.
+std::span<const double> find_groups(const TriangleMesh& mesh, const proto::MeshFormat& format) {
+  for (size_t a = 0; a < format.attributes.size(); ++a)
+    if (proto::is_smoothing_group(format.attributes[a], mesh.attributes[a].components))
+      return mesh.attributes[a].values;
+  return {};
+}
+
+/// Appends the line that says which group the faces after it are in.
+void append_group(std::string& text, double group) {
+  text += 's';
+  if (group == 0)
+    text += " off";
+  else
+    append_number(text, static_cast<uint64_t>(std::max(group, 0.0)));
+  text += '\n';
 }
 
 /// Leaves the different ones among `values`, in order; gives the place of each.
@@ -71,7 +91,8 @@ std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format
   std::vector<uint32_t> position(positions.size());
   std::iota(position.begin(), position.end(), 0);
   // Points apart in their attributes alone are one vertex, which does not come apart where the file is read again.
-  if (!textures.empty() || !normals.empty()) position = drop_repeated(positions);
+  const std::span<const double> groups = find_groups(mesh, format);
+  if (!textures.empty() || !normals.empty() || !groups.empty()) position = drop_repeated(positions);
   const std::vector<uint32_t> texture = drop_repeated(textures);
   const std::vector<uint32_t> normal = drop_repeated(normals);
 
@@ -81,7 +102,9 @@ std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format
   for (const Vec3f& t : textures)
     texture_components == 3 ? append_line(text, "vt", {t.x, t.y, t.z}) : append_line(text, "vt", {t.x, t.y});
   for (const Vec3f& n : normals) append_line(text, "vn", {n.x, n.y, n.z});
+  std::optional<double> group;
   for (const Triangle& triangle : mesh.triangles) {
+    if (!groups.empty() && group != groups[triangle[0]]) append_group(text, *(group = groups[triangle[0]]));
     text += 'f';
     for (const uint32_t p : triangle) {
       append_number(text, uint64_t{position[p]} + 1);

@@ -84,7 +84,7 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   if (input.attributes.empty()) return out;
   const Buffer<uint32_t> same = merge_equal_points(input, mesh, corner_point);
   for (const Attribute& attribute : input.attributes)
-    out.attributes.push_back({attribute.components, attribute.unit_length, {}});
+    out.attributes.push_back({attribute.components, attribute.unit_length, {}, attribute.is_smoothing_group});
 
   Buffer<uint32_t> number(input.positions.size(), none);
   out.point.reserve(corner_point.size());

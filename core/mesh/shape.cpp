@@ -8,6 +8,7 @@
 #include "base/trigonometry.h"
 #include "mesh/crease.h"
 #include "mesh/hinge.h"
+#include "mesh/smoothing_groups.h"
 
 namespace papilio {
 namespace {
@@ -51,10 +52,12 @@ class ShapeFinder {
     choose_mechanical(options.shape);
     topology_.shape.has_rules = true;
     topology_.shape.is_mechanical = std::ranges::find(is_mechanical_, 1) != is_mechanical_.end();
-    if (options.crease_angle < 180)
+    if (options.crease_angle < 180) {
       mark_creases(mesh_, options.crease_angle);
-    else if (topology_.shape.is_mechanical)
-      find_creases();
+    } else {
+      if (topology_.shape.is_mechanical) find_creases();
+      marked_ = mark_group_creases(mesh_);
+    }
     topology_.darts = find_darts(topology_);
     if (topology_.shape.is_mechanical) find_corners();
     return report();
@@ -197,6 +200,7 @@ class ShapeFinder {
       ++report.components;
       report.mechanical += is_mechanical_[f];
     }
+    report.marked = marked_;
     report.creases = static_cast<uint32_t>(std::ranges::count(topology_.kind, EdgeKind::crease));
     return report;
   }
@@ -209,14 +213,20 @@ class ShapeFinder {
   FaceSets components_;
   Buffer<double> cosines_;         ///< [E] of the angle between the two faces' normals
   Buffer<uint8_t> is_mechanical_;  ///< [F]
+  uint32_t marked_ = 0;            ///< creases of smoothing groups
 };
 
 }  // namespace
 
 ShapeReport mark_shape(Mesh& mesh, const Options& options) {
   if (options.shape != Shape::plain && options.tension != Tension::off) return ShapeFinder(mesh).run(options);
-  mark_creases(mesh, options.crease_angle);
-  return {};
+  if (options.crease_angle < 180) {
+    mark_creases(mesh, options.crease_angle);
+    return {};
+  }
+  const uint32_t marked = mark_group_creases(mesh);
+  if (marked > 0) mesh.topology.darts = find_darts(mesh.topology);
+  return {.marked = marked};
 }
 
 }  // namespace papilio

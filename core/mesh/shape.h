@@ -9,7 +9,10 @@ namespace papilio {
 /// Marks what of a coarse mesh is to stay as it is, and says what was found: its creases, darts and `Topology::shape`.
 /// The mesh must have its edges, none of them a crease. Levels inherit the marks, as they inherit creases.
 ///
-/// Without tension or by `Shape::plain` only the creases by `Options::crease_angle` are marked. Else a component, faces
+/// `Options::crease_angle` below 180, given by hand, replaces all other creases. Without it, creases are those of
+/// smoothing groups (smoothing_groups.h) and those of the shape.
+///
+/// Without tension or by `Shape::plain` no creases of the shape are marked. Else a component, faces
 /// connected by edges, is mechanical where the option says so or, by itself, where of its edges between two faces at
 /// least a quarter lie flat (under half a degree) and at least half are either flat or sharp (over 31 degrees). Of a
 /// mechanical component creases are, unless an angle is given,

@@ -136,6 +136,27 @@ END
   cmp <(grep '^v ' back.obj | sort) <(grep '^v ' once.obj | sort)
 }
 
+@test "smoothing groups of OBJ stay sharp, here and there, and come back" {
+  # A pyramid of five faces over a square: a smooth mantle in group 1, a floor that is off.
+  pyramid() { printf 'v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 0.5\n%bf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n%bf 4 3 2 1\n' "$@"; }
+  pyramid 's 1\n' 's off\n' >groups.obj
+  pyramid 's 1\n' '' >one.obj
+  pyramid 's off\n' '' >off.obj
+  [ "$("$papilio" info --json groups.obj | jq .marked_creases)" = 5 ]
+  [ "$("$papilio" info --json one.obj | jq .marked_creases)" = 0 ]
+  [ "$("$papilio" info --json off.obj | jq .marked_creases)" = 0 ]
+  [[ $("$papilio" info groups.obj) == *'5 marked by smoothing groups'* ]]
+  "$papilio" refine groups.obj -o here.drc --levels 2 --shape organic
+  "$papilio" refine groups.obj -o there.drc --levels 2 --shape organic --server "$url"
+  cmp here.drc there.drc
+  # The floor stays in its plane, and its rim is the one line of creases of the result.
+  "$papilio" refine groups.obj -o fine.obj --levels 2 --shape organic
+  "$papilio" refine one.obj -o smooth.obj --levels 2 --shape organic
+  ! cmp -s fine.obj smooth.obj
+  [ "$(grep -c '^s ' fine.obj)" -ge 2 ]
+  [ "$("$papilio" info --json fine.obj | jq '.marked_creases > 15')" = true ]
+}
+
 @test "concave polygons of a file are cut inside, and nothing folds" {
   cat >plate.obj <<'END'
 v 0 0 0

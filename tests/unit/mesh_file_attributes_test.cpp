@@ -1,3 +1,5 @@
+#include "proto/draco_reader.h"
+#include "proto/draco_writer.h"
 #include "tests/support/charts.h"
 #include "tests/support/mesh_file_fixture.h"
 
@@ -167,6 +169,48 @@ TEST_F(mesh_file_attributes, damaged_files_never_crash) {
       EXPECT_THAT(error.what(), HasSubstr("in.obj"));
     }
   }
+}
+
+/// Group of each face, or nothing if the mesh has none.
+std::vector<double> groups_of(const proto::FormattedMesh& mesh) {
+  std::vector<double> groups;
+  for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+    if (!mesh.attributes[a].is_smoothing_group) continue;
+    EXPECT_EQ(mesh.format.attributes[a].name, "smoothing_group");
+    EXPECT_EQ(mesh.format.attributes[a].kind, proto::AttributeKind::generic);
+    for (const Triangle& t : mesh.triangles) {
+      groups.push_back(mesh.attributes[a].values[t[0]]);
+      for (const uint32_t p : t) EXPECT_EQ(mesh.attributes[a].values[p], groups.back());
+    }
+  }
+  return groups;
+}
+
+TEST_F(mesh_file_attributes, smoothing_groups_of_obj) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  const std::string faces[]{"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};
+  const auto groups = [&](const std::string& text) {
+    return groups_of(parse_triangles("it", Format::obj, vertices + text));
+  };
+  using Groups = std::vector<double>;
+  EXPECT_EQ(groups(faces[0] + "s 1\n" + faces[1] + "s off\n" + faces[2] + "s 1\n" + faces[3]), (Groups{1, 2, 0, 2}));
+  EXPECT_EQ(groups("s 4294967295\n" + faces[0] + "s 8\n" + faces[1] + "s 0\n" + faces[2] + "s nonsense\n" + faces[3]),
+            (Groups{2, 3, 0, 0}));
+  for (const char* all : {"", "s 1\n", "s off\n", "s 0\n"})
+    EXPECT_EQ(groups(all + faces[0] + faces[1] + all + faces[2] + faces[3]), Groups{}) << all;
+}
+
+TEST_F(mesh_file_attributes, smoothing_groups_come_back_from_obj_and_draco) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ns 1\nf 1 3 2\nf 1 2 4\ns off\nf 2 3 4\ns 2\nf 3 1 4\n";
+  const proto::FormattedMesh mesh = parse_triangles("it", Format::obj, text);
+  const std::string written = encode_triangles("it", Format::obj, mesh, mesh.format);
+  EXPECT_THAT(written, HasSubstr("# 4 vertices"));
+  EXPECT_EQ(groups_of(parse_triangles("it", Format::obj, written)), groups_of(mesh));
+  const proto::FormattedMesh read = proto::read_draco(proto::write_draco_exact(mesh, mesh.format), {});
+  std::vector<double> sorted = groups_of(read), expected = groups_of(mesh);  // the encoder orders faces
+  std::ranges::sort(sorted);
+  std::ranges::sort(expected);
+  EXPECT_EQ(sorted, expected);
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ struct Attribute {
   uint32_t components = 1;
   bool unit_length = false;    ///< brought back to length one after interpolation: normals
   std::vector<double> values;  ///< [points * components], point by point
+  /// Number of a face's smoothing group, at each of its points: edges between faces of different groups, or of group 0,
+  /// are creases (core/mesh/smoothing_groups.h).
+  bool is_smoothing_group = false;
 
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };

@@ -62,7 +62,7 @@ struct Options {
   Shape shape = Shape::automatic;   ///< what the mesh is taken for, and so what of it is kept
   double w = 0;                     ///< -1/16..1/8, the ten-point rule's free parameter; 0 is the eight-point rule
   double crease_angle = 180;        ///< degrees, 0..180: edges whose faces' normals differ by more are kept sharp;
-                                    ///< 180: those that `shape` finds
+                                    ///< 180: those that `shape` finds and smoothing groups mark
   /// Edges are split only where the surface would move by at least this share (0..1) of the coarse mesh's bounding
   /// box's diagonal; 0: wherever the other criteria say. See `deviation.h`.
   double tolerance = 0;

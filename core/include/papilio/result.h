@@ -23,6 +23,7 @@ struct ShapeReport {
   uint32_t components = 0;  ///< connected by edges; 0 where no shape rules hold
   uint32_t mechanical = 0;  ///< of these
   uint32_t creases = 0;     ///< edges of the coarse mesh
+  uint32_t marked = 0;      ///< creases that smoothing groups mark (`Attribute::is_smoothing_group`)
 
   friend bool operator==(const ShapeReport&, const ShapeReport&) = default;
 };
