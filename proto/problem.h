@@ -29,7 +29,8 @@ enum class Code {
   range_not_supported,     ///< a Range header
   headers_too_large,       ///< request line or header fields past the limit
   mesh_not_draco,          ///< not a Draco stream, truncated or damaged
-  mesh_unsupported,        ///< an unsupported kind or version of Draco stream
+  mesh_not_gltf,           ///< neither a .glb file nor a glTF document, truncated or invalid
+  mesh_unsupported,        ///< an unsupported kind or version of mesh
   mesh_unusable,           ///< a decoded mesh that cannot be refined: no faces, NaN, bad indices
   busy,                    ///< all computing slots and waiting places are taken
   not_ready,               ///< /ready only: no further request would be accepted

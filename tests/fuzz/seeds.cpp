@@ -6,10 +6,12 @@
 
 #include "client/mesh_file/formats.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/meshopt.h"
 #include "proto/multipart.h"
 #include "proto/parameters.h"
 #include "tests/support/charts.h"
 #include "tests/support/draco_tools.h"
+#include "tests/support/gltf_scene.h"
 #include "tests/support/shapes.h"
 
 // fuzz_seeds FOLDER: writes what each target starts from into FOLDER/TARGET, and FOLDER/words, a dictionary.
@@ -87,6 +89,40 @@ void add_mesh_files(Seeds& seeds) {
       "endsolid s\n");
 }
 
+/// A document and its binary chunk, apart by a zero.
+std::string apart(const test::GltfScene& scene) {
+  test::GltfScene::Json json = scene.json;
+  json["buffers"] = {{{"byteLength", scene.binary.size()}}};
+  return json.dump() + '\0' + scene.binary;
+}
+
+void add_scenes(Seeds& seeds) {
+  for (const TriangleMesh& shape : shapes()) {
+    test::GltfScene scene;
+    scene.add_mesh(shape);
+    seeds.add("gltf_document", scene.glb());
+    seeds.add("gltf_document", scene.gltf());
+    seeds.add("gltf_geometry", apart(scene));
+    test::GltfScene draco = scene;
+    draco.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", draco.add_view(proto::write_draco_exact(shape))}, {"attributes", {{"POSITION", 0}}}};
+    seeds.add("gltf_geometry", apart(draco));
+    const size_t indices = scene.add_view(std::string("\1", 1));
+    scene.json["accessors"][0]["sparse"] = {
+        {"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
+    scene.primitive()["mode"] = 5;
+    seeds.add("gltf_geometry", apart(scene));
+    const std::string bytes = proto::gltf::encode_meshopt_attributes(std::string(120, '\1'), 12);
+    test::GltfScene meshopt;
+    meshopt.add_mesh(shape);
+    meshopt.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
+        {"buffer", 0},          {"byteOffset", meshopt.binary.size()}, {"byteLength", bytes.size()}, {"byteStride", 12},
+        {"mode", "ATTRIBUTES"}, {"count", shape.positions.size()}};
+    meshopt.binary += bytes;
+    seeds.add("gltf_geometry", apart(meshopt));
+  }
+}
+
 void add_parameters(Seeds& seeds) {
   std::vector<std::string> words{"true",
                                  "false",
@@ -99,7 +135,14 @@ void add_parameters(Seeds& seeds) {
                                  "multipart/form-data",
                                  "name=",
                                  "Host: ",
-                                 "q=0.5"};
+                                 "q=0.5",
+                                 "byteOffset",
+                                 "byteStride",
+                                 "componentType",
+                                 "TRIANGLES",
+                                 "OCTAHEDRAL",
+                                 "normalized",
+                                 "TEXCOORD_0"};
   for (const proto::ParameterInfo& info : proto::parameter_table()) {
     const std::string name(info.name);
     std::string value = proto::describe_default(info);
@@ -158,6 +201,7 @@ int main(int argc, char** argv) {
     papilio::fuzz::Seeds seeds(argv[1]);
     papilio::fuzz::add_meshes(seeds);
     papilio::fuzz::add_mesh_files(seeds);
+    papilio::fuzz::add_scenes(seeds);
     papilio::fuzz::add_parameters(seeds);
     papilio::fuzz::add_messages(seeds);
     papilio::fuzz::add_noise(seeds);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "proto/draco_writer.h"
+#include "proto/gltf/geometry.h"
+
+// Primitives compressed by KHR_draco_mesh_compression.
+
+namespace papilio::proto::gltf {
+
+/// A decoded primitive.
+struct DracoPrimitive {
+  uint64_t count = 0;  ///< vertices
+  std::vector<VertexStream> attributes;
+  std::vector<Triangle> triangles;
+};
+
+/// Decodes a primitive. `extension`: its KHR_draco_mesh_compression; `attributes`: those of the primitive, whose
+/// accessors give the formats. Throws `Problem`: as `read_draco`, and mesh_not_gltf where the stream and the accessors
+/// disagree.
+[[nodiscard]] DracoPrimitive read_draco_primitive(Views& views, const Json& extension, const Json& attributes,
+                                                  const Limits& limits, const std::string& where);
+
+/// A compressed primitive and what decodes from it.
+struct EncodedPrimitive {
+  std::string stream;
+  std::vector<std::pair<std::string, uint32_t>> ids;  ///< semantic and Draco's unique id
+  DracoPrimitive decoded;
+};
+
+/// Compresses a primitive. Vertices that no triangle uses and degenerate triangles are dropped. `box` quantizes the
+/// positions: one for all primitives of a mesh, so that their borders stay closed. Throws `Problem`.
+[[nodiscard]] EncodedPrimitive encode_draco_primitive(const VertexSet& set, const std::vector<Triangle>& triangles,
+                                                      const QuantizationBox& box, const OutputOptions& options,
+                                                      const std::function<void()>& poll = {});
+
+}  // namespace papilio::proto::gltf

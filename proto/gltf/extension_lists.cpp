@@ -1,0 +1,56 @@
+#include "proto/gltf/extension_lists.h"
+
+#include <algorithm>
+#include <array>
+
+#include "proto/gltf/extensions.h"
+
+namespace papilio::proto::gltf {
+namespace {
+
+/// Returns whether the extension is used anywhere in a value, extras left out.
+bool uses_extension(const Json& value, const char* name) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) {
+      if (key == "extensions" && inner.is_object() && inner.contains(name)) return true;
+      if (key != "extras" && uses_extension(inner, name)) return true;
+    }
+  } else if (value.is_array()) {
+    return std::ranges::any_of(value, [&](const Json& inner) { return uses_extension(inner, name); });
+  }
+  return false;
+}
+
+bool is_listed(const Json& document, const char* list, const char* name) {
+  const Json& names = array_of(document, list);
+  return std::ranges::find(names, name) != names.end();
+}
+
+void put_listed(Json& document, const char* list, const char* name, bool listed) {
+  if (is_listed(document, list, name) == listed) return;
+  if (listed) {
+    document[list].push_back(name);
+    return;
+  }
+  Json rest = Json::array();
+  for (const Json& known : document[list])
+    if (known != name) rest.push_back(known);
+  if (rest.empty())
+    document.erase(list);
+  else
+    document[list] = std::move(rest);
+}
+
+}  // namespace
+
+void list_extensions(Json& document) {
+  for (const char* name : {draco_extension, meshopt_extension}) {
+    const bool was_required = is_listed(document, "extensionsRequired", name);
+    const bool is_used = uses_extension(document, name);
+    if (!is_used && !was_required && !is_listed(document, "extensionsUsed", name)) continue;
+    put_listed(document, "extensionsUsed", name, is_used);
+    put_listed(document, "extensionsRequired", name, is_used);
+  }
+}
+
+}  // namespace papilio::proto::gltf

@@ -1,0 +1,14 @@
+#pragma once
+
+// Names of the extensions that say how geometry is stored.
+
+namespace papilio::proto::gltf {
+
+inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
+/// Successor of EXT_meshopt_compression with codecs that Debian's meshoptimizer cannot read.
+inline constexpr const char* newer_meshopt_extension = "KHR_meshopt_compression";
+inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
+inline constexpr const char* instancing_extension = "EXT_mesh_gpu_instancing";
+
+}  // namespace papilio::proto::gltf

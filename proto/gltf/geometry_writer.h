@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "proto/draco_writer.h"
+#include "proto/gltf/buffer_writer.h"
+#include "proto/gltf/geometry.h"
+
+namespace papilio::proto::gltf {
+
+/// How new geometry is compressed.
+enum class Compression {
+  same,     ///< each primitive as it was
+  draco,    ///< by KHR_draco_mesh_compression
+  meshopt,  ///< by EXT_meshopt_compression
+  none
+};
+/// Returns "same", "draco", "meshopt" or "none".
+[[nodiscard]] std::string_view compression_name(Compression compression);
+[[nodiscard]] std::optional<Compression> compression_named(std::string_view name);
+
+/// New triangles of a mesh: sets and primitives as `read_geometry` gives them, with other contents.
+struct NewGeometry {
+  uint32_t mesh = 0;
+  MeshGeometry geometry;
+  QuantizationBox box;  ///< grid of positions where Draco compresses them
+};
+
+struct GeometryEncoding {
+  Compression compression = Compression::same;
+  OutputOptions draco;
+  std::function<void()> poll;  ///< called now and then; may throw to stop
+};
+
+/// Puts new triangles in place of those of their primitives. Accessors and views keep their places: new contents take
+/// those of the old ones, or of none, where others need the old ones. Primitives become indexed lists of triangles.
+/// What the old geometry alone held is removed from the buffers; everything else survives. Returns the bytes of the
+/// buffers, which borrow from `document`. Throws `Problem`.
+[[nodiscard]] BufferPieces write_geometry(Document& document, std::vector<NewGeometry> meshes,
+                                          const GeometryEncoding& encoding);
+
+}  // namespace papilio::proto::gltf

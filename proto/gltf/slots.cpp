@@ -1,0 +1,208 @@
+#include "proto/gltf/slots.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "proto/gltf/byte_ranges.h"
+#include "proto/gltf/extensions.h"
+
+namespace papilio::proto::gltf {
+namespace {
+
+constexpr uint32_t vertex_alignment = 4;
+constexpr uint32_t array_buffer = 34962, element_array_buffer = 34963;  // targets of views
+
+constexpr const char* type_names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+
+/// Returns elements at a stride of a multiple of four bytes.
+std::string strided(const Elements& elements, uint32_t stride) {
+  const uint32_t size = elements.format.bytes();
+  if (stride == size) return elements.bytes;
+  std::string out(elements.count * stride, '\0');
+  for (uint64_t i = 0; i < elements.count; ++i) std::memcpy(&out[i * stride], &elements.bytes[i * size], size);
+  return out;
+}
+
+Json bound(const Elements& elements, bool upper) {
+  Json out = Json::array();
+  for (uint32_t c = 0; c < elements.format.components; ++c) {
+    double extreme = elements.number(0, c);
+    for (uint64_t i = 1; i < elements.count; ++i) {
+      const double number = elements.number(i, c);
+      extreme = upper ? std::max(extreme, number) : std::min(extreme, number);
+    }
+    if (elements.format.type == ComponentType::float32)
+      out.push_back(extreme);
+    else
+      out.push_back(static_cast<int64_t>(extreme));
+  }
+  return out;
+}
+
+/// Bytes of a view that an accessor names.
+ByteRange range_in_view(const Json& accessor, const Json& view, uint32_t number) {
+  const std::string where = place("accessors", number);
+  const uint32_t size = element_format(accessor, where).bytes();
+  const uint64_t begin = whole_number(accessor, "byteOffset", where, 0);
+  const uint64_t count = whole_number(accessor, "count", where);
+  const uint64_t stride = whole_number(view, "byteStride", "a view", size);
+  const uint64_t length = whole_number(view, "byteLength", "a view");
+  if (count == 0) return {begin, begin};
+  if (stride == 0 || count > length / stride + 1) return {0, length};  // not what its view holds
+  return {begin, begin + (count - 1) * stride + size};
+}
+
+}  // namespace
+
+Slots::Slots(Document& document, Released released)
+    : document_(document),
+      json_(document.json),
+      released_(std::move(released)),
+      old_accessors_(array_of(document.json, "accessors")),
+      accessor_is_used_(released_.accessors.size()),
+      view_is_used_(released_.views.size()) {
+  compact_shared_views();
+}
+
+bool Slots::is_compressed(uint32_t accessor) const {
+  const auto view = index_member(old_accessors_[accessor], "bufferView", place("accessors", accessor));
+  return view && *view < released_.views.size() &&
+         find_extension(json_["bufferViews"][*view], meshopt_extension, place("bufferViews", *view)) != nullptr;
+}
+
+uint32_t Slots::take_accessor(std::optional<uint32_t> old, const Elements& elements) {
+  if (old) (void)element_of(json_, "accessors", *old, "a primitive");
+  const bool reuses = old && *old < released_.accessors.size() && released_.accessors[*old] && !accessor_is_used_[*old];
+  Json accessor = old ? old_accessors_[*old] : Json::object();
+  for (const char* key : {"bufferView", "byteOffset", "sparse"}) accessor.erase(key);
+  accessor["componentType"] = static_cast<uint32_t>(elements.format.type);
+  if (!elements.format.normalized) accessor.erase("normalized");
+  accessor["count"] = elements.count;
+  if (!old) accessor["type"] = type_names[elements.format.components - 1];
+  const bool has_bounds = accessor.contains("min") || accessor.contains("max");
+  if (has_bounds && elements.count > 0) {
+    if (accessor.contains("min")) accessor["min"] = bound(elements, false);
+    if (accessor.contains("max")) accessor["max"] = bound(elements, true);
+  }
+  if (reuses) {
+    accessor_is_used_[*old] = true;
+    json_["accessors"][*old] = std::move(accessor);
+    return *old;
+  }
+  json_["accessors"].push_back(std::move(accessor));
+  return static_cast<uint32_t>(json_["accessors"].size() - 1);
+}
+
+uint32_t Slots::take_view(std::optional<uint32_t> preferred, Use use) {
+  const auto is_free = [&](size_t v) { return v < released_.views.size() && released_.views[v] && !view_is_used_[v]; };
+  if (preferred && is_free(*preferred)) {
+    view_is_used_[*preferred] = true;
+    return *preferred;
+  }
+  Json view = Json::object();
+  view["buffer"] = UINT32_MAX;  // chosen with its content
+  view["byteLength"] = 0;
+  if (preferred && *preferred < released_.views.size()) {
+    const Json& like = json_["bufferViews"][*preferred];
+    view["buffer"] = like["buffer"];
+    if (like.contains("target")) view["target"] = use == Use::vertices ? array_buffer : element_array_buffer;
+  }
+  json_["bufferViews"].push_back(std::move(view));
+  return static_cast<uint32_t>(json_["bufferViews"].size() - 1);
+}
+
+uint32_t Slots::put(std::optional<uint32_t> old, const Elements& elements, Use use, bool compressed) {
+  const uint32_t accessor = take_accessor(old, elements);
+  const auto old_view = old ? index_member(old_accessors_[*old], "bufferView", place("accessors", *old)) : std::nullopt;
+  ViewContent content;
+  content.view = take_view(old_view, use);
+  const uint32_t size = elements.format.bytes();
+  content.stride = use == Use::vertices ? (size + vertex_alignment - 1) / vertex_alignment * vertex_alignment : size;
+  content.strided = use == Use::vertices;
+  content.compressed = compressed && elements.count > 0;
+  content.mode = use == Use::vertices ? MeshoptMode::attributes : MeshoptMode::triangles;
+  content.bytes = strided(elements, content.stride);
+  json_["accessors"][accessor]["bufferView"] = content.view;
+  contents_.push_back(std::move(content));
+  return accessor;
+}
+
+uint32_t Slots::describe(std::optional<uint32_t> old, const Elements& elements) { return take_accessor(old, elements); }
+
+uint32_t Slots::put_stream(std::optional<uint32_t> old, std::string stream) {
+  const uint32_t view = take_view(old, Use::vertices);
+  json_["bufferViews"][view].erase("target");
+  ViewContent content;
+  content.view = view;
+  content.bytes = std::move(stream);
+  contents_.push_back(std::move(content));
+  return view;
+}
+
+void Slots::compact_shared_views() {
+  const size_t count = released_.views.size();
+  std::vector<std::vector<ByteRange>> removed(count), live(count);
+  std::vector<std::vector<uint32_t>> users(count);
+  const Json& accessors = old_accessors_;
+  for (uint32_t a = 0; a < accessors.size(); ++a) {
+    const auto view = index_member(accessors[a], "bufferView", place("accessors", a));
+    if (!view || *view >= count || released_.views[*view] || !released_.views_of_accessors[*view]) continue;
+    const ByteRange range = range_in_view(accessors[a], json_["bufferViews"][*view], a);
+    (released_.accessors[a] ? removed : live)[*view].push_back(range);
+    if (!released_.accessors[a]) users[*view].push_back(a);
+  }
+  Views views(document_);
+  for (uint32_t v = 0; v < count; ++v) {
+    if (removed[v].empty() || users[v].empty()) continue;
+    const std::string_view bytes = views.bytes(v, place("bufferViews", v));
+    const KeptBytes kept = keep_bytes(bytes.size(), std::move(removed[v]), std::move(live[v]), bytes);
+    if (kept.size == bytes.size()) continue;
+    const Json& view = json_["bufferViews"][v];
+    const auto compressed = read_meshopt_view(view, place("bufferViews", v));
+    ViewContent content;
+    content.view = v;
+    content.bytes.resize(kept.size);
+    for (const KeptRange& range : kept.ranges)
+      bytes.copy(&content.bytes[range.begin], range.old.end - range.old.begin, range.old.begin);
+    content.strided = view.contains("byteStride");
+    if (content.strided) content.stride = view["byteStride"].get<uint32_t>();
+    if (compressed && compressed->mode == MeshoptMode::attributes) {
+      content.compressed = true;
+      content.stride = compressed->stride;
+      content.bytes.resize((content.bytes.size() + content.stride - 1) / content.stride * content.stride);
+    }
+    for (const uint32_t a : users[v]) {
+      const uint64_t offset = whole_number(accessors[a], "byteOffset", place("accessors", a), 0);
+      json_["accessors"][a]["byteOffset"] = kept.moved(offset);
+    }
+    contents_.push_back(std::move(content));
+  }
+  old_accessors_ = json_["accessors"];
+}
+
+void Slots::decompress_rest() {
+  Views views(document_);
+  std::vector<bool> has_content(json_["bufferViews"].size());
+  for (const ViewContent& content : contents_) has_content[content.view] = true;
+  for (uint32_t v = 0; v < released_.views.size(); ++v) {
+    const auto compressed = read_meshopt_view(json_["bufferViews"][v], place("bufferViews", v));
+    if (!compressed || has_content[v] || released_.views[v]) continue;
+    ViewContent content;
+    content.view = v;
+    content.bytes = views.bytes(v, place("bufferViews", v));
+    content.stride = compressed->stride;
+    content.strided = json_["bufferViews"][v].contains("byteStride");
+    contents_.push_back(std::move(content));
+  }
+  for (ViewContent& content : contents_) content.compressed = false;
+}
+
+BufferPieces Slots::finish() {
+  std::vector<uint32_t> aliased;
+  for (uint32_t v = 0; v < released_.views.size(); ++v)
+    if (released_.views[v] && !view_is_used_[v]) aliased.push_back(v);
+  return replace_contents(document_, std::move(contents_), aliased);
+}
+
+}  // namespace papilio::proto::gltf
