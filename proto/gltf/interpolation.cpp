@@ -1,0 +1,140 @@
+#include "proto/gltf/interpolation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "proto/gltf/joint_weights.h"
+
+namespace papilio::proto::gltf {
+namespace {
+
+using Vertices = std::vector<RefinedVertex>;
+
+void copy_element(const Elements& from, uint32_t index, Elements& to, uint64_t at) {
+  const std::string_view bytes = from.element(index);
+  std::memcpy(&to.bytes[at * bytes.size()], bytes.data(), bytes.size());
+}
+
+double mean(const Elements& input, const Combination& of, uint32_t component) {
+  double sum = 0;
+  for (size_t i = 0; i < 3; ++i)
+    if (of.weight[i] != 0) sum += of.weight[i] * input.number(of.vertex[i], component);
+  return sum;
+}
+
+Elements interpolate(const Elements& input, const Vertices& vertices) {
+  Elements out = zero_elements(input.format, vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    const Combination& of = vertices[i].of;
+    if (of.is_original())
+      copy_element(input, of.vertex[0], out, i);
+    else
+      for (uint32_t c = 0; c < input.format.components; ++c) out.set_number(i, c, mean(input, of, c));
+  }
+  return out;
+}
+
+Elements take_nearest(const Elements& input, const Vertices& vertices) {
+  Elements out = zero_elements(input.format, vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) copy_element(input, vertices[i].of.nearest(), out, i);
+  return out;
+}
+
+std::array<double, 3> numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
+
+/// Returns whether the type can store all positions.
+bool holds_positions(const ElementFormat& format, const Vertices& vertices) {
+  if (format.type == ComponentType::float32) return true;
+  const double low = lowest_number(format.type) - 0.5;
+  const double high = highest_number(format.type) + 0.5;
+  return std::ranges::all_of(vertices, [&](const RefinedVertex& vertex) {
+    return std::ranges::all_of(numbers_of(to_double(vertex.position)), [&](double number) {
+      return number / format.unit() > low && number / format.unit() < high;
+    });
+  });
+}
+
+Elements position_elements(const Elements& input, const Vertices& vertices) {
+  const bool keeps_format = holds_positions(input.format, vertices);
+  Elements out =
+      zero_elements(keeps_format ? input.format : ElementFormat{ComponentType::float32, 3, false}, vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    if (keeps_format && vertices[i].of.is_original()) {
+      copy_element(input, vertices[i].of.vertex[0], out, i);
+      continue;
+    }
+    const auto numbers = numbers_of(to_double(vertices[i].position));
+    for (uint32_t c = 0; c < 3; ++c) out.set_number(i, c, numbers[c] / out.format.unit());
+  }
+  return out;
+}
+
+Elements normal_elements(const ElementFormat& format, const Vertices& vertices) {
+  Elements out = zero_elements(format, vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    const auto numbers = numbers_of(vertices[i].normal);
+    for (uint32_t c = 0; c < 3; ++c) out.set_number(i, c, numbers[c] / format.unit());
+  }
+  return out;
+}
+
+/// Returns the direction of `tangent` in the plane perpendicular to `normal`; `tangent` where there is none.
+Vec3d perpendicular(Vec3d tangent, Vec3d normal) {
+  const Vec3d flat = tangent - dot(tangent, normal) * normal;
+  const double size = length(flat);
+  if (size > 0) return 1 / size * flat;
+  const double whole = length(tangent);
+  return whole > 0 ? 1 / whole * tangent : Vec3d{1, 0, 0};
+}
+
+Elements tangent_elements(const Elements& input, const Vertices& vertices, bool has_normals) {
+  Elements out = zero_elements(input.format, vertices.size());
+  const double unit = input.format.unit();
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    const Combination& of = vertices[i].of;
+    const Vec3d sum{mean(input, of, 0), mean(input, of, 1), mean(input, of, 2)};
+    const auto numbers = numbers_of(perpendicular(sum, has_normals ? vertices[i].normal : Vec3d{}));
+    for (uint32_t c = 0; c < 3; ++c) out.set_number(i, c, numbers[c] / unit);
+    const double side = mean(input, of, 3) < 0 ? -1 : 1;
+    out.set_number(i, 3, side / unit);
+  }
+  return out;
+}
+
+bool identifies(const VertexStream& stream) {
+  const ElementFormat& format = stream.elements.format;
+  if (stream.semantic.starts_with("_FEATURE_ID_")) return true;
+  return stream.semantic.starts_with("_") && format.type != ComponentType::float32 && !format.normalized;
+}
+
+Elements interpolate_stream(const VertexStream& stream, const Vertices& vertices, bool has_normals) {
+  const uint32_t components = stream.elements.format.components;
+  if (stream.semantic == "POSITION") return position_elements(stream.elements, vertices);
+  if (stream.semantic == "NORMAL" && components == 3) return normal_elements(stream.elements.format, vertices);
+  if (stream.semantic == "TANGENT" && components == 4) return tangent_elements(stream.elements, vertices, has_normals);
+  return identifies(stream) ? take_nearest(stream.elements, vertices) : interpolate(stream.elements, vertices);
+}
+
+}  // namespace
+
+VertexSet interpolate_vertices(const VertexSet& input, const Vertices& vertices, bool adds_normals) {
+  VertexSet out;
+  out.count = vertices.size();
+  const VertexStream* normals = input.find("NORMAL");
+  const bool has_normals = normals != nullptr || adds_normals;
+  for (const VertexStream& stream : input.attributes)
+    if (!is_joint_stream(input, stream.semantic))
+      out.attributes.push_back({stream.semantic, stream.accessor, interpolate_stream(stream, vertices, has_normals)});
+  for (VertexStream& stream : interpolate_joints(input, vertices)) out.attributes.push_back(std::move(stream));
+  if (normals == nullptr && adds_normals)
+    out.attributes.push_back({"NORMAL", std::nullopt, normal_elements({ComponentType::float32, 3, false}, vertices)});
+  for (const auto& target : input.targets) {
+    auto& streams = out.targets.emplace_back();
+    for (const VertexStream& stream : target)
+      streams.push_back({stream.semantic, stream.accessor, interpolate(stream.elements, vertices)});
+  }
+  return out;
+}
+
+}  // namespace papilio::proto::gltf

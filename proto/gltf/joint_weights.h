@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "proto/gltf/surface.h"
+
+namespace papilio::proto::gltf {
+
+/// Returns whether an attribute is JOINTS_n or WEIGHTS_n, and the set has the other, both of four components.
+[[nodiscard]] bool is_joint_stream(const VertexSet& set, const std::string& semantic);
+
+/// Interpolates joints and weights of all pairs JOINTS_n, WEIGHTS_n together: weights are added joint by joint, the
+/// largest are kept, as many as the vertices have places, and divided by their sum. Integers add up to exactly their
+/// largest number. Places without a weight name joint 0.
+[[nodiscard]] std::vector<VertexStream> interpolate_joints(const VertexSet& input,
+                                                           const std::vector<RefinedVertex>& vertices);
+
+}  // namespace papilio::proto::gltf

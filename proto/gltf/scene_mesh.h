@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "papilio/refine.h"
+#include "proto/gltf/mesh_options.h"
+#include "proto/gltf/scene.h"
+#include "proto/gltf/surface.h"
+
+namespace papilio::proto::gltf {
+
+/// A mesh of a scene, ready to be refined.
+struct SceneMesh {
+  uint32_t number = 0;
+  MeshGeometry geometry;
+  Surface surface;
+  double diagonal = 0;                             ///< of its box
+  std::vector<std::vector<Affine>> maps;           ///< by showing and joint
+  std::optional<Options> options{};                ///< nothing: it stays as it is
+  std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement
+
+  [[nodiscard]] uint64_t coarse_faces() const { return surface.mesh.topology.face_count(); }
+};
+
+/// Meshes of a scene, and the diagonal of its box.
+struct SceneMeshes {
+  std::vector<SceneMesh> meshes;
+  Box box{{1, 1, 1}, {-1, -1, -1}};
+  uint64_t unchanged_faces = 0;  ///< of meshes that stay as they are
+};
+
+/// Reads all meshes of triangles that a node shows. Throws `Problem`: mesh_unusable where no mesh has a surface.
+[[nodiscard]] SceneMeshes read_meshes(Views& views, const Limits& limits);
+
+/// Returns the scene's tolerance, a length, at which all meshes together have at most `max_faces` faces, as nearly as
+/// that can be had by halving; 0 where no tolerance is needed. `faces_at` counts the faces at a tolerance.
+[[nodiscard]] double tolerance_within_budget(uint64_t max_faces, double scene_diagonal,
+                                             const std::function<uint64_t(double)>& faces_at);
+
+}  // namespace papilio::proto::gltf

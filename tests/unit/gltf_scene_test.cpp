@@ -1,0 +1,373 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "papilio/refine.h"
+#include "proto/gltf/scene_refinement.h"
+#include "proto/gltf/vertices.h"
+#include "proto/problem.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/shapes.h"
+
+namespace papilio::proto::gltf {
+namespace {
+
+using test::GltfScene;
+using Json = GltfScene::Json;
+
+Parameters parameters(const QueryFields& fields) { return parse_query(fields); }
+
+RefinedScene refined(const std::string& glb, const QueryFields& fields, const SceneOutput& output = {},
+                     const Limits& limits = {}) {
+  return SceneRefinement(glb, parameters(fields), limits).run(output);
+}
+
+MeshGeometry geometry_of(const std::string& glb, uint32_t mesh = 0) {
+  const Document document = read_document(glb);
+  Views views(document);
+  Allowance allowance({});
+  return read_geometry(views, mesh, allowance);
+}
+
+size_t faces_of(const std::string& glb, uint32_t mesh = 0) {
+  size_t faces = 0;
+  for (const TrianglePrimitive& primitive : geometry_of(glb, mesh).primitives) faces += primitive.triangles.size();
+  return faces;
+}
+
+using Point = std::array<float, 3>;
+Point point_of(Vec3f p) { return {p.x, p.y, p.z}; }
+
+std::multiset<Point> corners_of(const MeshGeometry& geometry) {
+  std::multiset<Point> corners;
+  for (const TrianglePrimitive& primitive : geometry.primitives) {
+    const Buffer<Vec3f> positions = vertex_positions(geometry.sets[primitive.set]);
+    for (const Triangle& triangle : primitive.triangles)
+      for (const uint32_t v : triangle) corners.insert(point_of(positions[v]));
+  }
+  return corners;
+}
+
+/// Edges by position that not exactly two triangles have.
+size_t open_edges(const MeshGeometry& geometry) {
+  std::map<std::pair<Point, Point>, int> uses;
+  for (const TrianglePrimitive& primitive : geometry.primitives) {
+    const Buffer<Vec3f> positions = vertex_positions(geometry.sets[primitive.set]);
+    for (const Triangle& triangle : primitive.triangles)
+      for (size_t i = 0; i < 3; ++i) {
+        const Point a = point_of(positions[triangle[i]]);
+        const Point b = point_of(positions[triangle[(i + 1) % 3]]);
+        ++uses[{std::min(a, b), std::max(a, b)}];
+      }
+  }
+  return static_cast<size_t>(std::ranges::count_if(uses, [](const auto& use) { return use.second != 2; }));
+}
+
+/// A closed shape, its triangles dealt out to two primitives with vertices of their own.
+GltfScene scene_of_two_materials(const TriangleMesh& shape) {
+  GltfScene scene;
+  scene.add_mesh(shape);
+  scene.json["meshes"][0]["primitives"].clear();
+  const size_t half = shape.triangles.size() / 2;
+  for (int part = 0; part < 2; ++part) {
+    const auto* begin = shape.triangles.begin() + (part == 0 ? 0 : half);
+    const auto* end = part == 0 ? shape.triangles.begin() + half : shape.triangles.end();
+    const Json positions = scene.add_positions(shape.positions);
+    const Json indices = scene.add_indices(Buffer<Triangle>(begin, end));
+    scene.json["meshes"][0]["primitives"].push_back(
+        {{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", part}});
+  }
+  scene.json["materials"] = Json::array({Json::object(), Json::object()});
+  return scene;
+}
+
+TEST(GltfScene, PositionsAreThoseOfTheCore) {
+  const TriangleMesh shape = test::torus(8, 6);
+  GltfScene scene;
+  scene.add_mesh(shape);
+  Options options;
+  options.levels = 2;
+  const TriangleMesh expected = refine(build_mesh(shape), options).mesh.triangles();
+  std::multiset<Point> corners;
+  for (const Triangle& triangle : expected.triangles)
+    for (const uint32_t v : triangle) corners.insert(point_of(expected.positions[v]));
+  const RefinedScene made = refined(scene.glb(), {{"levels", "2"}});
+  EXPECT_EQ(corners_of(geometry_of(made.document)), corners);
+  EXPECT_EQ(made.statistics.faces, 16 * shape.triangles.size());
+  EXPECT_EQ(made.statistics.vertices, expected.positions.size());
+  EXPECT_EQ(made.statistics.level, 2);
+}
+
+TEST(GltfScene, BordersBetweenMaterialsStayClosed) {
+  const std::string before = scene_of_two_materials(test::icosahedron()).glb();
+  for (const char* tolerance : {"0", "0.01"})
+    for (const Compression compression : {Compression::same, Compression::draco, Compression::meshopt}) {
+      const RefinedScene made =
+          refined(before, {{"levels", "3"}, {"tolerance", tolerance}}, {.compression = compression});
+      const MeshGeometry geometry = geometry_of(made.document);
+      EXPECT_GT(faces_of(made.document), 100U);
+      EXPECT_EQ(open_edges(geometry), 0U) << tolerance << ' ' << compression_name(compression);
+      EXPECT_EQ(geometry.primitives.size(), 2U);
+    }
+}
+
+TEST(GltfScene, StripsFansAndLooseTrianglesBecomeOneSurface) {
+  GltfScene scene;
+  scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}}});
+  scene.primitive()["mode"] = 5;
+  scene.primitive().erase("indices");
+  const RefinedScene made = refined(scene.glb(), {{"levels", "1"}});
+  EXPECT_EQ(made.statistics.faces, 8U);
+  EXPECT_EQ(made.statistics.vertices, 9U);
+  const Json primitive = test::json_of_glb(made.document)["meshes"][0]["primitives"][0];
+  EXPECT_FALSE(primitive.contains("mode"));
+  EXPECT_TRUE(primitive.contains("indices"));
+}
+
+TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
+  const TriangleMesh shape = test::icosahedron();
+  GltfScene scene;
+  scene.add_mesh(shape);
+  scene.primitive()["attributes"]["NORMAL"] = scene.add_accessor(
+      [&] {
+        std::vector<float> numbers;
+        for (const Vec3f& p : shape.positions) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+        return numbers;
+      }(),
+      "VEC3");
+  const MeshGeometry smooth = geometry_of(refined(scene.glb(), {{"levels", "2"}}).document);
+  EXPECT_EQ(smooth.sets[0].count, 162U);
+  const Buffer<Vec3f> positions = vertex_positions(smooth.sets[0]);
+  const Elements& normals = smooth.sets[0].find("NORMAL")->elements;
+  for (uint32_t i = 0; i < smooth.sets[0].count; ++i) {
+    const Vec3d normal{normals.number(i, 0), normals.number(i, 1), normals.number(i, 2)};
+    EXPECT_NEAR(length(normal), 1, 1e-6);
+    EXPECT_GT(dot(normal, to_double(positions[i])) / length(to_double(positions[i])), 0.98);
+  }
+
+  const TriangleMesh cube = test::cube();  // each face of its own normals
+  GltfScene flat;
+  Buffer<Vec3f> corners;
+  std::vector<float> directions;
+  for (const Triangle& t : cube.triangles) {
+    const Vec3f n = cross(cube.positions[t[1]] - cube.positions[t[0]], cube.positions[t[2]] - cube.positions[t[0]]);
+    const float size = length(n);
+    for (const uint32_t v : t) {
+      corners.push_back(cube.positions[v]);
+      directions.insert(directions.end(), {n.x / size, n.y / size, n.z / size});
+    }
+  }
+  flat.add_mesh({corners, {{0, 1, 2}}});
+  flat.primitive().erase("indices");
+  flat.primitive()["attributes"]["NORMAL"] = flat.add_accessor(directions, "VEC3");
+  const MeshGeometry hard = geometry_of(refined(flat.glb(), {{"levels", "2"}, {"shape", "mechanical"}}).document);
+  EXPECT_EQ(hard.sets[0].count, 6U * 25);  // a grid of its own on each side
+  const Elements& of_sides = hard.sets[0].find("NORMAL")->elements;
+  for (uint32_t i = 0; i < hard.sets[0].count; ++i) {
+    double largest = 0;
+    for (uint32_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(of_sides.number(i, c)));
+    EXPECT_NEAR(largest, 1, 1e-6);
+  }
+}
+
+TEST(GltfScene, WeightsOfJointsAreAddedJointByJoint) {
+  GltfScene scene;
+  scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  Json& attributes = scene.primitive()["attributes"];
+  attributes["JOINTS_0"] = scene.add_accessor(std::vector<uint8_t>{0, 1, 0, 0, 2, 3, 1, 4, 5, 0, 0, 0}, "VEC4");
+  attributes["WEIGHTS_0"] =
+      scene.add_accessor(std::vector<uint8_t>{128, 127, 0, 0, 100, 80, 40, 35, 255, 0, 0, 0}, "VEC4", true);
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).document);
+  const VertexSet& set = made.sets[0];
+  ASSERT_EQ(set.count, 6U);
+  const Elements& joints = set.find("JOINTS_0")->elements;
+  const Elements& weights = set.find("WEIGHTS_0")->elements;
+  const Buffer<Vec3f> positions = vertex_positions(set);
+  bool seen = false;
+  for (uint32_t i = 0; i < 6; ++i) {
+    double sum = 0;
+    for (uint32_t k = 0; k < 4; ++k) sum += weights.number(i, k);
+    EXPECT_EQ(sum, 255);
+    if (positions[i] == Vec3f{0.5F, 0, 0}) {  // between the first two: joints 1 (167), 0 (128), 2 (100), 3 (80), 4 (35)
+      seen = true;
+      const std::array<double, 4> named{1, 0, 2, 3};
+      for (uint32_t k = 0; k < 4; ++k) EXPECT_EQ(joints.number(i, k), named[k]);
+      EXPECT_NEAR(weights.number(i, 0), 255.0 * 167 / 475, 1.5);
+      EXPECT_NEAR(weights.number(i, 3), 255.0 * 80 / 475, 0.51);
+    }
+  }
+  EXPECT_TRUE(seen);
+}
+
+TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
+  GltfScene scene;
+  scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  Json& attributes = scene.primitive()["attributes"];
+  attributes["TEXCOORD_0"] = scene.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
+  attributes["COLOR_0"] =
+      scene.add_accessor(std::vector<uint8_t>{0, 0, 0, 255, 100, 0, 0, 255, 0, 50, 0, 255}, "VEC4", true);
+  attributes["_FEATURE_ID_0"] = scene.add_accessor(std::vector<float>{7, 9, 11}, "SCALAR");
+  attributes["_BATCH"] = scene.add_accessor(std::vector<uint16_t>{3, 0, 5, 0, 8, 0}, "VEC2");
+  attributes["_HEAT"] = scene.add_accessor(std::vector<float>{1, 2, 4}, "SCALAR");
+  attributes["TANGENT"] = scene.add_accessor(std::vector<float>{1, 0, 0, -1, 0, 1, 0, -1, 1, 0, 0, -1}, "VEC4");
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).document);
+  const VertexSet& set = made.sets[0];
+  const Buffer<Vec3f> positions = vertex_positions(set);
+  for (uint32_t i = 0; i < set.count; ++i) {
+    const auto value = [&](const char* name, uint32_t c) { return set.find(name)->elements.number(i, c); };
+    EXPECT_NEAR(value("TEXCOORD_0", 0), positions[i].x, 1e-6);
+    EXPECT_NEAR(value("TEXCOORD_0", 1), positions[i].y, 1e-6);
+    EXPECT_EQ(value("COLOR_0", 0), std::floor(100 * positions[i].x + 0.5));
+    EXPECT_EQ(value("COLOR_0", 3), 255);
+    EXPECT_NEAR(value("_HEAT", 0), 1 + positions[i].x + 3 * positions[i].y, 1e-6);
+    EXPECT_TRUE((std::set<double>{7, 9, 11}).contains(value("_FEATURE_ID_0", 0)));
+    EXPECT_TRUE((std::set<double>{3, 5, 8}).contains(value("_BATCH", 0)));
+    EXPECT_NEAR(std::hypot(value("TANGENT", 0), value("TANGENT", 1), value("TANGENT", 2)), 1, 1e-6);
+    EXPECT_EQ(value("TANGENT", 3), -1);
+  }
+}
+
+TEST(GltfScene, MorphTargetsMoveTheirNewVertices) {
+  GltfScene scene;
+  scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  const size_t target = scene.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 2, 0, 0, 4}, "VEC3");
+  scene.primitive()["targets"] = {{{"POSITION", target}}};
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "2"}}).document);
+  const Buffer<Vec3f> positions = vertex_positions(made.sets[0]);
+  ASSERT_EQ(made.sets[0].count, 15U);
+  ASSERT_EQ(made.sets[0].targets.size(), 1U);
+  for (uint32_t i = 0; i < 15; ++i)
+    EXPECT_NEAR(made.sets[0].targets[0][0].elements.number(i, 2), 1 + positions[i].x + 3 * positions[i].y, 1e-6);
+}
+
+TEST(GltfScene, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
+  const TriangleMesh shape = test::icosahedron();
+  const auto scene_with = [&](double scale) {
+    GltfScene scene;
+    scene.add_mesh(shape);
+    std::vector<int16_t> numbers;
+    for (const Vec3f& p : shape.positions)
+      for (const float x : {p.x, p.y, p.z, 0.F}) numbers.push_back(static_cast<int16_t>(x * scale));
+    const size_t accessor = scene.add_accessor(numbers, "VEC4");
+    scene.json["accessors"][accessor]["type"] = "VEC3";
+    scene.json["bufferViews"].back()["byteStride"] = 8;
+    scene.primitive()["attributes"]["POSITION"] = accessor;
+    scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
+    return scene.glb();
+  };
+  const MeshGeometry kept = geometry_of(refined(scene_with(1000), {{"levels", "2"}}).document);
+  EXPECT_EQ(kept.sets[0].find("POSITION")->elements.format.type, ComponentType::int16);
+  EXPECT_EQ(open_edges(kept), 0U);
+  double largest = 0;
+  for (const Vec3f& p : shape.positions) largest = std::max<double>({largest, p.x, p.y, p.z});
+  const MeshGeometry widened = geometry_of(refined(scene_with(32767 / largest), {{"levels", "2"}}).document);
+  EXPECT_EQ(widened.sets[0].find("POSITION")->elements.format.type, ComponentType::float32);
+  EXPECT_EQ(open_edges(widened), 0U);
+}
+
+/// A scene with two nodes of two equal meshes, at different scales.
+GltfScene scene_of_two_scales(double first, double second) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  scene.add_mesh(test::icosahedron());
+  scene.json["nodes"][0]["scale"] = {first, first, first};
+  scene.json["nodes"][1]["scale"] = {second, second, second};
+  scene.json["nodes"][1]["translation"] = {20, 0, 0};
+  return scene;
+}
+
+TEST(GltfScene, ToleranceIsAShareOfTheScene) {
+  const RefinedScene made = refined(scene_of_two_scales(10, 0.1).glb(), {{"tolerance", "0.001"}});
+  EXPECT_GT(faces_of(made.document, 0), 1000U);
+  EXPECT_EQ(faces_of(made.document, 1), 20U);  // a hundredth of the size
+  EXPECT_LE(made.statistics.error, 0.001);
+  EXPECT_EQ(made.statistics.stop_reason, StopReason::converged);
+}
+
+TEST(GltfScene, AMeshIsAsFineAsAnyOfItsNodesNeeds) {
+  GltfScene scene = scene_of_two_scales(10, 0.1);
+  scene.json["nodes"].push_back({{"mesh", 1}, {"scale", {10, 10, 10}}});
+  const RefinedScene made = refined(scene.glb(), {{"tolerance", "0.001"}});
+  EXPECT_EQ(faces_of(made.document, 0), faces_of(made.document, 1));
+}
+
+TEST(GltfScene, MaxFacesBoundsAllMeshesTogether) {
+  for (const char* budget : {"40", "100", "777", "5000"}) {
+    const RefinedScene made = refined(scene_of_two_scales(10, 3).glb(), {{"levels", "5"}, {"max_faces", budget}});
+    EXPECT_LE(made.statistics.faces, std::stoul(budget));
+    EXPECT_GE(made.statistics.faces, std::stoul(budget) * 9 / 10);
+    EXPECT_GE(faces_of(made.document, 0), faces_of(made.document, 1));
+  }
+  EXPECT_THROW(refined(scene_of_two_scales(1, 1).glb(), {{"max_faces", "39"}}), Problem);
+}
+
+TEST(GltfScene, TheViewSeesMeshesWhereTheirNodesShowThem) {
+  GltfScene scene = scene_of_two_scales(1, 1);
+  const QueryFields view{{"view.eye", "0,0,30"}, {"view.target", "0,0,0"},     {"view.fov_y", "10"},
+                         {"levels", "3"},        {"view.viewport", "500,500"}, {"view.edge_pixels", "1"}};
+  const std::string glb = scene.glb();
+  const RefinedScene made = refined(glb, view);
+  EXPECT_GT(faces_of(made.document, 0), 100U);
+  EXPECT_EQ(faces_of(made.document, 1), 20U);          // beside the picture
+  scene.json["nodes"][0]["translation"] = {0, 0, 60};  // behind the viewer
+  EXPECT_EQ(faces_of(refined(scene.glb(), view).document, 0), 20U);
+}
+
+TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
+  TriangleMesh shape = test::torus(12, 8);
+  GltfScene scene;
+  scene.add_mesh(shape);
+  scene.json["nodes"][0]["scale"] = {4, 4, 4};
+  scene.json["nodes"][0]["translation"] = {8, 0, 0};
+  scene.json["nodes"][0]["rotation"] = {0, 0, 1, 0};  // half a turn
+  const RefinedScene made =
+      refined(scene.glb(), {{"view.eye", "8,0,16"}, {"view.target", "8,0,0"}, {"view.error_pixels", "1"}});
+  GltfScene moved;
+  moved.add_mesh(shape);
+  const RefinedScene same =
+      refined(moved.glb(),
+              {{"view.eye", "0,0,4"}, {"view.target", "0,0,0"}, {"view.up", "0,-1,0"}, {"view.error_pixels", "1"}});
+  EXPECT_GT(same.statistics.faces, 192U);
+  EXPECT_EQ(made.statistics.faces, same.statistics.faces);
+}
+
+TEST(GltfScene, LimitsHoldForTheWholeScene) {
+  const std::string glb = scene_of_two_scales(1, 1).glb();
+  EXPECT_NO_THROW(refined(glb, {{"levels", "2"}}, {}, {.max_output_faces = 640}));
+  EXPECT_THROW(refined(glb, {{"levels", "2"}}, {}, {.max_output_faces = 639}), Problem);
+  EXPECT_THROW(refined(glb, {{"levels", "2"}}, {}, {.max_input_faces = 39}), Problem);
+}
+
+TEST(GltfScene, WhatIsNotRefinedKeepsItsBytes) {
+  const std::string glb = scene_of_two_scales(1, 1).glb();
+  EXPECT_EQ(refined(glb, {{"levels", "0"}}).document, glb);
+}
+
+TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  scene.primitive()["mode"] = 0;
+  EXPECT_THROW(refined(scene.glb(), {}), Problem);
+  scene.primitive()["mode"] = 4;
+  EXPECT_THROW(refined(scene.glb(), {{"simplify_hidden", "true"}, {"view.eye", "0,0,3"}}), Problem);
+  scene.json["nodes"][0]["children"] = {0};
+  EXPECT_THROW(refined(scene.glb(), {}), Problem);
+}
+
+TEST(GltfScene, NormalsAreAddedOnRequest) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}, {"output.normals", "true"}}).document);
+  const VertexStream* normals = made.sets[0].find("NORMAL");
+  ASSERT_NE(normals, nullptr);
+  EXPECT_NEAR(
+      std::hypot(normals->elements.number(0, 0), normals->elements.number(0, 1), normals->elements.number(0, 2)), 1,
+      1e-6);
+}
+
+}  // namespace
+}  // namespace papilio::proto::gltf
