@@ -22,6 +22,9 @@ struct QuantizationBox {
 /// `Problem` mesh_unusable for a mesh smaller than 1e-30.
 [[nodiscard]] QuantizationBox quantization_box(const Buffer<Vec3f>& coarse);
 
+/// Returns the largest distance by which a grid of so many bits moves a position, for meshes with this bounding box.
+[[nodiscard]] double grid_distance(const Box& coarse, int position_bits);
+
 /// Formats and grids with which attributes are written. The grids depend on the coarse mesh alone, as interpolated
 /// values stay in its range.
 struct AttributeEncoding {

@@ -258,11 +258,19 @@ const std::array table{
                   .min = 8,
                   .max = 16,
                   .unit = "bits",
+                  .default_text = "14, or as many as the tolerance needs",
                   .description =
                       "Grid of the result's positions: 2^bits steps along 1.25 times the longest side of the "
                       "coarse mesh's box",
-                  .get = [](const Parameters& p) { return Values{static_cast<double>(p.output.position_bits)}; },
-                  .set = [](Parameters& p, const Values& v) { p.output.position_bits = static_cast<int>(v[0]); }},
+                  .get =
+                      [](const Parameters& p) {
+                        return unless(p.default_position_bits, Values{static_cast<double>(p.output.position_bits)});
+                      },
+                  .set =
+                      [](Parameters& p, const Values& v) {
+                        p.output.position_bits = static_cast<int>(v[0]);
+                        p.default_position_bits = false;
+                      }},
     ParameterInfo{.name = "output.speed",
                   .type = ParameterType::integer,
                   .min = 0,

@@ -236,6 +236,17 @@ Options options_for(const Parameters& parameters, const Box& box) {
   return options;
 }
 
+OutputOptions output_for(const Parameters& parameters, const Box& box) {
+  constexpr int most_bits = 16;
+  constexpr double most_share = 0.125;  // of the tolerance
+  OutputOptions output = parameters.output;
+  const double most = most_share * parameters.options.tolerance * box.diagonal();
+  while (parameters.default_position_bits && most > 0 && output.position_bits < most_bits &&
+         grid_distance(box, output.position_bits) > most)
+    ++output.position_bits;
+  return output;
+}
+
 double default_edge_pixels(const View& view) { return view.error_pixels > 0 ? 0 : View{}.edge_pixels; }
 
 bool has_error_target(const Options& options) {

@@ -20,9 +20,10 @@ using QueryFields = std::vector<std::pair<std::string, std::string>>;
 struct Parameters {
   Options options;  ///< `options.view` is set when any view parameter was given
   OutputOptions output;
-  bool normals = false;         ///< whether a mesh without normals gets them
-  bool default_eye = false;     ///< whether view.eye is omitted and follows from the mesh
-  bool default_target = false;  ///< whether view.target is omitted and is the centre of the mesh's box
+  bool normals = false;               ///< whether a mesh without normals gets them
+  bool default_eye = false;           ///< whether view.eye is omitted and follows from the mesh
+  bool default_position_bits = true;  ///< whether output.position_bits is omitted and follows from the tolerance
+  bool default_target = false;        ///< whether view.target is omitted and is the centre of the mesh's box
 
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
@@ -47,6 +48,9 @@ struct ParameterInfo {
 
 /// Returns the options for a mesh with this bounding box.
 [[nodiscard]] Options options_for(const Parameters& parameters, const Box& box);
+/// Returns the options for encoding a mesh with this bounding box. By default the grid is fine enough for the
+/// tolerance.
+[[nodiscard]] OutputOptions output_for(const Parameters& parameters, const Box& box);
 /// Returns whether tolerance or view.error_pixels sets a target.
 [[nodiscard]] bool has_error_target(const Options& options);
 /// Returns the default of view.edge_pixels: 0 with view.error_pixels, else the paper's 10.

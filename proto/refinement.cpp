@@ -79,6 +79,9 @@ void append_normals(AttributeEncoding& encoding) {
   encoding.grids.emplace_back();
 }
 
+/// The refinement gets at least this share of the tolerance, however coarse the grid is.
+constexpr double most_for_grid = 0.5;
+
 std::string milliseconds_text(double milliseconds) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), milliseconds, std::chars_format::fixed, 3).ptr;
@@ -88,10 +91,16 @@ std::string milliseconds_text(double milliseconds) {
 }  // namespace
 
 Refinement::Refinement(const Parameters& parameters, const Limits& limits)
-    : output_(parameters.output), adds_normals_(parameters.normals), most_seconds_(limits.max_compute_seconds) {}
+    : tolerance_(parameters.options.tolerance),
+      adds_normals_(parameters.normals),
+      most_seconds_(limits.max_compute_seconds) {}
 
 void Refinement::set_options(const Parameters& parameters, const Limits& limits) {
-  options_ = options_for(parameters, bounding_box(coarse().mesh.positions));
+  const Box box = bounding_box(coarse().mesh.positions);
+  options_ = options_for(parameters, box);
+  output_ = output_for(parameters, box);
+  grid_error_ = box.diagonal() > 0 ? grid_distance(box, output_.position_bits) / box.diagonal() : 0;
+  options_.tolerance = std::max(tolerance_ - grid_error_, most_for_grid * tolerance_);
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
   encoding_ = coarse().attributes;
@@ -205,9 +214,11 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   poll();
   EncodedLevel made = encode(result.mesh, result.levels, times_, poll);
   made.statistics.stop_reason = result.stop_reason;
-  made.statistics.error = result.error;
+  made.statistics.error = result.error + grid_error_;
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
-  made.statistics.unreached = unreached_text(options_, made.statistics);
+  Options asked = options_;
+  asked.tolerance = tolerance_;
+  made.statistics.unreached = unreached_text(asked, made.statistics);
   made.statistics.shape = shape_text(result.shape);
   if (hooks.on_level) hooks.on_level(made);
   return made;

@@ -30,7 +30,7 @@ struct Statistics {
   int level = 0;  ///< 0: the coarse mesh
   uint64_t vertices = 0, faces = 0;
   std::optional<StopReason> stop_reason;  ///< set for the last level only, like `error`
-  double error = 0;                       ///< largest remaining deviation, relative to the coarse mesh's diagonal
+  double error = 0;                       ///< Result::error and that of the encoding's grid
   std::optional<double> error_pixels{};   ///< largest remaining deviation in pixels, with a view
   std::string unreached{};                ///< description of unreached targets (unreached.h)
   std::string shape{};                    ///< what the mesh was taken for (shape_text); of the last level only
@@ -85,7 +85,9 @@ class Refinement {
   void require_time() const;
   Result refine_coarse(const Hooks& hooks);
 
-  Options options_;
+  Options options_;        ///< of which the tolerance is what the grid of the encoding leaves
+  double tolerance_;       ///< that was asked for
+  double grid_error_ = 0;  ///< by how much the grid moves positions, as a share of the diagonal
   OutputOptions output_;
   bool adds_normals_;                         ///< the mesh has none, and they are asked for
   AttributeEncoding encoding_;                ///< of all levels

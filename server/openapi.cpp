@@ -174,7 +174,11 @@ ordered_json headers() {
           {"Papilio-Stop-Reason",
            {{"description", "Why there is no further level"},
             {"schema", {{"type", "string"}, {"enum", {"converged", "levels", "budget", "limits"}}}}}},
-          {"Papilio-Error", header("number", "Largest deviation left, as a share of the coarse mesh's diagonal")},
+          {"Papilio-Error",
+           header("number",
+                  "Largest deviation left, as a share of the coarse mesh's diagonal, the grid of the answer "
+                  "included; with tolerance or max_faces and no view it bounds the distance from the uniform "
+                  "result of the same levels")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
           {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept or marked")},
           {"Papilio-Found", header("string", "Defects of the coarse mesh, mended ones included, and how many")},

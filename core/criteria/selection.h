@@ -107,6 +107,8 @@ class Selection {
   [[nodiscard]] bool is_by_error() const;
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
+  /// Of the coarse mesh's box.
+  [[nodiscard]] double diagonal() const { return measure_.diagonal(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
   /// No less than the view has anywhere in the box; 0 without one.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {

@@ -7,11 +7,17 @@
 #include "hierarchy/assemble.h"
 #include "hierarchy/error_left.h"
 #include "hierarchy/level_choice.h"
+#include "hierarchy/move_bounds.h"
+#include "hierarchy/repair.h"
+#include "hierarchy/surface_check.h"
 #include "hierarchy/transition.h"
 
 namespace papilio {
 namespace {
 
+/// Within this share of the tolerance the result is repaired: distances are sampled, if densely, and levels that would
+/// add no more than a small share are not explored.
+constexpr double share_of_tolerance = 0.97;
 constexpr float no_edge = -std::numeric_limits<float>::infinity();
 
 class RedGreen {
@@ -48,12 +54,22 @@ class RedGreen {
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
+    if (bounds_distance() && options_.tolerance > 0 && !out_of_budget_ && !is_at_limit_ && repair(result.levels)) {
+      keep();
+      if (progress_.wants_levels()) latest = assembled();
+    }
     levels_.hand_back();
     finish(result, std::move(latest));
     return result;
   }
 
  private:
+  /// Whether the distance to the uniform surface is bounded: where errors decide, and nothing else.
+  [[nodiscard]] bool bounds_distance() const {
+    return selection_.is_by_error() && options_.flatness.empty() && selection_.camera() == nullptr &&
+           options_.levels > 0;
+  }
+
   /// Finds how much the edges of the lowest level want to be split.
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
@@ -164,19 +180,13 @@ class RedGreen {
   /// a limit, or with a budget one that raises the threshold so far that the result has a larger error.
   void keep() {
     if (!may_take_back()) return;
-    kept_.clear();
-    for (const LevelChoice& choice : choices_) kept_.push_back(choice.split_edges);
+    kept_ = splits_of(choices_);
   }
 
   [[nodiscard]] bool may_take_back() const { return options_.max_faces > 0 || options_.stop_at_limits; }
 
   void bring_back_what_was_kept() {
-    if (!may_take_back()) return;
-    for (size_t k = 0; k < choices_.size(); ++k) {
-      choices_[k].split_nothing();
-      if (k < kept_.size())
-        for (uint32_t e : kept_[k]) choices_[k].split_edge(e);
-    }
+    if (may_take_back()) set_splits(choices_, kept_);
   }
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
@@ -212,13 +222,22 @@ class RedGreen {
     return red;
   }
 
-  /// Every face that touches one with an edge of large error, unless its edges may not be split. (Edges of half that
-  /// error were tried too, and a tenth: results were the same.) In a mechanical mesh an edge that stays in a flat may
-  /// bend a level further, once the faces beside it have: there their neighbours are looked into, too.
-  [[nodiscard]] Buffer<uint32_t> faces_to_look_into() const {
+  /// Every face that touches one with an edge of large error, or one below which the result may be too far from the
+  /// surface, unless its edges may not be split. (Edges of half that error were tried too, and a tenth: results were
+  /// the same.) In a mechanical mesh an edge that stays in a flat may bend a level further, once the faces beside it
+  /// have: there their neighbours are looked into, too.
+  [[nodiscard]] Buffer<uint32_t> faces_to_look_into() {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
     Buffer<uint8_t> touched(mesh.vertex_count, 0);
+    if (bounds_distance()) {
+      const size_t k = choices_.size() - 1;
+      sums_above_ =
+          k == 0 ? Buffer<float>(mesh.face_count(), 0) : sums_above(choices_[k - 1], sums_above_, moves_, choice);
+      const double limit = threshold_ * selection_.diagonal();
+      moves_ = largest_moves(choice, limit / 64);
+      touched = vertices_that_may_leave(choice, sums_above_, moves_, static_cast<float>(limit));
+    }
     for (uint32_t f : choice.region.faces) {
       const uint32_t* edge = &mesh.edge[size_t{3} * f];
       if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
@@ -242,8 +261,48 @@ class RedGreen {
     return faces;
   }
 
+  /// Splits further edges until the result is within the tolerance of the uniform surface, as far as budget and limits
+  /// allow. Returns whether any was split.
+  bool repair(int& level) {
+    const double limit = share_of_tolerance * options_.tolerance * selection_.diagonal();
+    Repair repair(choices_, selection_.threshold(), most_cosine_, limit, options_.levels, progress_.threads());
+    bool has_repaired = false;
+    while (repair.add_candidates()) {
+      progress_.poll();
+      const Splits before = splits_of(choices_);
+      split_from(threshold_);
+      if (!is_allowed(level)) {
+        set_splits(choices_, before);
+        return has_repaired;
+      }
+      has_repaired = true;
+      for (size_t k = 0; k < choices_.size(); ++k)
+        if (!choices_[k].split_edges.empty()) level = std::max(level, static_cast<int>(k) + 1);
+      repair.look_again();
+    }
+    if (has_repaired && repair.is_complete()) distance_ = limit;
+    return has_repaired;
+  }
+
+  /// Whether the result may be as large as it is now.
+  [[nodiscard]] bool is_allowed(int level) {
+    const uint64_t faces = count_assembled(choices_);
+    const uint64_t bytes = levels_.plan().given(faces, level);
+    out_of_budget_ = options_.max_faces > 0 && faces > options_.max_faces;
+    is_at_limit_ = progress_.ends_before(faces, bytes);
+    if (out_of_budget_ || is_at_limit_) return false;
+    progress_.require_room(faces, bytes, level);
+    return true;
+  }
+
   [[nodiscard]] Mesh assembled() const {
     return assemble(choices_, most_cosine_, options_.edges || options_.simplify_hidden);
+  }
+
+  /// Upper bound of the distance from the uniform surface.
+  [[nodiscard]] double distance() const {
+    if (distance_ > 0) return distance_;
+    return SurfaceCheck(choices_, most_cosine_, options_.levels, 0, progress_.threads()).largest_distance();
   }
 
   void finish(Result& result, Mesh latest) {
@@ -251,6 +310,8 @@ class RedGreen {
     if (options_.measure_error) {
       const ErrorLeft left = error_left(choices_, selection_);
       result.error = left.error();
+      if (bounds_distance() && selection_.diagonal() > 0)
+        result.error = std::max(result.error, distance() / selection_.diagonal());
       result.error_pixels = left.pixels();
     }
     if (out_of_budget_)
@@ -274,7 +335,9 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  std::vector<Buffer<uint32_t>> kept_;  ///< [level] the edges split when a level last changed something
+  Splits kept_;                       ///< [level] the edges split when a level last changed something
+  double distance_ = 0;               ///< bound of that to the uniform surface, where repair() found one
+  Buffer<float> sums_above_, moves_;  ///< [F] of the lowest level that was looked into (move_bounds.h)
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

@@ -64,7 +64,9 @@ struct Options {
   double crease_angle = 180;        ///< degrees, 0..180: edges whose faces' normals differ by more are kept sharp;
                                     ///< 180: those that `shape` finds and smoothing groups mark
   /// Edges are split only where the surface would move by at least this share (0..1) of the coarse mesh's bounding
-  /// box's diagonal; 0: wherever the other criteria say. See `deviation.h`.
+  /// box's diagonal; 0: wherever the other criteria say. In the red-green scheme, with neither view nor flatness,
+  /// further ones are split until the result and the uniform one of the same levels are nowhere further apart than
+  /// that.
   double tolerance = 0;
   /// The result never has more faces; the edges with the largest error are split first. 0: as many as it takes.
   uint64_t max_faces = 0;

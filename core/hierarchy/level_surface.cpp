@@ -1,0 +1,89 @@
+#include "hierarchy/level_surface.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "hierarchy/patch.h"
+
+namespace papilio {
+namespace {
+
+constexpr size_t most_faces_visited = 64;
+
+double squared_distance_to(const Corners& triangle, Vec3d point) {
+  return squared_distance(point, {triangle[0], triangle[1], triangle[2]});
+}
+
+}  // namespace
+
+double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d point, double enough) {
+  auto [k, f] = from;
+  double least = std::numeric_limits<double>::infinity();
+  for (;; --k) {
+    least = std::min(least, squared_distance_to_level(k, f, point, enough));
+    if (least <= enough || k == coarsest) return least;
+    f = result_->level(k).parent_of(f);
+  }
+}
+
+double LevelSurface::squared_distance_to_level(uint32_t k, uint32_t f, Vec3d point, double enough) {
+  visited_.assign(1, walk_towards(k, f, point));
+  double least = squared_distance_to_children(k, visited_[0], point, enough);
+  for (size_t at = 0; at < visited_.size() && least > enough; ++at)
+    for (uint32_t i = 0; i < 3; ++i) {
+      const uint32_t twin = twin_in_region(k, 3 * visited_[at] + i);
+      if (twin == none || visited_.size() == most_faces_visited ||
+          std::ranges::count(visited_, Topology::face(twin)) > 0)
+        continue;
+      const double distance = squared_distance_to_children(k, Topology::face(twin), point, enough);
+      if (distance > least) continue;
+      least = distance;
+      visited_.push_back(Topology::face(twin));
+    }
+  return least;
+}
+
+double LevelSurface::squared_distance_to_children(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+  for (; result_->has_children(k, f); ++k) f = result_->first_child(k, f) + child_below(k, f, point);
+  const Corners corner = result_->corners(k, f);
+  const std::array<Corners, 4> children = children_of(corner, result_->new_vertices(k, f, corner));
+  double least = squared_distance_to(children[child_below(k, f, point)], point);
+  for (uint32_t c = 0; c < 4 && least > enough; ++c) least = std::min(least, squared_distance_to(children[c], point));
+  return least;
+}
+
+uint32_t LevelSurface::twin_in_region(uint32_t k, uint32_t h) const {
+  const Topology& mesh = result_->topology(k);
+  return result_->choice(k).region.has_edge[mesh.edge[h]] != 0 ? mesh.twin[h] : none;
+}
+
+uint32_t LevelSurface::walk_towards(uint32_t k, uint32_t f, Vec3d point) const {
+  uint32_t from = none;
+  for (size_t step = 0; step < most_faces_visited; ++step) {
+    const std::array<double, 3> inside = weights_in(k, f, point);
+    const auto side = static_cast<uint32_t>(std::ranges::min_element(inside) - inside.begin());
+    const uint32_t across = inside[side] < 0 ? twin_in_region(k, 3 * f + side) : none;
+    if (across == none || Topology::face(across) == from) break;
+    from = f;
+    f = Topology::face(across);
+  }
+  return f;
+}
+
+std::array<double, 3> LevelSurface::weights_in(uint32_t k, uint32_t f, Vec3d point) const {
+  const Corners corner = result_->corners(k, f);
+  const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  std::array<double, 3> inside{};
+  for (uint32_t i = 0; i < 3; ++i) inside[i] = dot(cross(corner[(i + 1) % 3] - corner[i], point - corner[i]), normal);
+  return inside;
+}
+
+uint32_t LevelSurface::child_below(uint32_t k, uint32_t f, Vec3d point) const {
+  const std::array<double, 3> inside = weights_in(k, f, point);
+  const double half = 0.5 * (inside[0] + inside[1] + inside[2]);
+  for (uint32_t i = 0; i < 3; ++i)
+    if (inside[i] > half) return (i + 2) % 3;
+  return 3;
+}
+
+}  // namespace papilio

@@ -1,0 +1,95 @@
+#include "hierarchy/move_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "criteria/deviation.h"
+
+namespace papilio {
+namespace {
+
+/// Whether the face is not in the result, but its children are.
+bool is_divided(const LevelChoice& choice, uint32_t face) { return choice.split_mask(face) == 7; }
+
+}  // namespace
+
+double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
+  const HierarchyLevel& level = *choice.level;
+  const Topology& mesh = level.mesh.topology;
+  const uint32_t h = mesh.half_edge[edge];
+  const double offset = std::sqrt(squared_distance_to_middle(level.trial.at(edge), level.mesh.positions[mesh.origin[h]],
+                                                             level.mesh.positions[mesh.tip(h)]));
+  if (mesh.kind[edge] != EdgeKind::smooth || offset <= enough) return offset;
+  // A vertex that slides along one side of a bend leaves the edge behind.
+  const Buffer<Vec3f>& normals = level.trial.normals;
+  const double cosine = dot(normals[Topology::face(h)], normals[Topology::face(mesh.twin[h])]);
+  const double sine = cosine > 0 ? std::sqrt(std::max(0.0, 1 - cosine * cosine)) : 1;
+  return std::min(offset, level.trial.deviation_at(level.mesh, edge) + sine * offset);
+}
+
+Buffer<float> largest_moves(const LevelChoice& choice, double enough) {
+  const Topology& mesh = choice.level->mesh.topology;
+  auto at_edge = Buffer<float>::for_overwrite(mesh.edge_count());
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e)
+    at_edge[e] = choice.region.has_edge[e] != 0 ? static_cast<float>(move_bound(choice, e, enough)) : 0;
+  Buffer<float> moves(mesh.face_count(), 0);
+  for (uint32_t f : choice.region.faces) {
+    const uint32_t* edge = &mesh.edge[size_t{3} * f];
+    moves[f] = std::max({at_edge[edge[0]], at_edge[edge[1]], at_edge[edge[2]]});
+  }
+  return moves;
+}
+
+Buffer<float> sums_above(const LevelChoice& above, const Buffer<float>& sums, const Buffer<float>& moves,
+                         const LevelChoice& below) {
+  Buffer<float> all(below.level->mesh.topology.face_count(), 0);
+  for (size_t i = 0; i < below.region.faces.size(); i += 4) {
+    const uint32_t f = below.region.faces[i];
+    const uint32_t parent = below.level->parent_of(f);
+    if (!is_divided(above, parent)) std::fill_n(&all[f], 4, sums[parent] + moves[parent]);
+  }
+  return all;
+}
+
+Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<float>& sums,
+                                        const Buffer<float>& moves, float limit) {
+  constexpr float share_that_counts = 0.5F;
+  const Topology& mesh = choice.level->mesh.topology;
+  Buffer<float> further(mesh.vertex_count, 0);  // the largest move at the vertex
+  float known = 0;
+  for (uint32_t f : choice.region.faces) {
+    if (!is_divided(choice, f)) known = std::max(known, sums[f] + moves[f]);
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) further[mesh.origin[h]] = std::max(further[mesh.origin[h]], moves[f]);
+  }
+  const float matters = std::min(limit, known);
+  Buffer<uint8_t> marks(mesh.vertex_count, 0);
+  for (uint32_t f : choice.region.faces) {
+    const uint32_t* corner = &mesh.origin[size_t{3} * f];
+    const float more = std::max({further[corner[0]], further[corner[1]], further[corner[2]]});
+    const bool is_open = moves[f] + more > share_that_counts * matters && sums[f] + moves[f] + more > matters;
+    if (is_divided(choice, f) || is_open)
+      for (uint32_t i = 0; i < 3; ++i) marks[corner[i]] = 1;
+  }
+  return marks;
+}
+
+std::vector<Buffer<float>> sums_below(std::span<const LevelChoice> levels, int level_count, double enough) {
+  constexpr float share_of_rest = 0.5;
+  std::vector<Buffer<float>> sums(levels.size());
+  for (size_t k = levels.size(); k-- > 0;) {
+    const LevelChoice& choice = levels[k];
+    sums[k] = largest_moves(choice, enough);
+    const bool has_rest = static_cast<int>(k) + 1 < level_count;
+    for (uint32_t f : choice.region.faces) {
+      if (k + 1 < levels.size() && choice.red[f] != 0) {
+        const float* child = &sums[k + 1][levels[k + 1].level->first_child_of(f)];
+        sums[k][f] += std::max({child[0], child[1], child[2], child[3]});
+      } else if (has_rest) {
+        sums[k][f] *= 1 + share_of_rest;
+      }
+    }
+  }
+  return sums;
+}
+
+}  // namespace papilio

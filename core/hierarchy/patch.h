@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "hierarchy/result_surface.h"
+
+// The part of a result that lies over a face, and over the face's descendants.
+
+namespace papilio {
+
+[[nodiscard]] inline double squared_norm(Vec3d a) { return dot(a, a); }
+[[nodiscard]] inline Vec3d middle_of(Vec3d a, Vec3d b) { return 0.5 * (a + b); }
+[[nodiscard]] inline Corners middles_of(const Corners& corner) {
+  return {middle_of(corner[0], corner[1]), middle_of(corner[1], corner[2]), middle_of(corner[2], corner[0])};
+}
+/// Of three pairs of points.
+[[nodiscard]] inline double largest_squared_distance(const Corners& some, const Corners& others) {
+  double largest = 0;
+  for (uint32_t i = 0; i < 3; ++i) largest = std::max(largest, squared_norm(some[i] - others[i]));
+  return largest;
+}
+
+/// The children of a face (four_children.h), by its corners and new vertices.
+[[nodiscard]] inline std::array<Corners, 4> children_of(const Corners& corner, const Corners& made) {
+  return {{{corner[0], made[0], made[2]}, {made[0], corner[1], made[1]}, {made[2], made[1], corner[2]}, made}};
+}
+/// The side of child 0, 1 and 2 at the child in the middle; and the side of that one.
+inline constexpr std::array<uint32_t, 3> inner_side{1, 2, 0}, side_of_middle_child{2, 0, 1};
+
+/// A triangle, or two that meet in the line from the middle of a side to the opposite corner.
+struct Patch {
+  Corners corner{};
+  uint32_t bent_side = none;  ///< runs from the corner of this number to the next
+  Vec3d bend{};               ///< its middle
+  unsigned ridges = 0;        ///< sides, by bits, at which the result may be bent
+
+  [[nodiscard]] Corners middles() const {
+    Corners middle = middles_of(corner);
+    if (bent_side != none) middle[bent_side] = bend;
+    return middle;
+  }
+  [[nodiscard]] Vec3d opposite_bend() const { return corner[(bent_side + 2) % 3]; }
+};
+
+/// The patches over the four children of a face.
+using Patches = std::array<Patch, 4>;
+
+/// All are triangles. `middle`: the places of the new vertices; `ridges` of the face.
+[[nodiscard]] Patches patches_over(const Corners& corner, const Corners& middle, unsigned ridges);
+
+/// Bends the child at a corner and the one in the middle along the line to that corner from the middle of the opposite
+/// side.
+void bend_along(Patches& patches, uint32_t corner, Vec3d from, Vec3d to);
+
+/// The patches over the children of a face over which `patch` lies; `middle` as Patch::middles() has them.
+[[nodiscard]] Patches patches_below(const Patch& patch, const Corners& middle);
+
+}  // namespace papilio

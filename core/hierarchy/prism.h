@@ -1,0 +1,49 @@
+#pragma once
+
+#include <limits>
+
+#include "hierarchy/result_surface.h"
+
+// Distances of points above triangles: a fraction of the work of squared_distance() (papilio/triangle_distance.h), and
+// mostly enough.
+
+namespace papilio {
+
+/// The distance, squared, of a point above or below a triangle; infinite of others. A fraction of the work of
+/// squared_distance(), and mostly enough.
+[[nodiscard]] inline double squared_height_above(const Corners& triangle, Vec3d point) {
+  const Vec3d normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  for (uint32_t i = 0; i < 3; ++i)
+    if (!(dot(cross(triangle[(i + 1) % 3] - triangle[i], point - triangle[i]), normal) > 0))
+      return std::numeric_limits<double>::infinity();
+  const double height = dot(point - triangle[0], normal);
+  return height * height / dot(normal, normal);
+}
+
+/// A triangle made ready for the question whether many points are above it.
+class Prism {
+ public:
+  explicit Prism(const TriangleCorners& triangle) : corner_{triangle.a, triangle.b, triangle.c} {
+    const Vec3d area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    const double size = length(area);
+    if (!(size > 0)) return;
+    normal = 1 / size * area;
+    for (uint32_t i = 0; i < 3; ++i) inward_[i] = cross(normal, corner_[(i + 1) % 3] - corner_[i]);
+  }
+
+  /// Whether the point is above or below the triangle, no further than the root of `squared`.
+  [[nodiscard]] bool has_near(Vec3d point, double squared) const {
+    const double height = dot(point - corner_[0], normal);
+    return height * height <= squared && is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);
+  }
+
+  Vec3d normal{};  ///< of length one; zero of a triangle without area
+
+ private:
+  [[nodiscard]] bool is_inside(Vec3d point, uint32_t i) const { return dot(point - corner_[i], inward_[i]) > 0; }
+
+  Corners corner_;
+  Corners inward_{};  ///< normals of the sides in the triangle's plane
+};
+
+}  // namespace papilio

@@ -1,0 +1,87 @@
+#include "hierarchy/repair.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "hierarchy/move_bounds.h"
+
+namespace papilio {
+namespace {
+
+/// A candidate that is split whatever the threshold.
+constexpr float largest_error = std::numeric_limits<float>::max();
+
+}  // namespace
+
+Splits splits_of(const std::vector<LevelChoice>& choices) {
+  Splits splits;
+  for (const LevelChoice& choice : choices) splits.push_back(choice.split_edges);
+  return splits;
+}
+
+void set_splits(std::vector<LevelChoice>& choices, const Splits& splits) {
+  for (size_t k = 0; k < choices.size(); ++k) {
+    choices[k].split_nothing();
+    if (k < splits.size())
+      for (uint32_t e : splits[k]) choices[k].split_edge(e);
+  }
+}
+
+Repair::Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, double limit, int level_count,
+               int threads)
+    : choices_(choices),
+      threshold_(threshold),
+      check_(choices, most_cosine, level_count, limit, threads),
+      limit_(limit) {
+  for (const LevelChoice& choice : choices) near_.emplace_back(choice.level->mesh.topology.face_count(), 0);
+}
+
+bool Repair::add_candidates() {
+  const Buffer<LevelFace> far = check_.far_faces(limit_, near_);
+  is_complete_ = far.empty();
+  before_ = splits_of(choices_);
+  bool has_any = false;
+  for (const LevelFace& face : far) has_any |= add_candidates(face);
+  return has_any;
+}
+
+bool Repair::add_candidates(const LevelFace& face) {
+  constexpr double share_of_largest = 0.75;
+  LevelChoice& choice = choices_[face.level];
+  const uint32_t* edge = &choice.level->mesh.topology.edge[size_t{3} * face.face];
+  std::array<double, 3> move{-1, -1, -1};
+  for (uint32_t i = 0; i < 3; ++i)
+    if (choice.region.has_edge[edge[i]] != 0 && choice.split[edge[i]] == 0) move[i] = move_bound(choice, edge[i], 0);
+  const double largest = *std::ranges::max_element(move);
+  if (largest < 0) return false;
+  for (uint32_t i = 0; i < 3; ++i) {
+    if (move[i] < share_of_largest * largest) continue;
+    float& error = choice.error[edge[i]];
+    if (error < threshold_) choice.candidates.push_back(edge[i]);
+    error = largest_error;
+  }
+  return true;
+}
+
+void Repair::look_again() {
+  for (size_t k = 0; k < choices_.size(); ++k) {
+    const LevelChoice& choice = choices_[k];
+    const Topology& mesh = choice.level->mesh.topology;
+    EdgeMarks is_new = choice.split;
+    for (uint32_t e : before_[k]) is_new[e] = 0;
+    Buffer<uint8_t> touched(mesh.vertex_count, 0);
+    for (uint32_t e : choice.split_edges) {
+      touched[mesh.origin[mesh.half_edge[e]]] |= is_new[e];
+      touched[mesh.tip(mesh.half_edge[e])] |= is_new[e];
+    }
+    for (uint32_t f : choice.region.faces) {
+      const uint32_t* corner = &mesh.origin[size_t{3} * f];
+      if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) == 0) continue;
+      near_[k][f] = 0;
+      if (k > 0) near_[k - 1][choice.level->parent_of(f)] = 0;
+    }
+  }
+}
+
+}  // namespace papilio

@@ -1,0 +1,91 @@
+#include "hierarchy/result_surface.h"
+
+#include <algorithm>
+
+#include "hierarchy/transition.h"
+
+namespace papilio {
+namespace {
+
+constexpr size_t most_visited = 64;
+
+}  // namespace
+
+Corners ResultSurface::corners(uint32_t k, uint32_t f) const {
+  const Mesh& mesh = level(k).mesh;
+  const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
+  return {to_double(mesh.positions[corner[0]]), to_double(mesh.positions[corner[1]]),
+          to_double(mesh.positions[corner[2]])};
+}
+
+Corners ResultSurface::new_vertices(uint32_t k, uint32_t f, const Corners& corner) const {
+  Corners made;
+  for (uint32_t i = 0; i < 3; ++i) {
+    const uint32_t e = topology(k).edge[3 * f + i];
+    made[i] =
+        choice(k).region.has_edge[e] != 0 ? to_double(level(k).trial.at(e)) : 0.5 * (corner[i] + corner[(i + 1) % 3]);
+  }
+  return made;
+}
+
+bool ResultSurface::has_second_diagonal(uint32_t k, uint32_t f, unsigned mask) const {
+  return choose_transition(choice(k), f, mask, most_cosine_) % 2 != 0;
+}
+
+void ResultSurface::find_pieces(const LevelFace& leaf, std::vector<TriangleCorners>& pieces) const {
+  const auto [k, f] = leaf;
+  pieces.clear();
+  const Corners corner = corners(k, f);
+  const unsigned mask = choice(k).split_mask(f);
+  const Corners made = mask != 0 ? new_vertices(k, f, corner) : corner;
+  const SplitPattern& cut = split_pattern(mask, has_two_targets(mask) && has_second_diagonal(k, f, mask));
+  const auto at = [&](uint8_t local) { return local < 3 ? corner[local] : made[local - 3U]; };
+  for (uint32_t c = 0; c < cut.children; ++c)
+    pieces.push_back({at(cut.corner[c][0]), at(cut.corner[c][1]), at(cut.corner[c][2])});
+}
+
+void ResultSurface::find_beside(const LevelFace& leaf, uint32_t i, std::vector<LevelFace>& beside) const {
+  beside.clear();
+  const auto [k, f] = leaf;
+  const uint32_t twin = topology(k).twin[3 * f + i];
+  if (twin == none) return;
+  const uint32_t other = Topology::face(twin);
+  if (k > 0 && !is_divided(k - 1, level(k).parent_of(other))) {
+    beside.push_back({k - 1, level(k).parent_of(other)});
+  } else if (!is_divided(k, other)) {
+    beside.push_back({k, other});
+  } else {
+    for (uint32_t child = first_child(k, other); child < first_child(k, other) + 4; ++child)
+      if (!is_divided(k + 1, child)) beside.push_back({k + 1, child});
+  }
+}
+
+double ResultSurface::squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough) {
+  find_pieces(leaf, pieces_);
+  double least = std::numeric_limits<double>::infinity();
+  for (const TriangleCorners& piece : pieces_) {
+    least = std::min(least, squared_distance(point, piece));
+    if (least <= enough) break;
+  }
+  return least;
+}
+
+double ResultSurface::squared_distance_from(const LevelFace& leaf, Vec3d point, double enough) {
+  visited_.assign(1, leaf);
+  double least = squared_distance_to_leaf(leaf, point, enough);
+  for (size_t at = 0; at < visited_.size() && least > enough; ++at)
+    for (uint32_t i = 0; i < 3; ++i) {
+      find_beside(visited_[at], i, beside_);
+      for (const LevelFace& beside : beside_) {
+        if (visited_.size() == most_visited || std::ranges::count(visited_, beside) > 0) continue;
+        const double distance = squared_distance_to_leaf(beside, point, enough);
+        if (distance > least) continue;
+        least = distance;
+        if (least <= enough) return least;
+        visited_.push_back(beside);
+      }
+    }
+  return least;
+}
+
+}  // namespace papilio

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "papilio/mesh.h"
+
+namespace papilio::test {
+
+/// The largest distances between an adaptive result and the uniform one of the same levels, in the mesh's unit.
+struct TwoSidedDistance {
+  double to_adaptive = 0;  ///< from a vertex of the uniform result to the adaptive surface
+  double to_uniform = 0;   ///< from a sample of the adaptive surface to the uniform one
+  double rms = 0;          ///< root mean square of the distances to the adaptive surface
+  [[nodiscard]] double largest() const { return to_adaptive > to_uniform ? to_adaptive : to_uniform; }
+};
+
+/// Measures with a tree of boxes, and shares nothing with the core but the distance to one triangle. Each adaptive face
+/// is sampled at its corners, the quarters of its sides and inner points between these.
+[[nodiscard]] TwoSidedDistance two_sided_distance(const Mesh& adaptive, const Mesh& uniform);
+
+}  // namespace papilio::test

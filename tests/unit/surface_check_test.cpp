@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "papilio/refine.h"
+#include "tests/support/random_request.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/shapes.h"
+#include "tests/support/two_sided_distance.h"
+
+// What a tolerance promises: the result and the uniform one of the same levels are nowhere further apart. Measured with
+// a tree of boxes (two_sided_distance.h), which knows nothing of levels.
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+constexpr double sampling = 1.02;  ///< between the points that the core compares a distance may be larger
+
+struct Measured {
+  Result result;
+  double distance;  ///< as a share of the diagonal
+};
+
+Measured measure(const Mesh& coarse, const Options& options) {
+  Measured measured{.result = refine(coarse, options), .distance = 0};
+  Options all = options;
+  all.tolerance = 0;
+  all.max_faces = 0;
+  const Mesh uniform = refine(coarse, all).mesh;
+  measured.distance =
+      two_sided_distance(measured.result.mesh, uniform).largest() / bounding_box(coarse.positions).diagonal();
+  return measured;
+}
+
+void expect_kept(const Mesh& coarse, Options options, double tolerance) {
+  SCOPED_TRACE("tolerance " + std::to_string(tolerance));
+  options.tolerance = tolerance;
+  const auto [result, distance] = measure(coarse, options);
+  EXPECT_LE(distance, sampling * tolerance) << result.mesh.topology.face_count() << " faces";
+  constexpr double rounding = 1e-7;
+  EXPECT_LE(distance, sampling * result.error + rounding);
+  if (result.stop_reason == StopReason::converged) {
+    EXPECT_LE(result.error, tolerance);
+  }
+}
+
+TEST(Tolerance, HoldsForRealMeshesFromBothSides) {
+  for (const auto& [name, levels] : {std::pair{"bunny600.obj", 4},
+                                     {"elephant2000.obj", 3},
+                                     {"cgal/bones.off", 2},
+                                     {"cgal/rotor_small.off", 2},
+                                     {"cgal/joint.off", 4},
+                                     {"cgal/cactus.off", 3},
+                                     {"cgal/elephant-with-holes.off", 2},
+                                     {"cgal/cheese.off", 1}}) {
+    SCOPED_TRACE(name);
+    const Mesh coarse = build_mesh(real_mesh(name));
+    for (double tolerance : {1e-2, 3e-3, 1e-3, 3e-4}) expect_kept(coarse, {.levels = levels}, tolerance);
+  }
+}
+
+TEST(Tolerance, HoldsForRandomMeshes) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 150; ++i) {
+    SCOPED_TRACE(i);
+    const Mesh coarse = build_mesh(random_small_mesh(random));
+    Options options{.levels = 3};
+    choose_rules(random, options);
+    expect_kept(coarse, options, std::pow(10, -1.5 - 2.0 * i / 150));
+  }
+}
+
+/// A closed leaf: two fans over a wavy rim, a hair apart. Its rim slides inwards along both sides.
+TriangleMesh thin_leaf() {
+  constexpr uint32_t rim = 12;
+  TriangleMesh leaf;
+  for (uint32_t i = 0; i < rim; ++i) {
+    const double angle = 2 * 3.141592653589793 * i / rim;
+    const double radius = i % 2 == 0 ? 1 : 0.6;
+    leaf.positions.push_back(to_float({radius * std::cos(angle), radius * std::sin(angle), 0}));
+  }
+  leaf.positions.push_back({0, 0, 0.02F});
+  leaf.positions.push_back({0, 0, -0.02F});
+  for (uint32_t i = 0; i < rim; ++i) {
+    leaf.triangles.push_back({i, (i + 1) % rim, rim});
+    leaf.triangles.push_back({(i + 1) % rim, i, rim + 1});
+  }
+  return leaf;
+}
+
+TEST(Tolerance, RefinesTheRimOfAThinLeaf) {
+  const Mesh coarse = build_mesh(thin_leaf());
+  const Options options{.levels = 4, .tension = Tension::off};
+  for (double tolerance : {1e-2, 3e-3, 1e-3}) expect_kept(coarse, options, tolerance);
+  Options fine = options;
+  fine.tolerance = 3e-3;
+  EXPECT_GT(refine(coarse, fine).mesh.topology.face_count(), 4 * coarse.topology.face_count());
+}
+
+TEST(Tolerance, ErrorIsAtMostTwiceTheDistance) {
+  for (const char* name : {"bunny600.obj", "elephant2000.obj", "cgal/rotor_small.off", "cgal/joint.off"}) {
+    const Mesh coarse = build_mesh(real_mesh(name));
+    for (double tolerance : {1e-2, 3e-3, 1e-3}) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(tolerance));
+      const auto [result, distance] = measure(coarse, {.levels = 3, .tolerance = tolerance});
+      if (result.stop_reason == StopReason::converged) {
+        EXPECT_LE(result.error, 2 * distance);
+      }
+    }
+  }
+}
+
+TEST(Tolerance, ErrorOfABudgetBoundsTheDistance) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  for (uint64_t faces : {700U, 2000U, 8000U}) {
+    const auto [result, distance] = measure(coarse, {.levels = 4, .max_faces = faces});
+    EXPECT_LE(result.mesh.topology.face_count(), faces);
+    EXPECT_LE(distance, sampling * result.error);
+    EXPECT_LE(result.error, 2 * distance);
+  }
+}
+
+TEST(Tolerance, ABudgetGoesBeforeIt) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  const Options free{.levels = 4, .tolerance = 1e-3};
+  Options bounded = free;
+  bounded.max_faces = refine(coarse, free).mesh.topology.face_count() - 2;
+  const auto [result, distance] = measure(coarse, bounded);
+  EXPECT_LE(result.mesh.topology.face_count(), bounded.max_faces);
+  EXPECT_EQ(result.stop_reason, StopReason::budget);
+  EXPECT_LE(distance, sampling * result.error);
+}
+
+TEST(Tolerance, CostsFewFaces) {
+  // Errors of single edges alone gave 4868 faces, up to 2.9 times as far away.
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  EXPECT_LE(refine(coarse, {.levels = 4, .tolerance = 1e-3}).mesh.topology.face_count(), 6300U);
+}
+
+TEST(Tolerance, HoldsAtTheDeepestLevelsWithoutMakingThem) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  const Result shallow = refine(coarse, {.levels = 5, .tolerance = 3e-3});
+  const Result deep = refine(coarse, {.levels = 10, .tolerance = 3e-3});
+  EXPECT_EQ(deep.stop_reason, StopReason::converged);
+  EXPECT_LE(deep.error, 3e-3);
+  EXPECT_LE(deep.mesh.topology.face_count(), 1.1 * shallow.mesh.topology.face_count());
+}
+
+TEST(Tolerance, IsKeptAlikeByAnyNumberOfThreads) {
+  const Mesh coarse = build_mesh(real_mesh("elephant20k.drc"));
+  const Options options{.levels = 2, .tolerance = 1e-4};
+  const Result one = refine(coarse, options);
+  const Result four = refine(coarse, options, {.threads = 4});
+  EXPECT_EQ(one.mesh.triangles(), four.mesh.triangles());
+  EXPECT_EQ(one.error, four.error);
+}
+
+TEST(Tolerance, RepairStopsWhenItIsCancelled) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  int asked = 0;
+  (void)refine(coarse, {.levels = 4, .tolerance = 1e-3}, {.cancelled = [&] { return ++asked, false; }});
+  int left = asked - 1;  // the last question comes from the repair
+  EXPECT_THROW((void)refine(coarse, {.levels = 4, .tolerance = 1e-3}, {.cancelled = [&] { return left-- <= 0; }}),
+               Error);
+}
+
+}  // namespace
+}  // namespace papilio
