@@ -286,6 +286,14 @@ const std::array table{
             "refined surface",
         .get = [](const Parameters& p) { return Values{p.normals ? 1.0 : 0.0}; },
         .set = [](Parameters& p, const Values& v) { p.normals = v[0] != 0; }},
+    ParameterInfo{
+        .name = "output.compress",
+        .type = ParameterType::choice,
+        .description = "Compression of a glTF scene's geometry; same: of each primitive as it came",
+        .choices = {gltf::compression_names.begin(), gltf::compression_names.end()},
+        .get = [](const Parameters& p) { return Values{static_cast<double>(p.compression)}; },
+        .set = [](Parameters& p,
+                  const Values& v) { p.compression = static_cast<gltf::Compression>(static_cast<int>(v[0])); }},
 };
 
 }  // namespace

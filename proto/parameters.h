@@ -8,6 +8,7 @@
 
 #include "papilio/refine.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/compression.h"
 
 // Parameters of a refinement. One table defines them for queries, JSON, the command line and the documentation.
 
@@ -20,10 +21,11 @@ using QueryFields = std::vector<std::pair<std::string, std::string>>;
 struct Parameters {
   Options options;  ///< `options.view` is set when any view parameter was given
   OutputOptions output;
-  bool normals = false;               ///< whether a mesh without normals gets them
-  bool default_eye = false;           ///< whether view.eye is omitted and follows from the mesh
-  bool default_position_bits = true;  ///< whether output.position_bits is omitted and follows from the tolerance
+  bool normals = false;                                     ///< whether a mesh without normals gets them
+  gltf::Compression compression = gltf::Compression::same;  ///< of a glTF scene
+  bool default_eye = false;                                 ///< whether view.eye is omitted and follows from the mesh
   bool default_target = false;        ///< whether view.target is omitted and is the centre of the mesh's box
+  bool default_position_bits = true;  ///< whether output.position_bits is omitted and follows from the tolerance
 
   friend bool operator==(const Parameters& a, const Parameters& b);
 };

@@ -96,6 +96,8 @@ Refinement::Refinement(const Parameters& parameters, const Limits& limits)
       most_seconds_(limits.max_compute_seconds) {}
 
 void Refinement::set_options(const Parameters& parameters, const Limits& limits) {
+  if (parameters.compression != gltf::Compression::same)
+    throw Problem(Code::bad_parameter, "output.compress is for glTF scenes; leave it out.", "output.compress");
   const Box box = bounding_box(coarse().mesh.positions);
   options_ = options_for(parameters, box);
   output_ = output_for(parameters, box);

@@ -21,7 +21,8 @@ Codes operator+(Codes a, const Codes& b) {
 
 const Codes body_codes{Code::length_required,        Code::body_too_large,       Code::request_timeout,
                        Code::unsupported_media_type, Code::unsupported_encoding, Code::bad_request};
-const Codes mesh_codes{Code::mesh_not_draco, Code::mesh_unsupported, Code::mesh_unusable, Code::mesh_too_large};
+const Codes mesh_codes{Code::mesh_not_draco, Code::mesh_not_gltf, Code::mesh_unsupported, Code::mesh_unusable,
+                       Code::mesh_too_large};
 const Codes work_codes{Code::busy, Code::cancelled};
 const Codes refine_codes{Code::bad_parameter,  Code::unknown_parameter, Code::not_acceptable, Code::result_too_large,
                          Code::takes_too_long, Code::mesh_too_large,    Code::mesh_unusable};

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "proto/draco_header.h"
+#include "proto/gltf/scene_description.h"
 #include "proto/problem.h"
 
 namespace papilio::server {
@@ -35,16 +36,32 @@ std::shared_ptr<Admission::Slot> Engine::enter(const Request& request, Work work
   return slot;
 }
 
-proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
+proto::RefinementHooks Engine::sharing(proto::RefinementHooks hooks, Admission::Slot& slot) const {
   hooks.cancelled = [abandoned = std::move(hooks.cancelled), &slot] {
     slot.take_turn(abandoned);
     return abandoned();
   };
-  const uint64_t faces = refinement.coarse_faces();
   hooks.threads = 1 + std::max(0, options_.slots - admission_.computing());  // its own slot's and those of free ones
-  proto::EncodedLevel made = refinement.run(hooks);
+  return hooks;
+}
+
+proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
+  const uint64_t faces = refinement.coarse_faces();
+  proto::EncodedLevel made = refinement.run(sharing(std::move(hooks), slot));
   metrics_.count_refinement(faces, made.statistics);
   return made;
+}
+
+proto::gltf::RefinedScene Engine::run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
+                                      Admission::Slot& slot) {
+  const uint64_t faces = refinement.coarse_faces();
+  proto::gltf::RefinedScene made = refinement.run(sharing(std::move(hooks), slot));
+  metrics_.count_refinement(faces, made.statistics);
+  return made;
+}
+
+Work Engine::work_of_scene(std::string_view glb, const Options& options) const {
+  return predicted_work(proto::gltf::declared_faces(glb), options, options_.limits);
 }
 
 Work Engine::work_of(std::string_view draco, const Options& options) const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/gltf/scene_refinement.h"
 #include "proto/limits.h"
 #include "proto/refinement.h"
 #include "proto/shared_mesh.h"
@@ -58,6 +59,11 @@ class Engine {
   /// other requests (`Slot::take_turn`). Throws `Problem`.
   [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks,
                                         Admission::Slot& slot);
+  /// The same for a scene.
+  [[nodiscard]] proto::gltf::RefinedScene run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
+                                              Admission::Slot& slot);
+  /// Work of refining a .glb scene that has the faces which its JSON declares. Throws `Problem`.
+  [[nodiscard]] Work work_of_scene(std::string_view glb, const Options& options) const;
   /// Work of refining a mesh that has the faces which the Draco stream declares. Throws `Problem` where the stream is
   /// refused by its header.
   [[nodiscard]] Work work_of(std::string_view draco, const Options& options) const;
@@ -73,6 +79,8 @@ class Engine {
   void observe_held_bytes(std::function<HeldBytes()> held) { held_ = std::move(held); }
 
  private:
+  /// Lets a refinement take turns with other requests, and use the threads of free slots.
+  [[nodiscard]] proto::RefinementHooks sharing(proto::RefinementHooks hooks, Admission::Slot& slot) const;
   [[nodiscard]] std::shared_ptr<const proto::SharedMesh> shared_mesh(const std::string& id);
   /// Never null. Throws `Problem` mesh_not_found.
   [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);

@@ -1,6 +1,7 @@
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/flattening.h"
 
 namespace papilio::client {
 
@@ -8,7 +9,9 @@ void convert_command(const ConvertFlags& flags) {
   check_output(flags.output);
   const Format format = output_format(flags.output);
   const MeshBytes file = read_mesh(flags.input);
+  if (is_scene(format) && is_scene(file.format)) return save_scene(flags.output, file.bytes);
   const proto::FormattedMesh triangles = triangles_of(file);
+  if (is_scene(format)) return save_scene(flags.output, proto::gltf::scene_of_mesh(triangles));
   if (format != Format::drc) {
     save_bytes(flags.output, encode_triangles(flags.output.path.string(), format, triangles, triangles.format));
     return;

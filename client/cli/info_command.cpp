@@ -5,6 +5,7 @@
 #include "client/lib/file_words.h"
 #include "papilio/refine.h"
 #include "proto/findings.h"
+#include "proto/gltf/scene_description.h"
 #include "proto/refinement.h"
 #include "proto/text.h"
 
@@ -13,8 +14,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
+ordered_json describe_scene_file(const MeshBytes& file) {
+  ordered_json description{{"file", file.name}, {"bytes", file.bytes.size()}};
+  description.update(ordered_json::parse(
+      in_words_of_the_file(file.name, [&] { return proto::gltf::describe_scene(file.bytes, own_limits); })));
+  return description;
+}
+
 ordered_json describe(const MeshPlace& input) {
   const MeshBytes file = read_mesh(input);
+  if (is_scene(file.format)) return describe_scene_file(file);
   BuildReport report;
   const Mesh mesh =
       in_words_of_the_file(file.name, [&] { return build_mesh(triangles_of(file), &report, rounding_gap); });
@@ -42,6 +51,9 @@ void print(const ordered_json& value, const std::string& name) {
     for (const auto& [key, inner] : value.items()) print(inner, name.empty() ? key : name + "." + key);
     return;
   }
+  const bool is_list = value.is_array() && !value.empty() && value[0].is_object();
+  for (size_t i = 0; is_list && i < value.size(); ++i) print(value[i], name + "." + std::to_string(i));
+  if (is_list) return;
   std::cout << name << std::string(name.size() < 24 ? 24 - name.size() : 1, ' ')
             << (value.is_string() ? proto::escape_controls(value.get<std::string>()) : value.dump()) << '\n';
 }

@@ -17,7 +17,7 @@ namespace {
 
 enum ExitStatus { success = 0, failed = 1, usage = 2 };
 
-constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl), or - for standard input";
+constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl .glb .gltf), or - for standard input";
 
 /// A flag whose value is the name of a mesh format.
 void add_format(CLI::App& command, const std::string& flag, std::optional<Format>& format,
@@ -26,7 +26,7 @@ void add_format(CLI::App& command, const std::string& flag, std::optional<Format
       .add_option_function<std::string>(
           flag, [&format](const std::string& name) { format = format_named(name); }, description)
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl"}));
+      ->check(CLI::IsMember({"drc", "obj", "ply", "off", "stl", "glb", "gltf"}));
 }
 
 void add_from(CLI::App& command, MeshPlace& input) {
@@ -44,7 +44,8 @@ void add_parameters(CLI::App& command, TypedParameters& typed, std::string_view 
     const std::string name(parameter.name);
     const std::string description = std::string(parameter.description) + " (" + proto::describe_range(parameter) +
                                     "; default " + proto::describe_default(parameter) + ")";
-    command.add_option("--" + name, typed[name], description)->type_name("VALUE")->group("Parameters");
+    const std::string alias = name == "output.compress" ? ",--compress" : "";
+    command.add_option("--" + name + alias, typed[name], description)->type_name("VALUE")->group("Parameters");
   }
 }
 
@@ -60,16 +61,18 @@ void add_refine(CLI::App& app) {
   auto typed = std::make_shared<TypedParameters>();
   CLI::App* command = app.add_subcommand("refine", "Refine a mesh, or every mesh in a folder");
   command
-      ->add_option("input", flags->input.path, "Mesh file (.drc .obj .ply .off .stl), folder, or - for standard input")
+      ->add_option("input", flags->input.path,
+                   "Mesh file (.drc .obj .ply .off .stl .glb .gltf), folder, or - for standard input")
       ->required();
   command->add_option(
       "-o,--output", flags->output.path,
       "File whose extension names its format, folder, or - for standard output; without it NAME.refined.EXT "
       "beside the input, - where that is -");
   add_from(*command, flags->input);
-  add_format(*command, "--to", flags->output.format,
-             "Format of a folder's results and of standard output (default drc), or of NAME.refined.EXT (default the "
-             "input's)");
+  add_format(
+      *command, "--to", flags->output.format,
+      "Format of a folder's results and of standard output (default drc, for scenes of a folder their own), or of "
+      "NAME.refined.EXT (default the input's)");
   command->add_option("--server", flags->server, "Refine there instead of here: http://host:port or https://");
   command
       ->add_option("--ca", flags->remote.ca_file,

@@ -24,6 +24,8 @@ void check_output(const MeshPlace& output) {
   if (!output.is_standard() && is_folder(path)) throw UsageError(path.string() + " is a folder. Name a file in it.");
   const Format format = format_as_called(output);
   if (output.is_standard()) {
+    if (format == Format::gltf)
+      throw UsageError("A .gltf file has a .bin file beside it. Name a file with -o, or write one file with --to glb.");
     const bool is_text = format == Format::obj || format == Format::off;
     if (!is_text && isatty(STDOUT_FILENO) == 1)
       throw UsageError("The result is binary, and standard output is a terminal. Name a file with -o, or use a pipe.");

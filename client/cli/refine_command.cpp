@@ -6,26 +6,26 @@
 #include "client/cli/refine_mesh.h"
 #include "client/lib/file_words.h"
 #include "proto/findings.h"
+#include "proto/gltf/scene_refinement.h"
 #include "proto/text.h"
 
 namespace papilio::client {
 namespace {
 
 namespace fs = std::filesystem;
-using proto::EncodedLevel;
 
 std::string shown(const MeshPlace& place) { return proto::escape_controls(place.path.string()); }
 
-void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output, const proto::Statistics& statistics,
-            size_t bytes) {
+void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output, const RefinedFile& made) {
+  const proto::Statistics& statistics = made.statistics;
   if (flags.json) {
     out << proto::statistics_json(statistics);
     return;
   }
-  std::cerr << shown(output) << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, " << bytes
-            << " bytes of Draco, " << statistics.level << (statistics.level == 1 ? " level" : " levels") << "; decode "
-            << statistics.times.decode << " ms, refine " << statistics.times.refine << " ms, encode "
-            << statistics.times.encode << " ms\n";
+  std::cerr << shown(output) << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, "
+            << made.bytes.size() << (made.is_scene ? " bytes of glTF, " : " bytes of Draco, ") << statistics.level
+            << (statistics.level == 1 ? " level" : " levels") << "; decode " << statistics.times.decode
+            << " ms, refine " << statistics.times.refine << " ms, encode " << statistics.times.encode << " ms\n";
   if (const std::string found = proto::defects_text(statistics.found); !found.empty())
     std::cerr << proto::escape_controls(flags.input.name()) << ": mended or worked round " << found << '\n';
   if (!statistics.unreached.empty()) std::cerr << "warning: " << statistics.unreached << '\n';
@@ -52,21 +52,37 @@ MeshPlace output_of(const RefineFlags& flags) {
 void refine_file(const RefineFlags& flags) {
   const MeshPlace output = output_of(flags);
   check_output(output);
-  const EncodedLevel made = refine_mesh(flags.input, flags, std::thread::hardware_concurrency());
-  save_draco(output, made.draco);
-  report(output.is_standard() ? std::cerr : std::cout, flags, output, made.statistics, made.draco.size());
+  const RefinedFile made = refine_mesh(flags.input, output, flags, std::thread::hardware_concurrency());
+  save_refined(output, made);
+  report(output.is_standard() ? std::cerr : std::cout, flags, output, made);
 }
 
 }  // namespace
 
-EncodedLevel refine_mesh(const MeshPlace& input, const RefineFlags& flags, unsigned threads) {
+RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags, unsigned threads) {
   MeshBytes file = read_mesh(input);
   const std::string name = file.name;
+  const proto::RefinementHooks hooks{.on_level = {}, .cancelled = {}, .threads = static_cast<int>(threads)};
+  if (is_scene(file.format) && is_scene(output_format(output)))
+    return in_words_of_the_file(name, [&]() -> RefinedFile {
+      auto made = flags.server.empty()
+                      ? proto::gltf::SceneRefinement(file.bytes, flags.parameters, own_limits).run(hooks)
+                      : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
+      return {std::move(made.glb), true, std::move(made.statistics)};
+    });
   const std::string draco = draco_of(std::move(file));
-  return in_words_of_the_file(name, [&] {
-    if (!flags.server.empty()) return Remote(flags.server, flags.remote).refine(draco, flags.parameters);
-    return proto::Refinement(draco, flags.parameters, own_limits).run({.threads = static_cast<int>(threads)});
+  return in_words_of_the_file(name, [&]() -> RefinedFile {
+    auto made = flags.server.empty() ? proto::Refinement(draco, flags.parameters, own_limits).run(hooks)
+                                     : Remote(flags.server, flags.remote).refine(draco, flags.parameters);
+    return {std::move(made.draco), false, std::move(made.statistics)};
   });
+}
+
+void save_refined(const MeshPlace& output, const RefinedFile& made) {
+  if (made.is_scene)
+    save_scene(output, made.bytes);
+  else
+    save_draco(output, made.bytes);
 }
 
 void refine_command(const RefineFlags& flags) {

@@ -40,8 +40,14 @@ struct Plan {
   std::vector<fs::path> skipped;                     ///< all else, relative to the folder
 };
 
+/// What a file becomes without --to: scenes stay scenes, all else becomes Draco.
+Format default_format(const fs::path& name) {
+  const Format format = known_format_of(name).value_or(Format::drc);
+  return is_scene(format) ? format : Format::drc;
+}
+
 /// In alphabetical order.
-Plan plan_folder(const fs::path& input, const fs::path& output, Format format) {
+Plan plan_folder(const fs::path& input, const fs::path& output, const std::optional<Format>& format) {
   Plan plan;
   std::map<fs::path, fs::path> taken;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(input)) {
@@ -52,14 +58,15 @@ Plan plan_folder(const fs::path& input, const fs::path& output, Format format) {
       continue;
     }
     fs::path result = output / name;
-    result.replace_extension(name_of(format));
+    result.replace_extension(name_of(format.value_or(default_format(name))));
     const auto [other, is_new] = taken.emplace(result, entry.path());
     if (!is_new)
       throw UsageError(entry.path().string() + " and " + other->second.string() + " would both become " +
                        result.string() + ". Rename one.");
     plan.files.emplace_back(entry.path(), result);
   }
-  if (plan.files.empty()) throw UsageError(input.string() + " has no .drc, .obj, .ply, .off or .stl file in it.");
+  if (plan.files.empty())
+    throw UsageError(input.string() + " has no .drc, .obj, .ply, .off, .stl, .glb or .gltf file in it.");
   std::ranges::sort(plan.files);
   std::ranges::sort(plan.skipped);
   return plan;
@@ -98,7 +105,7 @@ class Progress {
 std::string refine_one_of_many(const fs::path& input, const MeshPlace& output, const RefineFlags& flags) {
   try {
     fs::create_directories(output.path.parent_path());
-    save_draco(output, refine_mesh({.path = input}, flags, 1).draco);
+    save_refined(output, refine_mesh({.path = input}, output, flags, 1));
     return {};
   } catch (const FileError& error) {
     return error.what();
@@ -121,8 +128,7 @@ std::string list_of(const std::vector<fs::path>& names) {
 
 void refine_folder(const RefineFlags& flags) {
   check_flags(flags);
-  const Format format = flags.output.format.value_or(Format::drc);
-  const Plan plan = plan_folder(flags.input.path, flags.output.path, format);
+  const Plan plan = plan_folder(flags.input.path, flags.output.path, flags.output.format);
   Progress progress(plan.files.size());
   std::atomic<size_t> next = 0;
   const auto work = [&] {

@@ -5,9 +5,20 @@
 
 namespace papilio::client {
 
-/// Refines one mesh here, with so many threads, or at the server: both go the same way from the same stream, so the
-/// bytes are the same. Throws what the work throws, and `FileError` where the mesh is at fault.
-[[nodiscard]] proto::EncodedLevel refine_mesh(const MeshPlace& input, const RefineFlags& flags, unsigned threads);
+/// A refined mesh as a Draco stream, or a refined scene as a .glb file.
+struct RefinedFile {
+  std::string bytes;
+  bool is_scene = false;
+  proto::Statistics statistics;
+};
+
+/// Refines one mesh or scene here, with so many threads, or at the server: both go the same way from the same bytes, so
+/// the result is the same. A scene stays one if `output` is a scene; else it is refined as a single mesh. Throws what
+/// the work throws, and `FileError` where the mesh is at fault.
+[[nodiscard]] RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags,
+                                      unsigned threads);
+/// Writes what was refined. Throws `FileError`.
+void save_refined(const MeshPlace& output, const RefinedFile& made);
 
 /// Refines every mesh in the folder `flags.input` into the folder `flags.output`, and says which files failed and which
 /// were skipped.

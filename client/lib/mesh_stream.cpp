@@ -5,8 +5,34 @@
 #include "client/lib/file_words.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/flattening.h"
+#include "proto/gltf/packing.h"
+#include "proto/text.h"
+#include "proto/url.h"
 
 namespace papilio::client {
+namespace {
+
+/// The bytes of a file that `document` names by a relative URI.
+std::string read_beside(const std::filesystem::path& document, const std::string& uri) {
+  const std::filesystem::path name = proto::decode_url(uri).value_or(uri);
+  const bool has_scheme = uri.find(':') != std::string::npos;
+  if (has_scheme || name.is_absolute() || *name.lexically_normal().begin() == "..")
+    throw FileError(document, "names " + proto::quote(uri) + ", which is not in its folder; put it there");
+  return read_bytes(document.parent_path() / name, kMaxFileBytes);
+}
+
+std::string packed(const MeshPlace& place, const MeshBytes& file) {
+  return in_words_of_the_file(file.name, [&] {
+    return proto::gltf::pack_scene(file.bytes, [&](const std::string& uri) {
+      if (place.is_standard())
+        throw FileError(file.name, "names the file " + proto::quote(uri) + "; name the .gltf file instead of -");
+      return read_beside(place.path, uri);
+    });
+  });
+}
+
+}  // namespace
 
 MeshBytes read_mesh(const MeshPlace& place) {
   MeshBytes file{.name = place.name()};
@@ -14,10 +40,13 @@ MeshBytes read_mesh(const MeshPlace& place) {
   file.bytes = place.is_standard() ? read_standard_input(kMaxFileBytes) : read_bytes(place.path, kMaxFileBytes);
   if (file.bytes.empty()) throw FileError(file.name, "is empty; export the mesh again");
   if (place.is_standard()) file.format = place.format ? *place.format : format_of_content(file.name, file.bytes);
+  if (file.format == Format::gltf) file.bytes = packed(place, file);
   return file;
 }
 
 proto::FormattedMesh triangles_of(const MeshBytes& file) {
+  if (is_scene(file.format))
+    return in_words_of_the_file(file.name, [&] { return proto::gltf::flatten_scene(file.bytes, own_limits); });
   if (file.format != Format::drc) return parse_triangles(file.name, file.format, file.bytes);
   return in_words_of_the_file(file.name, [&] { return proto::read_draco(file.bytes, own_limits); });
 }
@@ -41,7 +70,15 @@ void save_draco(const MeshPlace& place, std::string_view draco) {
   const Format format = output_format(place);
   if (format == Format::drc) return save_bytes(place, draco);
   const proto::FormattedMesh mesh = proto::read_draco(draco, own_limits);
+  if (is_scene(format)) return save_scene(place, proto::gltf::scene_of_mesh(mesh));
   save_bytes(place, encode_triangles(place.path.string(), format, mesh, mesh.format));
+}
+
+void save_scene(const MeshPlace& place, const std::string& glb) {
+  if (output_format(place) == Format::glb) return save_bytes(place, glb);
+  const auto files = proto::gltf::unpack_scene(glb, place.path.stem().string() + ".bin");
+  for (const auto& [name, bytes] : files.buffers) save_bytes({.path = place.path.parent_path() / name}, bytes);
+  save_bytes(place, files.document);
 }
 
 void save_bytes(const MeshPlace& place, std::string_view bytes) {

@@ -10,7 +10,7 @@
 #include "proto/limits.h"
 #include "proto/mesh_format.h"
 
-// Mesh files of every kind as Draco streams, which are all that a refinement takes and gives.
+// Mesh files of every kind as what a refinement takes and gives: Draco streams, and scenes as .glb files.
 
 namespace papilio::client {
 
@@ -27,17 +27,18 @@ struct MeshPlace {
   [[nodiscard]] std::string name() const { return is_standard() ? standard_input_name : path.string(); }
 };
 
-/// A mesh file as it was read.
+/// A mesh file as it was read. A .gltf file is packed: its bytes are those of a .glb file.
 struct MeshBytes {
   std::string name;  ///< for messages
   Format format = Format::drc;
   std::string bytes{};
 };
 
-/// Reads a mesh file without a look at its content. Throws `FileError`, also where it is empty.
+/// Reads a mesh file without a look at its content, but for the files that a .gltf file names: relative URIs in its
+/// folder or below. Throws `FileError`, also where it is empty.
 [[nodiscard]] MeshBytes read_mesh(const MeshPlace& place);
 
-/// A mesh file's triangles and attributes. Throws `FileError`.
+/// A mesh file's triangles and attributes, those of all nodes of a scene. Throws `FileError`.
 [[nodiscard]] proto::FormattedMesh triangles_of(const MeshBytes& file);
 
 /// A mesh file as a Draco stream: .drc as it is, others encoded with their positions and attributes to the bit. Throws
@@ -47,8 +48,11 @@ struct MeshBytes {
 /// The format of what is written there. Throws `FileError` for an extension that is unknown or not that of the format.
 [[nodiscard]] Format output_format(const MeshPlace& place);
 
-/// Writes a Draco stream in the format of the place. Throws `FileError`.
+/// Writes a Draco stream in the format of the place; as a scene of one node where that is glTF. Throws `FileError`.
 void save_draco(const MeshPlace& place, std::string_view draco);
+
+/// Writes a .glb scene in the format of the place; beside NAME.gltf goes NAME.bin. Throws `FileError`.
+void save_scene(const MeshPlace& place, const std::string& glb);
 
 /// Writes a file's bytes, to a file all or nothing. Throws `FileError`.
 void save_bytes(const MeshPlace& place, std::string_view bytes);

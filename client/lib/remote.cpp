@@ -13,6 +13,7 @@
 #include "client/lib/mesh_stream.h"
 #include "proto/draco_reader.h"
 #include "proto/findings.h"
+#include "proto/gltf/scene_description.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 #include "proto/unreached.h"
@@ -23,6 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* draco_type = "application/x-draco";
+constexpr const char* scene_type = "model/gltf-binary";
 constexpr uint64_t longest_mesh = 4ULL << 30;
 constexpr uint64_t longest_document = 64 << 10;
 constexpr int ok_status = 200;
@@ -168,6 +170,37 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   return statistics;
 }
 
+/// Sends a body of media type `type` to be refined, again and again while the server is busy. Returns its answer of the
+/// same type. Throws `ServerError`.
+httplib::Response ask_to_refine(const std::string& origin, httplib::Client& client, const std::string& prefix,
+                                const char* type, std::string_view body, const proto::Parameters& parameters) {
+  httplib::Request request;
+  request.method = "POST";
+  request.path = prefix + "/v1/refine?" + proto::to_query(parameters);
+  request.headers = {{"Accept", type}, {"Content-Type", type}};
+  request.body = std::string(body);
+  const auto ask = [&] { return exchange(origin, client, request, type, longest_mesh); };
+  httplib::Response answer = ask();
+  for (int attempt = 1; attempt < most_attempts && answer.status == busy_status; ++attempt) {
+    std::this_thread::sleep_for(std::chrono::seconds(
+        std::clamp<uint64_t>(count_of(answer.get_header_value("Retry-After")), 1, longest_pause_seconds)));
+    answer = ask();
+  }
+  if (answer.status != ok_status) throw error_from(answer.status, answer.body);
+  return answer;
+}
+
+/// Throws `ServerError` unless the body is a scene that can be read.
+void check_scene(const std::string& origin, const httplib::Response& response) {
+  try {
+    (void)proto::gltf::describe_scene(response.body, own_limits);
+  } catch (const proto::Problem&) {
+    throw ServerError(ok_status, "",
+                      origin + " answered with " + std::to_string(response.body.size()) +
+                          " bytes that are no whole glTF scene. Try again.");
+  }
+}
+
 }  // namespace
 
 Remote::Remote(const std::string& url, RemoteOptions options) : options_(std::move(options)) {
@@ -183,20 +216,17 @@ Remote::Remote(const std::string& url, RemoteOptions options) : options_(std::mo
 
 proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_, options_);
-  httplib::Request request;
-  request.method = "POST";
-  request.path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
-  request.headers = {{"Accept", draco_type}, {"Content-Type", draco_type}};
-  request.body = std::string(draco);
-  const auto ask = [&] { return exchange(origin_, client, request, draco_type, longest_mesh); };
-  httplib::Response answer = ask();
-  for (int attempt = 1; attempt < most_attempts && answer.status == busy_status; ++attempt) {
-    std::this_thread::sleep_for(std::chrono::seconds(
-        std::clamp<uint64_t>(count_of(answer.get_header_value("Retry-After")), 1, longest_pause_seconds)));
-    answer = ask();
-  }
-  if (answer.status != ok_status) throw error_from(answer.status, answer.body);
+  httplib::Response answer = ask_to_refine(origin_, client, prefix_, draco_type, draco, parameters);
   check_mesh(origin_, answer);
+  proto::Statistics statistics = statistics_from(answer.headers);
+  statistics.unreached = proto::unreached_text(parameters.options, statistics);
+  return {std::move(answer.body), std::move(statistics)};
+}
+
+proto::gltf::RefinedScene Remote::refine_scene(std::string_view glb, const proto::Parameters& parameters) const {
+  httplib::Client client = connect(origin_, options_);
+  httplib::Response answer = ask_to_refine(origin_, client, prefix_, scene_type, glb, parameters);
+  check_scene(origin_, answer);
   proto::Statistics statistics = statistics_from(answer.headers);
   statistics.unreached = proto::unreached_text(parameters.options, statistics);
   return {std::move(answer.body), std::move(statistics)};

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/gltf/scene_refinement.h"
 #include "proto/multipart.h"
 #include "proto/parameters.h"
 #include "proto/refinement.h"
@@ -46,6 +47,10 @@ class Remote {
   /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. A busy server is
   /// asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
   [[nodiscard]] proto::EncodedLevel refine(std::string_view draco, const proto::Parameters& parameters) const;
+
+  /// Refines a scene there, a .glb file; the same bytes as `proto::gltf::SceneRefinement` makes here. Asks a busy
+  /// server again, as `refine`. Throws `ServerError`.
+  [[nodiscard]] proto::gltf::RefinedScene refine_scene(std::string_view glb, const proto::Parameters& parameters) const;
 
   /// The same level by level: `on_part` is called for each part as it arrives, meshes first, the JSON summary
   /// last. Throws `ServerError`, also for a problem that comes in the middle.

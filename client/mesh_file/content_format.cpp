@@ -23,9 +23,12 @@ bool looks_like_off(std::string_view text) {
 
 std::optional<Format> recognised(std::string_view bytes) {
   if (bytes.starts_with("DRACO")) return Format::drc;
+  if (bytes.starts_with("glTF")) return Format::glb;
   if (looks_like_stl(bytes)) return Format::stl;
   const std::string_view text = skip_byte_order_mark(bytes);
-  if (TextScanner(text, {}).word() == "ply") return Format::ply;
+  const std::string_view first = TextScanner(text, {}).word_anywhere();
+  if (first.starts_with('{')) return Format::gltf;
+  if (first == "ply" && TextScanner(text, {}).word() == "ply") return Format::ply;
   if (text.find('\0') != std::string_view::npos) return std::nullopt;
   if (looks_like_off(text)) return Format::off;
   return has_obj_vertex(text) ? std::optional(Format::obj) : std::nullopt;
@@ -39,7 +42,8 @@ Format format_of_content(const std::string& name, std::string_view bytes) {
   } catch (const ParseError& error) {
     throw FileError(name, error.what());
   }
-  throw FileError(name, "is of no format that its content shows; name one of drc, obj, ply, off, stl with --from");
+  throw FileError(name,
+                  "is of no format that its content shows; name one of drc, obj, ply, off, stl, glb, gltf with --from");
 }
 
 }  // namespace papilio::client

@@ -13,15 +13,19 @@
 namespace papilio::client {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Format>, 5> kExtensions{{
+constexpr std::array<std::pair<std::string_view, Format>, 7> kExtensions{{
     {".drc", Format::drc},
     {".obj", Format::obj},
     {".ply", Format::ply},
     {".off", Format::off},
     {".stl", Format::stl},
+    {".glb", Format::glb},
+    {".gltf", Format::gltf},
 }};
 
-std::logic_error draco_is_elsewhere() { return std::logic_error("drc is read and written by papilio::proto"); }
+std::logic_error format_is_elsewhere() {
+  return std::logic_error("drc, glb and gltf are read and written by papilio::proto");
+}
 
 proto::FormattedMesh parse(Format format, std::string_view bytes) {
   switch (format) {
@@ -34,9 +38,11 @@ proto::FormattedMesh parse(Format format, std::string_view bytes) {
     case Format::stl:
       return {parse_stl(bytes), {}};
     case Format::drc:
+    case Format::glb:
+    case Format::gltf:
       break;
   }
-  throw draco_is_elsewhere();
+  throw format_is_elsewhere();
 }
 
 std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshFormat& mesh_format) {
@@ -50,9 +56,11 @@ std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshF
     case Format::stl:
       return format_stl(mesh);
     case Format::drc:
+    case Format::glb:
+    case Format::gltf:
       break;
   }
-  throw draco_is_elsewhere();
+  throw format_is_elsewhere();
 }
 
 /// The number of triangles before the first that names a vertex that does not exist; all of them if none
@@ -71,6 +79,8 @@ std::string describe_broken(const TriangleMesh& mesh, size_t index) {
 }
 
 }  // namespace
+
+bool is_scene(Format format) { return format == Format::glb || format == Format::gltf; }
 
 std::string_view name_of(Format format) {
   return std::ranges::find(kExtensions, format, &std::pair<std::string_view, Format>::second)->first.substr(1);
@@ -93,7 +103,7 @@ Format format_of(const std::filesystem::path& path) {
   if (const std::optional<Format> format = known_format_of(path)) return *format;
   const std::string extension = path.extension().string();
   const std::string found = extension.empty() ? "has no extension" : "'" + extension + "' is not a known extension";
-  throw FileError(path, found + "; use one of .drc, .obj, .ply, .off, .stl");
+  throw FileError(path, found + "; use one of .drc, .obj, .ply, .off, .stl, .glb, .gltf");
 }
 
 proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes) {
@@ -111,7 +121,7 @@ proto::FormattedMesh parse_triangles(const std::string& name, Format format, std
 }
 
 proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format) {
-  if (format == Format::drc) throw draco_is_elsewhere();
+  if (format == Format::drc || is_scene(format)) throw format_is_elsewhere();
   return parse_triangles(path.string(), format, read_bytes(path, kMaxFileBytes));
 }
 

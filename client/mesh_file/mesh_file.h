@@ -11,9 +11,12 @@
 namespace papilio::client {
 
 /// The kinds of mesh files, by what their names end in.
-enum class Format { drc, obj, ply, off, stl };
+enum class Format { drc, obj, ply, off, stl, glb, gltf };
 
-/// "drc", "obj", "ply", "off", "stl".
+/// Whether files of the format hold scenes, which `proto` reads and writes.
+[[nodiscard]] bool is_scene(Format format);
+
+/// "drc", "obj", "ply", "off", "stl", "glb", "gltf".
 [[nodiscard]] std::string_view name_of(Format format);
 /// The reverse of `name_of`; nothing for any other text.
 [[nodiscard]] std::optional<Format> format_named(std::string_view name);
@@ -22,8 +25,8 @@ enum class Format { drc, obj, ply, off, stl };
 [[nodiscard]] std::optional<Format> known_format_of(const std::filesystem::path& path);
 /// By the extension. Throws `FileError` that names the extension and those that are known.
 [[nodiscard]] Format format_of(const std::filesystem::path& path);
-/// By what the bytes begin with: Draco's or PLY's magic, OFF's keyword or counts, `solid` or the size of a binary STL
-/// file, or lines of an OBJ file. `name` is for messages. Throws `FileError` where none fits.
+/// By what the bytes begin with: Draco's, PLY's or glTF's magic, the brace of JSON, OFF's keyword or counts, `solid` or
+/// the size of a binary STL file, or lines of an OBJ file. `name` is for messages. Throws `FileError` where none fits.
 [[nodiscard]] Format format_of_content(const std::string& name, std::string_view bytes);
 
 /// The largest file that is read: 4 GiB.
@@ -41,8 +44,9 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 ///
 /// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
 /// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,
-/// or holds no triangle; and `std::logic_error` for `Format::drc`, whose bytes are read by `proto`. Memory stays within
-/// a small multiple of the file's size, whatever counts the file declares. Any number of threads may call it.
+/// or holds no triangle; and `std::logic_error` for `Format::drc` and scenes, whose bytes are read by `proto`. Memory
+/// stays within a small multiple of the file's size, whatever counts the file declares. Any number of threads may call
+/// it.
 [[nodiscard]] proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format);
 /// `read_triangles` of a file's bytes. `name` is the file's, for messages.
 [[nodiscard]] proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes);
@@ -55,7 +59,7 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 /// positions alone.
 ///
 /// Throws `FileError` if it cannot be written; `std::invalid_argument` if a triangle names a vertex that does
-/// not exist; `std::logic_error` for `Format::drc`.
+/// not exist; `std::logic_error` for `Format::drc` and scenes.
 void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
                      const proto::MeshFormat& mesh_format = {});
 /// The bytes that `write_triangles` writes. `name` is the file's, for messages.

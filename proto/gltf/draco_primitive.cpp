@@ -115,7 +115,9 @@ EncodedPrimitive encode_draco_primitive(const VertexSet& set, const std::vector<
   EncodedPrimitive made;
   FormattedMesh input = formatted(set, triangles, made.ids);
   const Mesh mesh = translate_errors([&] { return build_mesh(input); });
-  const AttributeEncoding encoding = attribute_encoding(mesh, input.format);
+  AttributeEncoding encoding = attribute_encoding(mesh, input.format);
+  for (size_t a = 0; a < encoding.grids.size(); ++a)  // weights on a grid would not add up to 1
+    if (made.ids[a + 1].first.starts_with("WEIGHTS_")) encoding.grids[a].range = 0;
   made.stream = write_draco(mesh, box, options, encoding, poll);
   const Limits no_limits{.max_input_faces = face_count_limit,
                          .max_input_vertices = face_count_limit,

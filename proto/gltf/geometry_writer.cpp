@@ -1,7 +1,5 @@
 #include "proto/gltf/geometry_writer.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include "proto/gltf/draco_primitive.h"
@@ -12,10 +10,6 @@
 namespace papilio::proto::gltf {
 namespace {
 
-constexpr std::array<std::pair<Compression, std::string_view>, 4> compression_names{{{Compression::same, "same"},
-                                                                                     {Compression::draco, "draco"},
-                                                                                     {Compression::meshopt, "meshopt"},
-                                                                                     {Compression::none, "none"}}};
 /// Smallest index that restarts primitives where indices have 16 bits.
 constexpr uint64_t restart_index_16 = 65535;
 
@@ -62,7 +56,7 @@ class GeometryWriter {
   }
 
  private:
-  Compression compression_of(const Json& primitive, const VertexSet& set) const {
+  [[nodiscard]] Compression compression_of(const Json& primitive, const VertexSet& set) const {
     if (encoding_.compression != Compression::same) return encoding_.compression;
     if (find_extension(primitive, draco_extension, "a primitive") != nullptr) return Compression::draco;
     return slots_.is_compressed(set.find("POSITION")->accessor.value()) ? Compression::meshopt : Compression::none;
@@ -119,16 +113,6 @@ class GeometryWriter {
 };
 
 }  // namespace
-
-std::string_view compression_name(Compression compression) {
-  return std::ranges::find(compression_names, compression, &std::pair<Compression, std::string_view>::first)->second;
-}
-
-std::optional<Compression> compression_named(std::string_view name) {
-  for (const auto& [compression, known] : compression_names)
-    if (known == name) return compression;
-  return std::nullopt;
-}
 
 BufferPieces write_geometry(Document& document, std::vector<NewGeometry> meshes, const GeometryEncoding& encoding) {
   require_sound_views(document);

@@ -1,26 +1,14 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include "proto/draco_writer.h"
 #include "proto/gltf/buffer_writer.h"
+#include "proto/gltf/compression.h"
 #include "proto/gltf/geometry.h"
 
 namespace papilio::proto::gltf {
-
-/// How new geometry is compressed.
-enum class Compression {
-  same,     ///< each primitive as it was
-  draco,    ///< by KHR_draco_mesh_compression
-  meshopt,  ///< by EXT_meshopt_compression
-  none
-};
-/// Returns "same", "draco", "meshopt" or "none".
-[[nodiscard]] std::string_view compression_name(Compression compression);
-[[nodiscard]] std::optional<Compression> compression_named(std::string_view name);
 
 /// New triangles of a mesh: sets and primitives as `read_geometry` gives them, with other contents.
 struct NewGeometry {

@@ -1,11 +1,14 @@
 #include "proto/gltf/scene_refinement.h"
 
 #include <algorithm>
+#include <chrono>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "proto/error_translation.h"
 #include "proto/gltf/document_writer.h"
+#include "proto/gltf/geometry_writer.h"
 #include "proto/gltf/interpolation.h"
 #include "proto/gltf/scene_mesh.h"
 #include "proto/problem.h"
@@ -79,8 +82,8 @@ void require_supported(const Parameters& parameters) {
 
 class SceneRefinement::State {
  public:
-  State(std::string_view bytes, const Parameters& parameters, const Limits& limits, const FileResolver& resolve)
-      : parameters_(parameters), limits_(limits), document_(read_document(bytes, resolve)), views_(document_) {
+  State(std::string_view bytes, const Parameters& parameters, const Limits& limits)
+      : parameters_(parameters), limits_(limits), document_(read_document(bytes)), views_(document_) {
     require_supported(parameters);
     scene_ = translate_errors([&] { return read_meshes(views_, limits); });
     options_ = options_for(parameters, scene_.box);
@@ -95,7 +98,7 @@ class SceneRefinement::State {
     times_.decode = milliseconds_since(begin_);
   }
 
-  RefinedScene run(const SceneOutput& output, const RefinementHooks& hooks) {
+  RefinedScene run(const RefinementHooks& hooks) {
     hooks_ = &hooks;
     divide_budget();
     std::vector<NewGeometry> replaced;
@@ -103,10 +106,10 @@ class SceneRefinement::State {
     add_unchanged(statistics);
     for (SceneMesh& mesh : scene_.meshes) {
       add(statistics.found, mesh.surface.found);
-      refine_mesh(mesh, output, statistics, replaced);
+      refine_mesh(mesh, statistics, replaced);
     }
     times_.refine = milliseconds_since(begin_) - times_.decode;
-    RefinedScene made = write(output, std::move(replaced));
+    RefinedScene made{write(std::move(replaced))};
     times_.encode = milliseconds_since(begin_) - times_.decode - times_.refine;
     made.statistics = std::move(statistics);
     made.statistics.times = times_;
@@ -239,13 +242,12 @@ class SceneRefinement::State {
     statistics.faces += mesh.coarse_faces();
   }
 
-  void refine_mesh(SceneMesh& mesh, const SceneOutput& output, Statistics& statistics,
-                   std::vector<NewGeometry>& replaced) {
+  void refine_mesh(SceneMesh& mesh, Statistics& statistics, std::vector<NewGeometry>& replaced) {
     poll();
     remaining_coarse_ -= mesh.coarse_faces();
     if (!mesh.options) {
       leave(mesh, statistics);
-      if (output.compression == Compression::same) return;
+      if (parameters_.compression == Compression::same) return;
       replaced.push_back({mesh.number, mesh.geometry, quantization_box(mesh.surface.mesh.positions)});
       return;
     }
@@ -264,7 +266,7 @@ class SceneRefinement::State {
     mesh.prepared.reset();
     if (options_.max_faces > 0) budget_left_ -= result.mesh.topology.face_count();
     count_result(mesh, result, statistics);
-    const bool is_new = result.levels > 0 || parameters_.normals || output.compression != Compression::same;
+    const bool is_new = result.levels > 0 || parameters_.normals || parameters_.compression != Compression::same;
     if (is_new) {
       replaced.push_back(new_geometry(mesh, result));
       for (const VertexSet& set : replaced.back().geometry.sets) held_bytes_ += set.count * bytes_of_vertex(set);
@@ -313,15 +315,13 @@ class SceneRefinement::State {
     return made;
   }
 
-  RefinedScene write(const SceneOutput& output, std::vector<NewGeometry> replaced) {
-    const GeometryEncoding encoding{output.compression, parameters_.output, [this] { poll(); }};
-    BufferPieces pieces = replaced.empty() && output.compression == Compression::same
+  std::string write(std::vector<NewGeometry> replaced) {
+    const GeometryEncoding encoding{parameters_.compression, parameters_.output, [this] { poll(); }};
+    BufferPieces pieces = replaced.empty() && parameters_.compression == Compression::same
                               ? unchanged_pieces(document_)
                               : write_geometry(document_, std::move(replaced), encoding);
     poll();
-    SceneFiles files = write_document(document_, std::move(pieces), output.as_glb ? FileKind::glb : FileKind::gltf,
-                                      output.binary_name);
-    return {std::move(files.document), std::move(files.buffers)};
+    return write_document(document_, std::move(pieces), FileKind::glb).document;
   }
 
   Clock::time_point begin_ = Clock::now();
@@ -341,9 +341,8 @@ class SceneRefinement::State {
   const RefinementHooks* hooks_ = nullptr;
 };
 
-SceneRefinement::SceneRefinement(std::string_view bytes, const Parameters& parameters, const Limits& limits,
-                                 const FileResolver& resolve)
-    : state_(std::make_unique<State>(bytes, parameters, limits, resolve)) {}
+SceneRefinement::SceneRefinement(std::string_view bytes, const Parameters& parameters, const Limits& limits)
+    : state_(std::make_unique<State>(bytes, parameters, limits)) {}
 
 SceneRefinement::~SceneRefinement() = default;
 
@@ -365,8 +364,8 @@ BuildReport SceneRefinement::found() const {
   return sum;
 }
 
-RefinedScene SceneRefinement::run(const SceneOutput& output, const RefinementHooks& hooks) {
-  return translate_errors([&] { return state_->run(output, hooks); });
+RefinedScene SceneRefinement::run(const RefinementHooks& hooks) {
+  return translate_errors([&] { return state_->run(hooks); });
 }
 
 }  // namespace papilio::proto::gltf

@@ -34,7 +34,10 @@ struct Combination {
   [[nodiscard]] bool is_original() const { return weight[0] == 1; }
   /// Returns the vertex of the largest weight; of equal ones the lowest.
   [[nodiscard]] uint32_t nearest() const;
-  friend auto operator<=>(const Combination&, const Combination&) = default;
+  friend bool operator==(const Combination&, const Combination&) = default;
+  friend bool operator<(const Combination& a, const Combination& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.weight < b.weight;
+  }
 };
 
 /// A vertex of the result.

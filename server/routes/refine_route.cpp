@@ -2,6 +2,11 @@
 
 #include <memory>
 
+#include "proto/draco_reader.h"
+#include "proto/draco_writer.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/flattening.h"
+#include "proto/gltf/scene_refinement.h"
 #include "proto/parameters.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"
@@ -33,7 +38,7 @@ Order read_form(Request& request) {
     bool& seen = part.name == "mesh" ? has_mesh : has_parameters;
     if (part.name != "mesh" && part.name != "params")
       throw Problem(Code::bad_request, "The form has a part " + proto::quote(part.name) +
-                                           "; its parts are \"mesh\" (Draco) and \"params\" (JSON).");
+                                           "; its parts are \"mesh\" (Draco or .glb) and \"params\" (JSON).");
     if (seen) throw Problem(Code::bad_request, "The form has two parts " + proto::quote(part.name) + "; send one.");
     seen = true;
     if (part.name == "mesh")
@@ -48,30 +53,67 @@ Order read_form(Request& request) {
 Order read_order(Request& request) {
   const std::string type = request.content_type();
   if (type == "multipart/form-data") return read_form(request);
-  if (!type.empty() && type != draco_type && type != bytes_type)
+  if (!type.empty() && type != draco_type && type != bytes_type && type != scene_type)
     throw Problem(Code::unsupported_media_type,
                   "Bodies of type " + proto::quote(type) +
-                      " are not read here. Send a Draco file with -H 'Content-Type: application/x-draco', or a form "
-                      "with parts mesh and params.");
+                      " are not read here. Send a Draco file with -H 'Content-Type: application/x-draco', a .glb file "
+                      "with model/gltf-binary, or a form with parts mesh and params.");
   Parameters parameters = proto::parse_query(request.query());
   return {request.read_body().bytes, std::move(parameters)};
+}
+
+Response unstored(Response response, std::string body) {
+  response.body = std::move(body);
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+/// The mesh of a scene of one as Draco.
+std::string draco_of_scene(const std::string& glb, const proto::Limits& limits) {
+  const auto mesh = proto::gltf::find_only_mesh(glb, limits);
+  if (!mesh)
+    throw Problem(Code::not_acceptable,
+                  "The scene has several meshes, or shows one several times, which Draco cannot hold. Accept "
+                  "model/gltf-binary.");
+  return proto::write_draco_exact(*mesh, mesh->format);
+}
+
+Response refined_scene(Engine& engine, Request& request, const Order& order, const std::string& type) {
+  if (type == multipart_type)
+    throw Problem(Code::not_acceptable, "The levels of a scene are not sent one by one. Accept model/gltf-binary.");
+  const auto gone = [&] { return request.client_gone(); };
+  auto slot = engine.enter(request, engine.work_of_scene(order.mesh, order.parameters.options), gone);
+  proto::gltf::SceneRefinement refinement(order.mesh, order.parameters, engine.limits());
+  proto::gltf::RefinedScene made = engine.run(refinement, {.on_level = {}, .cancelled = gone}, *slot);
+  return unstored(refined_response(made.statistics, type), std::move(made.glb));
+}
+
+/// The bytes of a refined mesh in the type that the client accepts.
+std::string as_type(std::string draco, const std::string& type) {
+  if (type != scene_type) return draco;
+  const proto::Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
+  return proto::gltf::scene_of_mesh(proto::read_draco(draco, no_limits));
 }
 
 }  // namespace
 
 Response refine_route(Engine& engine, Request& request) {
-  const std::string type = negotiate_refined(request);
+  (void)negotiate_posted(request, false);
   engine.admission().refuse_when_full(request.client());
-  const Order order = read_order(request);
+  Order order = read_order(request);
+  const bool is_scene = request.content_type() == scene_type || proto::gltf::is_glb(order.mesh);
+  const std::string type = negotiate_posted(request, is_scene);
+  if (is_scene && type != draco_type) return refined_scene(engine, request, order, type);
   const auto gone = [&] { return request.client_gone(); };
-  auto slot = engine.enter(request, engine.work_of(order.mesh, order.parameters.options), gone);
+  auto slot = engine.enter(request,
+                           is_scene ? engine.work_of_scene(order.mesh, order.parameters.options)
+                                    : engine.work_of(order.mesh, order.parameters.options),
+                           gone);
+  if (is_scene) order.mesh = draco_of_scene(order.mesh, engine.limits());
   auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
   if (type == multipart_type) return level_stream(engine, request, std::move(slot), std::move(refinement));
   proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone}, *slot);
-  Response response = refined_response(made.statistics, type);
-  response.body = std::move(made.draco);
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
+  return unstored(refined_response(made.statistics, type), as_type(std::move(made.draco), type));
 }
 
 }  // namespace papilio::server

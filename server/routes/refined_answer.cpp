@@ -16,6 +16,18 @@ std::string negotiate_refined(const Request& request) {
   return *type;
 }
 
+std::string negotiate_posted(const Request& request, bool is_scene) {
+  const std::string accept = request.header("Accept");
+  const auto type = is_scene ? negotiate(accept, {scene_type, bytes_type, draco_type, multipart_type})
+                             : negotiate(accept, {draco_type, bytes_type, multipart_type, scene_type});
+  if (!type)
+    throw proto::Problem(proto::Code::not_acceptable,
+                         "Accept is " + proto::quote(accept) +
+                             ", but the answer can only be application/x-draco, model/gltf-binary, "
+                             "application/octet-stream or multipart/mixed.");
+  return *type;
+}
+
 Response refined_response(const proto::Statistics& made, const std::string& type) {
   Response response;
   response.content_type = type;

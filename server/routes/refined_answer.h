@@ -13,12 +13,17 @@ namespace papilio::server {
 
 inline constexpr const char* draco_type = "application/x-draco";
 inline constexpr const char* bytes_type = "application/octet-stream";
+inline constexpr const char* scene_type = "model/gltf-binary";
 inline constexpr const char* multipart_type = "multipart/mixed";
 inline constexpr const char* json_type = "application/json";
 
 /// Which form of the answer the client likes best: draco_type, bytes_type or multipart_type. Throws `Problem`
 /// not_acceptable.
 [[nodiscard]] std::string negotiate_refined(const Request& request);
+
+/// The same where the mesh came in the request, and may be a scene: draco_type, bytes_type, multipart_type or
+/// scene_type. What it came as is preferred.
+[[nodiscard]] std::string negotiate_posted(const Request& request, bool is_scene);
 
 /// The statistics of a mesh as headers. The caller adds the mesh, and what caches may do with it.
 [[nodiscard]] Response refined_response(const proto::Statistics& made, const std::string& type);

@@ -35,6 +35,10 @@ inline std::string extension_of(Format format) {
       return ".off";
     case Format::stl:
       return ".stl";
+    case Format::glb:
+      return ".glb";
+    case Format::gltf:
+      return ".gltf";
     case Format::drc:
       break;
   }

@@ -14,6 +14,8 @@
 namespace papilio::proto::gltf {
 namespace {
 
+std::string_view name_of(Compression compression) { return compression_names.at(static_cast<size_t>(compression)); }
+
 using test::GltfScene;
 using Json = GltfScene::Json;
 
@@ -93,7 +95,7 @@ TEST(GltfWriter, SixteenOfSixteenMarkersSurvive) {
   for (const Compression compression : {Compression::same, Compression::draco, Compression::meshopt}) {
     const std::string after = rewrite(before, compression);
     for (int number = 1; number <= 16; ++number)
-      EXPECT_NE(after.find(marker(number)), std::string::npos) << compression_name(compression) << ' ' << number;
+      EXPECT_NE(after.find(marker(number)), std::string::npos) << name_of(compression) << ' ' << number;
   }
 }
 
@@ -190,11 +192,11 @@ TEST(GltfWriter, EachCompressionReadsBackAsTheSamePositions) {
   for (const auto& [compression, extension] : steps) {
     glb = rewrite(glb, compression);
     const Json json = test::json_of_glb(glb);
-    EXPECT_EQ(json.contains("extensionsRequired"), extension != nullptr) << compression_name(compression);
+    EXPECT_EQ(json.contains("extensionsRequired"), extension != nullptr) << name_of(compression);
     if (extension != nullptr) {
       EXPECT_EQ(json["extensionsRequired"], Json::array({extension}));
     }
-    EXPECT_LT(dead_bytes(glb), 64U) << compression_name(compression);
+    EXPECT_LT(dead_bytes(glb), 64U) << name_of(compression);
     const auto found = positions_of(glb);
     EXPECT_EQ(found.size(), expected.size());
     size_t near = 0;

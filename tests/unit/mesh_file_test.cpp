@@ -25,7 +25,7 @@ TEST_F(mesh_file, format_is_told_by_extension) {
     FAIL();
   } catch (const FileError& error) {
     EXPECT_STREQ(error.what(),
-                 "some/mesh.Fbx: '.Fbx' is not a known extension; use one of .drc, .obj, .ply, .off, .stl");
+                 "some/mesh.Fbx: '.Fbx' is not a known extension; use one of .drc, .obj, .ply, .off, .stl, .glb, .gltf");
   }
 }
 

@@ -93,7 +93,7 @@ export class Viewer {
       this.#tell(error, () => void this.start());
       return;
     }
-    this.#form.setKinds(this.#info.parameters);
+    this.#form.setKinds(this.#info.parameters.filter(({ name }) => name !== 'output.compress')); // of scenes
     this.#form.setValues(this.#state.values);
     const samples = this.#info.samples.map(({ name, faces }) => new Option(`${name} (${faces} faces)`, name));
     find('sample').replaceChildren(...samples);

@@ -1,0 +1,119 @@
+#!/usr/bin/env bats
+# glTF scenes: the command line and the server.
+
+load helpers
+
+scene='Content-Type: model/gltf-binary'
+
+setup_file() { start_server; }
+teardown_file() { stop_server; }
+setup() {
+  cd "$BATS_TEST_TMPDIR" || return
+  "$papilio" convert "$coarse" in.glb
+}
+
+# two_nodes: a scene that shows the mesh of in.glb twice, as two.gltf with two.bin.
+two_nodes() {
+  "$papilio" convert in.glb two.gltf
+  jq '.nodes += [{mesh: 0, translation: [0, 50, 0], extras: "kept"}] | .scenes[0].nodes = [0, 1]' two.gltf >edited.gltf
+  mv edited.gltf two.gltf
+}
+
+@test "a scene goes all the way, here and there, with the same bytes" {
+  for flags in '--levels 2' '--tolerance 0.001' '--levels 2 --compress draco' '--levels 1 --compress meshopt'; do
+    # shellcheck disable=SC2086
+    "$papilio" refine in.glb -o here.glb $flags
+    # shellcheck disable=SC2086
+    "$papilio" refine in.glb -o there.glb --server "$url" $flags
+    cmp here.glb there.glb
+  done
+  "$papilio" refine in.glb -o here.glb --levels 2
+  [ "$("$papilio" info --json here.glb | jq .faces)" = 9600 ]
+}
+
+@test "a scene has the surface that its mesh has as Draco" {
+  "$papilio" refine in.glb -o fine.glb --levels 2
+  "$papilio" refine "$coarse" -o fine.drc --levels 2 --output.position_bits 16
+  [ "$("$papilio" compare --json fine.glb fine.drc | jq '.hausdorff / .diagonal < 0.0001')" = true ]
+}
+
+@test "a .gltf file is read with its files, and written with one" {
+  two_nodes
+  "$papilio" refine two.gltf -o fine.gltf --levels 1
+  [ -s fine.bin ]
+  [ "$(jq -r '.nodes[1].extras' fine.gltf)" = kept ]
+  [ "$(jq -r '.buffers[0].uri' fine.gltf)" = fine.bin ]
+  [ "$("$papilio" info --json fine.gltf | jq -c '[.faces, .nodes, .meshes[0].nodes]')" = '[2400,2,2]' ]
+  [ "$("$papilio" convert fine.gltf both.ply && "$papilio" info --json both.ply | jq .faces)" = 4800 ]
+}
+
+@test "scenes convert to and from meshes" {
+  for kind in drc obj ply off stl; do
+    "$papilio" convert in.glb "out.$kind"
+    "$papilio" convert "out.$kind" back.glb
+    [ "$("$papilio" info --json back.glb | jq .faces)" = 600 ]
+  done
+}
+
+@test "a folder's scenes stay scenes" {
+  mkdir models
+  cp in.glb models/a.glb
+  "$papilio" convert in.glb models/b.obj
+  "$papilio" refine models -o refined --levels 1
+  [ "$(cd refined && echo *)" = 'a.glb b.drc' ]
+  "$papilio" refine models -o all --levels 1 --to glb
+  [ "$(cd all && echo *)" = 'a.glb b.glb' ]
+}
+
+@test "a file outside of the folder is refused, and so is a .gltf file on standard output" {
+  two_nodes
+  jq '.buffers[0].uri = "../two.bin"' two.gltf >outside.gltf
+  run "$papilio" refine outside.gltf -o out.glb
+  [ "$status" = 1 ]
+  [[ $output == *'not in its folder'* ]]
+  run "$papilio" refine in.glb -o - --to gltf
+  [ "$status" = 2 ]
+}
+
+@test "the server answers in kind, or as Accept says" {
+  request -H "$scene" --data-binary @in.glb "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  [ "$(header Content-Type)" = model/gltf-binary ]
+  [ "$(header Papilio-Faces)" = 2400 ]
+  [ "$(head -c 4 "$body")" = glTF ]
+  request -H "$scene" -H 'Accept: application/x-draco' --data-binary @in.glb "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  [ "$(head -c 5 "$body")" = DRACO ]
+  request -H "$draco" -H 'Accept: model/gltf-binary' --data-binary @"$coarse" "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  [ "$(head -c 4 "$body")" = glTF ]
+  request -H 'Content-Type: application/octet-stream' --data-binary @in.glb "$url/v1/refine?levels=1"
+  [ "$(header Content-Type)" = model/gltf-binary ]
+  request -F mesh=@in.glb -F 'params={"levels": 1}' "$url/v1/refine"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Faces)" = 2400 ]
+}
+
+@test "Draco of a scene of several meshes is refused with the reason" {
+  two_nodes
+  "$papilio" convert two.gltf two.glb
+  request -H "$scene" -H 'Accept: application/x-draco' --data-binary @two.glb "$url/v1/refine"
+  expect_problem 406 not_acceptable
+  request -H "$scene" -H 'Accept: multipart/mixed' --data-binary @two.glb "$url/v1/refine"
+  expect_problem 406 not_acceptable
+}
+
+@test "what is no scene, or names files, is refused by its name" {
+  request -H "$scene" --data-binary 'glTF of a kind' "$url/v1/refine"
+  expect_problem 422 mesh_not_gltf
+  request -H "$scene" --data-binary '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "http://127.0.0.1:1/a.bin"}]}' "$url/v1/refine"
+  expect_problem 422 mesh_unsupported
+  [[ $(field detail) == *'not fetched'* ]]
+  head -c 1000 in.glb >cut.glb
+  request -H "$scene" --data-binary @cut.glb "$url/v1/refine"
+  expect_problem 422 mesh_not_gltf
+  request -H "$scene" --data-binary @in.glb "$url/v1/refine?levels=10"
+  expect_problem 507 result_too_large
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?output.compress=draco"
+  expect_problem 400 bad_parameter
+}
