@@ -66,7 +66,7 @@ echo "clang-tidy: ${#analysed[@]} files"
 # shellcheck disable=SC2016 # the inner shell expands it
 printf '%s\0' "${analysed[@]}" | xargs -0 -r -n1 -P2 bash -c 'tidy "$1"' tidy || failed+=(clang-tidy)
 
-mapfile -t web < <(files client/web tests/web tests/container tests/openapi | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)
+mapfile -t web < <(files client/web tests/{web,scenes,container,openapi} | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)
 echo "prettier: ${#web[@]} files"
 client/web/node_modules/.bin/prettier --log-level warn --check "${web[@]}" || failed+=(prettier)
 echo "tsc: client/web"

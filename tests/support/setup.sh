@@ -12,6 +12,7 @@ programs=() # as program:package, for what may have been installed in some other
 meshes=() # as real_meshes.sh calls them
 libraries=no # of the tests: GoogleTest, Google Benchmark, OpenMesh
 page=no
+scenes=no
 manifests=no
 list=no
 if [[ ${1:-} == --list ]]; then
@@ -27,7 +28,7 @@ for purpose in "$@"; do
       ;;
     page) page=yes ;;
     test)
-      meshes=(cgal bunny) libraries=yes
+      meshes=(cgal bunny) libraries=yes scenes=yes
       packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx chromium fonts-dejavu-core)
       programs+=(python3:python3)
       ;;
@@ -89,5 +90,6 @@ openmesh() {
 [[ $libraries == no ]] || openmesh
 ((${#meshes[@]} == 0)) || "$here/real_meshes.sh" "${meshes[@]}"
 [[ $page == no ]] || "$here/web_packages.sh"
+[[ $scenes == no ]] || "$here/scene_files.sh"
 [[ $manifests == no ]] || "$here/manifest_tools.sh"
 [[ " $* " != *" test "* ]] || { "$here/openapi_linter.sh" && "$here/client_generators.sh"; }

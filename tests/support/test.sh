@@ -27,5 +27,5 @@ if [[ -n $filter ]]; then # prove splits it at spaces
   web+=" --test-name-pattern=${filter// /.}"
 fi
 prove --failures --comments --jobs "$(nproc)" --exec "$integration" tests/integration/*.bats || failed=1
-prove --failures --comments --jobs "$(nproc)" --exec "$web" tests/web/*.test.mjs || failed=1
+prove --failures --comments --jobs "$(nproc)" --exec "$web" tests/{web,scenes}/*.test.mjs || failed=1
 exit "$failed"

@@ -1,0 +1,52 @@
+// Real scenes for the tests: hands and controllers from npm, what Debian packs of others.
+
+import { execFileSync } from 'node:child_process';
+import path from 'node:path';
+
+const here = import.meta.dirname;
+export const papilio = path.join(process.env.PAPILIO_BUILD ?? path.join(here, '../../build/release'), 'papilio');
+export const models = path.join(here, '../../build/deps/scenes/usr/share/assimp/models/glTF2');
+export const gltfpack = path.join(here, '../../build/deps/scenes/usr/bin/gltfpack');
+export const profiles = path.join(here, 'node_modules/@webxr-input-profiles/assets/dist/profiles');
+
+const hands = ['generic-hand/left.glb', 'generic-hand/right.glb'];
+const controllers = [
+  'generic-button/none.glb',
+  'generic-trigger/none.glb',
+  'generic-trigger-squeeze/none.glb',
+  'htc-vive/none.glb',
+  'htc-vive-focus/none.glb',
+  'magicleap-one/none.glb',
+  'oculus-go/none.glb',
+  'oculus-touch/left.glb',
+  'oculus-touch-v2/right.glb',
+  'oculus-touch-v3/left.glb',
+  'samsung-gearvr/none.glb',
+  'valve-index/left.glb',
+];
+const others = [
+  '2CylinderEngine-glTF-Binary/2CylinderEngine.glb',
+  'glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf',
+  'BoxTextured-glTF-Binary/BoxTextured.glb',
+  'BoxTextured-glTF-Embedded/BoxTextured.gltf',
+  'glTF-Asset-Generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode_04.gltf',
+  'glTF-Asset-Generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode_05.gltf',
+  'glTF-Asset-Generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode_06.gltf',
+  'glTF-Asset-Generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode_11.gltf',
+  'simple_skin/simple_skin.gltf',
+];
+export const animated = [
+  path.join(models, 'simple_skin/simple_skin.gltf'),
+  path.join(models, 'glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf'),
+];
+export const scenes = [
+  ...[...hands, ...controllers].map((name) => path.join(profiles, name)),
+  ...others.map((name) => path.join(models, name)),
+];
+
+/** Refines a scene by the command line; returns the statistics. */
+export function refine(input, output, flags) {
+  return JSON.parse(execFileSync(papilio, ['refine', input, '-o', output, '--json', ...flags], { stdio: 'pipe' }));
+}
+
+export const nameOf = (file) => `${path.basename(path.dirname(file))}/${path.basename(file)}`;
