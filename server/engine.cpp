@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "proto/draco_header.h"
+#include "proto/gltf/container.h"
 #include "proto/gltf/scene_description.h"
 #include "proto/problem.h"
 
@@ -25,6 +26,7 @@ Engine::Engine(const EngineOptions& options)
       results_(options.result_cache_bytes, options.slots + options.queue),
       meshes_(options.mesh_cache_bytes),
       face_counts_(face_count_bytes),
+      are_scenes_(face_count_bytes),
       samples_(options.samples, options.limits),
       page_(options.web) {}
 
@@ -68,10 +70,22 @@ Work Engine::work_of(std::string_view draco, const Options& options) const {
   return predicted_work(proto::read_draco_header(draco, options_.limits).faces, options, options_.limits);
 }
 
+bool Engine::is_scene(const std::string& id) {
+  std::shared_ptr<const bool> is_scene = are_scenes_.get(id);
+  if (is_scene == nullptr) {
+    is_scene = std::make_shared<bool>(proto::gltf::is_glb(*stored_bytes(id)));
+    are_scenes_.put(id, is_scene, sizeof(bool));
+  }
+  return *is_scene;
+}
+
 Work Engine::work_of_stored(const std::string& id, const Options& options) {
   std::shared_ptr<const uint64_t> faces = face_counts_.get(id);
   if (faces == nullptr) {
-    faces = std::make_shared<uint64_t>(proto::read_draco_header(*stored_bytes(id), options_.limits).faces);
+    const MeshStore::Bytes bytes = stored_bytes(id);
+    faces = std::make_shared<uint64_t>(proto::gltf::is_glb(*bytes)
+                                           ? proto::gltf::declared_faces(*bytes)
+                                           : proto::read_draco_header(*bytes, options_.limits).faces);
     face_counts_.put(id, faces, sizeof(uint64_t));
   }
   return predicted_work(*faces, options, options_.limits);

@@ -67,7 +67,11 @@ class Engine {
   /// Work of refining a mesh that has the faces which the Draco stream declares. Throws `Problem` where the stream is
   /// refused by its header.
   [[nodiscard]] Work work_of(std::string_view draco, const Options& options) const;
-  /// Work of refining a stored mesh. Throws `Problem`, mesh_not_found too.
+  /// Whether a stored mesh is a scene. Throws `Problem` mesh_not_found.
+  [[nodiscard]] bool is_scene(const std::string& id);
+  /// The bytes of a stored scene, to be refined. Throws `Problem` mesh_not_found.
+  [[nodiscard]] MeshStore::Bytes scene_bytes(const std::string& id) { return stored_bytes(id); }
+  /// Work of refining a stored mesh or scene. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] Work work_of_stored(const std::string& id, const Options& options);
   /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
@@ -91,6 +95,7 @@ class Engine {
   ResultCache results_;
   Lru<const proto::SharedMesh> meshes_;
   Lru<const uint64_t> face_counts_;  ///< of stored meshes, so that work is predicted without reading one
+  Lru<const bool> are_scenes_;       ///< whether stored meshes are scenes, likewise
   Metrics metrics_;
   std::function<HeldBytes()> held_ = [] { return HeldBytes{}; };
   const Samples samples_;

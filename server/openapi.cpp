@@ -210,9 +210,8 @@ const ordered_json& binary() {
   return schema;
 }
 
-ordered_json refined_answer(bool of_posted) {
-  ordered_json types = content({draco_type, bytes_type, multipart_type}, binary());
-  if (of_posted) types.update(content({scene_type}, binary()));
+ordered_json refined_answer() {
+  ordered_json types = content({draco_type, bytes_type, multipart_type, scene_type}, binary());
   types[multipart_type]["schema"]["description"] =
       "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
       "and a JSON summary. A problem after the stream has begun is its last part.";
@@ -244,13 +243,13 @@ void add_successes(const Endpoint& endpoint, ordered_json& answers) {
                                   {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})}};
   switch (endpoint.output) {
     case Output::refined:
-      answers["200"] = refined_answer(endpoint.input == Input::mesh_or_form);
+      answers["200"] = refined_answer();
       if (endpoint.method == "GET") answers["304"] = not_modified;
       break;
     case Output::mesh:
       answers["200"] = {{"description", "The stored bytes, or their description"},
                         {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})},
-                        {"content", content({draco_type, bytes_type}, binary())}};
+                        {"content", content({draco_type, bytes_type, scene_type}, binary())}};
       answers["200"]["content"][json_type] = {{"schema", schema_reference("Description")}};
       answers["304"] = not_modified;
       break;
@@ -318,8 +317,8 @@ ordered_json request_body(Input input) {
   ordered_json types;
   if (input == Input::parameters) types = content({json_type}, schema_reference("Parameters"));
   // Client generators look at the first type, and know of this one that it is bytes.
-  if (input == Input::mesh || input == Input::mesh_or_form) types = content({bytes_type, draco_type}, binary());
-  if (input == Input::mesh_or_form) types.update(content({scene_type}, binary()));
+  if (input == Input::mesh || input == Input::mesh_or_form)
+    types = content({bytes_type, draco_type, scene_type}, binary());
   if (input == Input::mesh_or_form)
     types["multipart/form-data"] = {
         {"schema",

@@ -3,6 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/findings.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/scene_description.h"
+#include "proto/gltf/scene_refinement.h"
 #include "proto/parameters.h"
 #include "proto/problem.h"
 #include "proto/results_version.h"
@@ -45,6 +48,13 @@ std::string description(const std::string& id, size_t bytes, const Refinement& m
   return document.dump(2) + "\n";
 }
 
+std::string scene_description(const std::string& id, const std::string& glb, const proto::Limits& limits) {
+  ordered_json document{{"id", id}, {"bytes", glb.size()}};
+  document.update(ordered_json::parse(proto::gltf::describe_scene(glb, limits)));
+  document["refined"] = path_of(id) + "/refined";
+  return document.dump(2) + "\n";
+}
+
 Response not_modified(const Fields& headers) {
   Response response;
   response.status = 304;
@@ -59,6 +69,17 @@ Parameters unrefined() {
 }
 
 constexpr int year = 31'536'000;
+
+Work work_of_bytes(const Engine& engine, const std::string& mesh) {
+  const papilio::Options options = unrefined().options;
+  return proto::gltf::is_glb(mesh) ? engine.work_of_scene(mesh, options) : engine.work_of(mesh, options);
+}
+
+/// Describes a mesh or a scene. To be called with a slot.
+std::string description_of(const Engine& engine, const std::string& id, const std::string& mesh) {
+  if (proto::gltf::is_glb(mesh)) return scene_description(id, mesh, engine.limits());
+  return description(id, mesh.size(), Refinement(mesh, unrefined(), engine.limits()));
+}
 
 }  // namespace
 
@@ -91,18 +112,20 @@ Response store_mesh(Engine& engine, Request& request) {
     throw Problem(Code::unknown_parameter, "Storing a mesh takes no parameters; they come with the refinement.",
                   proto::shorten(request.query().front().first));
   const std::string type = request.content_type();
-  if (type != draco_type && type != bytes_type)
+  if (type != draco_type && type != bytes_type && type != scene_type)
     throw Problem(Code::unsupported_media_type,
                   "Bodies of type " + proto::quote(type) +
-                      " are not stored. Send a Draco file with -H 'Content-Type: application/x-draco'.");
+                      " are not stored. Send a Draco file with -H 'Content-Type: application/x-draco', or a .glb file "
+                      "with model/gltf-binary.");
   engine.admission().refuse_when_full(request.client());
   const std::string mesh = request.read_body().bytes;
+  if (type == scene_type && !proto::gltf::is_glb(mesh))
+    throw Problem(Code::mesh_not_gltf, "The body is no .glb file. Scenes are stored as .glb files alone.");
   const std::string id = sha256(mesh);
   std::string described;
   {
-    const auto slot =
-        engine.enter(request, engine.work_of(mesh, unrefined().options), [&] { return request.client_gone(); });
-    described = description(id, mesh.size(), Refinement(mesh, unrefined(), engine.limits()));
+    const auto slot = engine.enter(request, work_of_bytes(engine, mesh), [&] { return request.client_gone(); });
+    described = description_of(engine, id, mesh);
   }
   Response response;
   response.status = engine.store().put(id, mesh) ? 201 : 200;
@@ -115,15 +138,16 @@ Response store_mesh(Engine& engine, Request& request) {
 Response stored_mesh(Engine& engine, Request& request) {
   const std::string id = mesh_id(request);
   const std::string accept = request.header("Accept");
-  const auto type = negotiate(accept, {draco_type, bytes_type, json_type});
+  const bool is_scene = engine.is_scene(id);
+  const char* const own_type = is_scene ? scene_type : draco_type;
+  const auto type = negotiate(accept, {own_type, bytes_type, json_type});
   if (!type)
-    throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) +
-                                            ", but a mesh is application/x-draco or application/octet-stream, and its "
-                                            "description application/json.");
+    throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) + ", but the mesh is " + own_type +
+                                            " or application/octet-stream, and its description application/json.");
   // By the type too: two representations never share a tag. The description depends on who makes it, the bytes do not.
   const bool describes = type == json_type;
   const std::string tag = describes ? entity_tag(id, unrefined(), *type + " " PAPILIO_VERSION)
-                                    : '"' + id.substr(0, 32) + (type == draco_type ? "\"" : "-b\"");
+                                    : '"' + id.substr(0, 32) + (type == own_type ? "\"" : "-b\"");
   Response response;
   response.headers = {{"ETag", tag},
                       {"Cache-Control", describes ? cache_control(engine, engine.options().cache_seconds, false)
@@ -135,9 +159,8 @@ Response stored_mesh(Engine& engine, Request& request) {
   if (mesh == nullptr) throw no_such_mesh();
   response.content_type = *type;
   if (describes) {
-    const auto slot =
-        engine.enter(request, engine.work_of(*mesh, unrefined().options), [&] { return request.client_gone(); });
-    response.body = description(id, mesh->size(), Refinement(*mesh, unrefined(), engine.limits()));
+    const auto slot = engine.enter(request, work_of_bytes(engine, *mesh), [&] { return request.client_gone(); });
+    response.body = description_of(engine, id, *mesh);
   } else {
     response.shared = mesh;
   }
@@ -173,10 +196,23 @@ bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
   }
 }
 
+/// A refined scene as the result cache keeps it: its bytes in place of those of a Draco stream.
+std::shared_ptr<const proto::EncodedLevel> refined_stored_scene(Engine& engine, const std::string& id,
+                                                                const Parameters& parameters,
+                                                                const std::function<bool()>& abandoned,
+                                                                Admission::Slot& slot) {
+  const MeshStore::Bytes glb = engine.scene_bytes(id);
+  proto::gltf::SceneRefinement refinement(*glb, parameters, engine.limits());
+  proto::gltf::RefinedScene made = engine.run(refinement, {.on_level = {}, .cancelled = abandoned}, slot);
+  return std::make_shared<const proto::EncodedLevel>(
+      proto::EncodedLevel{std::move(made.glb), std::move(made.statistics)});
+}
+
 ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
                                  const Parameters& parameters, const std::string& key) {
   const auto make = [&](const std::function<bool()>& abandoned) {
     const auto slot = engine.enter(request, engine.work_of_stored(id, parameters.options), abandoned);
+    if (engine.is_scene(id)) return refined_stored_scene(engine, id, parameters, abandoned, *slot);
     const auto refinement = engine.refinement_of(id, parameters);
     auto made = std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}, *slot));
     engine.count_again(id);
@@ -192,10 +228,11 @@ ResultCache::Answer find_or_make(Engine& engine, const Request& request, const s
 
 Response refined_mesh(Engine& engine, Request& request) {
   const std::string id = mesh_id(request);
-  const std::string type = negotiate_refined(request);
+  (void)negotiate_posted(request, false);
   const Parameters parameters = read_parameters(request);
   const std::string key = entity_tag(id, parameters, "");  // the bytes are the same whatever their type is called
   if (!is_stored(engine, id, key)) throw no_such_mesh();
+  const std::string type = negotiate_stored(request, engine.is_scene(id));
   if (type == multipart_type) {
     auto slot =
         engine.enter(request, engine.work_of_stored(id, parameters.options), [&] { return request.client_gone(); });

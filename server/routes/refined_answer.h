@@ -17,9 +17,9 @@ inline constexpr const char* scene_type = "model/gltf-binary";
 inline constexpr const char* multipart_type = "multipart/mixed";
 inline constexpr const char* json_type = "application/json";
 
-/// Which form of the answer the client likes best: draco_type, bytes_type or multipart_type. Throws `Problem`
-/// not_acceptable.
-[[nodiscard]] std::string negotiate_refined(const Request& request);
+/// Which form of the answer for a stored mesh the client likes best: draco_type, bytes_type or multipart_type;
+/// scene_type or bytes_type for a scene. Throws `Problem` not_acceptable.
+[[nodiscard]] std::string negotiate_stored(const Request& request, bool is_scene);
 
 /// The same where the mesh came in the request, and may be a scene: draco_type, bytes_type, multipart_type or
 /// scene_type. What it came as is preferred.

@@ -103,6 +103,37 @@ two_nodes() {
   expect_problem 406 not_acceptable
 }
 
+@test "a stored scene is described, refined, cached and deleted like a mesh" {
+  two_nodes
+  "$papilio" convert two.gltf two.glb
+  id=$(sha256sum two.glb | cut -d' ' -f1)
+  request -H "$scene" --data-binary @two.glb "$url/v1/meshes"
+  [ "$status" = 201 ]
+  [ "$(header Location)" = "/v1/meshes/$id" ]
+  [ "$(jq -c '[.id, .faces, .nodes, .meshes[0].nodes]' "$body")" = "[\"$id\",600,2,2]" ]
+  request "$url/v1/meshes/$id"
+  [ "$(header Content-Type)" = model/gltf-binary ]
+  cmp "$body" two.glb
+  request -H 'Accept: application/json' "$url/v1/meshes/$id"
+  [ "$(field faces)" = 600 ]
+  request "$url/v1/meshes/$id/refined?levels=1"
+  [ "$status" = 200 ]
+  [ "$(header Papilio-Faces)" = 2400 ]
+  "$papilio" refine two.glb -o fine.glb --levels 1
+  cmp "$body" fine.glb
+  tag=$(header ETag)
+  request -H "If-None-Match: $tag" "$url/v1/meshes/$id/refined?levels=1"
+  [ "$status" = 304 ]
+  request -H 'Content-Type: application/json' -d '{"levels": 1}' "$url/v1/meshes/$id/refined"
+  cmp "$body" fine.glb
+  request -H 'Accept: multipart/mixed' "$url/v1/meshes/$id/refined"
+  expect_problem 406 not_acceptable
+  request -X DELETE "$url/v1/meshes/$id"
+  [ "$status" = 204 ]
+  request "$url/v1/meshes/$id/refined"
+  expect_problem 404 mesh_not_found
+}
+
 @test "what is no scene, or names files, is refused by its name" {
   request -H "$scene" --data-binary 'glTF of a kind' "$url/v1/refine"
   expect_problem 422 mesh_not_gltf

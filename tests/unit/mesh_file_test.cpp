@@ -24,8 +24,9 @@ TEST_F(mesh_file, format_is_told_by_extension) {
     (void)format_of("some/mesh.Fbx");
     FAIL();
   } catch (const FileError& error) {
-    EXPECT_STREQ(error.what(),
-                 "some/mesh.Fbx: '.Fbx' is not a known extension; use one of .drc, .obj, .ply, .off, .stl, .glb, .gltf");
+    EXPECT_STREQ(
+        error.what(),
+        "some/mesh.Fbx: '.Fbx' is not a known extension; use one of .drc, .obj, .ply, .off, .stl, .glb, .gltf");
   }
 }
 
