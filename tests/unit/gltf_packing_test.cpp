@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "proto/gltf/data_uri.h"
+#include "proto/gltf/flattening.h"
+#include "proto/gltf/packing.h"
+#include "proto/problem.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/shapes.h"
+
+namespace papilio::proto::gltf {
+namespace {
+
+using test::GltfScene;
+using Json = GltfScene::Json;
+
+std::string no_file(const std::string& uri) {
+  ADD_FAILURE() << uri << " is asked for";
+  return {};
+}
+
+std::multiset<std::array<float, 3>> corners_of(const TriangleMesh& mesh) {
+  std::multiset<std::array<float, 3>> corners;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const uint32_t v : triangle) corners.insert({mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z});
+  return corners;
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum +=
+        dot(to_double(mesh.positions[t[0]]), cross(to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])));
+  return sum / 6;
+}
+
+TEST(GltfPacking, BuffersAndImagesBecomeOneChunk) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  Json json = scene.json;
+  json["buffers"] = {{{"byteLength", scene.binary.size()}, {"uri", "a%20b.bin"}, {"extras", "kept"}},
+                     {{"byteLength", 5}, {"uri", encode_data_uri("12345", "")}}};
+  json["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 1}, {"byteLength", 3}});
+  json["images"] = {{{"uri", "photo.JPG"}},
+                    {{"uri", encode_data_uri("inside", "data:image/png;base64,")}},
+                    {{"uri", "photo.unknown"}}};
+  std::vector<std::string> asked;
+  const std::string glb = pack_scene(json.dump(), [&](const std::string& uri) {
+    asked.push_back(uri);
+    return uri == "photo.JPG" ? std::string("outside") : scene.binary;
+  });
+  EXPECT_EQ(asked, (std::vector<std::string>{"a%20b.bin", "photo.JPG"}));
+  const Json packed = test::json_of_glb(glb);
+  ASSERT_EQ(packed["buffers"].size(), 1U);
+  EXPECT_EQ(packed["buffers"][0]["extras"], "kept");
+  EXPECT_FALSE(packed["buffers"][0].contains("uri"));
+  EXPECT_EQ(test::view_of_glb(glb, 2), "234");
+  EXPECT_EQ(test::view_of_glb(glb, packed["images"][0]["bufferView"]), "outside");
+  EXPECT_EQ(packed["images"][0]["mimeType"], "image/jpeg");
+  EXPECT_EQ(test::view_of_glb(glb, packed["images"][1]["bufferView"]), "inside");
+  EXPECT_EQ(packed["images"][2]["uri"], "photo.unknown");
+  EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
+}
+
+TEST(GltfPacking, AGlbFileIsPackedAlready) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  EXPECT_EQ(pack_scene(scene.glb(), no_file), scene.glb());
+  const UnpackedScene unpacked = unpack_scene(scene.glb(), "x.bin");
+  EXPECT_EQ(unpacked.buffers.at(0), (std::pair<std::string, std::string>{"x.bin", scene.binary}));
+  EXPECT_EQ(pack_scene(unpacked.document, [&](const std::string&) { return scene.binary; }), scene.glb());
+}
+
+TEST(GltfFlattening, EveryNodeHasItsTriangles) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  scene.add_node({{"mesh", 0}, {"scale", {-2, 2, 2}}, {"translation", {9, 0, 0}}});  // mirrored
+  const FormattedMesh flat = flatten_scene(scene.glb(), {});
+  EXPECT_EQ(flat.triangles.size(), 40U);
+  EXPECT_NEAR(volume_of(flat), 9 * volume_of(test::icosahedron()), 1e-4);  // both wound outwards
+  EXPECT_THROW((void)flatten_scene(scene.glb(), {.max_input_faces = 39}), Problem);
+  EXPECT_FALSE(find_only_mesh(scene.glb(), {}));
+}
+
+TEST(GltfFlattening, AMeshSurvivesAsASceneOfOne) {
+  FormattedMesh mesh{test::icosahedron(), {}};
+  mesh.attributes = {{.components = 2, .unit_length = false, .values = std::vector<double>(24, 0.25)},
+                     {.components = 4, .unit_length = false, .values = std::vector<double>(48, 51)}};
+  mesh.format.attributes = {
+      {.kind = AttributeKind::tex_coord, .type = ValueType::float32, .normalized = false, .id = 1},
+      {.kind = AttributeKind::color, .type = ValueType::uint8, .normalized = true, .id = 2}};
+  const std::string glb = scene_of_mesh(mesh);
+  const auto back = find_only_mesh(glb, {});
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->positions, mesh.positions);
+  EXPECT_EQ(back->triangles, mesh.triangles);
+  ASSERT_EQ(back->attributes.size(), 2U);
+  for (const double v : back->attributes[0].values) EXPECT_EQ(v, 0.25);
+  for (const double v : back->attributes[1].values) EXPECT_NEAR(v, 51, 1e-4);
+}
+
+}  // namespace
+}  // namespace papilio::proto::gltf
