@@ -14,7 +14,9 @@
 namespace papilio::proto::gltf {
 namespace {
 
-std::string_view name_of(Compression compression) { return compression_names.at(static_cast<size_t>(compression)); }
+std::string_view compression_name(Compression compression) {
+  return compression_names.at(static_cast<size_t>(compression));
+}
 
 using test::GltfScene;
 using Json = GltfScene::Json;
@@ -95,7 +97,7 @@ TEST(GltfWriter, SixteenOfSixteenMarkersSurvive) {
   for (const Compression compression : {Compression::same, Compression::draco, Compression::meshopt}) {
     const std::string after = rewrite(before, compression);
     for (int number = 1; number <= 16; ++number)
-      EXPECT_NE(after.find(marker(number)), std::string::npos) << name_of(compression) << ' ' << number;
+      EXPECT_NE(after.find(marker(number)), std::string::npos) << compression_name(compression) << ' ' << number;
   }
 }
 
@@ -192,11 +194,11 @@ TEST(GltfWriter, EachCompressionReadsBackAsTheSamePositions) {
   for (const auto& [compression, extension] : steps) {
     glb = rewrite(glb, compression);
     const Json json = test::json_of_glb(glb);
-    EXPECT_EQ(json.contains("extensionsRequired"), extension != nullptr) << name_of(compression);
+    EXPECT_EQ(json.contains("extensionsRequired"), extension != nullptr) << compression_name(compression);
     if (extension != nullptr) {
       EXPECT_EQ(json["extensionsRequired"], Json::array({extension}));
     }
-    EXPECT_LT(dead_bytes(glb), 64U) << name_of(compression);
+    EXPECT_LT(dead_bytes(glb), 64U) << compression_name(compression);
     const auto found = positions_of(glb);
     EXPECT_EQ(found.size(), expected.size());
     size_t near = 0;
