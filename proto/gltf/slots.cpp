@@ -53,11 +53,23 @@ ByteRange range_in_view(const Json& accessor, const Json& view, uint32_t number)
   return {begin, begin + (count - 1) * stride + size};
 }
 
+/// Adds the lists that new contents go to, where they are missing: added later, they would move what callers refer to.
+std::vector<std::string> add_lists(Json& document) {
+  std::vector<std::string> added;
+  for (const char* list : {"accessors", "bufferViews"}) {
+    if (document.contains(list)) continue;
+    document[list] = Json::array();
+    added.emplace_back(list);
+  }
+  return added;
+}
+
 }  // namespace
 
 Slots::Slots(Document& document, Released released)
     : document_(document),
       json_(document.json),
+      added_(add_lists(document.json)),
       released_(std::move(released)),
       old_accessors_(array_of(document.json, "accessors")),
       accessor_is_used_(released_.accessors.size()),
@@ -202,7 +214,10 @@ BufferPieces Slots::finish() {
   std::vector<uint32_t> aliased;
   for (uint32_t v = 0; v < released_.views.size(); ++v)
     if (released_.views[v] && !view_is_used_[v]) aliased.push_back(v);
-  return replace_contents(document_, std::move(contents_), aliased);
+  BufferPieces pieces = replace_contents(document_, std::move(contents_), aliased);
+  for (const std::string& list : added_)
+    if (json_[list].empty()) json_.erase(list);
+  return pieces;
 }
 
 }  // namespace papilio::proto::gltf

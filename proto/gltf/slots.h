@@ -43,6 +43,7 @@ class Slots {
 
   Document& document_;
   Json& json_;
+  std::vector<std::string> added_;  ///< lists that the document did not have
   Released released_;
   Json old_accessors_;                  ///< as they were
   std::vector<bool> accessor_is_used_;  ///< released ones that are used again

@@ -220,5 +220,22 @@ TEST(GltfWriter, BoundsOfPositionsAreRenewed) {
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(after["min"][i].get<float>(), before["min"][i].get<float>());
 }
 
+TEST(GltfWriter, DocumentsWithoutViewsGetThem) {
+  // Lists that were added while a primitive was written moved the primitive.
+  Document document = read_document(R"({"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "count": 3,
+      "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]})");
+  Views views(document);
+  Allowance allowance({});
+  std::vector<NewGeometry> meshes;
+  meshes.push_back({.mesh = 0, .geometry = read_geometry(views, 0, allowance), .box = {}});
+  BufferPieces pieces = write_geometry(document, std::move(meshes), {.compression = {}, .draco = {}, .poll = {}});
+  const std::string glb = write_document(document, std::move(pieces), FileKind::glb).document;
+  const Json json = test::json_of_glb(glb);
+  ASSERT_TRUE(json.contains("bufferViews"));
+  EXPECT_TRUE(json["accessors"][0].contains("bufferView"));
+  EXPECT_TRUE(json["meshes"][0]["primitives"][0].contains("indices"));
+  EXPECT_LT(dead_bytes(glb), 16U);
+}
+
 }  // namespace
 }  // namespace papilio::proto::gltf
