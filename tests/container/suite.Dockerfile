@@ -7,6 +7,7 @@ COPY dev ./
 COPY tests/support tests/support
 COPY client/web/package.json client/web/package-lock.json client/web/.npmrc client/web/
 COPY tests/openapi/package.json tests/openapi/package-lock.json tests/openapi/.npmrc tests/openapi/
+COPY tests/scenes/package.json tests/scenes/package-lock.json tests/scenes/.npmrc tests/scenes/
 RUN tests/support/setup.sh build page test
 COPY . .
 ENV PAPILIO_UNITY=ON
