@@ -23,7 +23,6 @@ clang_tool() {
 }
 clang_format=$(clang_tool clang-format)
 clang_tidy=$(clang_tool clang-tidy)
-export clang_tidy
 
 # files PATTERN...: tracked files and new ones, less those deleted from disk.
 files() {
@@ -38,33 +37,8 @@ mapfile -t scripts < <(files dev .ci/run '*.sh')
 echo "clang-format: ${#sources[@]} files"
 "$clang_format" --dry-run --Werror "${sources[@]}" || failed+=(clang-format)
 
-# clang-tidy is slow: a file that passed is not read again, in whichever checkout, until it, a header of the project that
-# it includes, the rules or its compile command change.
-export TIDY_CACHE=${XDG_CACHE_HOME:-$HOME/.cache}/papilio/clang-tidy
-mkdir -p "$TIDY_CACHE"
-TIDY_RULES=$({ "$clang_tidy" --version && cat .clang-tidy; } | sha256sum)
-export TIDY_RULES
-tidy() {
-  local entry object key output
-  entry=$(jq -c --arg file "$PWD/$1" 'map(select(.file == $file))[0] // empty' build/release/compile_commands.json)
-  if [[ -z $entry ]]; then
-    echo "$1: no target of the build compiles it"
-    return 1
-  fi
-  object=$(jq -r '.command | capture(" -o (?<object>[^ ]+)").object' <<<"$entry")
-  mapfile -t headers < <(ninja -C build/release -t deps "$object" | sed -nE "s#^ *($PWD/|(\.\./)+)([a-z].*\.h)\$#\3#p")
-  key=$({ echo "$TIDY_RULES ${entry//$PWD/}" && cat "$1" "${headers[@]}"; } | sha256sum | cut -d' ' -f1)
-  [[ ! -f $TIDY_CACHE/$key ]] || return 0
-  output=$("$clang_tidy" --quiet -p build/release --extra-arg=-Wno-unknown-warning-option "$1" 2>&1) || {
-    printf '%s\n' "$output" | grep -vE '^[0-9]+ warnings? (generated|treated)' # counts what system headers hide
-    return 1
-  }
-  touch "$TIDY_CACHE/$key"
-}
-export -f tidy
 echo "clang-tidy: ${#analysed[@]} files"
-# shellcheck disable=SC2016 # the inner shell expands it
-printf '%s\0' "${analysed[@]}" | xargs -0 -r -n1 -P2 bash -c 'tidy "$1"' tidy || failed+=(clang-tidy)
+python3 tests/support/tidy.py "$clang_tidy" "${analysed[@]}" || failed+=(clang-tidy)
 
 mapfile -t web < <(files client/web tests/{web,scenes,container,openapi} | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)
 echo "prettier: ${#web[@]} files"
