@@ -81,7 +81,7 @@ class Assembler {
     slots_.assign(next_inner_ + 3 * divided, nobody_);
   }
 
-  Mesh run(bool with_edges) {
+  Mesh run(bool with_edges, std::span<const Displacements> displaced) {
     const Topology& coarse = coarse_.topology;
     for (uint32_t f = 0; f < coarse.face_count(); ++f) {
       const uint32_t* edge = &coarse.edge[size_t{3} * f];
@@ -93,7 +93,7 @@ class Assembler {
     for (const OnCurve& on : on_curves_)
       if (on.kind != EdgeKind::crease) out_.topology.twin[on.half_edge] = none;
     if (with_edges) number_edges();
-    if (!coarse_.attributes.empty()) make_points();
+    if (!coarse_.attributes.empty()) make_points(displaced);
     return std::move(out_);
   }
 
@@ -343,11 +343,13 @@ class Assembler {
   }
 
   /// Top down: the points of each shown face's corners.
-  void make_points() {
+  void make_points(std::span<const Displacements> displaced) {
     out_.attributes = coarse_.attributes;
     auto result = Buffer<uint32_t>::for_overwrite(half_edge_count_);
-    for (const AssembledLevel& level : levels_) {
-      const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes);
+    for (size_t k = 0; k < levels_.size(); ++k) {
+      const AssembledLevel& level = levels_[k];
+      const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes,
+                                                 displaced.empty() ? Displacements{} : displaced[k]);
       const Buffer<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
@@ -387,8 +389,9 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
   return faces;
 }
 
-Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges) {
-  return Assembler(levels, most_cosine).run(with_edges);
+Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges,
+              std::span<const Displacements> displaced) {
+  return Assembler(levels, most_cosine).run(with_edges, displaced);
 }
 
 }  // namespace papilio

@@ -7,6 +7,7 @@
 #include "hierarchy/grow_level.h"
 #include "hierarchy/transition.h"
 #include "mesh/attributes.h"
+#include "mesh/displacement.h"
 
 namespace papilio {
 namespace {
@@ -160,7 +161,8 @@ bool Levels::make_last(const Buffer<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      above.trial.made.size() != parents.edge_count() || !has_room_for_whole())
+      has_displacements(levels_[0]->mesh.attributes) || above.trial.made.size() != parents.edge_count() ||
+      !has_room_for_whole())
     return false;
   const Part part(parents, red);
   const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));

@@ -26,7 +26,7 @@ MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
       output_(options.output) {
   for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h) open_ += is_closed(coarse, h) ? 0 : 1;
   for (const Attribute& attribute : coarse.attributes.attributes)
-    point_bytes_ += growth * attribute.components * sizeof(double);
+    point_bytes_ += (attribute.is_displacement ? 2 : 1) * growth * attribute.components * sizeof(double);
   if (!coarse.attributes.empty())
     corner_bytes_ = 6 * sizeof(uint32_t);  // of the corners and of those made on the edges
 }

@@ -1,6 +1,7 @@
 #include "mesh/attributes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -84,7 +85,11 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   if (input.attributes.empty()) return out;
   const Buffer<uint32_t> same = merge_equal_points(input, mesh, corner_point);
   for (const Attribute& attribute : input.attributes)
-    out.attributes.push_back({attribute.components, attribute.unit_length, {}, attribute.is_smoothing_group});
+    out.attributes.push_back({attribute.components,
+                              attribute.unit_length,
+                              {},
+                              attribute.is_smoothing_group,
+                              attribute.is_displacement && attribute.components == 3});
 
   Buffer<uint32_t> number(input.positions.size(), none);
   out.point.reserve(corner_point.size());
@@ -103,7 +108,7 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
 }
 
 Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const Buffer<uint32_t>& faces,
-                              PointAttributes& attributes) {
+                              PointAttributes& attributes, const Displacements& displaced) {
   Buffer<uint32_t> made(mesh.half_edge_count(), none);
   const Buffer<uint32_t>& point = attributes.point;
   const auto split_half_edge = [&](uint32_t h) {
@@ -117,6 +122,9 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
     }
     made[h] = attributes.point_count++;
     for (Attribute& attribute : attributes.attributes) append_mean(attribute, p, q);
+    for (const Displacement& displacement : displaced)
+      if (const Vec3d at = displacement.at[mesh.edge[h]]; is_known(at))
+        std::ranges::copy(std::array{at.x, at.y, at.z}, attributes.attributes[displacement.attribute].values.end() - 3);
   };
   for (uint32_t f : faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) split_half_edge(h);

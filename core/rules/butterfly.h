@@ -19,4 +19,25 @@ template <class Real>
 [[nodiscard]] Buffer<Vec3T<Real>> butterfly(const Topology& topology, const Buffer<Vec3T<Real>>& positions,
                                             const SplitPlan& plan, Real w = 0, const TensionField* tension = nullptr);
 
+/// Vectors at the vertices of a level, split by the rules that hold for its positions: moved by them, a level has new
+/// vertices that are moved by what split() makes of them. That is exact but for limits (tensed_rules.h): where one
+/// shortens the way of a vertex from the middle of its edge, the vector is shortened by the same share.
+class ButterflyOfVectors {
+ public:
+  /// `positions` [V] or more. The others, and they, are as in butterfly(), and must outlive this.
+  ButterflyOfVectors(const Topology& topology, const Vec3f* positions, const SplitPlan& plan, double w,
+                     const TensionField* tension);
+
+  /// `vectors` [V]. Returns [plan.count()]. A vector that is not a number makes all those that depend on it one.
+  [[nodiscard]] Buffer<Vec3d> split(const Buffer<Vec3d>& vectors) const;
+
+ private:
+  const Topology& topology_;
+  const SplitPlan& plan_;
+  double w_;
+  const TensionField* tension_;
+  Buffer<Vec3d> places_;
+  Buffer<double> shares_;  ///< [plan.count()] that limits leave; empty without tension
+};
+
 }  // namespace papilio

@@ -144,8 +144,12 @@ class ButterflyRules {
  public:
   /// `positions` [V] and the others must outlive this; `tension` may be null.
   ButterflyRules(const Topology& topology, const Point* positions, Real w, const TensionField* tension)
-      : mesh_(topology), p_(positions), w_(w), share_(w) {
-    if (tension != nullptr) tensed_.emplace(topology, positions, *tension);
+      : ButterflyRules(topology, positions, positions, w, tension) {}
+  /// The rules that hold at `places` [V], applied to `points` [V].
+  ButterflyRules(const Topology& topology, const Point* places, const Point* points, Real w,
+                 const TensionField* tension)
+      : mesh_(topology), place_(places), p_(points), w_(w), share_(w) {
+    if (tension != nullptr) tensed_.emplace(topology, places, points, *tension);
   }
 
   /// An irregular fan's opinion on each of its spokes that lie inside the surface: calls add(spoke, position) for those
@@ -169,14 +173,17 @@ class ButterflyRules {
 
   [[nodiscard]] Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
     const uint32_t h = mesh_.half_edge[e];
-    const Point a = p_[mesh_.origin[h]];
-    const Point b = p_[mesh_.tip(h)];
-    const auto beyond = [&](uint32_t vertex, Point end, Point other) {
-      return vertex == none ? Real(2) * end - other : p_[vertex];
+    const auto along = [&](const Point* points) {
+      const Point a = points[mesh_.origin[h]];
+      const Point b = points[mesh_.tip(h)];
+      const auto beyond = [&](uint32_t vertex, Point end, Point other) {
+        return vertex == none ? Real(2) * end - other : points[vertex];
+      };
+      return std::array<Point, 4>{beyond(curves.before(h), a, b), a, b, beyond(curves.after(h), b, a)};
     };
-    const Point before = beyond(curves.before(h), a, b);
-    const Point after = beyond(curves.after(h), b, a);
-    if (tensed_) return tensed_->along_curve(before, a, b, after);
+    const auto points = along(p_);
+    if (tensed_) return tensed_->along_curve(points, place_ == p_ ? points : along(place_));
+    const auto& [before, a, b, after] = points;
     return stencil::Curve<Real>::end * (a + b) + stencil::Curve<Real>::next * (before + after);
   }
 
@@ -192,10 +199,17 @@ class ButterflyRules {
   /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge; `curves` may be null where there
   /// are none.
   [[nodiscard]] Point finish(uint32_t h, Point q, const CurveNeighbours* curves) const {
+    return limit(h, follow(h, q, curves));
+  }
+  /// The first part of that, which is linear in the points.
+  [[nodiscard]] Point follow(uint32_t h, Point q, const CurveNeighbours* curves) const {
     if (!tensed_) return q;
     if (curves != nullptr && tensed_->is_diagonal_of_strip(h)) q = across_strip(*curves, h);
-    return tensed_->finish(h, q);
+    return tensed_->followed(h, q);
   }
+  [[nodiscard]] Point middle(uint32_t h) const { return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))); }
+  /// The second part. Of places alone.
+  [[nodiscard]] Point limit(uint32_t h, Point q) const { return tensed_ ? tensed_->limited(h, q) : q; }
 
   /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
   /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in edge_accumulator.h.
@@ -359,7 +373,7 @@ class ButterflyRules {
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 
   const Topology& mesh_;
-  const Point* p_;
+  const Point *place_, *p_;
   Real w_;
   stencil::FaceShare<Real> share_;
   std::optional<TensedRules<Real>> tensed_;

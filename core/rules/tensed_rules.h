@@ -38,8 +38,9 @@ class TensedRules {
   using Point = Vec3T<Real>;
 
  public:
-  TensedRules(const Topology& mesh, const Point* positions, const TensionField& field)
-      : mesh_(mesh), p_(positions), field_(field) {}
+  /// `places` [V] are the level's positions, by which rules are chosen; `points` are what they are applied to.
+  TensedRules(const Topology& mesh, const Point* places, const Point* points, const TensionField& field)
+      : mesh_(mesh), place_(places), p_(points), field_(field) {}
 
   /// Both ends interior and regular: the eight-point rule, each of its four outer hinges by its own factor.
   [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const { return face_share(h, t) + face_share(t, h); }
@@ -115,11 +116,14 @@ class TensedRules {
     return Real(least);
   }
 
-  /// Along a curve from a to b, the points before and after it: the four-point rule, its second differences by the
-  /// factors of the curve's turns.
-  [[nodiscard]] Point along_curve(Point before, Point a, Point b, Point after) const {
-    return Real(0.5) * (a + b) - Real(0.0625) * (turn_factor(before, a, b) * (before + b - Real(2) * a) +
-                                                 turn_factor(a, b, after) * (after + a - Real(2) * b));
+  /// Four points along a curve: before an edge's first end, its two ends, after the second.
+  using AlongCurve = std::array<Point, 4>;
+  /// The four-point rule, its second differences by the factors of the curve's turns, which the places tell.
+  [[nodiscard]] static Point along_curve(const AlongCurve& points, const AlongCurve& places) {
+    const auto& [before, a, b, after] = points;
+    return Real(0.5) * (a + b) -
+           Real(0.0625) * (turn_factor(places[0], places[1], places[2]) * (before + b - Real(2) * a) +
+                           turn_factor(places[1], places[2], places[3]) * (after + a - Real(2) * b));
   }
 
   /// Whether the shape rules hold, and h is the diagonal of a flat quadrangle two of whose sides are curves.
@@ -127,12 +131,15 @@ class TensedRules {
     return field_.shape && field_.shape->is_flat[mesh_.edge[h]] != 0 && sides_of_strip(mesh_, h)[0] != none;
   }
 
-  /// What comes last for every edge: sharp edges follow their feature, nothing goes far, and flat stays flat.
-  [[nodiscard]] Point finish(uint32_t h, Point q) const {
-    if (field_.follow_features && mesh_.twin[h] != none) {
-      const auto factor = Real(field_.factor[mesh_.edge[h]]);
-      if (factor < 1) q = factor * q + (1 - factor) * along_feature(h);
-    }
+  /// Sharp edges follow their feature.
+  [[nodiscard]] Point followed(uint32_t h, Point q) const {
+    if (!field_.follow_features || mesh_.twin[h] == none) return q;
+    const auto factor = Real(field_.factor[mesh_.edge[h]]);
+    return factor < 1 ? factor * q + (1 - factor) * along_feature(h) : q;
+  }
+
+  /// What comes last for every edge: nothing goes far, and flat stays flat. Of places alone.
+  [[nodiscard]] Point limited(uint32_t h, Point q) const {
     if (!field_.shape) return bounded(h, q);
     if (field_.shape->is_flat[mesh_.edge[h]] != 0 && has_flat_stencil(mesh_, *field_.shape, h)) return midpoint(h);
     return is_surely_within_bounds(h, q) ? q : unfolded(h, bounded(h, q));
@@ -237,15 +244,15 @@ class TensedRules {
   /// The feature's next vertex after `end`, coming from `other`: where it goes on, turning by less than 60 degrees.
   [[nodiscard]] Point beyond(uint32_t end, uint32_t other) const {
     if (field_.feature_degree[end] != 2) return reflected(end, other);
-    const Point next = p_[field_.feature_neighbours[end] ^ other];
-    const Vec3d u = widen(p_[end] - p_[other]);
-    const Vec3d v = widen(next - p_[end]);
-    return dot(u, v) > 0.5 * length(u) * length(v) ? next : reflected(end, other);
+    const uint32_t next = field_.feature_neighbours[end] ^ other;
+    const Vec3d u = widen(place_[end] - place_[other]);
+    const Vec3d v = widen(place_[next] - place_[end]);
+    return dot(u, v) > 0.5 * length(u) * length(v) ? p_[next] : reflected(end, other);
   }
   [[nodiscard]] Point reflected(uint32_t end, uint32_t other) const { return Real(2) * p_[end] - p_[other]; }
 
   const Topology& mesh_;
-  const Point* p_;
+  const Point *place_, *p_;
   const TensionField& field_;
 };
 

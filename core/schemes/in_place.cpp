@@ -5,6 +5,7 @@
 #include "criteria/budget.h"
 #include "criteria/view_culling.h"
 #include "hierarchy/memory_plan.h"
+#include "rules/split_displacements.h"
 #include "split/split.h"
 
 namespace papilio {
@@ -20,6 +21,7 @@ class InPlace {
 
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
+    displacements_ = displacements_at_vertices(mesh_);
     plan_.emplace(mesh_, options_);
     while (true) {
       progress_.poll();
@@ -107,7 +109,9 @@ class InPlace {
     made.reserve(plan.count());
     for (uint32_t e = 0; e < targets_.size(); ++e)
       if (targets_[e] != 0) made.push_back(trial_->at(e));
-    mesh_ = split_mesh(std::move(mesh_), plan, made);
+    const Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
+    append_new_vertices(displacements_, displaced, plan);
+    mesh_ = split_mesh(std::move(mesh_), plan, made, displaced);
     result_.levels = level;
   }
 
@@ -115,6 +119,7 @@ class InPlace {
   const Selection& selection_;
   const Progress& progress_;
   Mesh mesh_;
+  Displacements displacements_;  ///< at its vertices
   std::optional<MemoryPlan> plan_;
   Result result_;
   std::optional<Trial> trial_;
@@ -128,9 +133,9 @@ class InPlace {
 
 }  // namespace
 
-Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Buffer<Vec3f>& made) {
+Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Buffer<Vec3f>& made, const Displacements& displaced) {
   mesh.positions.insert(mesh.positions.end(), made.begin(), made.end());
-  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
+  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes, displaced);
   return mesh;
 }
 

@@ -5,6 +5,7 @@
 
 #include "criteria/budget.h"
 #include "hierarchy/assemble.h"
+#include "hierarchy/displaced_levels.h"
 #include "hierarchy/error_left.h"
 #include "hierarchy/level_choice.h"
 #include "hierarchy/move_bounds.h"
@@ -296,7 +297,8 @@ class RedGreen {
   }
 
   [[nodiscard]] Mesh assembled() const {
-    return assemble(choices_, most_cosine_, options_.edges || options_.simplify_hidden);
+    return assemble(choices_, most_cosine_, options_.edges || options_.simplify_hidden,
+                    displacements_of(choices_, options_));
   }
 
   /// Upper bound of the distance from the uniform surface.

@@ -7,6 +7,7 @@
 #include "mesh/attributes.h"
 #include "mesh/normals.h"
 #include "rules/features.h"
+#include "rules/split_displacements.h"
 #include "rules/tension.h"
 #include "rules/uniform_butterfly.h"
 #include "schemes/uniform_error.h"
@@ -29,6 +30,7 @@ class Uniform {
   Result run(Mesh coarse) {
     mesh_ = std::move(coarse);
     features_ = find_features(mesh_.topology);
+    displacements_ = displacements_at_vertices(mesh_);
     leaves_one_out_ =
         is_plain_ && !options_.edges && mesh_.attributes.empty() && !progress_.wants_levels() && features_.are_rings();
     for (level_ = 1; level_ <= options_.levels; ++level_) {
@@ -97,7 +99,10 @@ class Uniform {
     Topology& topology = mesh_.topology;
     if (!is_last()) descend(features_, topology.vertex_count);
     if (!mesh_.attributes.empty()) {
-      Topology below = papilio::split(topology, everything(), mesh_.positions, mesh_.attributes);
+      const SplitPlan plan = everything();
+      const Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
+      Topology below = papilio::split(topology, plan, mesh_.positions, mesh_.attributes, displaced);
+      append_new_vertices(displacements_, displaced, plan);
       keep_parents(std::exchange(topology, std::move(below)));
     } else if (is_left_out()) {
       topology = split_last_in_sixteen(parents_, progress_.threads());
@@ -134,6 +139,7 @@ class Uniform {
   Mesh mesh_;                    ///< of the level above, with the vertices of this one once they are there
   Topology parents_;             ///< two levels above; where vertices are plain
   Features features_;
+  Displacements displacements_;  ///< at the vertices of the level above
   Result result_;
 };
 

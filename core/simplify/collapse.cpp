@@ -37,7 +37,7 @@ std::vector<uint32_t> renumber(Buffer<uint32_t>& numbers, size_t count) {
 
 /// The values of some points.
 Attribute select(const Attribute& from, const std::vector<uint32_t>& points) {
-  Attribute to{from.components, from.unit_length, {}, from.is_smoothing_group};
+  Attribute to{from.components, from.unit_length, {}, from.is_smoothing_group, from.is_displacement};
   to.values.reserve(from.components * points.size());
   for (size_t p : points)
     for (size_t c = 0; c < from.components; ++c) to.values.push_back(from.values[from.components * p + c]);

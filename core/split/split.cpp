@@ -12,7 +12,7 @@ class Splitter {
   Splitter(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions)
       : mesh_(mesh), plan_(plan), positions_(positions) {}
 
-  Topology run(PointAttributes& attributes) {
+  Topology run(PointAttributes& attributes, const Displacements& displaced) {
     choose_patterns();
     const uint32_t faces = first_child_.back();
     child_.vertex_count = mesh_.vertex_count + plan_.count();
@@ -31,7 +31,7 @@ class Splitter {
       if (plan_.is_split(e)) child_.kind[base + 1] = mesh_.kind[e];
     }
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
-    if (!attributes.empty()) split_corners(attributes);
+    if (!attributes.empty()) split_corners(attributes, displaced);
     return std::move(child_);
   }
 
@@ -97,11 +97,11 @@ class Splitter {
     }
   }
 
-  void split_corners(PointAttributes& attributes) const {
+  void split_corners(PointAttributes& attributes, const Displacements& displaced) const {
     const Region all = whole_region(mesh_);
     EdgeMarks targets(mesh_.edge_count());
     for (uint32_t e = 0; e < targets.size(); ++e) targets[e] = plan_.is_split(e) ? 1 : 0;
-    const Buffer<uint32_t> made = split_points(mesh_, targets, all.faces, attributes);
+    const Buffer<uint32_t> made = split_points(mesh_, targets, all.faces, attributes, displaced);
     auto point = Buffer<uint32_t>::for_overwrite(child_.half_edge_count());
     for (uint32_t f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
@@ -127,9 +127,9 @@ uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
   return children;
 }
 
-Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions,
-               PointAttributes& attributes) {
-  return Splitter(mesh, plan, positions).run(attributes);
+Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions, PointAttributes& attributes,
+               const Displacements& displaced) {
+  return Splitter(mesh, plan, positions).run(attributes, displaced);
 }
 
 }  // namespace papilio

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mesh/displacement.h"
 #include "mesh/split_plan.h"
 #include "papilio/mesh.h"
 
@@ -15,10 +16,11 @@ namespace papilio {
 /// shorter diagonal (equal ones: the one from the lower old vertex); three, four. Orientation is kept and no
 /// T-junction arises.
 ///
-/// `positions` [V + plan.count()] has the new vertices at its end; `attributes` are split along unless they are empty.
-/// The result's faces lie in their parents' order; its arrays follow from the parents' by formula, in O(F + E), without
-/// a search. Edge kinds are inherited; edges inside a parent are smooth.
+/// `positions` [V + plan.count()] has the new vertices at its end; `attributes` are split along unless they are empty,
+/// with `displaced` at the new vertices (split_points). The result's faces lie in their parents' order; its arrays
+/// follow from the parents' by formula, in O(F + E), without a search. Edge kinds are inherited; edges inside a parent
+/// are smooth.
 [[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions,
-                             PointAttributes& attributes);
+                             PointAttributes& attributes, const Displacements& displaced = {});
 
 }  // namespace papilio

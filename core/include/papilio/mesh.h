@@ -22,7 +22,8 @@ namespace papilio {
 /// Three indices into a position array, counter-clockwise seen from outside.
 using Triangle = std::array<uint32_t, 3>;
 
-/// Values that go with the points: texture coordinates, normals, colours, anything. They are interpolated linearly.
+/// Values that go with the points: texture coordinates, normals, colours, anything. They are interpolated linearly,
+/// but for displacements.
 struct Attribute {
   uint32_t components = 1;
   bool unit_length = false;    ///< brought back to length one after interpolation: normals
@@ -30,6 +31,10 @@ struct Attribute {
   /// Number of a face's smoothing group, at each of its points: edges between faces of different groups, or of group 0,
   /// are creases (core/mesh/smoothing_groups.h).
   bool is_smoothing_group = false;
+  /// With 3 components: moves the points, as a morph target does. It is split by the rules of the positions, so that it
+  /// moves the refined surface as it moves the coarse mesh; by linear interpolation where points of one vertex move
+  /// apart, and round them.
+  bool is_displacement = false;
 
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };

@@ -1,0 +1,45 @@
+#include "mesh/displacement.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace papilio {
+
+Displacements displacements_at_vertices(const Mesh& mesh) {
+  Displacements out;
+  for (uint32_t a = 0; a < mesh.attributes.attributes.size(); ++a) {
+    const Attribute& attribute = mesh.attributes.attributes[a];
+    if (!attribute.is_displacement) continue;
+    out.push_back({a, Buffer<Vec3d>(mesh.topology.vertex_count)});
+    Buffer<Vec3d>& at = out.back().at;
+    Buffer<uint8_t> is_set(mesh.topology.vertex_count, 0);
+    for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+      const double* value = &attribute.values[size_t{3} * mesh.attributes.point[h]];
+      const Vec3d of_point{value[0], value[1], value[2]};
+      const uint32_t v = mesh.topology.origin[h];
+      if (is_set[v] == 0)
+        at[v] = of_point;
+      else if (at[v] != of_point)
+        at[v] = unknown_displacement();
+      is_set[v] = 1;
+    }
+  }
+  return out;
+}
+
+void append_new_vertices(Displacements& at_vertices, const Displacements& at_edges, const SplitPlan& plan) {
+  for (size_t i = 0; i < at_vertices.size(); ++i)
+    for (uint32_t e = 0; e < at_edges[i].at.size(); ++e)
+      if (plan.is_split(e)) at_vertices[i].at.push_back(at_edges[i].at[e]);
+}
+
+bool has_displacements(const PointAttributes& attributes) {
+  return std::ranges::any_of(attributes.attributes, &Attribute::is_displacement);
+}
+
+Vec3d unknown_displacement() {
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  return {not_a_number, not_a_number, not_a_number};
+}
+
+}  // namespace papilio
