@@ -294,6 +294,14 @@ const std::array table{
         .get = [](const Parameters& p) { return Values{static_cast<double>(p.compression)}; },
         .set = [](Parameters& p,
                   const Values& v) { p.compression = static_cast<gltf::Compression>(static_cast<int>(v[0])); }},
+    ParameterInfo{
+        .name = "split_instances",
+        .type = ParameterType::boolean,
+        .description =
+            "Gives each node of a glTF scene a mesh of its own, as fine as it needs; else nodes that show one "
+            "mesh share it, as fine as any of them needs",
+        .get = [](const Parameters& p) { return Values{p.splits_instances ? 1.0 : 0.0}; },
+        .set = [](Parameters& p, const Values& v) { p.splits_instances = v[0] != 0; }},
 };
 
 }  // namespace

@@ -23,7 +23,8 @@ struct Parameters {
   OutputOptions output;
   bool normals = false;                                     ///< whether a mesh without normals gets them
   gltf::Compression compression = gltf::Compression::same;  ///< of a glTF scene
-  bool default_eye = false;                                 ///< whether view.eye is omitted and follows from the mesh
+  bool splits_instances = false;      ///< whether each node of a glTF scene gets a mesh of its own
+  bool default_eye = false;           ///< whether view.eye is omitted and follows from the mesh
   bool default_target = false;        ///< whether view.target is omitted and is the centre of the mesh's box
   bool default_position_bits = true;  ///< whether output.position_bits is omitted and follows from the tolerance
 

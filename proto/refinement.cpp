@@ -98,6 +98,8 @@ Refinement::Refinement(const Parameters& parameters, const Limits& limits)
 void Refinement::set_options(const Parameters& parameters, const Limits& limits) {
   if (parameters.compression != gltf::Compression::same)
     throw Problem(Code::bad_parameter, "output.compress is for glTF scenes; leave it out.", "output.compress");
+  if (parameters.splits_instances)
+    throw Problem(Code::bad_parameter, "split_instances is for glTF scenes; leave it out.", "split_instances");
   const Box box = bounding_box(coarse().mesh.positions);
   options_ = options_for(parameters, box);
   output_ = output_for(parameters, box);
@@ -155,7 +157,7 @@ EncodedLevel Refinement::encode(const Mesh& mesh, int level, StageTimes times,
   Stopwatch watch;
   EncodedLevel made;
   const std::optional<Mesh> dressed = with_normals(mesh, level);
-  made.draco = write_draco(dressed ? *dressed : mesh, coarse().box, output_, encoding_, poll);
+  made.bytes = write_draco(dressed ? *dressed : mesh, coarse().box, output_, encoding_, poll);
   times.encode += watch.lap();
   made.statistics.level = level;
   made.statistics.vertices = mesh.topology.vertex_count;
@@ -275,6 +277,7 @@ std::vector<std::pair<std::string, std::string>> statistics_headers(const Statis
     headers.emplace_back("Papilio-Error", format_rounded(statistics.error));
     if (statistics.error_pixels) headers.emplace_back("Papilio-Error-Pixels", format_rounded(*statistics.error_pixels));
   }
+  if (!statistics.unreached.empty()) headers.emplace_back("Papilio-Unreached", statistics.unreached);
   if (!statistics.shape.empty()) headers.emplace_back("Papilio-Shape", statistics.shape);
   if (const std::string found = defects_text(statistics.found); !found.empty())
     headers.emplace_back("Papilio-Found", found);

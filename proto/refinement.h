@@ -38,9 +38,9 @@ struct Statistics {
   StageTimes times;
 };
 
-/// A mesh and its statistics.
+/// A mesh as Draco, or a scene as .glb, and its statistics.
 struct EncodedLevel {
-  std::string draco;
+  std::string bytes;
   Statistics statistics;
 };
 
@@ -104,8 +104,9 @@ class Refinement {
 /// Returns the reason of a name; nothing for other text.
 [[nodiscard]] std::optional<StopReason> stop_reason_named(std::string_view name);
 
-/// Formats statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels, -Shape,
-/// -Found (defects of the mesh, "non_manifold_edges=2, ...", if there are any) and Server-Timing.
+/// Formats statistics as header fields: Papilio-Vertices, -Faces, -Levels, -Stop-Reason, -Error, -Error-Pixels,
+/// -Unreached (if any target is), -Shape, -Found (defects of the mesh, "non_manifold_edges=2, ...", if there are any)
+/// and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
 /// Formats what a mesh was taken for: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain";
 /// with smoothing groups also ", 24 marked by smoothing groups".

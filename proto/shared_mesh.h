@@ -2,13 +2,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string_view>
-#include <vector>
 
-#include "papilio/prepared_mesh.h"
 #include "proto/draco_writer.h"
 #include "proto/limits.h"
+#include "proto/prepared_meshes.h"
 
 namespace papilio::proto {
 
@@ -30,20 +28,16 @@ class SharedMesh {
   SharedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
-  /// Returns the mesh for the rules (tension, shape, w, crease angle) of the options, computed on first use. Least
-  /// recently used meshes are evicted beyond the budget.
-  [[nodiscard]] std::shared_ptr<const papilio::PreparedMesh> for_rules_of(const Options& options) const;
+  /// As `PreparedMeshes::for_rules_of`.
+  [[nodiscard]] std::shared_ptr<const PreparedMesh> for_rules_of(const Options& options) const {
+    return prepared_.for_rules_of(decoded_.mesh, options);
+  }
   /// Returns the bytes in memory.
-  [[nodiscard]] uint64_t bytes() const;
+  [[nodiscard]] uint64_t bytes() const { return bytes_of(decoded_.mesh) + prepared_.bytes(); }
 
  private:
-  using CoreMesh = std::shared_ptr<const papilio::PreparedMesh>;
-  [[nodiscard]] CoreMesh find(const Options& options) const;
-
   DecodedMesh decoded_;
-  uint64_t budget_;
-  mutable std::mutex access_;             ///< guards `recent_`
-  mutable std::vector<CoreMesh> recent_;  ///< most recently used first
+  PreparedMeshes prepared_;
 };
 
 }  // namespace papilio::proto

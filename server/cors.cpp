@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* readable_headers =
     "ETag, Location, Retry-After, Server-Timing, X-Request-Id, Papilio-Vertices, Papilio-Faces, Papilio-Levels, "
-    "Papilio-Stop-Reason, Papilio-Error, Papilio-Error-Pixels, Papilio-Shape, Papilio-Found";
+    "Papilio-Stop-Reason, Papilio-Error, Papilio-Error-Pixels, Papilio-Unreached, Papilio-Shape, Papilio-Found";
 constexpr const char* sendable_headers =
     "Accept, Authorization, Content-Type, If-None-Match, X-Request-Id, traceparent, tracestate";
 constexpr const char* preflight_seconds = "86400";

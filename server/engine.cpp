@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <type_traits>
 
 #include "proto/draco_header.h"
 #include "proto/gltf/container.h"
@@ -12,6 +13,8 @@ namespace papilio::server {
 
 using proto::Code;
 using proto::Problem;
+using proto::gltf::SceneRefinement;
+using proto::gltf::SharedScene;
 
 namespace {
 
@@ -47,19 +50,21 @@ proto::RefinementHooks Engine::sharing(proto::RefinementHooks hooks, Admission::
   return hooks;
 }
 
-proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
+template <class AnyRefinement>
+proto::EncodedLevel Engine::run_any(AnyRefinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
   const uint64_t faces = refinement.coarse_faces();
   proto::EncodedLevel made = refinement.run(sharing(std::move(hooks), slot));
   metrics_.count_refinement(faces, made.statistics);
   return made;
 }
 
-proto::gltf::RefinedScene Engine::run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
-                                      Admission::Slot& slot) {
-  const uint64_t faces = refinement.coarse_faces();
-  proto::gltf::RefinedScene made = refinement.run(sharing(std::move(hooks), slot));
-  metrics_.count_refinement(faces, made.statistics);
-  return made;
+proto::EncodedLevel Engine::run(proto::Refinement& refinement, proto::RefinementHooks hooks, Admission::Slot& slot) {
+  return run_any(refinement, std::move(hooks), slot);
+}
+
+proto::EncodedLevel Engine::run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
+                                Admission::Slot& slot) {
+  return run_any(refinement, std::move(hooks), slot);
 }
 
 Work Engine::work_of_scene(std::string_view glb, const Options& options) const {
@@ -98,26 +103,40 @@ MeshStore::Bytes Engine::stored_bytes(const std::string& id) {
   return bytes;
 }
 
-std::unique_ptr<proto::Refinement> Engine::refinement_of(const std::string& id, const proto::Parameters& parameters) {
-  return std::make_unique<proto::Refinement>(shared_mesh(id), parameters, options_.limits);
+std::unique_ptr<proto::Refinement> Engine::mesh_refinement_of(const std::string& id,
+                                                              const proto::Parameters& parameters) {
+  return std::make_unique<proto::Refinement>(decoded<proto::SharedMesh>(id), parameters, options_.limits);
 }
 
-std::shared_ptr<const proto::SharedMesh> Engine::shared_mesh(const std::string& id) {
-  std::shared_ptr<const proto::SharedMesh> mesh = meshes_.get(id);
-  metrics_.count_lookup(Metrics::Cache::meshes, mesh != nullptr);
-  if (mesh != nullptr) {
+std::unique_ptr<SceneRefinement> Engine::scene_refinement_of(const std::string& id,
+                                                             const proto::Parameters& parameters) {
+  if (!parameters.splits_instances)
+    return std::make_unique<SceneRefinement>(decoded<SharedScene>(id), parameters, options_.limits);
+  return std::make_unique<SceneRefinement>(stored_bytes(id), parameters, options_.limits);
+}
+
+template <class Shared>
+std::shared_ptr<const Shared> Engine::decoded(const std::string& id) {
+  const std::shared_ptr<const Decoded> known = meshes_.get(id);
+  metrics_.count_lookup(Metrics::Cache::meshes, known != nullptr);
+  if (known != nullptr) {
     count_again(id);
-    return mesh;
+    return std::get<std::shared_ptr<const Shared>>(*known);
   }
-  const MeshStore::Bytes bytes = stored_bytes(id);
   // One mesh may have a quarter of the cache, so that a few large ones are kept beside each other.
-  mesh = std::make_shared<const proto::SharedMesh>(*bytes, options_.limits, options_.mesh_cache_bytes / 4);
-  meshes_.put(id, mesh, mesh->bytes());
-  return mesh;
+  const uint64_t budget = options_.mesh_cache_bytes / 4;
+  std::shared_ptr<const Shared> made;
+  if constexpr (std::is_same_v<Shared, SharedScene>)
+    made = std::make_shared<const Shared>(stored_bytes(id), options_.limits, budget);
+  else
+    made = std::make_shared<const Shared>(*stored_bytes(id), options_.limits, budget);
+  meshes_.put(id, std::make_shared<const Decoded>(made), made->bytes());
+  return made;
 }
 
 void Engine::count_again(const std::string& id) {
-  if (const auto mesh = meshes_.get(id)) meshes_.put(id, mesh, mesh->bytes());
+  if (const auto known = meshes_.get(id))
+    meshes_.put(id, known, std::visit([](const auto& shared) { return shared->bytes(); }, *known));
 }
 
 std::string Engine::metrics_text() {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "proto/gltf/scene_refinement.h"
 #include "proto/limits.h"
@@ -60,8 +61,8 @@ class Engine {
   [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks,
                                         Admission::Slot& slot);
   /// The same for a scene.
-  [[nodiscard]] proto::gltf::RefinedScene run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
-                                              Admission::Slot& slot);
+  [[nodiscard]] proto::EncodedLevel run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
+                                        Admission::Slot& slot);
   /// Work of refining a .glb scene that has the faces which its JSON declares. Throws `Problem`.
   [[nodiscard]] Work work_of_scene(std::string_view glb, const Options& options) const;
   /// Work of refining a mesh that has the faces which the Draco stream declares. Throws `Problem` where the stream is
@@ -69,23 +70,31 @@ class Engine {
   [[nodiscard]] Work work_of(std::string_view draco, const Options& options) const;
   /// Whether a stored mesh is a scene. Throws `Problem` mesh_not_found.
   [[nodiscard]] bool is_scene(const std::string& id);
-  /// The bytes of a stored scene, to be refined. Throws `Problem` mesh_not_found.
-  [[nodiscard]] MeshStore::Bytes scene_bytes(const std::string& id) { return stored_bytes(id); }
   /// Work of refining a stored mesh or scene. Throws `Problem`, mesh_not_found too.
   [[nodiscard]] Work work_of_stored(const std::string& id, const Options& options);
   /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
-  [[nodiscard]] std::unique_ptr<proto::Refinement> refinement_of(const std::string& id,
-                                                                 const proto::Parameters& parameters);
-  /// A stored mesh that has been refined takes more memory than before.
+  [[nodiscard]] std::unique_ptr<proto::Refinement> mesh_refinement_of(const std::string& id,
+                                                                      const proto::Parameters& parameters);
+  /// The same of a stored scene.
+  [[nodiscard]] std::unique_ptr<proto::gltf::SceneRefinement> scene_refinement_of(const std::string& id,
+                                                                                  const proto::Parameters& parameters);
+  /// A stored mesh or scene that has been refined takes more memory than before.
   void count_again(const std::string& id);
   [[nodiscard]] std::string metrics_text();
   /// What metrics say of the memory that the HTTP server holds. To be called before it runs.
   void observe_held_bytes(std::function<HeldBytes()> held) { held_ = std::move(held); }
 
  private:
+  using Decoded =
+      std::variant<std::shared_ptr<const proto::SharedMesh>, std::shared_ptr<const proto::gltf::SharedScene>>;
   /// Lets a refinement take turns with other requests, and use the threads of free slots.
   [[nodiscard]] proto::RefinementHooks sharing(proto::RefinementHooks hooks, Admission::Slot& slot) const;
-  [[nodiscard]] std::shared_ptr<const proto::SharedMesh> shared_mesh(const std::string& id);
+  template <class AnyRefinement>
+  [[nodiscard]] proto::EncodedLevel run_any(AnyRefinement& refinement, proto::RefinementHooks hooks,
+                                            Admission::Slot& slot);
+  /// A stored mesh or scene, decoded; `Shared` is its kind.
+  template <class Shared>
+  [[nodiscard]] std::shared_ptr<const Shared> decoded(const std::string& id);
   /// Never null. Throws `Problem` mesh_not_found.
   [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
 
@@ -93,7 +102,7 @@ class Engine {
   Admission admission_;
   std::unique_ptr<MeshStore> store_;
   ResultCache results_;
-  Lru<const proto::SharedMesh> meshes_;
+  Lru<const Decoded> meshes_;
   Lru<const uint64_t> face_counts_;  ///< of stored meshes, so that work is predicted without reading one
   Lru<const bool> are_scenes_;       ///< whether stored meshes are scenes, likewise
   Metrics metrics_;

@@ -180,6 +180,7 @@ ordered_json headers() {
                   "included; with tolerance or max_faces and no view it bounds the distance from the uniform "
                   "result of the same levels")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
+          {"Papilio-Unreached", header("string", "Targets that were not reached, and what to do")},
           {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept or marked")},
           {"Papilio-Found", header("string", "Defects of the coarse mesh, mended ones included, and how many")},
           {"Server-Timing", header("string", "Milliseconds of decode, refine and encode")},
@@ -213,12 +214,13 @@ const ordered_json& binary() {
 ordered_json refined_answer() {
   ordered_json types = content({draco_type, bytes_type, multipart_type, scene_type}, binary());
   types[multipart_type]["schema"]["description"] =
-      "Every level as a Draco mesh of its own with its statistics as headers, the coarse mesh first, "
+      "Every level as a Draco mesh or a .glb scene of its own with its statistics as headers, the coarse one first, "
       "and a JSON summary. A problem after the stream has begun is its last part.";
   return {
       {"description", "The refined mesh"},
       {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
-                                     "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels", "Papilio-Shape",
+                                     "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
+                                     "Papilio-Unreached", "Papilio-Shape",
                                      "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
       {"content", types}};
 }

@@ -68,13 +68,13 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
       auto made = flags.server.empty()
                       ? proto::gltf::SceneRefinement(file.bytes, flags.parameters, own_limits).run(hooks)
                       : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
-      return {std::move(made.glb), true, std::move(made.statistics)};
+      return {std::move(made.bytes), true, std::move(made.statistics)};
     });
   const std::string draco = draco_of(std::move(file));
   return in_words_of_the_file(name, [&]() -> RefinedFile {
     auto made = flags.server.empty() ? proto::Refinement(draco, flags.parameters, own_limits).run(hooks)
                                      : Remote(flags.server, flags.remote).refine(draco, flags.parameters);
-    return {std::move(made.draco), false, std::move(made.statistics)};
+    return {std::move(made.bytes), false, std::move(made.statistics)};
   });
 }
 

@@ -223,7 +223,7 @@ proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Paramete
   return {std::move(answer.body), std::move(statistics)};
 }
 
-proto::gltf::RefinedScene Remote::refine_scene(std::string_view glb, const proto::Parameters& parameters) const {
+proto::EncodedLevel Remote::refine_scene(std::string_view glb, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_, options_);
   httplib::Response answer = ask_to_refine(origin_, client, prefix_, scene_type, glb, parameters);
   check_scene(origin_, answer);

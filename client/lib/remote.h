@@ -50,7 +50,7 @@ class Remote {
 
   /// Refines a scene there, a .glb file; the same bytes as `proto::gltf::SceneRefinement` makes here. Asks a busy
   /// server again, as `refine`. Throws `ServerError`.
-  [[nodiscard]] proto::gltf::RefinedScene refine_scene(std::string_view glb, const proto::Parameters& parameters) const;
+  [[nodiscard]] proto::EncodedLevel refine_scene(std::string_view glb, const proto::Parameters& parameters) const;
 
   /// The same level by level: `on_part` is called for each part as it arrives, meshes first, the JSON summary
   /// last. Throws `ServerError`, also for a problem that comes in the middle.

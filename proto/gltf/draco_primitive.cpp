@@ -58,7 +58,7 @@ std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, co
 }
 
 /// Returns the vertices and triangles of a primitive as the core and Draco take them.
-FormattedMesh formatted(const VertexSet& set, const std::vector<Triangle>& triangles,
+FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
                         std::vector<std::pair<std::string, uint32_t>>& ids) {
   FormattedMesh mesh;
   mesh.positions = vertex_positions(set);
@@ -109,7 +109,7 @@ DracoPrimitive read_draco_primitive(Views& views, const Json& extension, const J
   return out;
 }
 
-EncodedPrimitive encode_draco_primitive(const VertexSet& set, const std::vector<Triangle>& triangles,
+EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Triangle>& triangles,
                                         const QuantizationBox& box, const OutputOptions& options,
                                         const std::function<void()>& poll) {
   EncodedPrimitive made;

@@ -15,7 +15,7 @@ namespace papilio::proto::gltf {
 struct DracoPrimitive {
   uint64_t count = 0;  ///< vertices
   std::vector<VertexStream> attributes;
-  std::vector<Triangle> triangles;
+  Buffer<Triangle> triangles;
 };
 
 /// Decodes a primitive. `extension`: its KHR_draco_mesh_compression; `attributes`: those of the primitive, whose
@@ -33,7 +33,7 @@ struct EncodedPrimitive {
 
 /// Compresses a primitive. Vertices that no triangle uses and degenerate triangles are dropped. `box` quantizes the
 /// positions: one for all primitives of a mesh, so that their borders stay closed. Throws `Problem`.
-[[nodiscard]] EncodedPrimitive encode_draco_primitive(const VertexSet& set, const std::vector<Triangle>& triangles,
+[[nodiscard]] EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Triangle>& triangles,
                                                       const QuantizationBox& box, const OutputOptions& options,
                                                       const std::function<void()>& poll = {});
 

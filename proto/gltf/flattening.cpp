@@ -88,7 +88,7 @@ class Flattener {
   }
 
   /// Mirrored maps turn triangles over.
-  void add_triangles(const std::vector<Triangle>& triangles, uint32_t first, const Affine& map) {
+  void add_triangles(const Buffer<Triangle>& triangles, uint32_t first, const Affine& map) {
     const bool is_mirrored = dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0;
     for (const Triangle& t : triangles) {
       Triangle moved{first + t[0], first + t[1], first + t[2]};

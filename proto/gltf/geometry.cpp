@@ -88,8 +88,8 @@ std::vector<uint32_t> read_indices(Views& views, const Json& primitive, uint64_t
 }
 
 /// Winding of strips and fans: glTF 2.0, section 3.7.2.1.
-std::vector<Triangle> triangles_of_indices(const std::vector<uint32_t>& indices, PrimitiveMode mode) {
-  std::vector<Triangle> triangles;
+Buffer<Triangle> triangles_of_indices(const std::vector<uint32_t>& indices, PrimitiveMode mode) {
+  Buffer<Triangle> triangles;
   if (mode == PrimitiveMode::triangles) {
     for (size_t i = 0; i + 2 < indices.size(); i += 3)
       triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
@@ -178,6 +178,14 @@ class GeometryReader {
 const VertexStream* VertexSet::find(const std::string& semantic) const {
   const auto found = std::ranges::find(attributes, semantic, &VertexStream::semantic);
   return found == attributes.end() ? nullptr : &*found;
+}
+
+uint64_t bytes_of_vertex(const VertexSet& set) {
+  uint64_t bytes = 0;
+  for (const VertexStream& stream : set.attributes) bytes += stream.elements.format.bytes();
+  for (const auto& target : set.targets)
+    for (const VertexStream& stream : target) bytes += stream.elements.format.bytes();
+  return bytes;
 }
 
 std::optional<PrimitiveMode> triangle_mode(const Json& primitive, const std::string& where) {

@@ -30,11 +30,14 @@ struct VertexSet {
   [[nodiscard]] const VertexStream* find(const std::string& semantic) const;
 };
 
+/// Returns the bytes of a vertex's attributes and morph targets.
+[[nodiscard]] uint64_t bytes_of_vertex(const VertexSet& set);
+
 /// A primitive of triangles.
 struct TrianglePrimitive {
   uint32_t number = 0;  ///< in its mesh
   uint32_t set = 0;     ///< its vertices in MeshGeometry::sets
-  std::vector<Triangle> triangles;
+  Buffer<Triangle> triangles;
 };
 
 /// What a mesh has of triangles. Primitives of points and lines are left out.

@@ -13,7 +13,7 @@ namespace {
 /// Smallest index that restarts primitives where indices have 16 bits.
 constexpr uint64_t restart_index_16 = 65535;
 
-Elements index_elements(const std::vector<Triangle>& triangles, uint64_t vertices) {
+Elements index_elements(const Buffer<Triangle>& triangles, uint64_t vertices) {
   const ComponentType type = vertices <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
   Elements out = zero_elements({type, 1, false}, 3 * triangles.size());
   for (size_t i = 0; i < 3 * triangles.size(); ++i) out.set_number(i, 0, triangles[i / 3][i % 3]);

@@ -9,7 +9,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-using Vertices = std::vector<RefinedVertex>;
+using Vertices = RefinedVertices;
 
 void copy_element(const Elements& from, uint32_t index, Elements& to, uint64_t at) {
   const std::string_view bytes = from.element(index);
@@ -43,20 +43,22 @@ Elements take_nearest(const Elements& input, const Vertices& vertices) {
 
 std::array<double, 3> numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
-/// Returns whether the type can store all positions.
-bool holds_positions(const ElementFormat& format, const Vertices& vertices) {
+/// Returns whether the type can store the vectors of all vertices.
+template <class VectorOf>
+bool holds_vectors(const ElementFormat& format, const Vertices& vertices, const VectorOf& vector_of) {
   if (format.type == ComponentType::float32) return true;
   const double low = lowest_number(format.type) - 0.5;
   const double high = highest_number(format.type) + 0.5;
-  return std::ranges::all_of(vertices, [&](const RefinedVertex& vertex) {
-    return std::ranges::all_of(numbers_of(to_double(vertex.position)), [&](double number) {
-      return number / format.unit() > low && number / format.unit() < high;
-    });
-  });
+  const auto fits = [&](double number) { return number / format.unit() > low && number / format.unit() < high; };
+  for (size_t i = 0; i < vertices.size(); ++i)
+    if (!std::ranges::all_of(numbers_of(vector_of(vertices[i])), fits)) return false;
+  return true;
 }
 
-Elements position_elements(const Elements& input, const Vertices& vertices) {
-  const bool keeps_format = holds_positions(input.format, vertices);
+/// Returns positions or displacements; vertices of the input keep their own.
+template <class VectorOf>
+Elements vector_elements(const Elements& input, const Vertices& vertices, const VectorOf& vector_of) {
+  const bool keeps_format = holds_vectors(input.format, vertices, vector_of);
   Elements out =
       zero_elements(keeps_format ? input.format : ElementFormat{ComponentType::float32, 3, false}, vertices.size());
   for (size_t i = 0; i < vertices.size(); ++i) {
@@ -64,7 +66,7 @@ Elements position_elements(const Elements& input, const Vertices& vertices) {
       copy_element(input, vertices[i].of.vertex[0], out, i);
       continue;
     }
-    const auto numbers = numbers_of(to_double(vertices[i].position));
+    const auto numbers = numbers_of(vector_of(vertices[i]));
     for (uint32_t c = 0; c < 3; ++c) out.set_number(i, c, numbers[c] / out.format.unit());
   }
   return out;
@@ -110,15 +112,33 @@ bool identifies(const VertexStream& stream) {
 
 Elements interpolate_stream(const VertexStream& stream, const Vertices& vertices, bool has_normals) {
   const uint32_t components = stream.elements.format.components;
-  if (stream.semantic == "POSITION") return position_elements(stream.elements, vertices);
+  if (stream.semantic == "POSITION")
+    return vector_elements(stream.elements, vertices,
+                           [](const RefinedVertex& vertex) { return to_double(vertex.position); });
   if (stream.semantic == "NORMAL" && components == 3) return normal_elements(stream.elements.format, vertices);
   if (stream.semantic == "TANGENT" && components == 4) return tangent_elements(stream.elements, vertices, has_normals);
   return identifies(stream) ? take_nearest(stream.elements, vertices) : interpolate(stream.elements, vertices);
 }
 
+Elements interpolate_target(const VertexStream& stream, const Vertices& vertices, const RefinedTarget& target) {
+  const Elements& input = stream.elements;
+  if (input.format.components == 3 && stream.semantic == "POSITION")
+    return vector_elements(input, vertices,
+                           [&](const RefinedVertex& vertex) { return target.displacement[vertex.point]; });
+  if (input.format.components != 3 || stream.semantic != "NORMAL" || target.turn.empty())
+    return interpolate(input, vertices);
+  Elements out = zero_elements(input.format, vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    const auto numbers = numbers_of(target.turn[vertices[i].point]);
+    for (uint32_t c = 0; c < 3; ++c) out.set_number(i, c, numbers[c] / input.format.unit());
+  }
+  return out;
+}
+
 }  // namespace
 
-VertexSet interpolate_vertices(const VertexSet& input, const Vertices& vertices, bool adds_normals) {
+VertexSet interpolate_vertices(const VertexSet& input, const Vertices& vertices,
+                               const std::vector<RefinedTarget>& targets, bool adds_normals) {
   VertexSet out;
   out.count = vertices.size();
   const VertexStream* normals = input.find("NORMAL");
@@ -129,10 +149,10 @@ VertexSet interpolate_vertices(const VertexSet& input, const Vertices& vertices,
   for (VertexStream& stream : interpolate_joints(input, vertices)) out.attributes.push_back(std::move(stream));
   if (normals == nullptr && adds_normals)
     out.attributes.push_back({"NORMAL", std::nullopt, normal_elements({ComponentType::float32, 3, false}, vertices)});
-  for (const auto& target : input.targets) {
+  for (size_t t = 0; t < input.targets.size(); ++t) {
     auto& streams = out.targets.emplace_back();
-    for (const VertexStream& stream : target)
-      streams.push_back({stream.semantic, stream.accessor, interpolate(stream.elements, vertices)});
+    for (const VertexStream& stream : input.targets[t])
+      streams.push_back({stream.semantic, stream.accessor, interpolate_target(stream, vertices, targets[t])});
   }
   return out;
 }

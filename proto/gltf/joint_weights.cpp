@@ -84,7 +84,7 @@ bool is_joint_stream(const VertexSet& set, const std::string& semantic) {
   return !joints.empty() && has_four(set.find(joints)) && has_four(set.find(weights));
 }
 
-std::vector<VertexStream> interpolate_joints(const VertexSet& input, const std::vector<RefinedVertex>& vertices) {
+std::vector<VertexStream> interpolate_joints(const VertexSet& input, const RefinedVertices& vertices) {
   const std::vector<Pair> pairs = pairs_of(input);
   std::vector<VertexStream> out;
   for (const Pair& pair : pairs)

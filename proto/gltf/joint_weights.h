@@ -13,7 +13,6 @@ namespace papilio::proto::gltf {
 /// Interpolates joints and weights of all pairs JOINTS_n, WEIGHTS_n together: weights are added joint by joint, the
 /// largest are kept, as many as the vertices have places, and divided by their sum. Integers add up to exactly their
 /// largest number. Places without a weight name joint 0.
-[[nodiscard]] std::vector<VertexStream> interpolate_joints(const VertexSet& input,
-                                                           const std::vector<RefinedVertex>& vertices);
+[[nodiscard]] std::vector<VertexStream> interpolate_joints(const VertexSet& input, const RefinedVertices& vertices);
 
 }  // namespace papilio::proto::gltf

@@ -1,5 +1,6 @@
 #include "proto/gltf/scene_mesh.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "proto/problem.h"
@@ -18,6 +19,13 @@ std::optional<Surface> surface_of(const MeshGeometry& geometry, uint32_t number)
 }
 
 }  // namespace
+
+double SceneMesh::scale() const {
+  double largest = 0;
+  for (const auto& of_showing : maps)
+    for (const Affine& map : of_showing) largest = std::max(largest, largest_scale(map));
+  return largest;
+}
 
 SceneMeshes read_meshes(Views& views, const Limits& limits) {
   const Scene scene = read_scene(views);

@@ -16,11 +16,11 @@ struct SceneMesh {
   uint32_t number = 0;
   MeshGeometry geometry;
   Surface surface;
-  double diagonal = 0;                             ///< of its box
-  std::vector<std::vector<Affine>> maps;           ///< by showing and joint
-  std::optional<Options> options{};                ///< nothing: it stays as it is
-  std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement
+  double diagonal = 0;                    ///< of its box
+  std::vector<std::vector<Affine>> maps;  ///< by showing and joint
 
+  /// Returns the largest scale at which the mesh is shown.
+  [[nodiscard]] double scale() const;
   [[nodiscard]] uint64_t coarse_faces() const { return surface.mesh.topology.face_count(); }
 };
 

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "proto/error_translation.h"
 #include "proto/gltf/document_writer.h"
-#include "proto/gltf/geometry_writer.h"
-#include "proto/gltf/interpolation.h"
-#include "proto/gltf/scene_mesh.h"
+#include "proto/gltf/mesh_options.h"
+#include "proto/gltf/refined_geometry.h"
 #include "proto/problem.h"
 #include "proto/unreached.h"
 
@@ -19,19 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Bytes that a prepared mesh may hold while a budget is divided.
+/// Bytes that the prepared meshes of one request may hold.
 constexpr uint64_t prepared_bytes = uint64_t{256} << 20;
-
-double milliseconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-void add(BuildReport& sum, const BuildReport& more) {
-  for (auto member : {&BuildReport::welded_points, &BuildReport::isolated_points, &BuildReport::degenerate_faces,
-                      &BuildReport::repeated_faces, &BuildReport::boundary_edges, &BuildReport::non_manifold_edges,
-                      &BuildReport::misoriented_edges, &BuildReport::pinched_vertices})
-    sum.*member += more.*member;
-}
 
 /// Order in which a reason to stop tells more than another.
 int rank_of(StopReason reason) {
@@ -48,28 +37,17 @@ int rank_of(StopReason reason) {
   return 3;
 }
 
-uint64_t bytes_of_vertex(const VertexSet& set) {
-  uint64_t bytes = 0;
-  for (const VertexStream& stream : set.attributes) bytes += stream.elements.format.bytes();
-  for (const auto& target : set.targets)
-    for (const VertexStream& stream : target) bytes += stream.elements.format.bytes();
-  return bytes;
-}
-
-/// Returns an upper bound of the memory for parting a refined mesh into primitives and writing them.
-OutputBytes output_bytes(const SceneMesh& mesh) {
-  constexpr uint64_t bytes_of_parting = 160;  // of a point: what points_of, its order and RefinedVertex take
-  OutputBytes bytes{.face = 36, .point = bytes_of_parting};
-  for (const VertexSet& set : mesh.geometry.sets)
-    bytes.point = std::max(bytes.point, 2 * bytes_of_vertex(set) + bytes_of_parting);
-  return bytes;
-}
+/// How one mesh of the scene is refined.
+struct MeshRun {
+  std::optional<Options> options{};                ///< nothing: it stays as it is
+  std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement, where the scene is not shared
+};
 
 /// Returns how many faces a mesh will have at least: all of the last level, where the refinement is uniform.
-uint64_t least_faces(const SceneMesh& mesh) {
-  const bool is_uniform = mesh.options && mesh.options->scheme == Scheme::red_green && mesh.options->levels > 0 &&
-                          mesh.options->max_faces == 0 && !uses_hierarchy(*mesh.options);
-  return is_uniform ? mesh.coarse_faces() << (2 * mesh.options->levels) : mesh.coarse_faces();
+uint64_t least_faces(const SceneMesh& mesh, const std::optional<Options>& options) {
+  const bool is_uniform = options && options->scheme == Scheme::red_green && options->levels > 0 &&
+                          options->max_faces == 0 && !uses_hierarchy(*options);
+  return is_uniform ? mesh.coarse_faces() << (2 * options->levels) : mesh.coarse_faces();
 }
 
 void require_supported(const Parameters& parameters) {
@@ -83,66 +61,78 @@ void require_supported(const Parameters& parameters) {
 class SceneRefinement::State {
  public:
   State(std::string_view bytes, const Parameters& parameters, const Limits& limits)
-      : parameters_(parameters), limits_(limits), document_(read_document(bytes)), views_(document_) {
+      : parameters_(parameters), limits_(limits) {
     require_supported(parameters);
-    scene_ = translate_errors([&] { return read_meshes(views_, limits); });
-    options_ = options_for(parameters, scene_.box);
-    options_.memory_limit = limits.max_compute_bytes;
-    options_.edges = parameters.normals;
-    scene_diagonal_ = scene_.box.diagonal();
-    for (SceneMesh& mesh : scene_.meshes) {
-      mesh.options = options_of_mesh(options_, scene_diagonal_, {mesh.surface.mesh, mesh.diagonal, mesh.maps});
-      if (mesh.options) mesh.options->max_faces = 0;
-    }
-    require_room();
-    times_.decode = milliseconds_since(begin_);
+    own_ = decode_scene(bytes, limits, parameters.splits_instances);
+    prepare();
+    times_.decode = lap();
+  }
+  State(std::shared_ptr<const SharedScene> shared, const Parameters& parameters, const Limits& limits)
+      : parameters_(parameters), limits_(limits), shared_(std::move(shared)) {
+    require_supported(parameters);
+    prepare();
+    (void)lap();
   }
 
-  RefinedScene run(const RefinementHooks& hooks) {
+  EncodedLevel run(const RefinementHooks& hooks) {
     hooks_ = &hooks;
     divide_budget();
-    std::vector<NewGeometry> replaced;
-    Statistics statistics;
-    add_unchanged(statistics);
-    for (SceneMesh& mesh : scene_.meshes) {
-      add(statistics.found, mesh.surface.found);
-      refine_mesh(mesh, statistics, replaced);
+    if (!hooks.on_level) return make(options_.levels);
+    std::optional<EncodedLevel> latest;
+    for (int level = 0; level < options_.levels; ++level) {
+      EncodedLevel made = make(level);
+      if (made.statistics.level < level) break;
+      if (latest) hooks.on_level(*latest);
+      latest = as_intermediate(std::move(made));
     }
-    times_.refine = milliseconds_since(begin_) - times_.decode;
-    RefinedScene made{write(std::move(replaced))};
-    times_.encode = milliseconds_since(begin_) - times_.decode - times_.refine;
-    made.statistics = std::move(statistics);
-    made.statistics.times = times_;
-    made.statistics.unreached = unreached_text(options_, made.statistics);
-    made.statistics.shape = shape_text(shape_);
-    return made;
+    EncodedLevel last = make(options_.levels);
+    if (latest && latest->statistics.level < last.statistics.level) hooks.on_level(*latest);
+    hooks.on_level(last);
+    return last;
   }
 
-  [[nodiscard]] const SceneMeshes& scene() const { return scene_; }
+  [[nodiscard]] const DecodedScene& decoded() const { return shared_ ? shared_->decoded() : own_; }
 
  private:
-  [[nodiscard]] uint64_t coarse_faces() const {
-    uint64_t faces = scene_.unchanged_faces;
-    for (const SceneMesh& mesh : scene_.meshes) faces += mesh.coarse_faces();
-    return faces;
+  /// Returns the milliseconds since the last call.
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    const double milliseconds = std::chrono::duration<double, std::milli>(now - last_lap_).count();
+    last_lap_ = now;
+    return milliseconds;
+  }
+
+  [[nodiscard]] const std::vector<SceneMesh>& meshes() const { return decoded().scene.meshes; }
+
+  void prepare() {
+    options_ = options_for(parameters_, decoded().scene.box);
+    options_.memory_limit = limits_.max_compute_bytes;
+    options_.edges = parameters_.normals;
+    scene_diagonal_ = decoded().scene.box.diagonal();
+    for (const SceneMesh& mesh : meshes()) {
+      auto& options = runs_.emplace_back().options;
+      options = options_of_mesh(options_, scene_diagonal_, {mesh.surface.mesh, mesh.diagonal, mesh.maps});
+      if (options) options->max_faces = 0;
+    }
+    coarse_faces_ = decoded().coarse_faces();
+    require_room();
   }
 
   /// Throws if the faces of all meshes are bound to exceed a limit.
   void require_room() {
-    const uint64_t coarse = coarse_faces();
-    if (options_.max_faces > 0 && coarse > options_.max_faces)
-      throw Problem(Code::result_too_large, "The scene has " + std::to_string(coarse) +
+    if (options_.max_faces > 0 && coarse_faces_ > options_.max_faces)
+      throw Problem(Code::result_too_large, "The scene has " + std::to_string(coarse_faces_) +
                                                 " faces, more than max_faces, which is " +
                                                 std::to_string(options_.max_faces) + ". Raise max_faces.");
-    uint64_t least = scene_.unchanged_faces;
-    for (SceneMesh& mesh : scene_.meshes) {
-      if (mesh.options) {
-        mesh.options->face_limit = limits_.max_output_faces;
-        mesh.options->output = output_bytes(mesh);
-        translate_errors([&] { check_room(mesh.surface.mesh, *mesh.options); });
+    uint64_t least = decoded().scene.unchanged_faces;
+    for (size_t m = 0; m < runs_.size(); ++m) {
+      auto& options = runs_[m].options;
+      if (options) {
+        options->face_limit = limits_.max_output_faces;
+        options->output = output_bytes(meshes()[m]);
+        translate_errors([&] { check_room(meshes()[m].surface.mesh, *options); });
       }
-      least += least_faces(mesh);
-      remaining_coarse_ += mesh.coarse_faces();
+      least += least_faces(meshes()[m], options);
     }
     if (least > limits_.max_output_faces)
       throw Problem(Code::result_too_large, "The refined scene would have at least " + std::to_string(least) +
@@ -172,35 +162,38 @@ class SceneRefinement::State {
             .threads = hooks_->threads};
   }
 
-  Result refine_prepared(SceneMesh& mesh, const Options& options) {
-    if (!uses_hierarchy(options)) return papilio::refine(mesh.surface.mesh, options, core_hooks());
-    if (!mesh.prepared)
-      mesh.prepared = std::make_shared<const PreparedMesh>(mesh.surface.mesh, options, prepared_bytes);
-    return papilio::refine(*mesh.prepared, options, core_hooks());
+  /// Refines a mesh, with what earlier refinements of it have prepared where it is refined several times.
+  Result refine_mesh(size_t m, const Options& options) {
+    const Mesh& coarse = meshes()[m].surface.mesh;
+    const bool is_repeated = shared_ || hooks_->on_level || options_.max_faces > 0;
+    if (!is_repeated || !uses_hierarchy(options)) return papilio::refine(coarse, options, core_hooks());
+    if (shared_) return papilio::refine(*shared_->for_rules_of(m, options), options, core_hooks());
+    if (!runs_[m].prepared) {
+      const double share = static_cast<double>(meshes()[m].coarse_faces()) / static_cast<double>(coarse_faces_);
+      runs_[m].prepared = std::make_shared<const PreparedMesh>(
+          coarse, options, static_cast<uint64_t>(share * static_cast<double>(prepared_bytes)));
+    }
+    return papilio::refine(*runs_[m].prepared, options, core_hooks());
   }
 
   /// Returns the options of a mesh at a tolerance of the scene.
-  static Options at_tolerance(const SceneMesh& mesh, double tolerance) {
-    Options options = *mesh.options;
-    if (tolerance <= 0) return options;
-    double scale = 0;
-    for (const auto& maps : mesh.maps)
-      for (const Affine& map : maps) scale = std::max(scale, largest_scale(map));
-    options.tolerance = std::clamp(tolerance / (scale * mesh.diagonal), options.tolerance, 1.0);
+  [[nodiscard]] Options at_tolerance(size_t m, double tolerance) const {
+    Options options = *runs_[m].options;
+    if (tolerance > 0)
+      options.tolerance = std::clamp(tolerance / (meshes()[m].scale() * meshes()[m].diagonal), options.tolerance, 1.0);
     return options;
   }
 
   /// Faces of all meshes at a tolerance of the scene; of a mesh beyond the budget, a number above it.
   uint64_t faces_at(double tolerance, std::vector<uint64_t>& faces) {
-    uint64_t sum = scene_.unchanged_faces;
-    for (size_t m = 0; m < scene_.meshes.size(); ++m) {
-      SceneMesh& mesh = scene_.meshes[m];
-      faces[m] = mesh.coarse_faces();
-      if (mesh.options) {
-        Options options = at_tolerance(mesh, tolerance);
+    uint64_t sum = decoded().scene.unchanged_faces;
+    for (size_t m = 0; m < runs_.size(); ++m) {
+      faces[m] = meshes()[m].coarse_faces();
+      if (runs_[m].options) {
+        Options options = at_tolerance(m, tolerance);
         options.max_faces = options_.max_faces;
         options.measure_error = false;
-        const Result result = translate_errors([&] { return refine_prepared(mesh, options); });
+        const Result result = translate_errors([&] { return refine_mesh(m, options); });
         faces[m] =
             result.stop_reason == StopReason::budget ? options_.max_faces + 1 : result.mesh.topology.face_count();
       }
@@ -213,14 +206,11 @@ class SceneRefinement::State {
   /// can use, in their order.
   void divide_budget() {
     if (options_.max_faces == 0) return;
-    std::vector<SceneMesh*> refined;
-    for (SceneMesh& mesh : scene_.meshes)
-      if (mesh.options) refined.push_back(&mesh);
-    std::vector<uint64_t> faces(scene_.meshes.size());
-    std::vector<uint64_t> best(scene_.meshes.size());
-    uint64_t best_sum = coarse_faces();
-    for (size_t m = 0; m < best.size(); ++m) best[m] = scene_.meshes[m].coarse_faces();
-    if (refined.size() > 1)
+    std::vector<uint64_t> faces(runs_.size());
+    std::vector<uint64_t> best(runs_.size());
+    uint64_t best_sum = coarse_faces_;
+    for (size_t m = 0; m < best.size(); ++m) best[m] = meshes()[m].coarse_faces();
+    if (std::ranges::count_if(runs_, [](const MeshRun& run) { return run.options.has_value(); }) > 1)
       (void)tolerance_within_budget(options_.max_faces, scene_diagonal_, [&](double tolerance) {
         const uint64_t sum = faces_at(tolerance, faces);
         if (sum <= options_.max_faces && sum >= best_sum) std::tie(best, best_sum) = std::pair(faces, sum);
@@ -228,115 +218,123 @@ class SceneRefinement::State {
       });
     budget_left_ = options_.max_faces - best_sum;
     for (size_t m = 0; m < best.size(); ++m)
-      if (scene_.meshes[m].options) scene_.meshes[m].options->max_faces = best[m];
+      if (runs_[m].options) runs_[m].options->max_faces = best[m];
   }
 
-  void add_unchanged(Statistics& statistics) const {
-    statistics.faces = scene_.unchanged_faces;
-    statistics.stop_reason = StopReason::converged;
-    if (options_.view) statistics.error_pixels = 0;
+  /// A scene in the making.
+  struct Making {
+    Statistics statistics{};
+    std::vector<NewGeometry> replaced{};
+    uint64_t budget_left = 0;       ///< faces of `max_faces` that no mesh has yet
+    uint64_t remaining_coarse = 0;  ///< faces of meshes that are not refined yet
+    uint64_t held_bytes = 0;        ///< of refined meshes
+    ShapeReport shape{};
+  };
+
+  /// Refines each mesh to at most so many levels, and writes the scene.
+  EncodedLevel make(int levels) {
+    Making making{.budget_left = budget_left_, .remaining_coarse = coarse_faces_ - decoded().scene.unchanged_faces};
+    making.statistics.faces = decoded().scene.unchanged_faces;
+    making.statistics.stop_reason = StopReason::converged;
+    making.statistics.found = decoded().found();
+    if (options_.view) making.statistics.error_pixels = 0;
+    for (size_t m = 0; m < runs_.size(); ++m) add_mesh(m, levels, making);
+    times_.refine += lap();
+    EncodedLevel made{write(std::move(making.replaced)), std::move(making.statistics)};
+    times_.encode += lap();
+    made.statistics.times = times_;
+    made.statistics.unreached = unreached_text(options_, made.statistics);
+    made.statistics.shape = shape_text(making.shape);
+    return made;
   }
 
-  static void leave(const SceneMesh& mesh, Statistics& statistics) {
-    statistics.vertices += mesh.surface.mesh.topology.vertex_count;
-    statistics.faces += mesh.coarse_faces();
+  /// Returns a level without what holds of the last one alone.
+  static EncodedLevel as_intermediate(EncodedLevel level) {
+    level.statistics.stop_reason = std::nullopt;
+    level.statistics.error_pixels = std::nullopt;
+    level.statistics.unreached.clear();
+    level.statistics.shape.clear();
+    return level;
   }
 
-  void refine_mesh(SceneMesh& mesh, Statistics& statistics, std::vector<NewGeometry>& replaced) {
+  void add_mesh(size_t m, int levels, Making& making) {
     poll();
-    remaining_coarse_ -= mesh.coarse_faces();
-    if (!mesh.options) {
-      leave(mesh, statistics);
-      if (parameters_.compression == Compression::same) return;
-      replaced.push_back({mesh.number, mesh.geometry, quantization_box(mesh.surface.mesh.positions)});
+    const SceneMesh& mesh = meshes()[m];
+    making.remaining_coarse -= mesh.coarse_faces();
+    if (!runs_[m].options) {
+      making.statistics.vertices += mesh.surface.mesh.topology.vertex_count;
+      making.statistics.faces += mesh.coarse_faces();
+      if (parameters_.compression != Compression::same) making.replaced.push_back(unrefined_geometry(mesh));
       return;
     }
-    Options options = *mesh.options;
-    if (options_.max_faces > 0) {
-      options.max_faces += budget_left_;
-      budget_left_ = options.max_faces;
-    }
-    options.face_limit =
-        limits_.max_output_faces - std::min(limits_.max_output_faces, statistics.faces + remaining_coarse_);
-    if (options.memory_limit > 0) options.memory_limit -= std::min(options.memory_limit - 1, held_bytes_);
-    const Result result = translate_errors([&] {
-      return mesh.prepared ? papilio::refine(*mesh.prepared, options, core_hooks())
-                           : papilio::refine(mesh.surface.mesh, options, core_hooks());
-    });
-    mesh.prepared.reset();
-    if (options_.max_faces > 0) budget_left_ -= result.mesh.topology.face_count();
-    count_result(mesh, result, statistics);
+    Result result = translate_errors([&] { return refine_mesh(m, options_within(m, levels, making)); });
+    if (options_.max_faces > 0) making.budget_left -= result.mesh.topology.face_count();
+    count_result(mesh, result, making);
     const bool is_new = result.levels > 0 || parameters_.normals || parameters_.compression != Compression::same;
     if (is_new) {
-      replaced.push_back(new_geometry(mesh, result));
-      for (const VertexSet& set : replaced.back().geometry.sets) held_bytes_ += set.count * bytes_of_vertex(set);
+      making.replaced.push_back(refined_geometry(mesh, std::move(result), parameters_.normals, [this] { poll(); }));
+      for (const VertexSet& set : making.replaced.back().geometry.sets)
+        making.held_bytes += set.count * bytes_of_vertex(set);
     }
-    mesh.geometry = {};
-    mesh.surface = {};
+    if (!shared_ && !hooks_->on_level) release(m);
   }
 
-  void count_result(const SceneMesh& mesh, const Result& result, Statistics& statistics) {
+  /// Returns the options of a mesh within what the meshes before it have left.
+  [[nodiscard]] Options options_within(size_t m, int levels, Making& making) const {
+    Options options = *runs_[m].options;
+    options.levels = std::min(options.levels, levels);
+    if (options_.max_faces > 0) {
+      options.max_faces += making.budget_left;
+      making.budget_left = options.max_faces;
+    }
+    options.face_limit = limits_.max_output_faces -
+                         std::min(limits_.max_output_faces, making.statistics.faces + making.remaining_coarse);
+    if (options.memory_limit > 0) options.memory_limit -= std::min(options.memory_limit - 1, making.held_bytes);
+    return options;
+  }
+
+  void count_result(const SceneMesh& mesh, const Result& result, Making& making) const {
+    Statistics& statistics = making.statistics;
     statistics.level = std::max(statistics.level, result.levels);
     statistics.vertices += result.mesh.topology.vertex_count;
     statistics.faces += result.mesh.topology.face_count();
     if (rank_of(result.stop_reason) > rank_of(*statistics.stop_reason)) statistics.stop_reason = result.stop_reason;
-    double scale = 0;
-    for (const auto& maps : mesh.maps)
-      for (const Affine& map : maps) scale = std::max(scale, largest_scale(map));
     if (scene_diagonal_ > 0)
-      statistics.error = std::max(statistics.error, result.error * mesh.diagonal * scale / scene_diagonal_);
+      statistics.error = std::max(statistics.error, result.error * mesh.diagonal * mesh.scale() / scene_diagonal_);
     if (statistics.error_pixels) statistics.error_pixels = std::max(*statistics.error_pixels, result.error_pixels);
-    shape_.components += result.shape.components;
-    shape_.mechanical += result.shape.mechanical;
-    shape_.creases += result.shape.creases;
+    making.shape.components += result.shape.components;
+    making.shape.mechanical += result.shape.mechanical;
+    making.shape.creases += result.shape.creases;
   }
 
-  /// Returns the geometry of a refined mesh. Primitives that have lost all triangles are left out, and stay as they
-  /// are.
-  NewGeometry new_geometry(const SceneMesh& mesh, const Result& result) {
-    Mesh refined = result.mesh;
-    std::optional<size_t> normals;
-    if (mesh.surface.has_normals) {
-      normals = 1;
-      if (result.levels > 0) renew_normals(refined, *normals);
-    } else if (parameters_.normals) {
-      normals = 1;
-      add_normals(refined);
-    }
-    poll();
-    const RefinedPrimitives parts = part_primitives(mesh.geometry, mesh.surface, refined, normals);
-    NewGeometry made{mesh.number, {}, quantization_box(mesh.surface.mesh.positions)};
-    for (size_t s = 0; s < mesh.geometry.sets.size(); ++s)
-      made.geometry.sets.push_back(interpolate_vertices(mesh.geometry.sets[s], parts.sets[s], parameters_.normals));
-    for (size_t p = 0; p < mesh.geometry.primitives.size(); ++p)
-      if (!parts.triangles[p].empty())
-        made.geometry.primitives.push_back(
-            {mesh.geometry.primitives[p].number, mesh.geometry.primitives[p].set, parts.triangles[p]});
-    return made;
+  /// Frees a mesh that is not asked for again.
+  void release(size_t m) {
+    runs_[m].prepared.reset();
+    own_.scene.meshes[m].geometry = {};
+    own_.scene.meshes[m].surface = {};
   }
 
   std::string write(std::vector<NewGeometry> replaced) {
     const GeometryEncoding encoding{parameters_.compression, parameters_.output, [this] { poll(); }};
+    Document document = decoded().document;
     BufferPieces pieces = replaced.empty() && parameters_.compression == Compression::same
-                              ? unchanged_pieces(document_)
-                              : write_geometry(document_, std::move(replaced), encoding);
+                              ? unchanged_pieces(document)
+                              : write_geometry(document, std::move(replaced), encoding);
     poll();
-    return write_document(document_, std::move(pieces), FileKind::glb).document;
+    return write_document(document, std::move(pieces), FileKind::glb).document;
   }
 
-  Clock::time_point begin_ = Clock::now();
+  Clock::time_point begin_ = Clock::now(), last_lap_ = begin_;
   Clock::duration waited_{};  ///< time in `RefinementHooks::cancelled`
   Parameters parameters_;
   Limits limits_;
-  Document document_;
-  Views views_;
-  SceneMeshes scene_;
-  Options options_;  ///< for the scene
+  std::shared_ptr<const SharedScene> shared_;  ///< null: `own_` is used
+  DecodedScene own_;
+  std::vector<MeshRun> runs_;  ///< as SceneMeshes::meshes
+  Options options_;            ///< for the scene
   double scene_diagonal_ = 0;
-  uint64_t budget_left_ = 0;       ///< faces of `max_faces` that no mesh has yet
-  uint64_t remaining_coarse_ = 0;  ///< faces of meshes that are not refined yet
-  uint64_t held_bytes_ = 0;        ///< of refined meshes
-  ShapeReport shape_;
+  uint64_t coarse_faces_ = 0;
+  uint64_t budget_left_ = 0;  ///< faces of `max_faces` that no mesh takes at the tolerance of all
   StageTimes times_;
   const RefinementHooks* hooks_ = nullptr;
 };
@@ -344,27 +342,23 @@ class SceneRefinement::State {
 SceneRefinement::SceneRefinement(std::string_view bytes, const Parameters& parameters, const Limits& limits)
     : state_(std::make_unique<State>(bytes, parameters, limits)) {}
 
+SceneRefinement::SceneRefinement(std::shared_ptr<const std::string> bytes, const Parameters& parameters,
+                                 const Limits& limits)
+    : bytes_(std::move(bytes)), state_(std::make_unique<State>(*bytes_, parameters, limits)) {}
+
+SceneRefinement::SceneRefinement(std::shared_ptr<const SharedScene> shared, const Parameters& parameters,
+                                 const Limits& limits)
+    : state_(std::make_unique<State>(std::move(shared), parameters, limits)) {}
+
 SceneRefinement::~SceneRefinement() = default;
 
-uint64_t SceneRefinement::coarse_faces() const {
-  uint64_t faces = state_->scene().unchanged_faces;
-  for (const SceneMesh& mesh : state_->scene().meshes) faces += mesh.coarse_faces();
-  return faces;
-}
+uint64_t SceneRefinement::coarse_faces() const { return state_->decoded().coarse_faces(); }
 
-uint64_t SceneRefinement::coarse_vertices() const {
-  uint64_t vertices = 0;
-  for (const SceneMesh& mesh : state_->scene().meshes) vertices += mesh.surface.mesh.topology.vertex_count;
-  return vertices;
-}
+uint64_t SceneRefinement::coarse_vertices() const { return state_->decoded().coarse_vertices(); }
 
-BuildReport SceneRefinement::found() const {
-  BuildReport sum;
-  for (const SceneMesh& mesh : state_->scene().meshes) add(sum, mesh.surface.found);
-  return sum;
-}
+BuildReport SceneRefinement::found() const { return state_->decoded().found(); }
 
-RefinedScene SceneRefinement::run(const RefinementHooks& hooks) {
+EncodedLevel SceneRefinement::run(const RefinementHooks& hooks) {
   return translate_errors([&] { return state_->run(hooks); });
 }
 

@@ -1,6 +1,7 @@
 #include "proto/gltf/surface.h"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -18,20 +19,29 @@ struct SetVertices {
   Buffer<Vec3f> positions;
   std::vector<uint32_t> equal;
   const Elements* normals = nullptr;
-
-  [[nodiscard]] Vec3d normal(uint32_t vertex) const {
-    if (normals == nullptr) return {};
-    const double unit = normals->format.unit();
-    return {normals->number(vertex, 0) * unit, normals->number(vertex, 1) * unit, normals->number(vertex, 2) * unit};
-  }
+  std::vector<const Elements*> displacements{};  ///< by morph target
 };
+
+/// Returns the vector at a vertex; zero where there are no elements.
+Vec3d vector_at(const Elements* elements, uint32_t vertex) {
+  if (elements == nullptr) return {};
+  const double unit = elements->format.unit();
+  return {elements->number(vertex, 0) * unit, elements->number(vertex, 1) * unit, elements->number(vertex, 2) * unit};
+}
+
+const Elements* find_vectors(const std::vector<VertexStream>& streams, std::string_view semantic) {
+  const auto found = std::ranges::find(streams, semantic, &VertexStream::semantic);
+  return found != streams.end() && found->elements.format.components == 3 ? &found->elements : nullptr;
+}
 
 std::vector<SetVertices> vertices_of_sets(const MeshGeometry& geometry) {
   std::vector<SetVertices> sets;
   for (const VertexSet& set : geometry.sets) {
-    const VertexStream* normals = set.find("NORMAL");
-    const bool has_normals = normals != nullptr && normals->elements.format.components == 3;
-    sets.push_back({vertex_positions(set), equal_vertices(set), has_normals ? &normals->elements : nullptr});
+    SetVertices& vertices = sets.emplace_back();
+    vertices.positions = vertex_positions(set);
+    vertices.equal = equal_vertices(set);
+    vertices.normals = find_vectors(set.attributes, "NORMAL");
+    for (const auto& target : set.targets) vertices.displacements.push_back(find_vectors(target, "POSITION"));
   }
   return sets;
 }
@@ -58,27 +68,6 @@ Combination combination_of(const Triangle& vertices, double second, double third
   return out;
 }
 
-/// A point of the refined surface in the set of its primitive.
-struct SetPoint {
-  uint32_t set = none;
-  uint32_t vertex = 0;  ///< of the refined mesh
-  Combination of;
-};
-
-std::vector<SetPoint> points_of(const MeshGeometry& geometry, const Surface& surface, const Mesh& refined) {
-  std::vector<SetPoint> points(refined.attributes.point_count);
-  const std::vector<double>& values = refined.attributes.attributes[provenance].values;
-  for (uint32_t h = 0; h < refined.topology.half_edge_count(); ++h) {
-    const uint32_t p = refined.attributes.point[h];
-    if (points[p].set != none) continue;
-    const double* numbers = &values[p * provenance_numbers];
-    const auto face = static_cast<size_t>(numbers[0]);
-    points[p] = {geometry.primitives[surface.primitive_of[face]].set, refined.topology.origin[h],
-                 combination_of(surface.vertices_of[face], numbers[1], numbers[2])};
-  }
-  return points;
-}
-
 }  // namespace
 
 uint32_t Combination::nearest() const {
@@ -89,9 +78,13 @@ Surface join_primitives(const MeshGeometry& geometry) {
   const std::vector<SetVertices> sets = vertices_of_sets(geometry);
   Surface out;
   out.has_normals = std::ranges::any_of(sets, [](const SetVertices& set) { return set.normals != nullptr; });
+  for (const SetVertices& set : sets) out.target_count = std::max(out.target_count, set.displacements.size());
   TriangleMesh input;
-  input.attributes.resize(out.has_normals ? 2 : 1);
-  for (Attribute& attribute : input.attributes) attribute.components = 3;
+  input.attributes.resize(out.first_displacement() + out.target_count);
+  for (size_t a = 0; a < input.attributes.size(); ++a) {
+    input.attributes[a].components = 3;
+    input.attributes[a].is_displacement = a >= out.first_displacement();
+  }
   if (out.has_normals) input.attributes[1].unit_length = true;
   for (uint32_t p = 0; p < geometry.primitives.size(); ++p) {
     const SetVertices& set = sets[geometry.primitives[p].set];
@@ -100,7 +93,10 @@ Surface join_primitives(const MeshGeometry& geometry) {
       const auto first = static_cast<uint32_t>(input.positions.size());
       for (const uint32_t vertex : triangle) {
         input.positions.push_back(set.positions[vertex]);
-        if (out.has_normals) append_numbers(input.attributes[1].values, set.normal(vertex));
+        if (out.has_normals) append_numbers(input.attributes[1].values, vector_at(set.normals, vertex));
+        for (size_t t = 0; t < out.target_count; ++t)
+          append_numbers(input.attributes[out.first_displacement() + t].values,
+                         vector_at(t < set.displacements.size() ? set.displacements[t] : nullptr, vertex));
       }
       for (const Vec3d place : {Vec3d{face, 0, 0}, Vec3d{face, 1, 0}, Vec3d{face, 0, 1}})
         append_numbers(input.attributes[provenance].values, place);
@@ -114,37 +110,77 @@ Surface join_primitives(const MeshGeometry& geometry) {
   return out;
 }
 
-RefinedPrimitives part_primitives(const MeshGeometry& geometry, const Surface& surface, const Mesh& refined,
-                                  std::optional<size_t> normals) {
-  const std::vector<SetPoint> points = points_of(geometry, surface, refined);
-  std::vector<uint32_t> order(points.size());
-  for (uint32_t p = 0; p < order.size(); ++p) order[p] = p;
-  const auto key = [&](uint32_t p) { return std::tie(points[p].set, points[p].vertex, points[p].of); };
-  std::ranges::sort(order, [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+RefinedPoints::RefinedPoints(const MeshGeometry& geometry, const Surface& surface, const Mesh& refined,
+                             std::optional<size_t> normals)
+    : geometry_(geometry),
+      surface_(surface),
+      refined_(refined),
+      normals_(normals),
+      corner_(refined.attributes.point_count, none) {
+  for (uint32_t h = refined.topology.half_edge_count(); h-- > 0;) corner_[refined.attributes.point[h]] = h;
+}
 
-  RefinedPrimitives out{.sets = std::vector<std::vector<RefinedVertex>>(geometry.sets.size())};
-  std::vector<uint32_t> number(points.size());  // of each point in its set
-  for (size_t i = 0; i < order.size(); ++i) {
-    const SetPoint& point = points[order[i]];
-    if (point.set == none) continue;
-    std::vector<RefinedVertex>& set = out.sets[point.set];
-    if (i == 0 || key(order[i - 1]) != key(order[i])) {
-      RefinedVertex vertex{.of = point.of, .position = refined.positions[point.vertex], .normal = {0, 0, 1}};
-      if (normals) {
-        const double* n = &refined.attributes.attributes[*normals].values[size_t{3} * order[i]];
-        vertex.normal = {n[0], n[1], n[2]};
-      }
-      set.push_back(vertex);
-    }
-    number[order[i]] = static_cast<uint32_t>(set.size() - 1);
+const double* RefinedPoints::provenance_of(uint32_t point) const {
+  return &refined_.attributes.attributes[provenance].values[size_t{point} * provenance_numbers];
+}
+
+uint32_t RefinedPoints::primitive(uint32_t half_edge) const {
+  return surface_.primitive_of[static_cast<size_t>(*provenance_of(refined_.attributes.point[half_edge]))];
+}
+
+uint32_t RefinedPoints::set(uint32_t point) const { return geometry_.primitives[primitive(corner_[point])].set; }
+
+Combination RefinedPoints::combination(uint32_t point) const {
+  const double* numbers = provenance_of(point);
+  return combination_of(surface_.vertices_of[static_cast<size_t>(numbers[0])], numbers[1], numbers[2]);
+}
+
+RefinedVertex RefinedPoints::refined_vertex(uint32_t point) const {
+  RefinedVertex vertex{.of = combination(point),
+                       .position = refined_.positions[this->vertex(point)],
+                       .normal = {0, 0, 1},
+                       .point = point};
+  if (normals_) {
+    const double* n = &refined_.attributes.attributes[*normals_].values[size_t{3} * point];
+    vertex.normal = {n[0], n[1], n[2]};
   }
-  out.triangles.resize(geometry.primitives.size());
-  const std::vector<double>& values = refined.attributes.attributes[provenance].values;
-  for (uint32_t f = 0; f < refined.topology.face_count(); ++f) {
-    const uint32_t* corner = &refined.attributes.point[size_t{3} * f];
-    const auto coarse_face = static_cast<size_t>(values[corner[0] * provenance_numbers]);
-    out.triangles[surface.primitive_of[coarse_face]].push_back(
-        {number[corner[0]], number[corner[1]], number[corner[2]]});
+  return vertex;
+}
+
+RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoints& points, const Mesh& refined) {
+  RefinedPrimitives out{.sets = std::vector<RefinedVertices>(geometry.sets.size())};
+  Buffer<uint32_t> order;  // by set and vertex; those of a vertex by what they are made of
+  order.reserve(points.count());
+  for (uint32_t p = 0; p < points.count(); ++p)
+    if (points.is_used(p)) order.push_back(p);
+  const auto place = [&](uint32_t p) { return std::pair(points.set(p), points.vertex(p)); };
+  std::ranges::sort(order, [&](uint32_t a, uint32_t b) {
+    const auto at_a = place(a);
+    const auto at_b = place(b);
+    if (at_a != at_b) return at_a < at_b;
+    const Combination of_a = points.combination(a);
+    const Combination of_b = points.combination(b);
+    return of_a != of_b ? of_a < of_b : a < b;
+  });
+
+  Buffer<uint32_t> number(points.count());  // of each point in its set
+  for (size_t i = 0; i < order.size(); ++i) {
+    const uint32_t p = order[i];
+    RefinedVertices& set = out.sets[points.set(p)];
+    set.points = &points;
+    const bool repeats =
+        i > 0 && place(order[i - 1]) == place(p) && points.combination(order[i - 1]) == points.combination(p);
+    if (!repeats) set.numbers.push_back(p);
+    number[p] = static_cast<uint32_t>(set.size() - 1);
+  }
+
+  std::vector<size_t> counts(geometry.primitives.size());
+  for (uint32_t h = 0; h < refined.topology.half_edge_count(); h += 3) ++counts[points.primitive(h)];
+  out.triangles.resize(counts.size());
+  for (size_t p = 0; p < counts.size(); ++p) out.triangles[p].reserve(counts[p]);
+  for (uint32_t h = 0; h < refined.topology.half_edge_count(); h += 3) {
+    const uint32_t* corner = &refined.attributes.point[h];
+    out.triangles[points.primitive(h)].push_back({number[corner[0]], number[corner[1]], number[corner[2]]});
   }
   return out;
 }

@@ -2,13 +2,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "papilio/mesh.h"
 #include "proto/gltf/geometry.h"
 
-// All primitives of a mesh as one surface. The core carries for each point the coarse face that it lies in and its
-// place there; everything else is computed from these and from the input's vertices.
+// All primitives of a mesh as one surface. The core carries for each point the coarse face that it lies in, its place
+// there, its normal, and how far morph targets move it; everything else is computed from these and from the input's
+// vertices.
 
 namespace papilio::proto::gltf {
 
@@ -17,9 +19,12 @@ struct Surface {
   Mesh mesh;          ///< with the attributes of `Provenance`
   BuildReport found;  ///< points that only share a position among primitives are not counted as welded
   std::vector<uint32_t>
-      primitive_of;  ///< of the input's triangles, all primitives in order: in MeshGeometry::primitives
-  std::vector<Triangle> vertices_of;  ///< of them: in the set of the primitive; equal vertices are one
-  bool has_normals = false;           ///< whether any set has them: the second attribute
+      primitive_of;              ///< of the input's triangles, all primitives in order: in MeshGeometry::primitives
+  Buffer<Triangle> vertices_of;  ///< of them: in the set of the primitive; equal vertices are one
+  bool has_normals = false;      ///< whether any set has them: the second attribute
+  size_t target_count = 0;       ///< of morph targets: the last attributes are their displacements
+
+  [[nodiscard]] size_t first_displacement() const { return has_normals ? 2 : 1; }
 };
 
 /// Joins the triangles of all primitives by position. Throws `Error`: not_finite, no_faces, out_of_memory.
@@ -44,17 +49,56 @@ struct Combination {
 struct RefinedVertex {
   Combination of;
   Vec3f position;
-  Vec3d normal;  ///< of length one, where the surface has normals
+  Vec3d normal;        ///< of length one, where the surface has normals
+  uint32_t point = 0;  ///< of the refined mesh
+};
+
+/// The points of a refined surface, as what they are made of.
+class RefinedPoints {
+ public:
+  /// All must outlive it. `normals`: number of the attribute with the normals.
+  RefinedPoints(const MeshGeometry& geometry, const Surface& surface, const Mesh& refined,
+                std::optional<size_t> normals);
+
+  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(corner_.size()); }
+  /// Whether any face has the point.
+  [[nodiscard]] bool is_used(uint32_t point) const { return corner_[point] != none; }
+  /// The set, in MeshGeometry::sets, of the point's primitive.
+  [[nodiscard]] uint32_t set(uint32_t point) const;
+  /// The vertex of the refined mesh.
+  [[nodiscard]] uint32_t vertex(uint32_t point) const { return refined_.topology.origin[corner_[point]]; }
+  [[nodiscard]] Combination combination(uint32_t point) const;
+  [[nodiscard]] RefinedVertex refined_vertex(uint32_t point) const;
+  /// The primitive, in MeshGeometry::primitives, of the face at a half-edge.
+  [[nodiscard]] uint32_t primitive(uint32_t half_edge) const;
+
+ private:
+  [[nodiscard]] const double* provenance_of(uint32_t point) const;
+
+  const MeshGeometry& geometry_;
+  const Surface& surface_;
+  const Mesh& refined_;
+  std::optional<size_t> normals_;
+  Buffer<uint32_t> corner_;  ///< a half-edge at each point
+};
+
+/// Some of them, each of which becomes a vertex: computed where it is asked for, as there are many.
+struct RefinedVertices {
+  const RefinedPoints* points = nullptr;
+  Buffer<uint32_t> numbers{};
+
+  [[nodiscard]] size_t size() const { return numbers.size(); }
+  [[nodiscard]] RefinedVertex operator[](size_t i) const { return points->refined_vertex(numbers[i]); }
 };
 
 /// A refined surface by primitives.
 struct RefinedPrimitives {
-  std::vector<std::vector<RefinedVertex>> sets;    ///< as MeshGeometry::sets
-  std::vector<std::vector<Triangle>> triangles{};  ///< as MeshGeometry::primitives
+  std::vector<RefinedVertices> sets;          ///< as MeshGeometry::sets
+  std::vector<Buffer<Triangle>> triangles{};  ///< as MeshGeometry::primitives
 };
 
-/// Takes a refinement of `surface.mesh` apart into its primitives. `normals`: number of the attribute with the normals.
-[[nodiscard]] RefinedPrimitives part_primitives(const MeshGeometry& geometry, const Surface& surface,
-                                                const Mesh& refined, std::optional<size_t> normals);
+/// Takes a refinement apart into the primitives of the surface. The points must outlive it.
+[[nodiscard]] RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoints& points,
+                                                const Mesh& refined);
 
 }  // namespace papilio::proto::gltf

@@ -50,7 +50,7 @@ ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& fl
     if (result == nullptr) {
       source = Source::made;
       result = make(abandoned);
-      kept_.put(key, result, result->draco.size());
+      kept_.put(key, result, result->bytes.size());
     }
   } catch (...) {
     failure = std::current_exception();

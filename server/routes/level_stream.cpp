@@ -63,8 +63,8 @@ class Outbox {
   bool closed_ = false;
 };
 
-Part level_part(const EncodedLevel& level) {
-  Part part{{{"Content-Type", draco_type}}, level.draco};
+Part level_part(const EncodedLevel& level, const std::string& type) {
+  Part part{{{"Content-Type", type}}, level.bytes};
   for (auto& header : proto::statistics_headers(level.statistics)) part.headers.push_back(std::move(header));
   return part;
 }
@@ -79,15 +79,15 @@ void report(Engine& engine, const std::string& request_id, Code code, const std:
 
 /// Makes all parts of the stream, the last one a problem where it cannot be carried on. Throws only when there is no
 /// memory for that.
-void make_parts(Engine& engine, proto::Refinement& refinement, const std::string& request_id, Admission::Slot& slot,
-                const std::function<bool()>& abandoned, Outbox& outbox) {
+void make_parts(Engine& engine, const RunRefinement& run, const std::string& type, const std::string& request_id,
+                Admission::Slot& slot, const std::function<bool()>& abandoned, Outbox& outbox) {
   const auto fail = [&](const Problem& problem) {
     outbox.put({{{"Content-Type", "application/problem+json"}}, problem.json(request_id)});
   };
   try {
-    const EncodedLevel last = engine.run(
-        refinement,
-        {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level)); }, .cancelled = abandoned}, slot);
+    const EncodedLevel last = run(
+        {.on_level = [&](const EncodedLevel& level) { outbox.put(level_part(level, type)); }, .cancelled = abandoned},
+        slot);
     outbox.put({{{"Content-Type", json_type}}, proto::statistics_json(last.statistics)});
   } catch (const Problem& problem) {
     if (problem.code() == Code::cancelled) return;  // nobody reads it, and the one who sends says so
@@ -103,27 +103,27 @@ constexpr std::chrono::milliseconds check_interval{50};
 
 }  // namespace
 
-Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admission::Slot> slot,
-                      std::shared_ptr<proto::Refinement> refinement) {
+Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admission::Slot> slot, const std::string& type,
+                      RunRefinement run) {
   const proto::MultipartWriter writer;
   Response response;
   response.content_type = writer.content_type();
   response.headers = {{"Vary", "Accept"},
                       {"Cache-Control", "no-store"},
                       {"X-Accel-Buffering", "no"}};  // a proxy is to pass each level on as it comes
-  response.stream = [&engine, &request, writer, slot = std::move(slot),
-                     refinement = std::move(refinement)](Sink& sink) mutable {
+  response.stream = [&engine, &request, writer, type, slot = std::move(slot),
+                     run = std::move(run)](Sink& sink) mutable {
     Outbox outbox(sink);
     std::atomic<bool> gone = false;
     std::atomic<bool> failed = false;
     const std::jthread maker([&] {
       try {
         make_parts(
-            engine, *refinement, request.id(), *slot, [&] { return gone.load(); }, outbox);
+            engine, run, type, request.id(), *slot, [&] { return gone.load(); }, outbox);
       } catch (...) {
         failed = true;
       }
-      refinement.reset();
+      run = nullptr;
       slot.reset();
       outbox.close();
     });

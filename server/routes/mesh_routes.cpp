@@ -5,7 +5,6 @@
 #include "proto/findings.h"
 #include "proto/gltf/container.h"
 #include "proto/gltf/scene_description.h"
-#include "proto/gltf/scene_refinement.h"
 #include "proto/parameters.h"
 #include "proto/problem.h"
 #include "proto/results_version.h"
@@ -196,25 +195,18 @@ bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
   }
 }
 
-/// A refined scene as the result cache keeps it: its bytes in place of those of a Draco stream.
-std::shared_ptr<const proto::EncodedLevel> refined_stored_scene(Engine& engine, const std::string& id,
-                                                                const Parameters& parameters,
-                                                                const std::function<bool()>& abandoned,
-                                                                Admission::Slot& slot) {
-  const MeshStore::Bytes glb = engine.scene_bytes(id);
-  proto::gltf::SceneRefinement refinement(*glb, parameters, engine.limits());
-  proto::gltf::RefinedScene made = engine.run(refinement, {.on_level = {}, .cancelled = abandoned}, slot);
-  return std::make_shared<const proto::EncodedLevel>(
-      proto::EncodedLevel{std::move(made.glb), std::move(made.statistics)});
+/// The refinement of a stored mesh or scene, ready to run.
+RunRefinement run_of_stored(Engine& engine, const std::string& id, const Parameters& parameters) {
+  if (engine.is_scene(id)) return run_of(engine, std::shared_ptr(engine.scene_refinement_of(id, parameters)));
+  return run_of(engine, std::shared_ptr(engine.mesh_refinement_of(id, parameters)));
 }
 
 ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
                                  const Parameters& parameters, const std::string& key) {
   const auto make = [&](const std::function<bool()>& abandoned) {
     const auto slot = engine.enter(request, engine.work_of_stored(id, parameters.options), abandoned);
-    if (engine.is_scene(id)) return refined_stored_scene(engine, id, parameters, abandoned, *slot);
-    const auto refinement = engine.refinement_of(id, parameters);
-    auto made = std::make_shared<const proto::EncodedLevel>(engine.run(*refinement, {.cancelled = abandoned}, *slot));
+    const RunRefinement run = run_of_stored(engine, id, parameters);
+    auto made = std::make_shared<const proto::EncodedLevel>(run({.on_level = {}, .cancelled = abandoned}, *slot));
     engine.count_again(id);
     return made;
   };
@@ -236,7 +228,8 @@ Response refined_mesh(Engine& engine, Request& request) {
   if (type == multipart_type) {
     auto slot =
         engine.enter(request, engine.work_of_stored(id, parameters.options), [&] { return request.client_gone(); });
-    return level_stream(engine, request, std::move(slot), engine.refinement_of(id, parameters));
+    return level_stream(engine, request, std::move(slot), engine.is_scene(id) ? scene_type : draco_type,
+                        run_of_stored(engine, id, parameters));
   }
   const bool cacheable = request.method() != "POST";
   const std::string tag = entity_tag(id, parameters, type);
@@ -252,7 +245,7 @@ Response refined_mesh(Engine& engine, Request& request) {
   proto::Statistics statistics = answer.result->statistics;
   if (answer.source == ResultCache::Source::kept) statistics.times = {};  // no time was spent on this request
   Response response = refined_response(statistics, type);
-  response.shared = {answer.result, &answer.result->draco};
+  response.shared = {answer.result, &answer.result->bytes};
   response.headers.insert(response.headers.end(), validators.begin(), validators.end());
   return response;
 }

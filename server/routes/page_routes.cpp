@@ -14,10 +14,11 @@ using proto::Problem;
 namespace {
 
 /// The page runs its own scripts and Draco's decoder (WebAssembly, in a worker made from a blob), asks this server
-/// alone, and is in no other page's frame. Blobs: textures in .glb files.
+/// alone, and is in no other page's frame. Blobs and data: textures in .glb files.
 constexpr const char* content_security_policy =
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self' blob:; "
-    "img-src 'self' data: blob:; style-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "
+    "connect-src 'self' blob: data:; img-src 'self' data: blob:; style-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
 
 Response answer(const Request& request, const PageFile& file, const std::string& cache_control) {
   const bool gzipped = file.gzipped != nullptr && accepts_gzip(request.header("Accept-Encoding"));

@@ -78,14 +78,15 @@ std::string draco_of_scene(const std::string& glb, const proto::Limits& limits) 
   return proto::write_draco_exact(*mesh, mesh->format);
 }
 
-Response refined_scene(Engine& engine, Request& request, const Order& order, const std::string& type) {
-  if (type == multipart_type)
-    throw Problem(Code::not_acceptable, "The levels of a scene are not sent one by one. Accept model/gltf-binary.");
+Response refined_scene(Engine& engine, Request& request, Order order, const std::string& type) {
   const auto gone = [&] { return request.client_gone(); };
   auto slot = engine.enter(request, engine.work_of_scene(order.mesh, order.parameters.options), gone);
-  proto::gltf::SceneRefinement refinement(order.mesh, order.parameters, engine.limits());
-  proto::gltf::RefinedScene made = engine.run(refinement, {.on_level = {}, .cancelled = gone}, *slot);
-  return unstored(refined_response(made.statistics, type), std::move(made.glb));
+  const auto refinement = std::make_shared<proto::gltf::SceneRefinement>(
+      std::make_shared<const std::string>(std::move(order.mesh)), order.parameters, engine.limits());
+  if (type == multipart_type)
+    return level_stream(engine, request, std::move(slot), scene_type, run_of(engine, refinement));
+  proto::EncodedLevel made = engine.run(*refinement, {.on_level = {}, .cancelled = gone}, *slot);
+  return unstored(refined_response(made.statistics, type), std::move(made.bytes));
 }
 
 /// The bytes of a refined mesh in the type that the client accepts.
@@ -103,17 +104,18 @@ Response refine_route(Engine& engine, Request& request) {
   Order order = read_order(request);
   const bool is_scene = request.content_type() == scene_type || proto::gltf::is_glb(order.mesh);
   const std::string type = negotiate_posted(request, is_scene);
-  if (is_scene && type != draco_type) return refined_scene(engine, request, order, type);
+  if (is_scene && type != draco_type) return refined_scene(engine, request, std::move(order), type);
   const auto gone = [&] { return request.client_gone(); };
   auto slot = engine.enter(request,
                            is_scene ? engine.work_of_scene(order.mesh, order.parameters.options)
                                     : engine.work_of(order.mesh, order.parameters.options),
                            gone);
   if (is_scene) order.mesh = draco_of_scene(order.mesh, engine.limits());
-  auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
-  if (type == multipart_type) return level_stream(engine, request, std::move(slot), std::move(refinement));
+  const auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
+  if (type == multipart_type)
+    return level_stream(engine, request, std::move(slot), draco_type, run_of(engine, refinement));
   proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone}, *slot);
-  return unstored(refined_response(made.statistics, type), as_type(std::move(made.draco), type));
+  return unstored(refined_response(made.statistics, type), as_type(std::move(made.bytes), type));
 }
 
 }  // namespace papilio::server

@@ -8,13 +8,13 @@ namespace papilio::server {
 
 std::string negotiate_stored(const Request& request, bool is_scene) {
   const std::string accept = request.header("Accept");
-  const auto type = is_scene ? negotiate(accept, {scene_type, bytes_type})
+  const auto type = is_scene ? negotiate(accept, {scene_type, bytes_type, multipart_type})
                              : negotiate(accept, {draco_type, bytes_type, multipart_type});
   if (!type)
-    throw proto::Problem(proto::Code::not_acceptable,
-                         "Accept is " + proto::quote(accept) + ", but the answer can only be " +
-                             (is_scene ? "model/gltf-binary or application/octet-stream."
-                                       : "application/x-draco, application/octet-stream or multipart/mixed."));
+    throw proto::Problem(proto::Code::not_acceptable, "Accept is " + proto::quote(accept) +
+                                                          ", but the answer can only be " +
+                                                          (is_scene ? "model/gltf-binary" : "application/x-draco") +
+                                                          ", application/octet-stream or multipart/mixed.");
   return *type;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "proto/refinement.h"
 #include "server/engine.h"
@@ -18,7 +20,7 @@ inline constexpr const char* multipart_type = "multipart/mixed";
 inline constexpr const char* json_type = "application/json";
 
 /// Which form of the answer for a stored mesh the client likes best: draco_type, bytes_type or multipart_type;
-/// scene_type or bytes_type for a scene. Throws `Problem` not_acceptable.
+/// scene_type, bytes_type or multipart_type for a scene. Throws `Problem` not_acceptable.
 [[nodiscard]] std::string negotiate_stored(const Request& request, bool is_scene);
 
 /// The same where the mesh came in the request, and may be a scene: draco_type, bytes_type, multipart_type or
@@ -31,7 +33,17 @@ inline constexpr const char* json_type = "application/json";
 /// Streams each level as it is made, and a JSON summary. The work is done on a thread of its own, so that the slot is
 /// free as soon as it is done, however slowly the client reads; it stops within a check when the client goes away. Once
 /// a stream has begun its status is sent; what goes wrong then comes as its last part, `application/problem+json`.
+/// `type` of the levels: draco_type or scene_type. `run`: the refinement's, which `run` owns.
+using RunRefinement = std::function<proto::EncodedLevel(proto::RefinementHooks, Admission::Slot&)>;
 [[nodiscard]] Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admission::Slot> slot,
-                                    std::shared_ptr<proto::Refinement> refinement);
+                                    const std::string& type, RunRefinement run);
+
+/// The same of a refinement of a mesh or a scene.
+template <class AnyRefinement>
+[[nodiscard]] RunRefinement run_of(Engine& engine, std::shared_ptr<AnyRefinement> refinement) {
+  return [&engine, refinement = std::move(refinement)](proto::RefinementHooks hooks, Admission::Slot& slot) {
+    return engine.run(*refinement, std::move(hooks), slot);
+  };
+}
 
 }  // namespace papilio::server

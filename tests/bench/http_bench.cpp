@@ -69,7 +69,7 @@ class Turns {
     std::string_view answer;
     with_.push_back(turn([&] { answer = service_->ask(request_); }));
     std::string made;
-    without_.push_back(turn([&] { made = proto::Refinement(mesh_, parameters_, {}).run().draco; }));
+    without_.push_back(turn([&] { made = proto::Refinement(mesh_, parameters_, {}).run().bytes; }));
     if (answer != made) throw std::runtime_error("papilio-server answers with another mesh");
   }
 

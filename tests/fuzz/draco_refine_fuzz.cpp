@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   proto::EncodedLevel made;
   if (!fuzz::unless_refused([&] { made = proto::Refinement(fuzz::text_of(data, size), parameters, limits).run(); }))
     return 0;
-  const proto::FormattedMesh read = proto::read_draco(made.draco, {});
+  const proto::FormattedMesh read = proto::read_draco(made.bytes, {});
   fuzz::require(read.triangles.size() == made.statistics.faces, "every face arrives");
   return 0;
 }

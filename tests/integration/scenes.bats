@@ -99,8 +99,39 @@ two_nodes() {
   "$papilio" convert two.gltf two.glb
   request -H "$scene" -H 'Accept: application/x-draco' --data-binary @two.glb "$url/v1/refine"
   expect_problem 406 not_acceptable
-  request -H "$scene" -H 'Accept: multipart/mixed' --data-binary @two.glb "$url/v1/refine"
-  expect_problem 406 not_acceptable
+}
+
+# glb_parts BODY: how many parts of it are scenes.
+glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
+
+@test "the levels of a scene come one by one, posted and stored, the last as the whole answer" {
+  two_nodes
+  "$papilio" convert two.gltf two.glb
+  "$papilio" refine two.glb -o fine.glb --levels 2
+  request -H "$scene" -H 'Accept: multipart/mixed' --data-binary @two.glb "$url/v1/refine?levels=2"
+  [ "$status" = 200 ]
+  [ "$(glb_parts "$body")" = 3 ]
+  grep -aq '"stop_reason": "levels"' "$body"
+  python3 -c 'import sys; sys.exit(open("fine.glb", "rb").read() not in open(sys.argv[1], "rb").read())' "$body"
+  id=$(curl -sS -H "$scene" --data-binary @two.glb "$url/v1/meshes" | jq -r .id)
+  request -H 'Accept: multipart/mixed' "$url/v1/meshes/$id/refined?levels=2"
+  [ "$status" = 200 ]
+  [ "$(glb_parts "$body")" = 3 ]
+  python3 -c 'import sys; sys.exit(open("fine.glb", "rb").read() not in open(sys.argv[1], "rb").read())' "$body"
+  request -X DELETE "$url/v1/meshes/$id"
+  [ "$status" = 204 ]
+}
+
+@test "nodes that show one mesh get their own on request" {
+  two_nodes
+  jq '.nodes[1].scale = [0.001, 0.001, 0.001]' two.gltf >edited.gltf
+  mv edited.gltf two.gltf
+  "$papilio" refine two.gltf -o together.glb --tolerance 0.001
+  "$papilio" refine two.gltf -o apart.glb --tolerance 0.001 --split-instances true
+  [ "$("$papilio" info --json together.glb | jq -c '.meshes | length')" = 1 ]
+  [ "$("$papilio" info --json apart.glb | jq -c '[(.meshes | length), .meshes[1].faces]')" = '[2,600]' ]
+  request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?split_instances=true"
+  expect_problem 400 bad_parameter
 }
 
 @test "a stored scene is described, refined, cached and deleted like a mesh" {
@@ -126,8 +157,6 @@ two_nodes() {
   [ "$status" = 304 ]
   request -H 'Content-Type: application/json' -d '{"levels": 1}' "$url/v1/meshes/$id/refined"
   cmp "$body" fine.glb
-  request -H 'Accept: multipart/mixed' "$url/v1/meshes/$id/refined"
-  expect_problem 406 not_acceptable
   request -X DELETE "$url/v1/meshes/$id"
   [ "$status" = 204 ]
   request "$url/v1/meshes/$id/refined"

@@ -25,7 +25,7 @@ void ask_twice(Client& client, const std::string& path, const std::string& mesh)
   const httplib::Result answer = client.ask("GET", path + "/refined?" + query);
   if (!client.expect(answer, {200, 429}) || answer->status != 200) return;
   const auto parameters = proto::parse_query(fields_of(query));
-  client.expect_mesh(answer, proto::Refinement(mesh, parameters, {}).run().draco);
+  client.expect_mesh(answer, proto::Refinement(mesh, parameters, {}).run().bytes);
   const std::string tag = answer->get_header_value("ETag");
   const httplib::Result again = client.ask("GET", path + "/refined?" + query, {{"If-None-Match", tag}});
   if (client.expect(again, {304}) && !again->body.empty()) client.violate("304 with a body");

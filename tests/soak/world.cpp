@@ -13,7 +13,7 @@ constexpr int medium_orders = 8;
 
 Order make_order(const std::string& mesh, const std::string& query) {
   Order order{&mesh, query, proto::parse_query(fields_of(query)), {}};
-  order.answer = proto::Refinement(mesh, order.parameters, {}).run().draco;
+  order.answer = proto::Refinement(mesh, order.parameters, {}).run().bytes;
   return order;
 }
 

@@ -270,7 +270,7 @@ TEST(DracoAttributes, MeshesOfEveryKindKeepFacesAndCharts) {
     for (int speed : {0, 3, 5, 7, 10}) {
       const EncodedLevel made =
           Refinement(exact, {.options = {.levels = 1}, .output = {.speed = speed}}, Limits{}).run();
-      const FormattedMesh read = read_draco(made.draco, {});
+      const FormattedMesh read = read_draco(made.bytes, {});
       EXPECT_EQ(read.triangles.size(), made.statistics.faces);
       EXPECT_EQ(build_mesh(read).topology.vertex_count, made.statistics.vertices);
       EXPECT_TRUE(tiles_its_charts(read, 0.5, 1e-3));

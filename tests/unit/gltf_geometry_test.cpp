@@ -56,10 +56,10 @@ TEST(GltfGeometry, StripsFansAndListsWithoutIndicesKeepTheirWinding) {
     if (!indexed) other.primitive().erase("indices");
     return geometry_of(other).primitives.at(0).triangles;
   };
-  EXPECT_EQ(triangles(5, false), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
-  EXPECT_EQ(triangles(6, false), (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
-  EXPECT_EQ(triangles(4, false), (std::vector<Triangle>{{0, 1, 2}}));
-  EXPECT_EQ(triangles(5, true), (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(triangles(5, false), (Buffer<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+  EXPECT_EQ(triangles(6, false), (Buffer<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+  EXPECT_EQ(triangles(4, false), (Buffer<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(triangles(5, true), (Buffer<Triangle>{{0, 1, 2}}));
 }
 
 TEST(GltfGeometry, PointsAndLinesAreLeftOut) {

@@ -7,10 +7,9 @@
 #include <set>
 
 #include "papilio/refine.h"
-#include "proto/gltf/scene_refinement.h"
 #include "proto/gltf/vertices.h"
 #include "proto/problem.h"
-#include "tests/support/gltf_scene.h"
+#include "tests/support/gltf_refinement.h"
 #include "tests/support/shapes.h"
 
 namespace papilio::proto::gltf {
@@ -18,27 +17,11 @@ namespace {
 
 std::string_view name_of(Compression compression) { return compression_names.at(static_cast<size_t>(compression)); }
 
+using test::faces_of;
+using test::geometry_of;
 using test::GltfScene;
+using test::refined;
 using Json = GltfScene::Json;
-
-Parameters parameters(const QueryFields& fields) { return parse_query(fields); }
-
-RefinedScene refined(const std::string& glb, const QueryFields& fields, const Limits& limits = {}) {
-  return SceneRefinement(glb, parameters(fields), limits).run();
-}
-
-MeshGeometry geometry_of(const std::string& glb, uint32_t mesh = 0) {
-  const Document document = read_document(glb);
-  Views views(document);
-  Allowance allowance({});
-  return read_geometry(views, mesh, allowance);
-}
-
-size_t faces_of(const std::string& glb, uint32_t mesh = 0) {
-  size_t faces = 0;
-  for (const TrianglePrimitive& primitive : geometry_of(glb, mesh).primitives) faces += primitive.triangles.size();
-  return faces;
-}
 
 using Point = std::array<float, 3>;
 Point point_of(Vec3f p) { return {p.x, p.y, p.z}; }
@@ -96,8 +79,8 @@ TEST(GltfScene, PositionsAreThoseOfTheCore) {
   std::multiset<Point> corners;
   for (const Triangle& triangle : expected.triangles)
     for (const uint32_t v : triangle) corners.insert(point_of(expected.positions[v]));
-  const RefinedScene made = refined(scene.glb(), {{"levels", "2"}});
-  EXPECT_EQ(corners_of(geometry_of(made.glb)), corners);
+  const EncodedLevel made = refined(scene.glb(), {{"levels", "2"}});
+  EXPECT_EQ(corners_of(geometry_of(made.bytes)), corners);
   EXPECT_EQ(made.statistics.faces, 16 * shape.triangles.size());
   EXPECT_EQ(made.statistics.vertices, expected.positions.size());
   EXPECT_EQ(made.statistics.level, 2);
@@ -107,10 +90,10 @@ TEST(GltfScene, BordersBetweenMaterialsStayClosed) {
   const std::string before = scene_of_two_materials(test::icosahedron()).glb();
   for (const char* tolerance : {"0", "0.01"})
     for (const Compression compression : {Compression::same, Compression::draco, Compression::meshopt}) {
-      const RefinedScene made = refined(
+      const EncodedLevel made = refined(
           before, {{"levels", "3"}, {"tolerance", tolerance}, {"output.compress", std::string(name_of(compression))}});
-      const MeshGeometry geometry = geometry_of(made.glb);
-      EXPECT_GT(faces_of(made.glb), 100U);
+      const MeshGeometry geometry = geometry_of(made.bytes);
+      EXPECT_GT(faces_of(made.bytes), 100U);
       EXPECT_EQ(open_edges(geometry), 0U) << tolerance << ' ' << name_of(compression);
       EXPECT_EQ(geometry.primitives.size(), 2U);
     }
@@ -121,10 +104,10 @@ TEST(GltfScene, StripsFansAndLooseTrianglesBecomeOneSurface) {
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}}});
   scene.primitive()["mode"] = 5;
   scene.primitive().erase("indices");
-  const RefinedScene made = refined(scene.glb(), {{"levels", "1"}});
+  const EncodedLevel made = refined(scene.glb(), {{"levels", "1"}});
   EXPECT_EQ(made.statistics.faces, 8U);
   EXPECT_EQ(made.statistics.vertices, 9U);
-  const Json primitive = test::json_of_glb(made.glb)["meshes"][0]["primitives"][0];
+  const Json primitive = test::json_of_glb(made.bytes)["meshes"][0]["primitives"][0];
   EXPECT_FALSE(primitive.contains("mode"));
   EXPECT_TRUE(primitive.contains("indices"));
 }
@@ -140,7 +123,7 @@ TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
         return numbers;
       }(),
       "VEC3");
-  const MeshGeometry smooth = geometry_of(refined(scene.glb(), {{"levels", "2"}}).glb);
+  const MeshGeometry smooth = geometry_of(refined(scene.glb(), {{"levels", "2"}}).bytes);
   EXPECT_EQ(smooth.sets[0].count, 162U);
   const Buffer<Vec3f> positions = vertex_positions(smooth.sets[0]);
   const Elements& normals = smooth.sets[0].find("NORMAL")->elements;
@@ -165,7 +148,7 @@ TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
   flat.add_mesh({corners, {{0, 1, 2}}});
   flat.primitive().erase("indices");
   flat.primitive()["attributes"]["NORMAL"] = flat.add_accessor(directions, "VEC3");
-  const MeshGeometry hard = geometry_of(refined(flat.glb(), {{"levels", "2"}, {"shape", "mechanical"}}).glb);
+  const MeshGeometry hard = geometry_of(refined(flat.glb(), {{"levels", "2"}, {"shape", "mechanical"}}).bytes);
   EXPECT_EQ(hard.sets[0].count, 6U * 25);  // a grid of its own on each side
   const Elements& of_sides = hard.sets[0].find("NORMAL")->elements;
   for (uint32_t i = 0; i < hard.sets[0].count; ++i) {
@@ -182,7 +165,7 @@ TEST(GltfScene, WeightsOfJointsAreAddedJointByJoint) {
   attributes["JOINTS_0"] = scene.add_accessor(std::vector<uint8_t>{0, 1, 0, 0, 2, 3, 1, 4, 5, 0, 0, 0}, "VEC4");
   attributes["WEIGHTS_0"] =
       scene.add_accessor(std::vector<uint8_t>{128, 127, 0, 0, 100, 80, 40, 35, 255, 0, 0, 0}, "VEC4", true);
-  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).glb);
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).bytes);
   const VertexSet& set = made.sets[0];
   ASSERT_EQ(set.count, 6U);
   const Elements& joints = set.find("JOINTS_0")->elements;
@@ -215,7 +198,7 @@ TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
   attributes["_BATCH"] = scene.add_accessor(std::vector<uint16_t>{3, 0, 5, 0, 8, 0}, "VEC2");
   attributes["_HEAT"] = scene.add_accessor(std::vector<float>{1, 2, 4}, "SCALAR");
   attributes["TANGENT"] = scene.add_accessor(std::vector<float>{1, 0, 0, -1, 0, 1, 0, -1, 1, 0, 0, -1}, "VEC4");
-  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).glb);
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}}).bytes);
   const VertexSet& set = made.sets[0];
   const Buffer<Vec3f> positions = vertex_positions(set);
   for (uint32_t i = 0; i < set.count; ++i) {
@@ -230,19 +213,6 @@ TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
     EXPECT_NEAR(std::hypot(value("TANGENT", 0), value("TANGENT", 1), value("TANGENT", 2)), 1, 1e-6);
     EXPECT_EQ(value("TANGENT", 3), -1);
   }
-}
-
-TEST(GltfScene, MorphTargetsMoveTheirNewVertices) {
-  GltfScene scene;
-  scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
-  const size_t target = scene.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 2, 0, 0, 4}, "VEC3");
-  scene.primitive()["targets"] = {{{"POSITION", target}}};
-  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "2"}}).glb);
-  const Buffer<Vec3f> positions = vertex_positions(made.sets[0]);
-  ASSERT_EQ(made.sets[0].count, 15U);
-  ASSERT_EQ(made.sets[0].targets.size(), 1U);
-  for (uint32_t i = 0; i < 15; ++i)
-    EXPECT_NEAR(made.sets[0].targets[0][0].elements.number(i, 2), 1 + positions[i].x + 3 * positions[i].y, 1e-6);
 }
 
 TEST(GltfScene, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
@@ -260,12 +230,12 @@ TEST(GltfScene, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
     scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
     return scene.glb();
   };
-  const MeshGeometry kept = geometry_of(refined(scene_with(1000), {{"levels", "2"}}).glb);
+  const MeshGeometry kept = geometry_of(refined(scene_with(1000), {{"levels", "2"}}).bytes);
   EXPECT_EQ(kept.sets[0].find("POSITION")->elements.format.type, ComponentType::int16);
   EXPECT_EQ(open_edges(kept), 0U);
   double largest = 0;
   for (const Vec3f& p : shape.positions) largest = std::max<double>({largest, p.x, p.y, p.z});
-  const MeshGeometry widened = geometry_of(refined(scene_with(32767 / largest), {{"levels", "2"}}).glb);
+  const MeshGeometry widened = geometry_of(refined(scene_with(32767 / largest), {{"levels", "2"}}).bytes);
   EXPECT_EQ(widened.sets[0].find("POSITION")->elements.format.type, ComponentType::float32);
   EXPECT_EQ(open_edges(widened), 0U);
 }
@@ -282,9 +252,9 @@ GltfScene scene_of_two_scales(double first, double second) {
 }
 
 TEST(GltfScene, ToleranceIsAShareOfTheScene) {
-  const RefinedScene made = refined(scene_of_two_scales(10, 0.1).glb(), {{"tolerance", "0.001"}});
-  EXPECT_GT(faces_of(made.glb, 0), 1000U);
-  EXPECT_EQ(faces_of(made.glb, 1), 20U);  // a hundredth of the size
+  const EncodedLevel made = refined(scene_of_two_scales(10, 0.1).glb(), {{"tolerance", "0.001"}});
+  EXPECT_GT(faces_of(made.bytes, 0), 1000U);
+  EXPECT_EQ(faces_of(made.bytes, 1), 20U);  // a hundredth of the size
   EXPECT_LE(made.statistics.error, 0.001);
   EXPECT_EQ(made.statistics.stop_reason, StopReason::converged);
 }
@@ -292,16 +262,16 @@ TEST(GltfScene, ToleranceIsAShareOfTheScene) {
 TEST(GltfScene, AMeshIsAsFineAsAnyOfItsNodesNeeds) {
   GltfScene scene = scene_of_two_scales(10, 0.1);
   scene.json["nodes"].push_back({{"mesh", 1}, {"scale", {10, 10, 10}}});
-  const RefinedScene made = refined(scene.glb(), {{"tolerance", "0.001"}});
-  EXPECT_EQ(faces_of(made.glb, 0), faces_of(made.glb, 1));
+  const EncodedLevel made = refined(scene.glb(), {{"tolerance", "0.001"}});
+  EXPECT_EQ(faces_of(made.bytes, 0), faces_of(made.bytes, 1));
 }
 
 TEST(GltfScene, MaxFacesBoundsAllMeshesTogether) {
   for (const char* budget : {"40", "100", "777", "5000"}) {
-    const RefinedScene made = refined(scene_of_two_scales(10, 3).glb(), {{"levels", "5"}, {"max_faces", budget}});
+    const EncodedLevel made = refined(scene_of_two_scales(10, 3).glb(), {{"levels", "5"}, {"max_faces", budget}});
     EXPECT_LE(made.statistics.faces, std::stoul(budget));
     EXPECT_GE(made.statistics.faces, std::stoul(budget) * 9 / 10);
-    EXPECT_GE(faces_of(made.glb, 0), faces_of(made.glb, 1));
+    EXPECT_GE(faces_of(made.bytes, 0), faces_of(made.bytes, 1));
   }
   EXPECT_THROW(refined(scene_of_two_scales(1, 1).glb(), {{"max_faces", "39"}}), Problem);
 }
@@ -311,11 +281,11 @@ TEST(GltfScene, TheViewSeesMeshesWhereTheirNodesShowThem) {
   const QueryFields view{{"view.eye", "0,0,30"}, {"view.target", "0,0,0"},     {"view.fov_y", "10"},
                          {"levels", "3"},        {"view.viewport", "500,500"}, {"view.edge_pixels", "1"}};
   const std::string glb = scene.glb();
-  const RefinedScene made = refined(glb, view);
-  EXPECT_GT(faces_of(made.glb, 0), 100U);
-  EXPECT_EQ(faces_of(made.glb, 1), 20U);               // beside the picture
+  const EncodedLevel made = refined(glb, view);
+  EXPECT_GT(faces_of(made.bytes, 0), 100U);
+  EXPECT_EQ(faces_of(made.bytes, 1), 20U);             // beside the picture
   scene.json["nodes"][0]["translation"] = {0, 0, 60};  // behind the viewer
-  EXPECT_EQ(faces_of(refined(scene.glb(), view).glb, 0), 20U);
+  EXPECT_EQ(faces_of(refined(scene.glb(), view).bytes, 0), 20U);
 }
 
 TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
@@ -325,11 +295,11 @@ TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
   scene.json["nodes"][0]["scale"] = {4, 4, 4};
   scene.json["nodes"][0]["translation"] = {8, 0, 0};
   scene.json["nodes"][0]["rotation"] = {0, 0, 1, 0};  // half a turn
-  const RefinedScene made =
+  const EncodedLevel made =
       refined(scene.glb(), {{"view.eye", "8,0,16"}, {"view.target", "8,0,0"}, {"view.error_pixels", "1"}});
   GltfScene moved;
   moved.add_mesh(shape);
-  const RefinedScene same =
+  const EncodedLevel same =
       refined(moved.glb(),
               {{"view.eye", "0,0,4"}, {"view.target", "0,0,0"}, {"view.up", "0,-1,0"}, {"view.error_pixels", "1"}});
   EXPECT_GT(same.statistics.faces, 192U);
@@ -345,7 +315,7 @@ TEST(GltfScene, LimitsHoldForTheWholeScene) {
 
 TEST(GltfScene, WhatIsNotRefinedKeepsItsBytes) {
   const std::string glb = scene_of_two_scales(1, 1).glb();
-  EXPECT_EQ(refined(glb, {{"levels", "0"}}).glb, glb);
+  EXPECT_EQ(refined(glb, {{"levels", "0"}}).bytes, glb);
 }
 
 TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
@@ -362,7 +332,7 @@ TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
 TEST(GltfScene, NormalsAreAddedOnRequest) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
-  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}, {"output.normals", "true"}}).glb);
+  const MeshGeometry made = geometry_of(refined(scene.glb(), {{"levels", "1"}, {"output.normals", "true"}}).bytes);
   const VertexStream* normals = made.sets[0].find("NORMAL");
   ASSERT_NE(normals, nullptr);
   EXPECT_NEAR(

@@ -34,11 +34,11 @@ TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheResult) {
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(levels[i].statistics.level, i);
     EXPECT_EQ(levels[i].statistics.faces, 20U << (2 * i));
-    EXPECT_EQ(read_draco(levels[i].draco, {}).triangles.size(), levels[i].statistics.faces);
+    EXPECT_EQ(read_draco(levels[i].bytes, {}).triangles.size(), levels[i].statistics.faces);
     EXPECT_EQ(levels[i].statistics.stop_reason.has_value(), i == 3);
   }
-  EXPECT_EQ(last.draco, levels.back().draco);
-  EXPECT_EQ(Refinement(coarse(), parameters, {}).run().draco, last.draco);
+  EXPECT_EQ(last.bytes, levels.back().bytes);
+  EXPECT_EQ(Refinement(coarse(), parameters, {}).run().bytes, last.bytes);
 }
 
 TEST(Refinement, LevelIsHandedOverWhileTheNextIsRefined) {
@@ -77,7 +77,7 @@ TEST(Refinement, LevelsAreBitIdenticalOnSeveralThreads) {
     const std::vector<EncodedLevel> two = levels(2);
     ASSERT_EQ(one.size(), two.size());
     for (size_t i = 0; i < one.size(); ++i) {
-      EXPECT_EQ(one[i].draco, two[i].draco);
+      EXPECT_EQ(one[i].bytes, two[i].bytes);
       EXPECT_EQ(one[i].statistics.faces, two[i].statistics.faces);
       EXPECT_EQ(one[i].statistics.level, two[i].statistics.level);
     }
@@ -210,6 +210,7 @@ TEST(Refinement, StatisticsAreFormattedAsHeaders) {
                         .stop_reason = StopReason::converged,
                         .error = 0.00123456,
                         .error_pixels = 2,
+                        .unreached = "Not fine enough.",
                         .found = {.boundary_edges = 7, .non_manifold_edges = 3, .pinched_vertices = 1},
                         .times = {1, 2.5, 3}};
   const auto headers = statistics_headers(statistics);
@@ -220,6 +221,7 @@ TEST(Refinement, StatisticsAreFormattedAsHeaders) {
       {"Papilio-Stop-Reason", "converged"},
       {"Papilio-Error", "0.001235"},
       {"Papilio-Error-Pixels", "2"},
+      {"Papilio-Unreached", "Not fine enough."},
       {"Papilio-Found", "non_manifold_edges=3, pinched_vertices=1"},
       {"Server-Timing", "decode;dur=1.000, refine;dur=2.500, encode;dur=3.000"}};
   EXPECT_EQ(headers, expected);

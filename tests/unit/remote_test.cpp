@@ -117,7 +117,7 @@ TEST_F(RemoteTest, RefinesToTheSameBytesAndStatistics) {
   const proto::Parameters parameters = proto::parse_query({{"levels", "2"}});
   const proto::EncodedLevel there = Remote(url_ + "/").refine(coarse_, parameters);
   const proto::EncodedLevel here = proto::Refinement(coarse_, parameters, {}).run();
-  EXPECT_EQ(there.draco, here.draco);
+  EXPECT_EQ(there.bytes, here.bytes);
   EXPECT_EQ(there.statistics.faces, 320U);
   EXPECT_EQ(there.statistics.vertices, here.statistics.vertices);
   EXPECT_EQ(there.statistics.stop_reason, StopReason::levels);
@@ -130,7 +130,7 @@ TEST_F(RemoteTest, LevelsComeOneByOneAndTheLastIsTheAnswer) {
   Remote(url_).refine_levels(coarse_, parameters, [&](const proto::Part& part) { parts.push_back(part); });
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_EQ(parts[0].header("Papilio-Faces"), "20");
-  EXPECT_EQ(parts[2].body, Remote(url_).refine(coarse_, parameters).draco);
+  EXPECT_EQ(parts[2].body, Remote(url_).refine(coarse_, parameters).bytes);
   EXPECT_EQ(parts[3].header("Content-Type"), "application/json");
 }
 
@@ -180,7 +180,7 @@ TEST(Remote, AnAnswerCutShortIsRefusedWhereverItEnds) {
   const std::string mesh = icosahedron();
   const std::string head = ok + "Content-Type: Application/X-Draco;a=b\r\nPapilio-Faces: 20\r\n";
   const Stranger whole(head + length(mesh.size()) + mesh);
-  EXPECT_EQ(Remote(whole.url()).refine("a mesh", {}).draco, mesh);
+  EXPECT_EQ(Remote(whole.url()).refine("a mesh", {}).bytes, mesh);
   for (size_t size = 0; size < mesh.size(); ++size) {
     const std::string cut = mesh.substr(0, size);
     EXPECT_THAT(refinement_refused(head + length(mesh.size()) + cut).what(),

@@ -34,7 +34,7 @@ TEST(ResultCache, MakesOnceAndKeeps) {
   EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
   const ResultCache::Answer again = cache.get_or_make("a", make, never_leaves);
   EXPECT_EQ(again.source, Source::kept);
-  EXPECT_EQ(again.result->draco, "bytes");
+  EXPECT_EQ(again.result->bytes, "bytes");
   EXPECT_EQ(cache.get_or_make("b", make, never_leaves).source, Source::made);
   EXPECT_EQ(made, 2);
 }
@@ -67,7 +67,7 @@ TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
     threads.emplace_back([&] {
       ++asked;
       const ResultCache::Answer answer = cache.get_or_make("a", make, never_leaves);
-      EXPECT_EQ(answer.result->draco, "bytes");
+      EXPECT_EQ(answer.result->bytes, "bytes");
       if (answer.source == Source::shared) ++shared;
     });
   threads.clear();
@@ -107,7 +107,7 @@ TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
   begun.wait();
   const ResultCache::Answer answer = cache.get_or_make(
       "b", [](const ResultCache::Question&) { return result("made anew"); }, never_leaves);
-  EXPECT_EQ(answer.result->draco, "for the other");
+  EXPECT_EQ(answer.result->bytes, "for the other");
 }
 
 TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
@@ -194,7 +194,7 @@ TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
   waits = true;
   const ResultCache::Answer answer = cache.get_or_make(
       "a", [](const ResultCache::Question&) { return result("made anew"); }, never_leaves);
-  EXPECT_EQ(answer.result->draco, "made anew");
+  EXPECT_EQ(answer.result->bytes, "made anew");
 }
 
 }  // namespace

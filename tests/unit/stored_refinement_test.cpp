@@ -45,7 +45,7 @@ std::vector<QueryFields> all_requests() {
 }
 
 void expect_equal(const EncodedLevel& a, const EncodedLevel& b) {
-  EXPECT_EQ(a.draco, b.draco);
+  EXPECT_EQ(a.bytes, b.bytes);
   EXPECT_EQ(a.statistics.faces, b.statistics.faces);
   EXPECT_EQ(a.statistics.stop_reason, b.statistics.stop_reason);
   EXPECT_EQ(a.statistics.error, b.statistics.error);

@@ -154,11 +154,11 @@ TEST(SurfaceNormals, AreInTheAnswer) {
     return parameters;
   };
   const std::string plain = write_draco_exact(cube());
-  const FormattedMesh added = read_draco(Refinement(plain, asking(2, true), {}).run().draco, {});
+  const FormattedMesh added = read_draco(Refinement(plain, asking(2, true), {}).run().bytes, {});
   ASSERT_EQ(added.format.attributes.size(), 1U);
   EXPECT_EQ(added.format.attributes[0].kind, AttributeKind::normal);
   EXPECT_GT(least_agreement(build_mesh(added)), 0.999);
-  EXPECT_TRUE(read_draco(Refinement(plain, asking(2, false), {}).run().draco, {}).attributes.empty());
+  EXPECT_TRUE(read_draco(Refinement(plain, asking(2, false), {}).run().bytes, {}).attributes.empty());
 
   const Mesh coarse = sphere_with_normals([](Vec3d p) {
     const Vec3d wrong = p + Vec3d{0.4, 0.1, -0.3};
@@ -167,10 +167,10 @@ TEST(SurfaceNormals, AreInTheAnswer) {
   const MeshFormat format{.attributes = {{.kind = AttributeKind::normal, .id = 7}}};
   const std::string own = write_draco_exact(coarse.triangles(), format);
   for (bool asked : {false, true}) {
-    const FormattedMesh fine = read_draco(Refinement(own, asking(3, asked), {}).run().draco, {});
+    const FormattedMesh fine = read_draco(Refinement(own, asking(3, asked), {}).run().bytes, {});
     EXPECT_EQ(fine.format, format);
     EXPECT_GT(least_agreement(build_mesh(fine)), std::cos(0.25));
-    const FormattedMesh same = read_draco(Refinement(own, asking(0, asked), {}).run().draco, {});
+    const FormattedMesh same = read_draco(Refinement(own, asking(0, asked), {}).run().bytes, {});
     EXPECT_LT(least_agreement(build_mesh(same)), 0.85) << "the author's own";
   }
 }

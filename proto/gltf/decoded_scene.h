@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/gltf/document.h"
+#include "proto/gltf/scene_mesh.h"
+#include "proto/prepared_meshes.h"
+
+namespace papilio::proto::gltf {
+
+/// A scene that was read and checked.
+struct DecodedScene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
+  Document document;
+  SceneMeshes scene;
+
+  [[nodiscard]] uint64_t coarse_faces() const;
+  [[nodiscard]] uint64_t coarse_vertices() const;
+  [[nodiscard]] BuildReport found() const;
+};
+
+/// Reads a .glb file, or a .gltf file with its buffers inside; external buffers are refused. `bytes` must outlive it.
+/// `splits_instances`: gives each node a mesh of its own (split_instances.h). Throws `Problem`.
+[[nodiscard]] DecodedScene decode_scene(std::string_view bytes, const Limits& limits, bool splits_instances = false);
+
+/// A decoded scene, shared by refinements, and a cache of prepared meshes. Thread-safe.
+class SharedScene {
+ public:
+  /// `byte_budget`: limit of cached bytes, divided among the meshes by their faces. Throws `Problem`.
+  SharedScene(std::shared_ptr<const std::string> bytes, const Limits& limits, uint64_t byte_budget);
+
+  [[nodiscard]] const DecodedScene& decoded() const { return decoded_; }
+  /// As `PreparedMeshes::for_rules_of`, of the mesh of this number in `SceneMeshes::meshes`.
+  [[nodiscard]] std::shared_ptr<const PreparedMesh> for_rules_of(size_t mesh, const Options& options) const;
+  /// Returns the bytes in memory.
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  std::shared_ptr<const std::string> bytes_;
+  DecodedScene decoded_;
+  std::vector<std::unique_ptr<PreparedMeshes>> prepared_;
+};
+
+}  // namespace papilio::proto::gltf

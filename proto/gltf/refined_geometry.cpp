@@ -1,0 +1,57 @@
+#include "proto/gltf/refined_geometry.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "proto/gltf/interpolation.h"
+#include "proto/gltf/morph_targets.h"
+
+namespace papilio::proto::gltf {
+
+NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_normals,
+                             const std::function<void()>& poll) {
+  Mesh refined = std::move(result.mesh);
+  const bool renews_normals = mesh.surface.has_normals && result.levels > 0;
+  std::optional<size_t> normals;
+  if (mesh.surface.has_normals) {
+    normals = 1;
+    if (renews_normals) renew_normals(refined, *normals);
+  } else if (adds_normals) {
+    normals = refined.attributes.attributes.size();
+    add_normals(refined);
+  }
+  poll();
+  const std::vector<RefinedTarget> targets =
+      refine_targets(mesh.geometry, mesh.surface, refined, renews_normals ? normals : std::nullopt);
+  poll();
+  refined.topology.twin = {};  // not needed any more, and large
+  const RefinedPoints points(mesh.geometry, mesh.surface, refined, normals);
+  RefinedPrimitives parts = part_primitives(mesh.geometry, points, refined);
+  poll();
+  NewGeometry made{mesh.number, {}, quantization_box(mesh.surface.mesh.positions)};
+  for (size_t s = 0; s < mesh.geometry.sets.size(); ++s)
+    made.geometry.sets.push_back(
+        interpolate_vertices(mesh.geometry.sets[s], std::exchange(parts.sets[s], {}), targets, adds_normals));
+  for (size_t p = 0; p < mesh.geometry.primitives.size(); ++p)
+    if (!parts.triangles[p].empty())
+      made.geometry.primitives.push_back(
+          {mesh.geometry.primitives[p].number, mesh.geometry.primitives[p].set, std::move(parts.triangles[p])});
+  return made;
+}
+
+NewGeometry unrefined_geometry(const SceneMesh& mesh) {
+  return {mesh.number, mesh.geometry, quantization_box(mesh.surface.mesh.positions)};
+}
+
+OutputBytes output_bytes(const SceneMesh& mesh) {
+  constexpr uint64_t bytes_of_parting = 40;  // of a point: its numbers, and its place in their order
+  OutputBytes bytes{.face = 36, .point = bytes_of_parting};
+  for (const VertexSet& set : mesh.geometry.sets)
+    bytes.point = std::max(bytes.point, 2 * bytes_of_vertex(set) + bytes_of_parting);
+  bytes.point += mesh.surface.target_count * 2 * sizeof(Vec3d);
+  return bytes;
+}
+
+}  // namespace papilio::proto::gltf

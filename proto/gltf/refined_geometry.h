@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "papilio/refine.h"
+#include "proto/gltf/geometry_writer.h"
+#include "proto/gltf/scene_mesh.h"
+
+namespace papilio::proto::gltf {
+
+/// Returns the geometry of a refined mesh, with all that the input has at its vertices. Primitives that have lost all
+/// triangles are left out, and stay as they are. `adds_normals`: gives NORMAL to a mesh without. `poll` is called now
+/// and then, and may throw to stop.
+[[nodiscard]] NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_normals,
+                                           const std::function<void()>& poll);
+
+/// Returns the geometry of a mesh as it came.
+[[nodiscard]] NewGeometry unrefined_geometry(const SceneMesh& mesh);
+
+/// Returns an upper bound of the memory for parting a refined mesh into primitives and writing them.
+[[nodiscard]] OutputBytes output_bytes(const SceneMesh& mesh);
+
+}  // namespace papilio::proto::gltf
