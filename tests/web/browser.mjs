@@ -124,6 +124,26 @@ export async function picture(page, mode) {
   });
 }
 
+/// Shares of the pixels: `drawn` are not the ground's colour, `red` are red.
+export function redShare(page, picture) {
+  return page.evaluate(async (text) => {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    canvas.drawImage(bitmap, 0, 0);
+    const { data } = canvas.getImageData(0, 0, bitmap.width, bitmap.height);
+    const count = (test) => {
+      let found = 0;
+      for (let i = 0; i < data.length; i += 4) if (test(data[i], data[i + 1], data[i + 2])) ++found;
+      return (4 * found) / data.length;
+    };
+    return {
+      drawn: count((r, g, b) => [r - data[0], g - data[1], b - data[2]].some((d) => Math.abs(d) > 16)),
+      red: count((r, g, b) => r > 2 * g + 16 && r > 2 * b + 16),
+    };
+  }, picture.toString('base64'));
+}
+
 /// Shares of the pixels: `drawn` of the first that are not the ground's colour, `differing` between the two.
 export function compare(page, first, second) {
   return page.evaluate(

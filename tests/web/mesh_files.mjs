@@ -1,5 +1,7 @@
 // A cube in the formats that the viewer opens, made here: 8 vertices, 12 triangles.
 
+import { crc32, deflateSync } from 'node:zlib';
+
 const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]);
 // Counter-clockwise seen from outside.
 const quads = [
@@ -39,10 +41,32 @@ export function cubeStl() {
   return bytes;
 }
 
-export function cubeGlb() {
+/// A picture of one red pixel.
+function redPng() {
+  const chunk = (type, data) => {
+    const body = Buffer.concat([Buffer.from(type), data]);
+    const length = Buffer.alloc(4);
+    length.writeUInt32BE(data.length);
+    const sum = Buffer.alloc(4);
+    sum.writeUInt32BE(crc32(body));
+    return Buffer.concat([length, body, sum]);
+  };
+  const header = Buffer.from([0, 0, 0, 1, 0, 0, 0, 1, 8, 2, 0, 0, 0]); // 1 by 1, 8 bits of RGB
+  return Buffer.concat([
+    Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'),
+    chunk('IHDR', header),
+    chunk('IDAT', deflateSync(Buffer.from([0, 255, 0, 0]))),
+    chunk('IEND', Buffer.alloc(0)),
+  ]);
+}
+
+/// A cube; with a texture, red.
+export function cubeGlb({ isTextured = false } = {}) {
   const positions = Buffer.from(new Float32Array(corners.flat()).buffer);
   const indices = Buffer.from(new Uint16Array(triangles.flat()).buffer);
-  const binary = Buffer.concat([positions, indices]);
+  const places = Buffer.alloc(2 * 4 * corners.length); // of all corners in the picture
+  const image = redPng();
+  const binary = Buffer.concat([positions, indices, places, image, Buffer.alloc((4 - (image.length % 4)) % 4)]);
   const json = {
     asset: { version: '2.0' },
     scene: 0,
@@ -53,6 +77,8 @@ export function cubeGlb() {
     bufferViews: [
       { buffer: 0, byteOffset: 0, byteLength: positions.length },
       { buffer: 0, byteOffset: positions.length, byteLength: indices.length },
+      { buffer: 0, byteOffset: positions.length + indices.length, byteLength: places.length },
+      { buffer: 0, byteOffset: positions.length + indices.length + places.length, byteLength: image.length },
     ],
     accessors: [
       {
@@ -64,8 +90,17 @@ export function cubeGlb() {
         max: [1, 1, 1],
       },
       { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' },
+      { bufferView: 2, componentType: 5126, count: 8, type: 'VEC2' },
     ],
   };
+  if (isTextured) {
+    const primitive = json.meshes[0].primitives[0];
+    primitive.attributes.TEXCOORD_0 = 2;
+    primitive.material = 0;
+    json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 }, metallicFactor: 0 } }];
+    json.textures = [{ source: 0 }];
+    json.images = [{ bufferView: 3, mimeType: 'image/png' }];
+  }
   const text = Buffer.from(JSON.stringify(json));
   const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
   const word = (...values) => Buffer.from(new Uint32Array(values).buffer);

@@ -93,13 +93,13 @@ test('a state comes back from its link; what a link cannot mean is passed over',
 
 test('commands say what they mean to a shell, whatever a file is called', () => {
   const base = 'http://host/';
-  assert.equal(link.curlOf(base, null, { id: null, file: 'a' }, false), '');
+  assert.equal(link.curlOf(base, null, { id: null, file: 'a', kind: 'draco' }, false), '');
   assert.match(
-    link.curlOf(base, 'levels=2', { id: 'ab', file: 'a' }, true),
+    link.curlOf(base, 'levels=2', { id: 'ab', file: 'a', kind: 'draco' }, true),
     /-H "Authorization: Bearer \$PAPILIO_KEY"/,
   );
   for (const file of ['a.drc', "it's $HOME `x`.drc", 'a b"c\\.drc']) {
-    const command = link.curlOf(base, 'levels=2&flatness=0.8,0.9', { id: null, file }, false);
+    const command = link.curlOf(base, 'levels=2&flatness=0.8,0.9', { id: null, file, kind: 'draco' }, false);
     const words = execFileSync('bash', ['-c', `curl() { printf '%s\\0' "$@"; }; ${command}`])
       .toString()
       .split('\0');

@@ -14,6 +14,7 @@ import {
   meshes,
   openPage,
   picture,
+  redShare,
   refinements,
   run,
   surfaceDistances,
@@ -197,7 +198,7 @@ test('a file that is no mesh is refused in words, and what was open stays', asyn
   );
 });
 
-test('files of all formats are opened, and sent as Draco', async () => {
+test('files of all formats are opened, and sent as Draco, scenes as they are', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const bunny = readFileSync(join(meshes, 'bunny600.drc'));
@@ -215,7 +216,7 @@ test('files of all formats are opened, and sent as Draco', async () => {
       page.waitForRequest((request) => request.url().endsWith('/v1/meshes')),
       drop(page, name, bytes),
     ]);
-    assert.equal(stored.postDataBuffer().subarray(0, 5).toString(), 'DRACO');
+    assert.equal(stored.postDataBuffer().subarray(0, 4).toString(), name.endsWith('GLB') ? 'glTF' : 'DRAC');
     await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
     await page.locator('.panel[data-mode=uniform][data-faces="768"][data-state=done]').waitFor();
     await done(page);
@@ -233,6 +234,38 @@ test('files of all formats are opened, and sent as Draco', async () => {
   });
   await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
   assert.deepEqual(faults, []);
+});
+
+test('a scene is shown with its textures in every panel, and saved as .glb', async () => {
+  const { page, faults } = await openPage(shared.browser, shared.server.url, { hash: 'mesh=mug&look=shaded' });
+  await done(page);
+  assert.equal(await page.locator('#parameter-split_instances').count(), 0);
+  await drop(page, 'red.glb', cubeGlb({ isTextured: true }));
+  await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
+  await page.locator('.panel[data-mode=uniform][data-faces="768"]').waitFor();
+  await done(page);
+  for (const mode of ['coarse', 'uniform', 'adaptive', 'view']) {
+    const { red, drawn } = await redShare(page, await picture(page, mode));
+    assert.ok(drawn > 0.1 && red > 0.9 * drawn, `${mode}: ${red} of ${drawn} are red`);
+    const [download] = await Promise.all([
+      page.waitForEvent('download'),
+      page.locator(`.panel[data-mode=${mode}] button`, { hasText: 'Save' }).click(),
+    ]);
+    assert.equal(download.suggestedFilename(), `red-${mode}.glb`);
+    const saved = readFileSync(await download.path());
+    assert.equal(saved.subarray(0, 4).toString(), 'glTF');
+    assert.ok(saved.includes('"baseColorTexture"'));
+  }
+  assert.match(await page.locator('.command[data-mode=view] pre').innerText(), /-o refined\.glb/);
+  assert.equal(await page.locator('#parameter-split_instances').count(), 1);
+  assert.ok(await page.locator('input[name=look][value=level]').isDisabled());
+  // A link to it is opened as a scene.
+  const link = page.url();
+  const again = await openPage(shared.browser, shared.server.url, { hash: new URL(link).hash.slice(1) });
+  await done(again.page);
+  const { red, drawn } = await redShare(again.page, await picture(again.page, 'uniform'));
+  assert.ok(red > 0.9 * drawn);
+  assert.deepEqual([...faults, ...again.faults], []);
 });
 
 test('the command shown gives the bytes that are on screen', async () => {
@@ -387,7 +420,7 @@ test('every parameter of the server has a control, which says what it takes', as
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const info = await (await fetch(`${shared.server.url}v1/info`)).json();
-  const ofScenes = ['output.compress']; // the page sends Draco
+  const ofScenes = ['output.compress', 'split_instances'];
   for (const { name } of info.parameters) {
     const controls = ofScenes.includes(name) ? 0 : 1;
     assert.equal(await page.locator(`[id="parameter-${name}"]`).count(), controls, name);

@@ -6,6 +6,7 @@ import encoderUrl from 'draco3d/draco_encoder_nodejs.js?url';
 import type { BufferGeometry } from 'three';
 import { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';
 
+import type { Bytes, Decoded } from './model';
 import { Problem } from './service';
 
 let loader = new DRACOLoader();
@@ -24,7 +25,7 @@ export async function fetchDecoder(): Promise<DRACOLoader> {
 }
 
 /// The mesh with its positions and, where it has them, its normals. Rejects with a Problem where the bytes are no mesh.
-export async function decode(draco: Uint8Array<ArrayBuffer>): Promise<BufferGeometry> {
+export async function decodeDraco(draco: Bytes): Promise<Decoded> {
   const decoder = await fetchDecoder();
   const geometry = await new Promise<BufferGeometry>((resolve, reject) => {
     const refuse = () => reject(new Problem('mesh_not_draco', 'This is no Draco mesh, or it is damaged.'));
@@ -34,7 +35,14 @@ export async function decode(draco: Uint8Array<ArrayBuffer>): Promise<BufferGeom
     throw new Problem('mesh_unsupported', 'There are no triangles in this file, only points.');
   for (const name of Object.keys(geometry.attributes))
     if (name !== 'position' && name !== 'normal') geometry.deleteAttribute(name);
-  return geometry;
+  return {
+    geometry,
+    scene: null,
+    vertices: geometry.getAttribute('position').count,
+    faces: geometry.index.count / 3,
+    missing: [],
+    dispose: () => geometry.dispose(),
+  };
 }
 
 // What of draco3d's encoder is used.
@@ -78,7 +86,7 @@ async function loadEncoder(): Promise<EncoderModule> {
 }
 
 /// Positions [vertices * 3] and triangles [faces * 3 vertices] as a Draco mesh, positions on a grid of 16 bits.
-export async function encode(positions: Float32Array, triangles: Uint32Array): Promise<Uint8Array<ArrayBuffer>> {
+export async function encode(positions: Float32Array, triangles: Uint32Array): Promise<Bytes> {
   encoderModule ??= loadEncoder();
   encoderModule.catch(() => (encoderModule = undefined)); // the next try fetches it again
   const module = await encoderModule;

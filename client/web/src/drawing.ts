@@ -13,12 +13,16 @@ import {
   type Object3D,
 } from 'three';
 
-/// Facets as they are; smooth where the mesh has normals.
-export function shaded(geometry: BufferGeometry): Object3D {
+import type { Decoded } from './model';
+
+/// A scene with its materials. A mesh has facets as they are; it is smooth where it has normals.
+export function shaded({ geometry, scene }: Decoded): Object3D {
+  if (scene !== null) return scene;
   return new Mesh(geometry, material({ color: 0xb9c6d2, flatShading: !geometry.hasAttribute('normal') }));
 }
 
-export function withEdges(geometry: BufferGeometry): Object3D {
+export function withEdges(decoded: Decoded): Object3D {
+  const { geometry } = decoded;
   const corners = geometry.index!.array;
   const ends = new Uint32Array(2 * corners.length);
   for (let i = 0; i < corners.length; ++i) {
@@ -28,7 +32,7 @@ export function withEdges(geometry: BufferGeometry): Object3D {
   const edges = new BufferGeometry();
   edges.setAttribute('position', geometry.getAttribute('position'));
   edges.setIndex(new BufferAttribute(ends, 1));
-  return new Group().add(shaded(geometry), new LineSegments(edges, new LineBasicMaterial({ color: 0x16344f })));
+  return new Group().add(shaded(decoded), new LineSegments(edges, new LineBasicMaterial({ color: 0x16344f })));
 }
 
 /// `shares` [faces]: 0 to 1, each face's place on the ramp.

@@ -17,14 +17,14 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
   const rows: Row[] = [
     ['faces', (one) => whole(one.faces)],
     ['vertices', (one) => whole(one.vertices)],
-    ['bytes', (one) => whole(one.draco.length), 'Of the mesh as Draco'],
+    ['bytes', (one) => whole(one.encoded.bytes.length), 'Of the file'],
     [
       'all levels',
-      (one) => whole(one.levels.reduce((sum, draco) => sum + draco.length, 0)),
+      (one) => whole(one.levels.reduce((sum, { bytes }) => sum + bytes.length, 0)),
       'Bytes of all levels that came, this one with them',
     ],
     ['fewer faces', (one) => saved(one.faces, uniformFaces), 'Than the uniform result'],
-    ['fewer bytes', (one) => saved(one.draco.length, uniformBytes), 'Than the uniform result'],
+    ['fewer bytes', (one) => saved(one.encoded.bytes.length, uniformBytes), 'Than the uniform result'],
     ['decode ms', (one) => milliseconds(one.timing.decode), 'Of the server'],
     ['refine ms', (one) => milliseconds(one.timing.refine), 'Of the server'],
     ['encode ms', (one) => milliseconds(one.timing.encode), 'Of the server'],
@@ -57,11 +57,11 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
   const bars = element('div', 'bars');
   bars.setAttribute('aria-hidden', 'true'); // the table has it in numbers
   const most = Math.max(...shown.map((one) => one.shown.faces));
-  const mostBytes = Math.max(...shown.map((one) => one.shown.draco.length));
+  const mostBytes = Math.max(...shown.map((one) => one.shown.encoded.bytes.length));
   for (const { panel, shown: one } of shown) {
     bars.append(element('span', '', panel.shortTitle));
     const pair = element('span', 'pair');
-    pair.append(bar('faces', one.faces / most), bar('bytes', one.draco.length / mostBytes));
+    pair.append(bar('faces', one.faces / most), bar('bytes', one.encoded.bytes.length / mostBytes));
     bars.append(pair);
   }
   const key = element('p', 'bar-key');

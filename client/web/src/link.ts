@@ -1,5 +1,6 @@
 // The whole state of the page in its address, behind the #; and the commands that ask for what is on screen.
 
+import { type Encoded, extensionOf, mediaTypes } from './model';
 import type { Values } from './parameters';
 
 export const modes = ['coarse', 'uniform', 'adaptive', 'view'] as const;
@@ -94,14 +95,14 @@ export function shortest(number: number): string {
 export function curlOf(
   base: string,
   query: string | null,
-  mesh: { id: string | null; file: string },
+  mesh: { id: string | null; file: string; kind: Encoded['kind'] },
   withKey: boolean,
 ): string {
   const curl = `curl -sS --fail-with-body${withKey ? ' -H "Authorization: Bearer $PAPILIO_KEY"' : ''}`;
-  if (query === null) return mesh.id === null ? '' : `${curl} -o coarse.drc '${base}v1/meshes/${mesh.id}'`;
-  const out = `${curl} -o refined.drc`;
+  if (query === null) return mesh.id === null ? '' : `${curl} -o coarse${extensionOf[mesh.kind]} '${base}v1/meshes/${mesh.id}'`;
+  const out = `${curl} -o refined${extensionOf[mesh.kind]}`;
   if (mesh.id !== null) return `${out} '${base}v1/meshes/${mesh.id}/refined?${query}'`;
-  const body = `-H 'Content-Type: application/x-draco' --data-binary @${quoted(mesh.file)}`;
+  const body = `-H 'Content-Type: ${mediaTypes[mesh.kind]}' --data-binary @${quoted(mesh.file)}`;
   return `${out} ${body} '${base}v1/refine?${query}'`;
 }
 

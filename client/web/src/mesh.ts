@@ -2,6 +2,7 @@
 
 import type { BufferGeometry } from 'three';
 
+import type { Decoded, Encoded } from './model';
 import { type Level, Problem, refine, store, type Summary } from './service';
 
 export class OpenMesh {
@@ -10,23 +11,23 @@ export class OpenMesh {
   constructor(
     /// A file's or a sample's.
     readonly name: string,
-    readonly draco: Uint8Array<ArrayBuffer>,
-    readonly geometry: BufferGeometry,
+    readonly encoded: Encoded,
+    readonly decoded: Decoded,
   ) {}
 
-  get faces(): number {
-    return this.geometry.index!.count / 3;
+  get geometry(): BufferGeometry {
+    return this.decoded.geometry;
   }
 
-  get vertices(): number {
-    return this.geometry.getAttribute('position').count;
+  get isScene(): boolean {
+    return this.encoded.kind === 'scene';
   }
 
   /// Stores the mesh unless it is. Null where the server's store cannot take it: it is then sent with each request.
   /// Rejects with a Problem where the server refuses the mesh, or cannot be asked now.
   get id(): Promise<string | null> {
     if (this.#id === null) {
-      const stored = store(this.draco).catch((error: unknown) => {
+      const stored = store(this.encoded).catch((error: unknown) => {
         if (error instanceof Problem && ['store_full', 'store_unavailable'].includes(error.code)) return null;
         this.#id = null; // the next time it is tried again
         throw error;
@@ -42,7 +43,7 @@ export class OpenMesh {
       const id = await this.id;
       signal.throwIfAborted();
       try {
-        return await refine(id === null ? { draco: this.draco } : { id }, query, onLevel, signal);
+        return await refine(this.encoded, id, query, onLevel, signal);
       } catch (error) {
         if (isAgain || !(error instanceof Problem) || error.code !== 'mesh_not_found') throw error;
         this.#id = null;

@@ -1,23 +1,25 @@
-// A file that the user drops or picks, as a Draco mesh: .drc as it is, other formats by three's loaders, positions and
-// triangles alone.
+// A file that the user drops or picks: a .drc mesh or a .glb scene as it is, other formats by three's loaders as a Draco
+// mesh of positions and triangles alone.
 
-import { BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
+import { type BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
 
-import { encode, fetchDecoder } from './draco';
+import { encode } from './draco';
+import type { Encoded } from './model';
 import { Problem } from './service';
 
 export const extensions = ['.drc', '.obj', '.ply', '.stl', '.glb'];
 
 /// Rejects with a Problem. `maxBytes`: of the service.
-export async function readMeshFile(file: File, maxBytes: number): Promise<Uint8Array<ArrayBuffer>> {
+export async function readMeshFile(file: File, maxBytes: number): Promise<Encoded> {
   const extension = /\.[^.]*$/.exec(file.name.toLowerCase())?.[0] ?? '';
   if (!extensions.includes(extension))
     throw new Problem('unsupported', `${file.name} is no mesh file. Open one of ${extensions.join(', ')}.`);
   if (file.size === 0) throw new Problem('empty', `${file.name} is empty.`);
-  if (extension === '.drc' && file.size > maxBytes)
+  const kind = extension === '.drc' ? 'draco' : extension === '.glb' ? 'scene' : null;
+  if (kind !== null && file.size > maxBytes)
     throw new Problem('body_too_large', `${file.name} has ${file.size} bytes; this server takes ${maxBytes}.`);
   const bytes = await file.arrayBuffer();
-  if (extension === '.drc') return new Uint8Array(bytes);
+  if (kind !== null) return { kind, bytes: new Uint8Array(bytes) };
   let geometries: BufferGeometry[];
   try {
     geometries = await load(extension, bytes);
@@ -31,7 +33,7 @@ export async function readMeshFile(file: File, maxBytes: number): Promise<Uint8A
   if (triangles.length === 0) throw new Problem('empty', `There are no triangles in ${file.name}.`);
   if (!positions.every(Number.isFinite))
     throw new Problem('mesh_unusable', `${file.name} has positions that are no numbers.`);
-  return encode(positions, triangles);
+  return { kind: 'draco', bytes: await encode(positions, triangles) };
 }
 
 async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeometry[]> {
@@ -45,16 +47,9 @@ async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeomet
       const geometry = new PLYLoader().parse(bytes);
       return geometry.index === null ? [] : [geometry]; // without faces the points are no triangles
     }
-    case '.stl': {
+    default: {
       const { STLLoader } = await import('three/examples/jsm/loaders/STLLoader.js');
       return [new STLLoader().parse(bytes)];
-    }
-    default: {
-      const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
-      const loader = new GLTFLoader().setDRACOLoader(await fetchDecoder());
-      // Files beside it could only come from elsewhere; what it needs of itself are blobs.
-      loader.manager.setURLModifier((url) => (/^(blob|data):/.test(url) ? url : 'data:,'));
-      return meshesIn((await loader.parseAsync(bytes, '')).scene);
     }
   }
 }

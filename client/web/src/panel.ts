@@ -2,11 +2,12 @@
 
 import type { BufferGeometry } from 'three';
 
-import { decode } from './draco';
+import { decode } from './decode';
 import { button, element } from './elements';
 import { LevelsOfVertices } from './levels';
 import type { Mode } from './link';
 import type { OpenMesh } from './mesh';
+import { type Decoded, type Encoded, extensionOf } from './model';
 import { type Level, Problem, type Summary } from './service';
 
 const titles: Record<Mode, string> = {
@@ -22,8 +23,9 @@ const longestPause = 60;
 /// A mesh that can be shown, and what it cost.
 export interface Shown {
   mesh: OpenMesh;
+  decoded: Decoded;
   geometry: BufferGeometry;
-  draco: Uint8Array<ArrayBuffer>;
+  encoded: Encoded;
   vertices: number;
   faces: number;
   /// Milliseconds by stage of the server; empty for the coarse mesh.
@@ -32,8 +34,8 @@ export interface Shown {
   roundTrip: number | null;
   /// Null while further levels may come, and for the coarse mesh.
   summary: Summary | null;
-  /// The meshes up to this one, coarse first.
-  levels: Uint8Array<ArrayBuffer>[];
+  /// The meshes up to this one, coarse first; of a scene this one alone.
+  levels: Encoded[];
 }
 
 export class Panel {
@@ -75,7 +77,7 @@ export class Panel {
     const actions = head.appendChild(element('span', 'actions'));
     this.#enlarge = actions.appendChild(button('', () => this.onEnlarge()));
     this.#save = actions.appendChild(button('Save', () => this.#saveFile()));
-    this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh as a Draco file`);
+    this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh to a file`);
     this.#save.hidden = true;
     this.setEnlarged(false);
     // What is pressed here must not turn the mesh, which takes all that the pointer does from then on.
@@ -121,9 +123,9 @@ export class Panel {
   /// [faces] of what is shown.
   async levelsOfFaces(shown: Shown): Promise<Uint8Array> {
     const vertices = new LevelsOfVertices();
-    for (const [level, draco] of shown.levels.entries()) {
+    for (const [level, encoded] of shown.levels.entries()) {
       const isLast = level + 1 === shown.levels.length;
-      vertices.add(isLast ? shown.geometry : await decode(draco), level);
+      vertices.add(isLast ? shown.geometry : (await decode(encoded)).geometry, level);
     }
     return vertices.ofFaces(shown.geometry);
   }
@@ -151,19 +153,20 @@ export class Panel {
   async #refine(mesh: OpenMesh, query: string, signal: AbortSignal): Promise<void> {
     const began = performance.now();
     const levels: Level[] = [];
-    let latest: { level: number; geometry: BufferGeometry } | null = null;
-    const show = (level: number, geometry: BufferGeometry, summary: Summary | null) => {
-      const draco = levels.slice(0, level + 1).map((one) => one.draco);
+    let latest: { level: number; decoded: Decoded } | null = null;
+    const show = (level: number, decoded: Decoded, summary: Summary | null) => {
+      const encoded = levels.slice(0, level + 1).map((one) => one.encoded);
       this.#show({
         mesh,
-        geometry,
-        draco: draco[level],
+        decoded,
+        geometry: decoded.geometry,
+        encoded: encoded[level],
         vertices: levels[level].vertices,
         faces: levels[level].faces,
         timing: levels[level].timing,
         roundTrip: summary && performance.now() - began,
         summary,
-        levels: draco,
+        levels: encoded,
       });
     };
     // Shows levels that are better than what is on screen. Those that come while one is decoded wait, and of those the
@@ -172,9 +175,9 @@ export class Panel {
       for (let level = -1; level + 1 < levels.length; ) {
         level = levels.length - 1;
         if (this.shown?.mesh === mesh && levels[level].faces <= this.shown.faces) continue;
-        latest = { level, geometry: await decode(levels[level].draco) };
+        latest = { level, decoded: await decode(levels[level].encoded) };
         signal.throwIfAborted();
-        show(level, latest.geometry, null);
+        show(level, latest.decoded, null);
       }
     };
     let showing: Promise<void> | null = null;
@@ -187,15 +190,17 @@ export class Panel {
     const summary = await mesh.refine(query, onLevel, signal);
     await showing;
     const last = levels.length - 1;
-    const decoded = latest as { level: number; geometry: BufferGeometry } | null;
-    const geometry = decoded?.level === last ? decoded.geometry : await decode(levels[last].draco);
+    const made = latest as { level: number; decoded: Decoded } | null;
+    const decoded = made?.level === last ? made.decoded : await decode(levels[last].encoded);
     signal.throwIfAborted();
-    show(last, geometry, summary);
+    show(last, decoded, summary);
     this.#retries = 0;
     this.#tell('done');
   }
 
   #show(shown: Shown): void {
+    const before = this.shown?.decoded;
+    if (before !== shown.decoded && before !== this.shown?.mesh.decoded) before?.dispose();
     this.shown = shown;
     this.#caption.textContent = `${shown.faces.toLocaleString('en')} faces`;
     this.element.dataset.faces = String(shown.faces);
@@ -239,8 +244,9 @@ export class Panel {
   #saveFile(): void {
     if (this.shown === null) return;
     const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([this.shown.draco]));
-    link.download = `${this.shown.mesh.name.replace(/\.[^.]*$/, '')}-${this.mode}.drc`;
+    const { kind, bytes } = this.shown.encoded;
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = `${this.shown.mesh.name.replace(/\.[^.]*$/, '')}-${this.mode}${extensionOf[kind]}`;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
   }
@@ -249,13 +255,14 @@ export class Panel {
 function coarse(mesh: OpenMesh): Shown {
   return {
     mesh,
+    decoded: mesh.decoded,
     geometry: mesh.geometry,
-    draco: mesh.draco,
-    vertices: mesh.vertices,
-    faces: mesh.faces,
+    encoded: mesh.encoded,
+    vertices: mesh.decoded.vertices,
+    faces: mesh.decoded.faces,
     timing: {},
     roundTrip: null,
     summary: null,
-    levels: [mesh.draco],
+    levels: [mesh.encoded],
   };
 }

@@ -36,9 +36,7 @@ export class Pictures {
   }
 
   #drawPlain({ panel, shown }: Picture, look: Look, words: string): void {
-    this.#put({ panel, shown }, look, () =>
-      look === 'wireframe' ? withEdges(shown.geometry) : shaded(shown.geometry),
-    );
+    this.#put({ panel, shown }, look, () => (look === 'wireframe' ? withEdges(shown.decoded) : shaded(shown.decoded)));
     panel.setLegend(words === '' ? [] : [element('span', '', words)]);
   }
 

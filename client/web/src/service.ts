@@ -1,5 +1,6 @@
 // What the page asks of the server.
 
+import { type Bytes, type Encoded, kindOf, mediaTypes } from './model';
 import { boundaryOf, partsOf } from './multipart';
 import type { ParameterKind } from './parameters';
 
@@ -17,8 +18,6 @@ export interface Info {
   samples: Sample[];
 }
 
-type Bytes = Uint8Array<ArrayBuffer>;
-
 /// A refusal, in the server's words or in ours.
 export class Problem extends Error {
   constructor(
@@ -35,7 +34,7 @@ export class Problem extends Error {
 
 /// What came of one level.
 export interface Level {
-  draco: Bytes;
+  encoded: Encoded;
   vertices: number;
   faces: number;
   /// Milliseconds by stage: decode, refine (all levels up to this one) and encode.
@@ -66,39 +65,46 @@ export async function fetchInfo(): Promise<Info> {
   return (await (await send('v1/info')).json()) as Info;
 }
 
-export async function fetchSample(name: string): Promise<Bytes> {
-  return bytesOf(await send(`v1/samples/${encodeURIComponent(name)}`));
+export async function fetchSample(name: string): Promise<Encoded> {
+  return encodedOf(await send(`v1/samples/${encodeURIComponent(name)}`));
 }
 
-export async function fetchStored(id: string): Promise<Bytes> {
-  return bytesOf(await send(`v1/meshes/${encodeURIComponent(id)}`, { headers: { Accept: 'application/x-draco' } }));
+export async function fetchStored(id: string): Promise<Encoded> {
+  const headers = { Accept: `${mediaTypes.draco}, ${mediaTypes.scene}` };
+  return encodedOf(await send(`v1/meshes/${encodeURIComponent(id)}`, { headers }));
 }
 
 /// Stores the mesh; resolves with its id.
-export async function store(draco: Bytes): Promise<string> {
+export async function store({ kind, bytes }: Encoded): Promise<string> {
   const answer = await send('v1/meshes', {
     method: 'POST',
-    headers: { 'Content-Type': 'application/x-draco' },
-    body: draco,
+    headers: { 'Content-Type': mediaTypes[kind] },
+    body: bytes,
   });
   return ((await answer.json()) as { id: string }).id;
 }
 
-/// Refines a stored mesh (or, where the server could not store it, the bytes); calls onLevel for each level as it comes,
-/// the coarse mesh first. Rejects with a Problem, or with an AbortError once the signal says so.
+/// Refines a mesh or a scene: the stored one of this id, or where the server could not store it (null) the bytes. Calls
+/// onLevel for each level of a mesh as it comes, the coarse mesh first; for a scene, whose levels would each bring its
+/// images again, with the result alone. Rejects with a Problem, or with an AbortError once the signal says so.
 export async function refine(
-  mesh: { id: string } | { draco: Bytes },
+  { kind, bytes }: Encoded,
+  id: string | null,
   query: string,
   onLevel: (level: Level) => void,
   signal: AbortSignal,
 ): Promise<Summary> {
-  const headers = { Accept: 'multipart/mixed' };
+  const headers = { Accept: kind === 'scene' ? mediaTypes.scene : 'multipart/mixed' };
   const answer = await send(
-    'id' in mesh ? `v1/meshes/${mesh.id}/refined?${query}` : `v1/refine?${query}`,
-    'id' in mesh
-      ? { headers, signal, cache: 'no-store' }
-      : { method: 'POST', headers: { ...headers, 'Content-Type': 'application/x-draco' }, body: mesh.draco, signal },
+    id === null ? `v1/refine?${query}` : `v1/meshes/${id}/refined?${query}`,
+    id === null
+      ? { method: 'POST', headers: { ...headers, 'Content-Type': mediaTypes[kind] }, body: bytes, signal }
+      : { headers, signal, cache: 'no-store' },
   );
+  if (kind === 'scene') {
+    onLevel(levelOf({ kind, bytes: await bytesOf(answer, signal) }, answer.headers));
+    return summaryOf(answer.headers);
+  }
   const boundary = boundaryOf(answer.headers.get('Content-Type') ?? '');
   if (boundary === null || answer.body === null) throw new Problem('unexpected', 'The answer is no stream of levels.');
   let summary: Summary | null = null;
@@ -106,12 +112,7 @@ export async function refine(
     for await (const part of partsOf(answer.body, boundary)) {
       const type = part.headers.get('Content-Type');
       if (type === 'application/x-draco') {
-        onLevel({
-          draco: part.body,
-          vertices: Number(part.headers.get('Papilio-Vertices')),
-          faces: Number(part.headers.get('Papilio-Faces')),
-          timing: timingOf(part.headers.get('Server-Timing') ?? ''),
-        });
+        onLevel(levelOf({ kind, bytes: part.body }, part.headers));
         continue;
       }
       const document: unknown = JSON.parse(new TextDecoder().decode(part.body));
@@ -126,14 +127,44 @@ export async function refine(
   return summary;
 }
 
+function levelOf(encoded: Encoded, headers: Headers): Level {
+  return {
+    encoded,
+    vertices: Number(headers.get('Papilio-Vertices')),
+    faces: Number(headers.get('Papilio-Faces')),
+    timing: timingOf(headers.get('Server-Timing') ?? ''),
+  };
+}
+
+function summaryOf(headers: Headers): Summary {
+  const pixels = headers.get('Papilio-Error-Pixels');
+  return {
+    stop_reason: headers.get('Papilio-Stop-Reason') ?? '',
+    error: Number(headers.get('Papilio-Error')),
+    error_pixels: pixels === null ? undefined : Number(pixels),
+    unreached: headers.get('Papilio-Unreached') ?? undefined,
+  };
+}
+
 function timingOf(text: string): Record<string, number> {
   const timing: Record<string, number> = {};
   for (const [, name, duration] of text.matchAll(/([\w-]+);dur=([\d.]+)/g)) timing[name] = Number(duration);
   return timing;
 }
 
-async function bytesOf(answer: Response): Promise<Bytes> {
-  return new Uint8Array(await answer.arrayBuffer());
+async function encodedOf(answer: Response): Promise<Encoded> {
+  const kind = kindOf(answer.headers.get('Content-Type'));
+  if (kind === null) throw new Problem('unexpected', 'The answer is no mesh.');
+  return { kind, bytes: await bytesOf(answer) };
+}
+
+async function bytesOf(answer: Response, signal?: AbortSignal): Promise<Bytes> {
+  try {
+    return new Uint8Array(await answer.arrayBuffer());
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new Problem('unreachable', 'The connection was lost before the mesh was complete.', 2);
+  }
 }
 
 function toProblem(document: unknown, retryAfter: number | null): Problem {

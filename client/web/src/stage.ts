@@ -9,14 +9,17 @@ import {
   type Object3D,
   OrthographicCamera,
   PerspectiveCamera,
+  PMREMGenerator,
   Quaternion,
   Scene,
   Sphere,
   Spherical,
+  type Texture,
   Vector3,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 
 import type { Camera, Frozen } from './link';
 
@@ -26,6 +29,7 @@ const rest = 200;
 interface View {
   scene: Scene;
   light: DirectionalLight;
+  ambient: AmbientLight;
   content: Object3D | null;
   frustum: CameraHelper | null;
 }
@@ -43,6 +47,8 @@ export class Stage {
   /// The camera moves.
   onMove: () => void = () => {};
   #renderer: WebGLRenderer;
+  /// Light from all sides; made when the first scene comes.
+  #room: Texture | null = null;
   #surface: HTMLElement;
   #camera = new PerspectiveCamera(45);
   #controls: OrbitControls;
@@ -73,8 +79,9 @@ export class Stage {
       if (this.#views.has(element)) continue;
       const scene = new Scene();
       const light = new DirectionalLight(0xffffff, 2.4);
-      scene.add(new AmbientLight(0xffffff, 0.7), light, light.target);
-      this.#views.set(element, { scene, light, content: null, frustum: null });
+      const ambient = new AmbientLight(0xffffff, 0.7);
+      scene.add(ambient, light, light.target);
+      this.#views.set(element, { scene, light, ambient, content: null, frustum: null });
     }
     this.draw();
   }
@@ -87,6 +94,12 @@ export class Stage {
     dispose(view.content);
     view.content = content;
     if (content) view.scene.add(content);
+    // Metals show what is round them.
+    const isLit = hasMaterials(content);
+    view.scene.environment = isLit ? this.#roomLight() : null;
+    view.scene.environmentIntensity = 0.5; // white stays below white
+    view.light.intensity = isLit ? 1.5 : 2.4;
+    view.ambient.intensity = isLit ? 0 : 0.7;
     this.draw();
   }
 
@@ -209,6 +222,15 @@ export class Stage {
     });
   }
 
+  #roomLight(): Texture {
+    if (this.#room === null) {
+      const generator = new PMREMGenerator(this.#renderer);
+      this.#room = generator.fromScene(new RoomEnvironment(), 0.04).texture;
+      generator.dispose();
+    }
+    return this.#room;
+  }
+
   #makeControls(): OrbitControls {
     this.#isHeld = false;
     this.#camera.up.set(...this.#lens.up);
@@ -275,10 +297,16 @@ function aspectOf(element: HTMLElement): number {
   return Math.max(width, 1) / Math.max(height, 1);
 }
 
+/// Whether it is a scene with materials of its own, or has one.
+function hasMaterials(content: Object3D | null): boolean {
+  return content !== null && [content, ...content.children].some(({ userData }) => userData.hasMaterials === true);
+}
+
+/// Scenes with materials of their own are shown again in other looks, and freed by those who decoded them.
 function dispose(content: Object3D | null): void {
-  content?.traverse((object) => {
-    const { geometry, material } = object as { geometry?: { dispose(): void }; material?: { dispose(): void } };
-    geometry?.dispose();
-    material?.dispose();
-  });
+  if (content === null || content.userData.hasMaterials === true) return;
+  for (const child of [...content.children]) dispose(child);
+  const { geometry, material } = content as { geometry?: { dispose(): void }; material?: { dispose(): void } };
+  geometry?.dispose();
+  material?.dispose();
 }

@@ -1,8 +1,10 @@
 // The page: what is open, what is shown of it, and what the user has set.
 
 import { commandRows, copy } from './commands';
-import { decode, fetchDecoder } from './draco';
-import { button, element, find } from './elements';
+import { decode } from './decode';
+import { defaults, lookTitles } from './defaults';
+import { fetchDecoder } from './draco';
+import { addChoice, button, element, find } from './elements';
 import { figures } from './figures';
 import { listenToDrops, listenToKeys } from './input';
 import {
@@ -19,6 +21,7 @@ import {
   toHash,
 } from './link';
 import { OpenMesh } from './mesh';
+import { type Encoded, extensionOf } from './model';
 import { extensions, readMeshFile } from './open_file';
 import { Panel } from './panel';
 import { ParameterForm } from './parameter_form';
@@ -27,28 +30,6 @@ import { Pictures } from './pictures';
 import { levelsOf, noteFor, valuesFor } from './requests';
 import { fetchInfo, fetchSample, fetchStored, hasKey, type Info, Problem, setKey } from './service';
 import { Stage } from './stage';
-
-const lookTitles: Record<Look, string> = {
-  shaded: 'Shaded',
-  wireframe: 'Edges',
-  level: 'By level',
-  distance: 'By distance to uniform',
-};
-
-/// What a user who has set nothing sees.
-const defaults: State = {
-  mesh: 'mug',
-  modes: [...modes],
-  look: 'wireframe',
-  camera: null,
-  frozen: null,
-  values: new Map([
-    ['levels', '3'],
-    ['tolerance', '0.001'],
-    ['view.error_pixels', '0.5'],
-    ['view.edge_pixels', '0'],
-  ]),
-};
 
 export class Viewer {
   #state: State = fromHash(location.hash, defaults);
@@ -93,8 +74,7 @@ export class Viewer {
       this.#tell(error, () => void this.start());
       return;
     }
-    this.#form.setKinds(this.#info.parameters.filter(({ name }) => name !== 'output.compress')); // of scenes
-    this.#form.setValues(this.#state.values);
+    this.#showParameters();
     const samples = this.#info.samples.map(({ name, faces }) => new Option(`${name} (${faces} faces)`, name));
     find('sample').replaceChildren(...samples);
     this.#nameMesh();
@@ -112,14 +92,17 @@ export class Viewer {
   }
 
   /// What is open stays so unless all goes well.
-  async #open(name: string, isNamed: boolean, read: () => Promise<Uint8Array<ArrayBuffer>>): Promise<void> {
+  async #open(name: string, isNamed: boolean, read: () => Promise<Encoded>): Promise<void> {
     const opening = ++this.#opening;
     const isLatest = () => opening === this.#opening;
     find('stage').setAttribute('aria-busy', 'true');
     try {
-      const draco = await read();
-      const geometry = await decode(draco);
-      if (isLatest()) this.#show(new OpenMesh(name, draco, geometry), isNamed);
+      const encoded = await read();
+      const decoded = await decode(encoded).catch((error: unknown) => {
+        if (isNamed || !(error instanceof Problem) || error.code === 'unreachable') throw error;
+        throw new Problem(error.code, `${name} cannot be read: ${error.message}`);
+      });
+      if (isLatest()) this.#show(new OpenMesh(name, encoded, decoded), isNamed);
     } catch (error) {
       const again = () => (this.#mesh === null ? this.start() : this.#open(name, isNamed, read));
       if (isLatest()) this.#tell(error, () => void again());
@@ -132,16 +115,29 @@ export class Viewer {
   #show(mesh: OpenMesh, isNamed: boolean): void {
     // The first one may come with a link's camera.
     if (this.#mesh !== null) this.#state.camera = this.#state.frozen = null;
+    this.#mesh?.decoded.dispose();
     this.#mesh = mesh;
+    this.#showParameters();
+    this.#showChoices();
     this.#state.mesh = isNamed ? mesh.name : '';
-    this.#alert(null);
-    this.#setLens(); // which way is up, and how wide the picture is
+    const { missing } = mesh.decoded;
+    this.#alert(missing.length > 0 ? `${mesh.name} has no ${missing.join(', ')} inside, which is shown white.` : null);
+    this.#setLens();
     this.#stage.frame(mesh.geometry);
     if (this.#state.camera) this.#stage.camera = this.#state.camera;
     this.#showFrozen();
     this.#showCamera();
     this.#nameMesh();
     this.#refresh();
+  }
+
+  /// Some parameters are of scenes alone.
+  #showParameters(): void {
+    const ofScenes = ['output.compress', 'split_instances'];
+    const isScene = this.#mesh?.isScene ?? false;
+    this.#form.setKinds((this.#info?.parameters ?? []).filter(({ name }) => isScene || !ofScenes.includes(name)));
+    this.#form.setValues(this.#state.values);
+    if (!isScene) for (const name of ofScenes) this.#state.values.delete(name);
   }
 
   #nameMesh(): void {
@@ -208,6 +204,11 @@ export class Viewer {
 
   // Showing
 
+  /// Of scenes the levels do not come one by one.
+  #look(): Look {
+    return this.#mesh?.isScene && this.#state.look === 'level' ? 'shaded' : this.#state.look;
+  }
+
   #setPanels(): void {
     const shown = this.#visible();
     for (const panel of shown) panel.setEnlarged(shown.length === 1);
@@ -232,12 +233,12 @@ export class Viewer {
     const failure = this.#panels.get('uniform')!.problem;
     const missing = failure ? `no uniform result: ${failure.message}` : 'waiting for the uniform result …';
     this.#pictures
-      .draw(this.#visible(), this.#state.look, levels, uniform ?? missing)
+      .draw(this.#visible(), this.#look(), levels, uniform ?? missing)
       .catch((error: unknown) => this.#tell(error));
     if (mesh === null) return;
     const current = this.#visible().filter((panel) => panel.shown?.mesh === mesh);
-    const uniformFaces = uniform?.faces ?? mesh.faces * 4 ** levels;
-    find('figures').replaceChildren(...figures(current, uniformFaces, uniform?.draco.length ?? null));
+    const uniformFaces = uniform?.faces ?? mesh.decoded.faces * 4 ** levels;
+    find('figures').replaceChildren(...figures(current, uniformFaces, uniform?.encoded.bytes.length ?? null));
   }
 
   /// Where the camera is, in the form.
@@ -265,10 +266,11 @@ export class Viewer {
       this.#writeLink();
     }
     const base = new URL('.', location.href).href;
-    const file = mesh.name.endsWith('.drc') ? mesh.name : 'mesh.drc';
+    const { kind } = mesh.encoded;
+    const file = mesh.name.endsWith(extensionOf[kind]) ? mesh.name : `mesh${extensionOf[kind]}`;
     const commands = this.#visible().map(({ mode, title }) => {
       const query = mode === 'coarse' ? null : this.#queryFor(mode, this.#info!);
-      return { mode, title, text: curlOf(base, query, { id, file }, hasKey()) };
+      return { mode, title, text: curlOf(base, query, { id, file, kind }, hasKey()) };
     });
     find('commands').replaceChildren(...commandRows(commands.filter(({ text }) => text !== '')));
   }
@@ -293,8 +295,10 @@ export class Viewer {
   }
 
   #showChoices(): void {
-    for (const input of document.querySelectorAll<HTMLInputElement>('input[name=mode], input[name=look]'))
-      input.checked = [...this.#state.modes, this.#state.look].some((value) => value === input.value);
+    for (const input of document.querySelectorAll<HTMLInputElement>('input[name=mode], input[name=look]')) {
+      input.checked = [...this.#state.modes, this.#look()].some((value) => value === input.value);
+      input.disabled = input.value === 'level' && this.#mesh?.isScene === true;
+    }
   }
 
   #setModes(chosen: Mode[]): void {
@@ -394,18 +398,4 @@ export class Viewer {
     });
     find('alert-text').append(' ', retry);
   }
-}
-
-function addChoice(
-  parent: HTMLElement,
-  attributes: { type: string; name: string; value: string },
-  title: string,
-  onChange: (isOn: boolean) => void,
-): void {
-  const label = element('label');
-  const input = element('input');
-  Object.assign(input, attributes);
-  input.addEventListener('change', () => onChange(input.checked));
-  label.append(input, element('span', '', title));
-  parent.append(label);
 }

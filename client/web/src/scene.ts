@@ -1,0 +1,121 @@
+// glTF scenes in the browser, by three's loader.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  type InstancedMesh,
+  type Material,
+  Matrix4,
+  Mesh,
+  type Object3D,
+  type SkinnedMesh,
+  type Texture,
+  Vector3,
+} from 'three';
+
+import { fetchDecoder } from './draco';
+import type { Bytes, Decoded } from './model';
+import { Problem } from './service';
+
+const whitePixel =
+  'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4//8/AAX+Av4N70a4AAAAAElFTkSuQmCC';
+
+/// Rejects with a Problem where the bytes are no scene of triangles.
+export async function decodeScene(bytes: Bytes): Promise<Decoded> {
+  const [{ GLTFLoader }, { MeshoptDecoder }, draco] = await Promise.all([
+    import('three/examples/jsm/loaders/GLTFLoader.js'),
+    import('three/examples/jsm/libs/meshopt_decoder.module.js'),
+    fetchDecoder(),
+  ]);
+  const loader = new GLTFLoader().setDRACOLoader(draco).setMeshoptDecoder(MeshoptDecoder);
+  // What it has in itself are blobs. Files beside it are not there: white is shown in their place.
+  const missing = new Set<string>();
+  loader.manager.setURLModifier((url) => {
+    if (/^(blob|data):/.test(url)) return url;
+    missing.add(url);
+    return whitePixel;
+  });
+  let scene: Object3D;
+  try {
+    scene = (await loader.parseAsync(bytes.slice().buffer, '')).scene;
+  } catch (error) {
+    throw new Problem('mesh_not_gltf', error instanceof Error ? error.message : String(error));
+  }
+  scene.userData.hasMaterials = true;
+  scene.updateMatrixWorld(true);
+  const geometries = new Set<BufferGeometry>();
+  scene.traverse((object) => {
+    if (!isMesh(object)) return;
+    geometries.add(object.geometry);
+    for (const material of ([] as Material[]).concat(object.material))
+      Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }); // edges lie in front
+  });
+  const geometry = mergedGeometry(scene);
+  if (geometry.index!.count === 0) throw new Problem('mesh_unsupported', 'There are no triangles in this file.');
+  let vertices = 0;
+  let faces = 0;
+  for (const one of geometries) {
+    vertices += one.getAttribute('position').count;
+    faces += Math.floor(cornersOf(one) / 3);
+  }
+  const dispose = () => {
+    geometry.dispose();
+    disposeScene(scene);
+  };
+  return { geometry, scene, vertices, faces, missing: [...missing], dispose };
+}
+
+function isMesh(object: Object3D): object is Mesh {
+  return object instanceof Mesh && (object.geometry as BufferGeometry).hasAttribute('position');
+}
+
+function cornersOf(geometry: BufferGeometry): number {
+  return geometry.index?.count ?? geometry.getAttribute('position').count;
+}
+
+/// All triangles of a scene in world coordinates, skinned ones as they stand.
+function mergedGeometry(scene: Object3D): BufferGeometry {
+  const positions: number[] = [];
+  const corners: number[] = [];
+  const point = new Vector3();
+  const add = (mesh: Mesh, matrix: Matrix4) => {
+    const first = positions.length / 3;
+    const position = mesh.geometry.getAttribute('position');
+    for (let i = 0; i < position.count; ++i) {
+      mesh.getVertexPosition(i, point).applyMatrix4(matrix); // with morph targets and skin
+      positions.push(point.x, point.y, point.z);
+    }
+    const count = cornersOf(mesh.geometry) - (cornersOf(mesh.geometry) % 3);
+    for (let i = 0; i < count; ++i) corners.push(first + (mesh.geometry.index?.getX(i) ?? i));
+  };
+  scene.traverse((object) => {
+    if (!isMesh(object)) return;
+    if (!('isInstancedMesh' in object)) {
+      add(object, object.matrixWorld);
+      return;
+    }
+    const instances = object as InstancedMesh;
+    for (let i = 0; i < instances.count; ++i) {
+      const matrix = new Matrix4();
+      instances.getMatrixAt(i, matrix);
+      add(object, matrix.premultiply(object.matrixWorld));
+    }
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(corners), 1));
+  return geometry;
+}
+
+function disposeScene(scene: Object3D): void {
+  scene.traverse((object) => {
+    if (!isMesh(object)) return;
+    object.geometry.dispose();
+    (object as Partial<SkinnedMesh>).skeleton?.dispose();
+    for (const material of ([] as Material[]).concat(object.material)) {
+      for (const value of Object.values(material) as unknown[])
+        if (value !== null && typeof value === 'object' && 'isTexture' in value) (value as Texture).dispose();
+      material.dispose();
+    }
+  });
+}
