@@ -143,6 +143,7 @@ int run(const std::string& name, const std::string& json_file) {
   add_service();
   add_view_change();
   add_http();
+  add_scene();
   return run_pairs(name, json_file);
 }
 

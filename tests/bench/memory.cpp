@@ -8,13 +8,16 @@
 #include <stdexcept>
 
 #include "papilio/refine.h"
+#include "proto/gltf/scene_refinement.h"
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/openmesh_peer.h"
 #include "tests/bench/report.h"
+#include "tests/bench/textured_scene.h"
 #include "tests/support/real_mesh.h"
 
-// The most memory that a uniform refinement in three levels takes at once, beside OpenMesh's: each in a process of its
-// own, less what the process has before it.
+// The most memory that a uniform refinement in three levels takes at once, beside OpenMesh's; and that a scene takes,
+// beside the scene that comes, the one that goes and the refinement of its mesh. Each in a process of its own, less
+// what the process has before it.
 
 namespace papilio::bench {
 namespace {
@@ -48,10 +51,29 @@ double memory_of(const std::function<void()>& prepare_and_work) {
   return added;
 }
 
+/// What a scene with images takes, and the sum of its parts.
+ReportRow scene_row() {
+  constexpr double mebibyte = 1 << 20;
+  const std::string glb = textured_scene(10 * image_bytes);
+  const proto::Parameters parameters = proto::parse_query({{"levels", "3"}});
+  const double ours = memory_of([&] {
+    const std::string own = glb;
+    if (proto::gltf::SceneRefinement(own, parameters, {}).run().bytes.empty()) std::abort();
+  });
+  const double of_mesh = memory_of([&] {  // with what its points carry: face and place
+    const auto mesh = proto::gltf::decode_scene(glb, {}).scene.meshes[0].surface.mesh;
+    if (refine(mesh, {.levels = 3, .edges = false}).mesh.topology.face_count() == 0) std::abort();
+  });
+  // Last: what is spared of it would be used again.
+  const auto written = static_cast<double>(proto::gltf::SceneRefinement(glb, parameters, {}).run().bytes.size());
+  return {"memory/scene with 40 MB of images/3", ours,
+          static_cast<double>(glb.size()) / mebibyte + written / mebibyte + of_mesh, "MiB"};
+}
+
 std::vector<ReportRow> print() {
   constexpr int levels = 3;
   std::vector<ReportRow> rows;
-  MarkdownTable table({"most memory at once, MiB", "ours", "OpenMesh", "ratio"});
+  MarkdownTable table({"most memory at once, MiB", "ours", "OpenMesh; of a scene: in, out and core", "ratio"});
   for (const char* name : {"elephant20k.drc", "elephant89k.drc"}) {
     const TriangleMesh coarse = test::real_mesh(name);
     const double ours = memory_of([&] {
@@ -70,6 +92,9 @@ std::vector<ReportRow> print() {
     rows.push_back({"memory/" + std::string(name) + "/" + std::to_string(levels), ours, peer, "MiB"});
     table.add({rows.back().name, fixed(ours, 1), fixed(peer, 1), fixed(ours / peer, 2)});
   }
+  rows.push_back(scene_row());
+  table.add({rows.back().name, fixed(rows.back().ours, 1), fixed(rows.back().peer, 1),
+             fixed(rows.back().ours / rows.back().peer, 2)});
   table.print();
   return rows;
 }

@@ -31,5 +31,6 @@ void add_draco();
 void add_service();
 void add_view_change();
 void add_http();
+void add_scene();
 
 }  // namespace papilio::bench
