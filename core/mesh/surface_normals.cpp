@@ -20,22 +20,42 @@ void put_value(Attribute& attribute, uint32_t point, Vec3d value) {
   std::tie(v[0], v[1], v[2]) = std::tuple{value.x, value.y, value.z};
 }
 
-/// For each point the lowest one of its vertex that has the same value.
+/// Two normals that are no further apart are one, as rounding makes several of one: a degree.
+constexpr double same_cosine = 0.99985;
+/// A point is compared with so many others of its vertex at most: those next to it in the order of their values.
+constexpr size_t most_compared = 16;
+
+bool are_same(Vec3d a, Vec3d b) {
+  const double product = dot(a, b);
+  return a == b || (product > 0 && product * product > same_cosine * same_cosine * dot(a, a) * dot(b, b));
+}
+
+/// For each point one of its vertex that has the same value, to a degree; the same for all of these.
 std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attribute) {
   const PointAttributes& points = mesh.attributes;
   std::vector<uint32_t> vertex(points.point_count, none);
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) vertex[points.point[h]] = mesh.topology.origin[h];
-  const auto key = [&](uint32_t p) {
-    const Vec3d v = value_at(attribute, p);
-    return std::tuple{vertex[p], v.x, v.y, v.z};
-  };
   std::vector<uint32_t> order(points.point_count);
   std::vector<uint32_t> equal(points.point_count);
   for (uint32_t p = 0; p < order.size(); ++p) order[p] = equal[p] = p;
   if (points.point_count == mesh.topology.vertex_count) return equal;
-  std::ranges::stable_sort(order, {}, key);
-  for (size_t i = 1; i < order.size(); ++i)
-    if (key(order[i]) == key(order[i - 1])) equal[order[i]] = equal[order[i - 1]];
+  std::ranges::stable_sort(order, {}, [&](uint32_t p) {
+    const Vec3d v = value_at(attribute, p);
+    return std::tuple{vertex[p], v.x, v.y, v.z};
+  });
+  std::vector<uint32_t> kept;  // of the vertex at hand, those that equal none before
+  for (size_t i = 0; i < order.size(); ++i) {
+    const uint32_t p = order[i];
+    if (i > 0 && vertex[order[i - 1]] != vertex[p]) kept.clear();
+    const auto first = kept.begin() + static_cast<ptrdiff_t>(kept.size() - std::min(kept.size(), most_compared));
+    const auto same = std::find_if(first, kept.end(), [&](uint32_t other) {
+      return are_same(value_at(attribute, other), value_at(attribute, p));
+    });
+    if (same == kept.end())
+      kept.push_back(p);
+    else
+      equal[p] = *same;
+  }
   return equal;
 }
 

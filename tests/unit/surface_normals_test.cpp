@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -99,6 +100,34 @@ TEST(SurfaceNormals, RenewedOnesKeepTheirSide) {
   renew_normals(fine, 0);
   for (uint32_t h = 0; h < fine.topology.half_edge_count(); ++h)
     ASSERT_LT(dot(normal_at(fine, 0, h), normal_of_face(fine, h / 3)), -0.9);
+}
+
+/// Each triangle with points of its own, whose normals rounding has made different.
+TEST(SurfaceNormals, RenewedOnesAreOneWhereTheInputsDifferByRounding) {
+  const TriangleMesh shape = torus(12, 8);
+  const Buffer<Vec3f> smooth = vertex_normals(build_mesh(shape));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> rounding(-1e-3, 1e-3);
+  const Mesh mesh = build_mesh(shape);
+  TriangleMesh apart;
+  Attribute normals{.components = 3, .unit_length = true, .values = {}};
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+    const uint32_t v = mesh.topology.origin[h];
+    if (h % 3 == 0) apart.triangles.push_back({h, h + 1, h + 2});
+    apart.positions.push_back(mesh.positions[v]);
+    for (const float x : {smooth[v].x, smooth[v].y, smooth[v].z}) normals.values.push_back(x + rounding(random));
+  }
+  apart.attributes = {normals};
+  for (const Options& options : {Options{.levels = 2}, Options{.levels = 3, .tolerance = 0.002}}) {
+    Mesh fine = refine(build_mesh(apart), options).mesh;
+    renew_normals(fine, 0);
+    std::vector<Vec3d> first(fine.topology.vertex_count);
+    for (uint32_t h = 0; h < fine.topology.half_edge_count(); ++h) {
+      Vec3d& seen = first[fine.topology.origin[h]];
+      if (seen == Vec3d{}) seen = normal_at(fine, 0, h);
+      EXPECT_EQ(seen, normal_at(fine, 0, h));
+    }
+  }
 }
 
 // Points that are apart for their texture alone have one normal; those with normals of their own stay apart.

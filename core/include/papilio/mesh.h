@@ -177,9 +177,9 @@ struct Box {
 [[nodiscard]] Buffer<Vec3f> vertex_normals(const Mesh& mesh);
 
 /// Replaces a mesh's own normals, the attribute of this number with 3 components, by those of its surface as it is now.
-/// Points of one vertex that had one normal have one again, others are apart as before: what was smooth stays smooth,
-/// what was hard stays hard. On the side that most of the old ones were on; where the faces' normals cancel out the old
-/// one stays. O(P log P).
+/// Points of one vertex that had one normal, to a degree, have one again, others are apart as before: what was smooth
+/// stays smooth, what was hard stays hard. On the side that most of the old ones were on; where the faces' normals
+/// cancel out the old one stays. O(P log P).
 void renew_normals(Mesh& mesh, size_t number);
 /// Adds normals as the last attribute, one a vertex, but where curves meet it one for each side. The mesh must have its
 /// edges. Points are divided where they must be. O(H log H).
