@@ -6,23 +6,23 @@
 namespace papilio {
 namespace {
 
-void require(bool good, const char* option, const char* what) {
+void require_option(bool good, const char* option, const char* what) {
   if (!good) throw Error(Fault::bad_option, what, option);
 }
 
 }  // namespace
 
 void check_options(const Options& options) {
-  require(options.levels >= 0 && options.levels <= 10, "levels", "The number of levels must lie in 0..10.");
+  require_option(options.levels >= 0 && options.levels <= 10, "levels", "The number of levels must lie in 0..10.");
   for (double t : options.flatness)
-    require(t >= -1 && t <= 1, "flatness", "Each flatness threshold must lie in -1..1.");
-  require(options.w >= -0.0625 && options.w <= 0.125, "w", "w must lie in -0.0625..0.125.");
-  require(options.crease_angle >= 0 && options.crease_angle <= 180, "crease_angle",
-          "The crease angle must lie in 0..180 degrees.");
-  require(options.tolerance >= 0 && options.tolerance <= 1, "tolerance", "The tolerance must lie in 0..1.");
+    require_option(t >= -1 && t <= 1, "flatness", "Each flatness threshold must lie in -1..1.");
+  require_option(options.w >= -0.0625 && options.w <= 0.125, "w", "w must lie in -0.0625..0.125.");
+  require_option(options.crease_angle >= 0 && options.crease_angle <= 180, "crease_angle",
+                 "The crease angle must lie in 0..180 degrees.");
+  require_option(options.tolerance >= 0 && options.tolerance <= 1, "tolerance", "The tolerance must lie in 0..1.");
   if (options.view) (void)Camera(*options.view);
-  require(!options.simplify_hidden || options.view.has_value(), "simplify_hidden",
-          "Only with a view is anything hidden: give view.eye and the others, or leave simplify_hidden out.");
+  require_option(!options.simplify_hidden || options.view.has_value(), "simplify_hidden",
+                 "Only with a view is anything hidden: give view.eye and the others, or leave simplify_hidden out.");
 }
 
 }  // namespace papilio

@@ -13,13 +13,13 @@ constexpr double least_share = 1e-9;  // of a part in its face's area
 struct Corner {
   uint32_t vertex = none, point = none;
 };
-using Part = std::array<Corner, 3>;
+using Piece = std::array<Corner, 3>;
 using Side = std::vector<Corner>;
 
 /// Cuts a triangle into parts, given its sides with the corners on them, ends included.
-std::vector<Part> cut(const std::array<Side, 3>& sides) {
+std::vector<Piece> cut(const std::array<Side, 3>& sides) {
   const auto& [first, second, third] = sides;
-  std::vector<Part> parts;
+  std::vector<Piece> parts;
   for (size_t i = 1; i < first.size(); ++i) parts.push_back({first[i - 1], first[i], third[0]});
   if (second.size() > 2) {  // the last part has the second side
     const Corner from = parts.back()[0];
@@ -79,7 +79,7 @@ class FaceDivider {
   }
   [[nodiscard]] Vec3d normal(uint32_t a, uint32_t b, uint32_t c) const { return cross(at(b) - at(a), at(c) - at(a)); }
 
-  void add(const Part& part) {
+  void add(const Piece& part) {
     for (const auto& [vertex, point] : part) {
       out_->topology.origin.push_back(vertex);
       if (has_points()) out_->corner_point.push_back(point);
@@ -110,24 +110,24 @@ class FaceDivider {
     const size_t first = next_;
     std::array<Side, 3> sides;
     for (uint32_t i = 0; i < 3; ++i) sides[i] = side(3 * f + i);
-    const std::vector<Part> parts = cut(sides);
+    const std::vector<Piece> parts = cut(sides);
     if (!have_area(f, parts) || !claim_runs(parts)) return 0;
-    for (const Part& part : parts) add(part);
+    for (const Piece& part : parts) add(part);
     return static_cast<uint32_t>(next_ - first);
   }
 
-  [[nodiscard]] bool have_area(uint32_t f, const std::vector<Part>& parts) const {
+  [[nodiscard]] bool have_area(uint32_t f, const std::vector<Piece>& parts) const {
     const uint32_t* v = &draft_.topology.origin[3 * f];
     const Vec3d whole = normal(v[0], v[1], v[2]);
-    return std::ranges::all_of(parts, [&](const Part& part) {
+    return std::ranges::all_of(parts, [&](const Piece& part) {
       return dot(normal(part[0].vertex, part[1].vertex, part[2].vertex), whole) > least_share * dot(whole, whole);
     });
   }
 
   /// Takes the directions between vertices that the parts' half-edges run in; none if one of them is taken.
-  bool claim_runs(const std::vector<Part>& parts) {
+  bool claim_runs(const std::vector<Piece>& parts) {
     std::vector<uint64_t> wanted;
-    for (const Part& part : parts)
+    for (const Piece& part : parts)
       for (size_t i = 0; i < 3; ++i) {
         const uint32_t from = part[i].vertex, to = part[(i + 1) % 3].vertex;
         if (known_[from].is_inserted || known_[to].is_inserted) wanted.push_back(direction(from, to));

@@ -14,9 +14,9 @@
 namespace papilio {
 namespace {
 
-constexpr size_t most_candidates = 16;  // of an edge
-constexpr size_t most_together = 256;   // vertices that become one
-constexpr uint64_t looks_a_face = 32;   // at a face's corners, on average
+constexpr size_t most_partners = 16;   // of an edge
+constexpr size_t most_together = 256;  // vertices that become one
+constexpr uint64_t looks_a_face = 32;  // at a face's corners, on average
 constexpr uint64_t least_looks = 1 << 18;
 
 class GapWelder {
@@ -57,7 +57,7 @@ class GapWelder {
     std::vector<Candidate> candidates;
     tree.for_each_near(middle, middle, distance_, [&](uint32_t j) {
       if (const auto apart = gap(i, j)) candidates.push_back({*apart, j});
-      return candidates.size() < most_candidates;
+      return candidates.size() < most_partners;
     });
     std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.number < b.number;
