@@ -34,6 +34,7 @@ mkdir -p build/demo/samples
 "$programs/coarsen" build/deps/meshes/cgal/bunny00.off build/demo/bunny.obj 600
 "$programs/papilio" convert build/demo/bunny.obj "$coarse"
 cp "$coarse" build/demo/samples/
+"$programs/papilio" convert build/demo/bunny.obj build/demo/bunny.glb
 info=$("$programs/papilio" info --json "$coarse")
 viewer=()
 [[ ${1:-} != --exit ]] || viewer=(--web '')

@@ -1,11 +1,11 @@
-// screenshots.mjs FOLDER: the README's pictures of the viewer, as PNG.
+// screenshots.mjs FOLDER SAMPLES SCENE: the README's pictures of the viewer, as PNG.
 
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { done, drag, launch, openPage, startServer } from './browser.mjs';
+import { done, drag, drop, launch, openPage, startServer } from './browser.mjs';
 
-const [folder, samples] = process.argv.slice(2);
+const [folder, samples, scene] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
 const [server, browser] = await Promise.all([startServer('--samples', samples), launch()]);
 
@@ -39,6 +39,16 @@ try {
   await frozen.page.getByRole('button', { name: 'Whole mesh' }).click();
   await drag(frozen.page, -70, 30);
   await save(frozen.page, 'frozen-view');
+
+  // A scene with its materials, coarse and refined.
+  const textured = await openPage(browser, server.url, {
+    viewport: { width: 1280, height: 500 },
+    hash: 'mesh=bunny&show=coarse,adaptive&look=shaded&tolerance=0.0003',
+  });
+  await drop(textured.page, 'controller.glb', readFileSync(scene));
+  await textured.page.waitForFunction(() => document.title.startsWith('controller.glb'));
+  await done(textured.page, ['coarse', 'adaptive']);
+  await save(textured.page, 'scene');
 } finally {
   await browser.close();
   await server.stop();
