@@ -1,6 +1,6 @@
 #pragma once
 
-// Names of the extensions that say how geometry is stored.
+// Names of the extensions that are read: how geometry is stored, and what materials are.
 
 namespace papilio::proto::gltf {
 
@@ -10,5 +10,7 @@ inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 inline constexpr const char* newer_meshopt_extension = "KHR_meshopt_compression";
 inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
 inline constexpr const char* instancing_extension = "EXT_mesh_gpu_instancing";
+inline constexpr const char* texture_transform_extension = "KHR_texture_transform";
+inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
 
 }  // namespace papilio::proto::gltf

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <unordered_map>
 
 #include "proto/draco_header.h"
 #include "proto/gltf/document_writer.h"
+#include "proto/gltf/material_reader.h"
+#include "proto/gltf/material_writer.h"
 #include "proto/gltf/scene_mesh.h"
 #include "proto/gltf/vertices.h"
 #include "proto/problem.h"
@@ -31,32 +35,77 @@ Vec3d moved_normal(const Affine& map, Vec3d normal) {
   return size > 0 ? 1 / size * moved : normal;
 }
 
+/// Returns where a set has an attribute; null if it has none.
+const VertexStream* find_stream(const VertexSet& set, const FlatAttribute& attribute, const TextureMap& map) {
+  if (attribute.kind != AttributeKind::tex_coord || map.set == 0) return set.find(attribute.semantic);
+  return set.find("TEXCOORD_" + std::to_string(map.set));
+}
+
+/// Vertices of a set in the result, with the texture coordinates of one map.
+struct PlacedVertices {
+  TextureMap map;
+  bool is_whole = false;  ///< all vertices of the set, from `first`
+  uint32_t first = 0;
+  std::unordered_map<uint32_t, uint32_t> numbers{};  ///< of the vertices in the result, unless it is whole
+};
+
 class Flattener {
  public:
-  explicit Flattener(const SceneMeshes& scene) {
+  /// `reader`: reads the materials; null for none.
+  Flattener(const SceneMeshes& scene, MaterialReader* reader) : reader_(reader) {
     for (const FlatAttribute& attribute : flat_attributes)
       for (const SceneMesh& mesh : scene.meshes)
-        for (const VertexSet& set : mesh.geometry.sets)
-          if (set.find(attribute.semantic) != nullptr) add_attribute(attribute);
+        for (const TrianglePrimitive& primitive : mesh.geometry.primitives)
+          if (find_stream(mesh.geometry.sets[primitive.set], attribute, map_of(mesh, primitive)) != nullptr)
+            add_attribute(attribute);
   }
 
   void add(const SceneMesh& mesh, const std::vector<Affine>& maps) {
     for (const VertexSet& set : mesh.geometry.sets) {
-      const auto first = static_cast<uint32_t>(out_.positions.size());
       const Buffer<Vec3f> positions = vertex_positions(set);
-      for (uint32_t i = 0; i < set.count; ++i) {
-        out_.positions.push_back(to_float(maps[0].point(to_double(positions[i]))));
-        for (size_t a = 0; a < used_.size(); ++a) append(a, set, i, maps[0]);
-      }
       const auto number = static_cast<uint32_t>(&set - mesh.geometry.sets.data());
-      for (const TrianglePrimitive& primitive : mesh.geometry.primitives)
-        if (primitive.set == number) add_triangles(primitive.triangles, first, maps[0]);
+      std::vector<PlacedVertices> placed;
+      for (const TrianglePrimitive& primitive : mesh.geometry.primitives) {
+        if (primitive.set != number) continue;
+        const TextureMap map = map_of(mesh, primitive);
+        auto found = std::ranges::find(placed, map, &PlacedVertices::map);
+        if (found == placed.end()) {
+          placed.push_back({.map = map, .is_whole = placed.empty(), .first = point_count()});
+          found = placed.end() - 1;
+          for (uint32_t i = 0; found->is_whole && i < set.count; ++i) add_vertex(set, i, positions[i], maps[0], map);
+        }
+        if (!found->is_whole)
+          for (const Triangle& triangle : primitive.triangles)
+            for (const uint32_t v : triangle)
+              if (found->numbers.try_emplace(v, point_count()).second) add_vertex(set, v, positions[v], maps[0], map);
+        add_triangles(primitive.triangles, *found, maps[0]);
+        if (reader_ != nullptr) materials_.resize(out_.triangles.size(), material_of(mesh, primitive));
+      }
     }
   }
 
-  FormattedMesh finish() { return std::move(out_); }
+  MaterialMesh finish() {
+    MaterialMesh out{std::move(out_)};
+    if (reader_ != nullptr) out.materials = reader_->finish();
+    if (!out.materials.empty()) out.materials.of_triangle = std::move(materials_);
+    return out;
+  }
 
  private:
+  [[nodiscard]] uint32_t point_count() const { return static_cast<uint32_t>(out_.positions.size()); }
+
+  uint32_t material_of(const SceneMesh& mesh, const TrianglePrimitive& primitive) {
+    return reader_ == nullptr ? none : reader_->material_of(mesh.number, primitive.number);
+  }
+  TextureMap map_of(const SceneMesh& mesh, const TrianglePrimitive& primitive) {
+    return reader_ == nullptr ? TextureMap{} : reader_->map_of(material_of(mesh, primitive));
+  }
+
+  void add_vertex(const VertexSet& set, uint32_t vertex, Vec3f position, const Affine& map, const TextureMap& texture) {
+    out_.positions.push_back(to_float(map.point(to_double(position))));
+    for (size_t a = 0; a < used_.size(); ++a) append(a, set, vertex, map, texture);
+  }
+
   void add_attribute(const FlatAttribute& attribute) {
     if (std::ranges::find(used_, attribute.semantic, &FlatAttribute::semantic) != used_.end()) return;
     used_.push_back(attribute);
@@ -69,9 +118,9 @@ class Flattener {
                                       .id = static_cast<uint32_t>(used_.size())});
   }
 
-  void append(size_t number, const VertexSet& set, uint32_t vertex, const Affine& map) {
+  void append(size_t number, const VertexSet& set, uint32_t vertex, const Affine& map, const TextureMap& texture) {
     const FlatAttribute& attribute = used_[number];
-    const VertexStream* stream = set.find(attribute.semantic);
+    const VertexStream* stream = find_stream(set, attribute, texture);
     std::array<double, 4> value{0, 0, 0, attribute.kind == AttributeKind::color ? 1.0 : 0.0};
     const uint32_t given = stream == nullptr ? 0 : std::min(stream->elements.format.components, attribute.components);
     for (uint32_t c = 0; c < given; ++c) value[c] = stream->elements.number(vertex, c) * stream->elements.format.unit();
@@ -79,7 +128,10 @@ class Flattener {
       const Vec3d moved = moved_normal(map, {value[0], value[1], value[2]});
       value = {moved.x, moved.y, moved.z, 0};
     }
-    if (attribute.kind == AttributeKind::tex_coord) value[1] = 1 - value[1];
+    if (attribute.kind == AttributeKind::tex_coord) {
+      const auto [u, v] = texture.point(value[0], value[1]);
+      value = {u, 1 - v, 0, 0};
+    }
     constexpr double color_range = 255;
     std::vector<double>& values = out_.attributes[number].values;
     for (uint32_t c = 0; c < attribute.components; ++c)
@@ -88,17 +140,20 @@ class Flattener {
   }
 
   /// Mirrored maps turn triangles over.
-  void add_triangles(const Buffer<Triangle>& triangles, uint32_t first, const Affine& map) {
+  void add_triangles(const Buffer<Triangle>& triangles, const PlacedVertices& placed, const Affine& map) {
     const bool is_mirrored = dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0;
+    const auto number = [&](uint32_t v) { return placed.is_whole ? placed.first + v : placed.numbers.at(v); };
     for (const Triangle& t : triangles) {
-      Triangle moved{first + t[0], first + t[1], first + t[2]};
+      Triangle moved{number(t[0]), number(t[1]), number(t[2])};
       if (is_mirrored) std::swap(moved[1], moved[2]);
       out_.triangles.push_back(moved);
     }
   }
 
+  MaterialReader* reader_;
   std::vector<FlatAttribute> used_;
   FormattedMesh out_;
+  std::vector<uint32_t> materials_;  ///< of the triangles, with a reader
 };
 
 /// Semantic of an attribute in glTF; `numbers` counts those of each kind.
@@ -124,19 +179,24 @@ class SceneBuilder {
         {"type", elements.format.components == 1 ? "SCALAR" : "VEC" + std::to_string(elements.format.components)}};
     if (elements.format.normalized) accessor["normalized"] = true;
     if (has_bounds) add_bounds(accessor, elements);
-    views_.push_back(
-        {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", elements.bytes.size()}, {"target", target}});
-    bytes_ += elements.bytes;
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    views_[add_view(elements.bytes)]["target"] = target;
     accessors_.push_back(std::move(accessor));
     return static_cast<uint32_t>(accessors_.size() - 1);
   }
 
-  std::string finish(Json primitive) {
+  size_t add_view(std::string_view bytes) {
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
+    bytes_ += bytes;
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    return views_.size() - 1;
+  }
+
+  std::string finish(Json primitives, const Materials& materials, bool has_coordinates) {
     Json json{{"asset", {{"version", "2.0"}, {"generator", "papilio"}}}, {"scene", 0}};
     json["scenes"] = Json::array({{{"nodes", {0}}}});
     json["nodes"] = Json::array({{{"mesh", 0}}});
-    json["meshes"] = Json::array({{{"primitives", Json::array({std::move(primitive)})}}});
+    json["meshes"] = Json::array({{{"primitives", std::move(primitives)}}});
+    add_materials(json, materials, has_coordinates, [this](std::string_view bytes) { return add_view(bytes); });
     json["accessors"] = std::move(accessors_);
     json["bufferViews"] = std::move(views_);
     json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
@@ -177,11 +237,21 @@ Elements attribute_elements(const Attribute& attribute, const AttributeFormat& f
   return out;
 }
 
-FormattedMesh flattened(const SceneMeshes& scene, const Limits& limits) {
+/// Returns the triangles of a mesh by material, first of those without.
+std::map<uint32_t, std::vector<Triangle>> triangles_by_material(const FormattedMesh& mesh, const Materials& materials) {
+  std::map<uint32_t, std::vector<Triangle>> groups;  // by the number of the material and one
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uint32_t material = materials.of_triangle.empty() ? none : materials.of_triangle.at(t);
+    groups[material + 1].push_back(mesh.triangles[t]);
+  }
+  return groups;
+}
+
+MaterialMesh flattened(const SceneMeshes& scene, const Limits& limits, MaterialReader* reader = nullptr) {
   uint64_t faces = 0;
   for (const SceneMesh& mesh : scene.meshes) faces += mesh.maps.size() * mesh.surface.vertices_of.size();
   require_within(faces, limits.max_input_faces, "faces once each node has its own");
-  Flattener flattener(scene);
+  Flattener flattener(scene, reader);
   for (const SceneMesh& mesh : scene.meshes)
     for (const std::vector<Affine>& maps : mesh.maps) flattener.add(mesh, maps);
   return flattener.finish();
@@ -194,7 +264,14 @@ constexpr int vertex_target = 34962, index_target = 34963;
 FormattedMesh flatten_scene(std::string_view glb, const Limits& limits) {
   const Document document = read_document(glb);
   Views views(document);
-  return flattened(read_meshes(views, limits), limits);
+  return flattened(read_meshes(views, limits), limits).mesh;
+}
+
+MaterialMesh flatten_with_materials(std::string_view glb, const Limits& limits) {
+  const Document document = read_document(glb);
+  Views views(document);
+  MaterialReader reader(views);
+  return flattened(read_meshes(views, limits), limits, &reader);
 }
 
 std::optional<FormattedMesh> find_only_mesh(std::string_view glb, const Limits& limits) {
@@ -202,10 +279,10 @@ std::optional<FormattedMesh> find_only_mesh(std::string_view glb, const Limits& 
   Views views(document);
   const SceneMeshes scene = read_meshes(views, limits);
   if (array_of(document.json, "meshes").size() != 1 || scene.meshes[0].maps.size() != 1) return std::nullopt;
-  return flattened(scene, limits);
+  return flattened(scene, limits).mesh;
 }
 
-std::string scene_of_mesh(const FormattedMesh& mesh) {
+std::string scene_of_mesh(const FormattedMesh& mesh, const Materials& materials) {
   SceneBuilder builder;
   Elements positions = zero_elements({ComponentType::float32, 3, false}, mesh.positions.size());
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -222,10 +299,15 @@ std::string scene_of_mesh(const FormattedMesh& mesh) {
     const bool flips = semantic.starts_with("TEXCOORD_");
     attributes[semantic] = builder.add(attribute_elements(mesh.attributes[a], format, flips), vertex_target, false);
   }
-  Elements indices = zero_elements({ComponentType::uint32, 1, false}, 3 * mesh.triangles.size());
-  for (size_t i = 0; i < 3 * mesh.triangles.size(); ++i) indices.set_number(i, 0, mesh.triangles[i / 3][i % 3]);
-  const uint32_t index_accessor = builder.add(indices, index_target, false);
-  return builder.finish({{"attributes", std::move(attributes)}, {"indices", index_accessor}});
+  Json primitives = Json::array();
+  for (const auto& [number, triangles] : triangles_by_material(mesh, materials)) {
+    Elements indices = zero_elements({ComponentType::uint32, 1, false}, 3 * triangles.size());
+    for (size_t i = 0; i < 3 * triangles.size(); ++i) indices.set_number(i, 0, triangles[i / 3][i % 3]);
+    Json primitive{{"attributes", attributes}, {"indices", builder.add(indices, index_target, false)}};
+    if (number > 0) primitive["material"] = number - 1;
+    primitives.push_back(std::move(primitive));
+  }
+  return builder.finish(std::move(primitives), materials, attributes.contains("TEXCOORD_0"));
 }
 
 }  // namespace papilio::proto::gltf

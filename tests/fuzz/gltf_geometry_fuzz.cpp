@@ -3,12 +3,13 @@
 #include <optional>
 
 #include "proto/gltf/document_writer.h"
+#include "proto/gltf/flattening.h"
 #include "proto/gltf/geometry_writer.h"
 #include "proto/gltf/vertices.h"
 #include "tests/fuzz/fuzz.h"
 
 // The JSON of a scene, a zero, its binary chunk: geometry that is read can be written in its own place, and is then
-// read the same.
+// read the same. A scene that can be flattened, with its materials, can be made a scene again.
 
 using namespace papilio;
 using namespace papilio::proto::gltf;
@@ -55,11 +56,18 @@ void round_trip(const std::string& glb) {
     fuzz::require(corners(after[m]) == corners(before[m]), "triangles survive to the bit");
 }
 
+void flatten(const std::string& glb) {
+  const MaterialMesh flat = flatten_with_materials(glb, small);
+  const MaterialMesh again = flatten_with_materials(scene_of_mesh(flat.mesh, flat.materials), {});
+  fuzz::require(again.mesh.triangles.size() == flat.mesh.triangles.size(), "triangles survive");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto [json, binary] = fuzz::cut(fuzz::text_of(data, size), '\0');
   const std::string glb = write_glb(json, std::vector<Piece>{{binary}}, {});
   (void)fuzz::unless_refused([&] { round_trip(glb); });
+  (void)fuzz::unless_refused([&] { flatten(glb); });
   return 0;
 }
