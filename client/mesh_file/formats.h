@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "client/mesh_file/obj_file.h"
 #include "proto/mesh_format.h"
 
 /// The four formats between bytes and triangles; `mesh_file.h` is what others include.
@@ -24,6 +25,7 @@ struct ParseError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+[[nodiscard]] ObjFile parse_obj_file(std::string_view bytes);
 [[nodiscard]] proto::FormattedMesh parse_obj(std::string_view bytes);
 [[nodiscard]] TriangleMesh parse_off(std::string_view bytes);
 [[nodiscard]] proto::FormattedMesh parse_ply(std::string_view bytes);
@@ -34,7 +36,8 @@ struct ParseError : std::runtime_error {
 [[nodiscard]] bool looks_like_stl(std::string_view bytes);
 
 /// Indices must be in range. `format` describes all of the mesh's attributes, in order, or none.
-[[nodiscard]] std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format);
+[[nodiscard]] std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format,
+                                     const ObjMaterials& materials = {});
 [[nodiscard]] std::string format_off(const TriangleMesh& mesh);
 [[nodiscard]] std::string format_ply(const TriangleMesh& mesh, const proto::MeshFormat& format);
 [[nodiscard]] std::string format_stl(const TriangleMesh& mesh);

@@ -27,16 +27,16 @@ std::logic_error format_is_elsewhere() {
   return std::logic_error("drc, glb and gltf are read and written by papilio::proto");
 }
 
-proto::FormattedMesh parse(Format format, std::string_view bytes) {
+ObjFile parse(Format format, std::string_view bytes) {
   switch (format) {
     case Format::obj:
-      return parse_obj(bytes);
+      return parse_obj_file(bytes);
     case Format::ply:
-      return parse_ply(bytes);
+      return {parse_ply(bytes)};
     case Format::off:
-      return {parse_off(bytes), {}};
+      return {{parse_off(bytes), {}}};
     case Format::stl:
-      return {parse_stl(bytes), {}};
+      return {{parse_stl(bytes), {}}};
     case Format::drc:
     case Format::glb:
     case Format::gltf:
@@ -45,10 +45,11 @@ proto::FormattedMesh parse(Format format, std::string_view bytes) {
   throw format_is_elsewhere();
 }
 
-std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshFormat& mesh_format) {
+std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshFormat& mesh_format,
+                     const ObjMaterials& materials) {
   switch (format) {
     case Format::obj:
-      return format_obj(mesh, mesh_format);
+      return format_obj(mesh, mesh_format, materials);
     case Format::ply:
       return format_ply(mesh, mesh_format);
     case Format::off:
@@ -76,6 +77,32 @@ std::string describe_broken(const TriangleMesh& mesh, size_t index) {
   return "triangle " + std::to_string(index) + " (the first is 0) names vertex " +
          std::to_string(std::ranges::max(mesh.triangles[index])) + " (the first is 0), but there are " +
          std::to_string(mesh.positions.size()) + " vertices";
+}
+
+/// Returns a file's mesh and, of OBJ, its materials.
+ObjFile parse_sound(const std::string& name, Format format, std::string_view bytes) {
+  if (bytes.empty()) throw FileError(name, "is empty; export the mesh again");
+  try {
+    ObjFile file = parse(format, bytes);
+    if (file.mesh.triangles.empty()) throw ParseError("holds no triangles");
+    if (const size_t sound = count_sound(file.mesh); sound < file.mesh.triangles.size())
+      throw ParseError(describe_broken(file.mesh, sound));
+    return file;
+  } catch (const ParseError& error) {
+    throw FileError(name, std::string(error.what()) + "; export the mesh again, or check that its format is " +
+                              std::string(name_of(format)));
+  }
+}
+
+std::string encode(const std::string& name, Format format, const TriangleMesh& mesh,
+                   const proto::MeshFormat& mesh_format, const ObjMaterials& materials) {
+  if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
+    throw std::invalid_argument(describe_broken(mesh, sound));
+  // PLY's indices are signed in most readers, STL's count has 32 bits.
+  constexpr size_t kMost = std::numeric_limits<int32_t>::max();
+  if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)
+    throw FileError(name, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
+  return to_bytes(format, mesh, mesh_format, materials);
 }
 
 }  // namespace
@@ -107,17 +134,11 @@ Format format_of(const std::filesystem::path& path) {
 }
 
 proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes) {
-  if (bytes.empty()) throw FileError(name, "is empty; export the mesh again");
-  try {
-    proto::FormattedMesh mesh = parse(format, bytes);
-    if (mesh.triangles.empty()) throw ParseError("holds no triangles");
-    if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
-      throw ParseError(describe_broken(mesh, sound));
-    return mesh;
-  } catch (const ParseError& error) {
-    throw FileError(name, std::string(error.what()) + "; export the mesh again, or check that its format is " +
-                              std::string(name_of(format)));
-  }
+  return parse_sound(name, format, bytes).mesh;
+}
+
+ObjFile parse_obj_file(const std::string& name, std::string_view bytes) {
+  return parse_sound(name, Format::obj, bytes);
 }
 
 proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format) {
@@ -127,13 +148,12 @@ proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format fo
 
 std::string encode_triangles(const std::string& name, Format format, const TriangleMesh& mesh,
                              const proto::MeshFormat& mesh_format) {
-  if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
-    throw std::invalid_argument(describe_broken(mesh, sound));
-  // PLY's indices are signed in most readers, STL's count has 32 bits.
-  constexpr size_t kMost = std::numeric_limits<int32_t>::max();
-  if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)
-    throw FileError(name, "cannot hold more than 2147483647 vertices or faces; simplify the mesh");
-  return to_bytes(format, mesh, mesh_format);
+  return encode(name, format, mesh, mesh_format, {});
+}
+
+std::string encode_obj(const std::string& name, const TriangleMesh& mesh, const proto::MeshFormat& mesh_format,
+                       const ObjMaterials& materials) {
+  return encode(name, Format::obj, mesh, mesh_format, materials);
 }
 
 void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,

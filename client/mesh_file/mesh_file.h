@@ -37,10 +37,11 @@ inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 /// which OFF and PLY allow, are left out. Text may begin with the byte order mark of UTF-8. A binary STL file may be
 /// longer than its count asks for, but not by a whole number of triangles. OBJ's texture coordinates (`vt`, of two or
 /// three numbers) and normals (`vn`) are attributes: each position is then one point for each pair of them that faces
-/// name with it; where a corner lacks one it is zero. OBJ's
-/// smoothing groups (`s`) are an attribute named smoothing_group if faces are in different ones. PLY's normals, colours
-/// and texture coordinates of vertices are attributes. Those of OFF and STL, and all materials, are not read. STL has
-/// no shared vertices: three new positions for each triangle. Coordinates that are NaN or infinite are passed on.
+/// name with it; where a corner lacks one it is zero. OBJ's smoothing groups (`s`) are an attribute named
+/// smoothing_group if faces are in different ones; its materials are read by `parse_obj_file` alone (obj_file.h). PLY's
+/// normals, colours and texture coordinates of vertices are attributes. Attributes of OFF and STL, and materials of
+/// other formats than OBJ, are not read. STL has no shared vertices: three new positions for each triangle. Coordinates
+/// that are NaN or infinite are passed on.
 ///
 /// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
 /// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,

@@ -1,12 +1,13 @@
 // Wavefront OBJ: `v x y z`, `vt u v`, `vn x y z` and `f 1/1/1 2/2/2 3/3/3`, indices from 1 or, negative, back from the
 // latest. A face may come before what it names. `s 1` and `s off` say which smoothing group the faces after them are
-// in. All other keywords are passed over.
+// in, `usemtl NAME` which material they have, `mtllib FILE` where materials are. All other keywords are passed over.
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include "client/mesh_file/byte_order_mark.h"
@@ -37,6 +38,9 @@ struct Lists {
   Buffer<Vec3f> positions, textures, normals;
   std::vector<Corner> corners;
   PolygonList faces;  ///< of numbers of corners
+  std::vector<std::string> libraries;
+  std::vector<std::string> materials;
+  std::vector<uint32_t> material_of_face;  ///< in `materials`; `none` for none
 };
 
 uint32_t from_zero(int64_t index, size_t so_far) {
@@ -99,11 +103,43 @@ class SmoothingGroups {
   uint32_t current_ = 1;
 };
 
+/// Numbers the materials of a file in the order in which faces are first given them.
+class MaterialNames {
+ public:
+  /// Takes what follows a `usemtl`.
+  void use(std::string_view name) {
+    name_ = name;
+    number_ = std::nullopt;
+  }
+  /// Material of the next face; `none` before the first `usemtl`. New ones are added to `names`.
+  [[nodiscard]] uint32_t of_face(std::vector<std::string>& names, const TextScanner& scanner) {
+    if (number_) return *number_;
+    const auto [known, is_new] = numbers_.try_emplace(name_, static_cast<uint32_t>(names.size()));
+    if (is_new && names.size() == most_materials) scanner.fail("there are more than 65536 materials");
+    if (is_new) names.push_back(name_);
+    number_ = known->second;
+    return *number_;
+  }
+
+ private:
+  std::map<std::string, uint32_t> numbers_;
+  std::string name_;
+  std::optional<uint32_t> number_ = none;  ///< of the latest name, once a face has it
+};
+
+/// Takes what follows an `mtllib`.
+void add_library(Lists& lists, std::string_view names, const TextScanner& scanner) {
+  if (names.empty() || std::ranges::find(lists.libraries, names) != lists.libraries.end()) return;
+  if (lists.libraries.size() == most_libraries) scanner.fail("there are more than 1024 different lines mtllib");
+  lists.libraries.emplace_back(names);
+}
+
 Lists parse_lists(std::string_view bytes) {
   TextScanner scanner(bytes, {.hash_comments = true, .backslash_continues = true});
   Lists lists;
   std::vector<uint32_t> face;
   SmoothingGroups groups;
+  MaterialNames materials;
   for (bool more = scanner.to_word(); more; more = scanner.next_line()) {
     const std::string_view keyword = scanner.word();
     if (keyword == "v" || keyword == "vn") {
@@ -113,6 +149,10 @@ Lists parse_lists(std::string_view bytes) {
       lists.textures.push_back(parse_texture(scanner));
     } else if (keyword == "s") {
       groups.set(scanner.word());
+    } else if (keyword == "usemtl") {
+      materials.use(scanner.rest_of_line());
+    } else if (keyword == "mtllib") {
+      add_library(lists, scanner.rest_of_line(), scanner);
     } else if (keyword == "f") {
       face.clear();
       for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
@@ -122,18 +162,20 @@ Lists parse_lists(std::string_view bytes) {
       }
       if (face.size() < 3) scanner.fail("a face has fewer than three corners");
       lists.faces.add(face);
+      lists.material_of_face.push_back(materials.of_face(lists.materials, scanner));
     }
   }
   return lists;
 }
 
-/// Returns the triangles of all faces. Corners without a position have NaN.
-Buffer<Triangle> triangulate(const Lists& lists) {
+/// Returns the triangles of all faces, and the face of each. Corners without a position have NaN.
+Buffer<Triangle> triangulate(const Lists& lists, std::vector<uint32_t>* face_of) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  return lists.faces.triangles([&](uint32_t corner) {
+  const auto position_of = [&](uint32_t corner) {
     const uint32_t position = lists.corners[corner].position;
     return position < lists.positions.size() ? lists.positions[position] : Vec3f{nan, nan, nan};
-  });
+  };
+  return lists.faces.triangles(position_of, face_of);
 }
 
 /// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
@@ -200,17 +242,13 @@ void add_groups(proto::FormattedMesh& mesh, const std::vector<Corner>& points) {
                                     .name = proto::smoothing_group_name});
 }
 
-}  // namespace
-
-proto::FormattedMesh parse_obj(std::string_view bytes) {
-  bytes = skip_byte_order_mark(bytes);
-  if (bytes.find('\0') != std::string_view::npos) throw ParseError("is not a text, as OBJ files are");
-  Lists lists = parse_lists(bytes);
+/// Makes the mesh of the lists, which lose their positions. `face_of`, unless null, receives the face of each triangle.
+proto::FormattedMesh make_mesh(Lists& lists, std::vector<uint32_t>* face_of) {
   const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");
   const bool normals = are_used(lists.corners, &Corner::normal, lists.normals, "normal (vn)");
   const bool groups = have_groups(lists.corners);
   proto::FormattedMesh mesh;
-  mesh.triangles = triangulate(lists);
+  mesh.triangles = triangulate(lists, face_of);
   const bool sound =
       std::ranges::all_of(lists.corners, [&](const Corner& c) { return c.position < lists.positions.size(); });
   if (!sound || (!textures && !normals && !groups)) {  // of indices out of range the caller tells
@@ -230,5 +268,26 @@ proto::FormattedMesh parse_obj(std::string_view bytes) {
   if (groups) add_groups(mesh, points);
   return mesh;
 }
+
+}  // namespace
+
+ObjFile parse_obj_file(std::string_view bytes) {
+  bytes = skip_byte_order_mark(bytes);
+  if (bytes.find('\0') != std::string_view::npos) throw ParseError("is not a text, as OBJ files are");
+  Lists lists = parse_lists(bytes);
+  ObjFile file;
+  file.materials.libraries = std::move(lists.libraries);
+  file.materials.names = std::move(lists.materials);
+  if (file.materials.names.empty()) {
+    file.mesh = make_mesh(lists, nullptr);
+    return file;
+  }
+  std::vector<uint32_t>& of_triangle = file.materials.of_triangle;
+  file.mesh = make_mesh(lists, &of_triangle);
+  for (uint32_t& number : of_triangle) number = lists.material_of_face[number];
+  return file;
+}
+
+proto::FormattedMesh parse_obj(std::string_view bytes) { return parse_obj_file(bytes).mesh; }
 
 }  // namespace papilio::client

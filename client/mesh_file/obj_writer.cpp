@@ -55,6 +55,16 @@ void append_group(std::string& text, double group) {
   text += '\n';
 }
 
+/// Returns the order in which triangles are written: as they are or, with materials, by material, none first.
+std::vector<uint32_t> writing_order(const TriangleMesh& mesh, const ObjMaterials& materials) {
+  std::vector<uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (materials.of_triangle.empty()) return order;
+  const auto rank = [&](uint32_t t) { return materials.of_triangle.at(t) + 1; };  // `none` is the largest number
+  std::ranges::stable_sort(order, [&](uint32_t t, uint32_t u) { return rank(t) < rank(u); });
+  return order;
+}
+
 /// Leaves the different ones among `values`, in order; gives the place of each.
 std::vector<uint32_t> drop_repeated(Buffer<Vec3f>& values) {
   const auto bits = [&](uint32_t p) {  // which have an order, also where a value is NaN
@@ -82,7 +92,7 @@ std::vector<uint32_t> drop_repeated(Buffer<Vec3f>& values) {
 
 }  // namespace
 
-std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format) {
+std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format, const ObjMaterials& materials) {
   uint32_t texture_components = 0;
   uint32_t normal_components = 0;
   Buffer<Vec3f> textures = find_attribute(mesh, format, AttributeKind::tex_coord, texture_components);
@@ -98,12 +108,19 @@ std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format
 
   std::string text =
       "# " + std::to_string(positions.size()) + " vertices, " + std::to_string(mesh.triangles.size()) + " triangles\n";
+  for (const std::string& library : materials.libraries) text += "mtllib " + library + '\n';
   for (const Vec3f& p : positions) append_line(text, "v", {p.x, p.y, p.z});
   for (const Vec3f& t : textures)
     texture_components == 3 ? append_line(text, "vt", {t.x, t.y, t.z}) : append_line(text, "vt", {t.x, t.y});
   for (const Vec3f& n : normals) append_line(text, "vn", {n.x, n.y, n.z});
   std::optional<double> group;
-  for (const Triangle& triangle : mesh.triangles) {
+  uint32_t material = none;
+  for (const uint32_t t : writing_order(mesh, materials)) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (!materials.of_triangle.empty() && material != materials.of_triangle[t]) {
+      material = materials.of_triangle[t];
+      text += "usemtl " + materials.names.at(material) + '\n';
+    }
     if (!groups.empty() && group != groups[triangle[0]]) append_group(text, *(group = groups[triangle[0]]));
     text += 'f';
     for (const uint32_t p : triangle) {

@@ -160,13 +160,16 @@ void PolygonList::add(std::span<const uint32_t> corners) {
   ends_.push_back(corners_.size());
 }
 
-Buffer<Triangle> PolygonList::triangles(const CornerPosition& position) const {
+Buffer<Triangle> PolygonList::triangles(const CornerPosition& position, std::vector<uint32_t>* polygon_of) const {
   Buffer<Triangle> triangles;
   triangles.reserve(corners_.size() - std::min(corners_.size(), 2 * ends_.size()));
   size_t begin = 0;
+  uint32_t number = 0;
   for (const size_t end : ends_) {
     append_polygon(std::span(corners_).subspan(begin, end - begin), position, triangles);
     begin = end;
+    if (polygon_of != nullptr) polygon_of->resize(triangles.size(), number);
+    ++number;
   }
   return triangles;
 }

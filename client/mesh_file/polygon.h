@@ -29,8 +29,9 @@ inline constexpr size_t most_clipped_corners = 1024;
 class PolygonList {
  public:
   void add(std::span<const uint32_t> corners);
-  /// Returns the triangles of all polygons in order.
-  [[nodiscard]] Buffer<Triangle> triangles(const CornerPosition& position) const;
+  /// Returns the triangles of all polygons in order. `polygon_of`, unless null, receives the polygon of each.
+  [[nodiscard]] Buffer<Triangle> triangles(const CornerPosition& position,
+                                           std::vector<uint32_t>* polygon_of = nullptr) const;
 
  private:
   std::vector<uint32_t> corners_;  ///< corners of all polygons

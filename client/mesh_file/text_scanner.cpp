@@ -55,6 +55,14 @@ std::string_view TextScanner::word_anywhere() {
   return word();
 }
 
+std::string_view TextScanner::rest_of_line() {
+  std::string_view rest = text_.substr(position_, text_.find('\n', position_) - position_);
+  position_ += rest.size();
+  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+  while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
+  return rest;
+}
+
 float TextScanner::coordinate() {
   const std::string_view found = word();
   float value = 0;

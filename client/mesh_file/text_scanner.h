@@ -30,6 +30,8 @@ class TextScanner {
   [[nodiscard]] std::string_view word();
   /// The next word of this line or a later one, empty at the end of the text.
   [[nodiscard]] std::string_view word_anywhere();
+  /// What is left of this line without the blanks around it, comments included: names may have blanks and `#`.
+  [[nodiscard]] std::string_view rest_of_line();
   /// The next word of this line as a number. Throws `ParseError` if there is none.
   [[nodiscard]] float coordinate();
   [[nodiscard]] int64_t integer();

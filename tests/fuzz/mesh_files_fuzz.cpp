@@ -2,9 +2,11 @@
 #include <bit>
 
 #include "client/mesh_file/formats.h"
+#include "client/mesh_file/mtl.h"
 #include "tests/fuzz/fuzz.h"
 
-// A byte as the format, the rest as a file of it: what can be read can be written, and is then read the same.
+// A byte as the format, the rest as a file of it: what can be read can be written, and is then read the same. The fifth
+// format is that of material libraries.
 
 using namespace papilio;
 
@@ -43,13 +45,27 @@ bool is_finite(const TriangleMesh& mesh) {
                              [](Vec3f p) { return p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0; });
 }
 
+/// Reads a library and, where names fit on a line, writes it and reads it again.
+void check_library(std::string_view bytes) {
+  const std::vector<client::MtlMaterial> materials = client::parse_mtl(bytes);
+  std::vector<client::MtlMaterial> plain = materials;
+  for (client::MtlMaterial& material : plain)
+    for (std::string& map : material.maps)
+      if (map.starts_with('-') || map.starts_with('"')) map = "map";
+  fuzz::require(client::parse_mtl(client::format_mtl(plain)) == plain, "libraries survive");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
-  const int format = data[0] % 4;
+  const int format = data[0] % 5;
   proto::FormattedMesh mesh;
   try {
+    if (format == 4) {
+      check_library(fuzz::text_of(data + 1, size - 1));
+      return 0;
+    }
     mesh = parse(format, fuzz::text_of(data + 1, size - 1));
   } catch (const client::ParseError&) {
     return 0;

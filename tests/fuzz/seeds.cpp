@@ -87,6 +87,9 @@ void add_mesh_files(Seeds& seeds) {
   add(3,
       "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
       "endsolid s\n");
+  add(4,
+      "newmtl a b\nKd 1 .5 0\nKe 2\nd 0.5\nTr 0.5\nNs 96\nPr 0.25\nPm 1\nmap_Kd -s 1 1 1 -clamp on my wood.png\n"
+      "norm .\\n.png\nmap_Pr -imfchan g p.png\nmap_Bump -bm 2 \"b.png\"\nnewmtl\nKd xyz 1 1 1\n");
 }
 
 /// A document and its binary chunk, apart by a zero.
@@ -107,6 +110,20 @@ void add_scenes(Seeds& seeds) {
     draco.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
         {"bufferView", draco.add_view(proto::write_draco_exact(shape))}, {"attributes", {{"POSITION", 0}}}};
     seeds.add("gltf_geometry", apart(draco));
+    test::GltfScene painted = scene;
+    const std::vector<float> coordinates(2 * shape.positions.size(), 0.5F);
+    painted.primitive()["attributes"]["TEXCOORD_0"] = painted.add_accessor(coordinates, "VEC2");
+    painted.primitive()["material"] = 0;
+    painted.json["images"] = {{{"bufferView", painted.add_view("pixels")}, {"mimeType", "image/png"}}};
+    painted.json["textures"] = {{{"source", 0}}};
+    painted.json["materials"] = {
+        {{"name", "wood"},
+         {"emissiveFactor", {0.5, 0, 1}},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", {1, 1, 1, 0.5}},
+           {"baseColorTexture",
+            {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"rotation", 1}, {"scale", {2, 2}}}}}}}}}}}};
+    seeds.add("gltf_geometry", apart(painted));
     const size_t indices = scene.add_view(std::string("\1", 1));
     scene.json["accessors"][0]["sparse"] = {
         {"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
