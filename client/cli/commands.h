@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "client/lib/compare.h"
 #include "client/lib/mesh_stream.h"
@@ -55,6 +56,9 @@ void health_command(const HealthFlags& flags);
 /// Refuses an output that cannot be written, before the work: a name without a known extension, a folder, binary data
 /// to a terminal. Throws `UsageError`, and `FileError` for a folder that does not exist.
 void check_output(const MeshPlace& output);
+
+/// Prints warnings to standard error, a line each: the first ten and how many more there are.
+void print_warnings(const std::vector<std::string>& warnings);
 
 /// A mistake in how the program was called: exit status 2.
 struct UsageError : std::runtime_error {

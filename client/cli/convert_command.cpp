@@ -1,7 +1,7 @@
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
+#include "client/lib/read_materials.h"
 #include "proto/draco_writer.h"
-#include "proto/gltf/flattening.h"
 
 namespace papilio::client {
 
@@ -10,12 +10,13 @@ void convert_command(const ConvertFlags& flags) {
   const Format format = output_format(flags.output);
   const MeshBytes file = read_mesh(flags.input);
   if (is_scene(format) && is_scene(file.format)) return save_scene(flags.output, file.bytes);
-  const proto::FormattedMesh triangles = triangles_of(file);
-  if (is_scene(format)) return save_scene(flags.output, proto::gltf::scene_of_mesh(triangles));
-  if (format != Format::drc) {
-    save_bytes(flags.output, encode_triangles(flags.output.path.string(), format, triangles, triangles.format));
-    return;
+  if (holds_materials(flags.output)) {
+    const MaterialRead read = read_with_materials(flags.input, file);
+    print_warnings(read.warnings);
+    return save_mesh(flags.output, read.model);
   }
+  const proto::FormattedMesh triangles = triangles_of(file);
+  if (format != Format::drc) return save_mesh(flags.output, {.mesh = triangles});
   save_bytes(flags.output, in_words_of_the_file(file.name, [&] {
                if (flags.exact) return proto::write_draco_exact(triangles, triangles.format);
                const Mesh mesh = build_mesh(triangles, nullptr, rounding_gap);

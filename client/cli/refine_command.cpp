@@ -5,6 +5,7 @@
 
 #include "client/cli/refine_mesh.h"
 #include "client/lib/file_words.h"
+#include "client/lib/read_materials.h"
 #include "proto/findings.h"
 #include "proto/gltf/scene_refinement.h"
 #include "proto/text.h"
@@ -49,6 +50,18 @@ MeshPlace output_of(const RefineFlags& flags) {
   return output;
 }
 
+/// Returns a mesh file as a Draco stream. `materials` becomes those that its faces name, if the output can hold any.
+std::string draco_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
+                            proto::gltf::Materials& materials) {
+  const bool has_materials = file.format == Format::obj || is_scene(file.format);
+  if (!has_materials || !holds_materials(output)) return draco_of(std::move(file));
+  MaterialRead read = read_with_materials(input, file);
+  print_warnings(read.warnings);
+  materials.materials = read.model.materials.materials;
+  materials.images = std::move(read.model.materials.images);
+  return draco_of(file.name, std::move(read.model));
+}
+
 void refine_file(const RefineFlags& flags) {
   const MeshPlace output = output_of(flags);
   check_output(output);
@@ -70,11 +83,12 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
                       : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
       return {std::move(made.bytes), true, std::move(made.statistics)};
     });
-  const std::string draco = draco_of(std::move(file));
+  proto::gltf::Materials materials;
+  const std::string draco = draco_to_refine(input, output, std::move(file), materials);
   return in_words_of_the_file(name, [&]() -> RefinedFile {
     auto made = flags.server.empty() ? proto::Refinement(draco, flags.parameters, own_limits).run(hooks)
                                      : Remote(flags.server, flags.remote).refine(draco, flags.parameters);
-    return {std::move(made.bytes), false, std::move(made.statistics)};
+    return {std::move(made.bytes), false, std::move(made.statistics), std::move(materials)};
   });
 }
 
@@ -82,7 +96,7 @@ void save_refined(const MeshPlace& output, const RefinedFile& made) {
   if (made.is_scene)
     save_scene(output, made.bytes);
   else
-    save_draco(output, made.bytes);
+    save_draco(output, made.bytes, made.materials);
 }
 
 void refine_command(const RefineFlags& flags) {

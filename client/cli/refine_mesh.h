@@ -10,11 +10,13 @@ struct RefinedFile {
   std::string bytes;
   bool is_scene = false;
   proto::Statistics statistics;
+  proto::gltf::Materials materials{};  ///< that the faces of a mesh name (material_attribute.h)
 };
 
 /// Refines one mesh or scene here, with so many threads, or at the server: both go the same way from the same bytes, so
-/// the result is the same. A scene stays one if `output` is a scene; else it is refined as a single mesh. Throws what
-/// the work throws, and `FileError` where the mesh is at fault.
+/// the result is the same. A scene stays one if `output` is a scene; else it is refined as a single mesh, which keeps
+/// the materials of a scene or an OBJ file if `output` can hold them. What of those is missing is said on standard
+/// error. Throws what the work throws, and `FileError` where the mesh is at fault.
 [[nodiscard]] RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags,
                                       unsigned threads);
 /// Writes what was refined. Throws `FileError`.

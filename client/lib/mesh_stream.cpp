@@ -3,24 +3,17 @@
 #include <iostream>
 
 #include "client/lib/file_words.h"
+#include "client/lib/material_attribute.h"
+#include "client/lib/read_beside.h"
+#include "client/lib/save_obj.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
 #include "proto/gltf/packing.h"
 #include "proto/text.h"
-#include "proto/url.h"
 
 namespace papilio::client {
 namespace {
-
-/// The bytes of a file that `document` names by a relative URI.
-std::string read_beside(const std::filesystem::path& document, const std::string& uri) {
-  const std::filesystem::path name = proto::decode_url(uri).value_or(uri);
-  const bool has_scheme = uri.find(':') != std::string::npos;
-  if (has_scheme || name.is_absolute() || *name.lexically_normal().begin() == "..")
-    throw FileError(document, "names " + proto::quote(uri) + ", which is not in its folder; put it there");
-  return read_bytes(document.parent_path() / name, kMaxFileBytes);
-}
 
 std::string packed(const MeshPlace& place, const MeshBytes& file) {
   return in_words_of_the_file(file.name, [&] {
@@ -57,6 +50,11 @@ std::string draco_of(MeshBytes file) {
   return in_words_of_the_file(file.name, [&] { return proto::write_draco_exact(mesh, mesh.format); });
 }
 
+std::string draco_of(const std::string& name, proto::gltf::MaterialMesh model) {
+  if (!model.materials.empty()) add_material_attribute(model);
+  return in_words_of_the_file(name, [&] { return proto::write_draco_exact(model.mesh, model.mesh.format); });
+}
+
 Format output_format(const MeshPlace& place) {
   if (place.is_standard()) return place.format.value_or(Format::drc);
   const Format format = format_of(place.path);
@@ -66,12 +64,23 @@ Format output_format(const MeshPlace& place) {
   return format;
 }
 
-void save_draco(const MeshPlace& place, std::string_view draco) {
+bool holds_materials(const MeshPlace& place) {
   const Format format = output_format(place);
-  if (format == Format::drc) return save_bytes(place, draco);
-  const proto::FormattedMesh mesh = proto::read_draco(draco, own_limits);
-  if (is_scene(format)) return save_scene(place, proto::gltf::scene_of_mesh(mesh));
-  save_bytes(place, encode_triangles(place.path.string(), format, mesh, mesh.format));
+  return is_scene(format) || (format == Format::obj && !place.is_standard());
+}
+
+void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model) {
+  const Format format = output_format(place);
+  if (is_scene(format)) return save_scene(place, proto::gltf::scene_of_mesh(model.mesh, model.materials));
+  if (format == Format::obj) return save_obj(place, model);
+  save_bytes(place, encode_triangles(place.path.string(), format, model.mesh, model.mesh.format));
+}
+
+void save_draco(const MeshPlace& place, std::string_view draco, const proto::gltf::Materials& materials) {
+  if (output_format(place) == Format::drc) return save_bytes(place, draco);
+  proto::gltf::MaterialMesh model{.mesh = proto::read_draco(draco, own_limits), .materials = materials};
+  if (!materials.empty()) model.materials.of_triangle = take_material_attribute(model.mesh, materials.materials.size());
+  save_mesh(place, model);
 }
 
 void save_scene(const MeshPlace& place, const std::string& glb) {

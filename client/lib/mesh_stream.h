@@ -7,6 +7,7 @@
 
 #include "client/mesh_file/mesh_file.h"
 #include "papilio/mesh.h"
+#include "proto/gltf/materials.h"
 #include "proto/limits.h"
 #include "proto/mesh_format.h"
 
@@ -44,12 +45,22 @@ struct MeshBytes {
 /// A mesh file as a Draco stream: .drc as it is, others encoded with their positions and attributes to the bit. Throws
 /// `FileError`, also where there is no surface in the file.
 [[nodiscard]] std::string draco_of(MeshBytes file);
+/// A mesh as a Draco stream with its positions and attributes to the bit, and the materials of its faces as an
+/// attribute (material_attribute.h) if it has any. `name` is the file's. Throws `FileError`.
+[[nodiscard]] std::string draco_of(const std::string& name, proto::gltf::MaterialMesh model);
 
 /// The format of what is written there. Throws `FileError` for an extension that is unknown or not that of the format.
 [[nodiscard]] Format output_format(const MeshPlace& place);
 
-/// Writes a Draco stream in the format of the place; as a scene of one node where that is glTF. Throws `FileError`.
-void save_draco(const MeshPlace& place, std::string_view draco);
+/// Whether files at the place can have materials: scenes, and OBJ files that are not standard output.
+[[nodiscard]] bool holds_materials(const MeshPlace& place);
+
+/// Writes a mesh in the format of the place, which is not Draco; as a scene of one node where that is glTF, with its
+/// materials where `holds_materials`. Throws `FileError`.
+void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model);
+
+/// Writes a Draco stream as `save_mesh`. `materials`: those that the stream's faces name by `draco_of`.
+void save_draco(const MeshPlace& place, std::string_view draco, const proto::gltf::Materials& materials = {});
 
 /// Writes a .glb scene in the format of the place; beside NAME.gltf goes NAME.bin. Throws `FileError`.
 void save_scene(const MeshPlace& place, const std::string& glb);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bats
 # glTF scenes: the command line and the server.
 
+bats_require_minimum_version 1.5.0
 load helpers
 
 scene='Content-Type: model/gltf-binary'
@@ -53,6 +54,102 @@ two_nodes() {
     "$papilio" convert "out.$kind" back.glb
     [ "$("$papilio" info --json back.glb | jq .faces)" = 600 ]
   done
+}
+
+# cube: an OBJ file of two materials in smoothing groups, its library and two images, one of a pixel, one of a kind that
+# glTF lacks.
+cube() {
+  base64 -d >wood.png <<'END'
+iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==
+END
+  printf 'BM' >old.bmp
+  printf '%s\n' 'newmtl wood' 'Kd 0.8 0.6 0.4' 'map_Kd -s 1 1 1 .\wood.png' 'newmtl pale metal' 'Pm 1' 'Pr 0.25' >cube.mtl
+  printf '%s\n' 'mtllib cube.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 0 0 1' 'v 1 0 1' 'v 1 1 1' 'v 0 1 1' \
+    'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 0 1' 'usemtl wood' 's 1' 'f 4/1 3/2 2/3 1/4' 'f 5/1 6/2 7/3 8/4' \
+    'usemtl pale metal' 's 2' 'f 1/1 2/2 6/3 5/4' 'f 2/1 3/2 7/3 6/4' 'f 3/1 4/2 8/3 7/4' 'f 4/1 1/2 5/3 8/4' >cube.obj
+}
+
+# json_of SCENE: its document.
+json_of() {
+  "$papilio" convert "$1" "$BATS_TEST_TMPDIR/document.gltf"
+  cat "$BATS_TEST_TMPDIR/document.gltf"
+}
+
+@test "materials of an .obj file become those of a scene, and go back" {
+  cube
+  run --separate-stderr "$papilio" convert cube.obj cube.glb
+  [ "$status" = 0 ]
+  [ -z "$stderr" ]
+  [ "$(json_of cube.glb | jq -c '[.materials[].name, .meshes[0].primitives[].material]')" = '["wood","pale metal",0,1]' ]
+  [ "$(json_of cube.glb | jq -c '[.images[0].mimeType, (.images | length)]')" = '["image/png",1]' ]
+  mkdir back
+  "$papilio" convert cube.glb back/new.obj
+  [ "$(cd back && echo *)" = 'new.mtl new.obj new_wood.png' ]
+  cmp wood.png back/new_wood.png
+  grep -qx 'mtllib new.mtl' back/new.obj
+  [ "$(grep ^usemtl back/new.obj | paste -sd,)" = 'usemtl wood,usemtl pale metal' ]
+  grep -qx 'Kd 0.8 0.6 0.4' back/new.mtl
+  grep -qx 'map_Kd new_wood.png' back/new.mtl
+  "$papilio" convert back/new.obj again.glb
+  [ "$(json_of again.glb | jq -c .materials)" = "$(json_of cube.glb | jq -c .materials)" ]
+  "$papilio" convert cube.obj cube.gltf
+  [ "$(jq '.materials | length' cube.gltf)" = 2 ]
+}
+
+@test "what of materials is missing is said, and left out" {
+  cube
+  rm wood.png
+  run --separate-stderr "$papilio" convert cube.obj cube.glb
+  [ "$status" = 0 ]
+  [ "$stderr" = 'warning: cube.mtl: names the image "./wood.png", which is not there; it is left out' ]
+  [ "$(json_of cube.glb | jq -c '[.materials[].name, .images]')" = '["wood","pale metal",null]' ]
+  sed -i 's/wood.png/old.bmp/' cube.mtl
+  run --separate-stderr "$papilio" convert cube.obj cube.glb
+  [[ $stderr == 'warning: old.bmp: is neither a PNG nor a JPEG image'* ]]
+  rm cube.mtl
+  run --separate-stderr "$papilio" convert cube.obj cube.glb
+  [ "$status" = 0 ]
+  [ "$stderr" = 'warning: cube.obj: names the material library "cube.mtl", which is not there; it is left out' ]
+  [ "$(json_of cube.glb | jq .materials)" = null ]
+  printf 'newmtl wood\nKd red\n' >cube.mtl
+  run "$papilio" convert cube.obj cube.glb
+  [ "$status" = 1 ]
+  [[ $output == *'cube.mtl: line 2: expected a finite number'* ]]
+}
+
+@test "refinement keeps materials between .obj files and scenes, here and there, with the same bytes" {
+  cube
+  "$papilio" refine cube.obj -o here.glb --levels 2
+  "$papilio" refine cube.obj -o there.glb --levels 2 --server "$url"
+  cmp here.glb there.glb
+  [ "$(json_of here.glb | jq -c '[.materials[].name, .images[0].mimeType]')" = '["wood","pale metal","image/png"]' ]
+  [ "$("$papilio" info --json here.glb | jq -c '[.faces, .meshes[0].primitives]')" = '[192,2]' ]
+  [ "$("$papilio" convert here.glb flat.ply && "$papilio" info --json flat.ply | jq .closed)" = true ]
+  # Smoothing groups are creases as before: without them the cube becomes another shape.
+  sed '/^s /d' cube.obj >smooth.obj
+  "$papilio" refine cube.obj -o groups.glb --levels 2 --shape organic
+  "$papilio" refine smooth.obj -o smooth.glb --levels 2 --shape organic
+  [ "$("$papilio" compare --json groups.glb smooth.glb | jq '.hausdorff > 0.01')" = true ]
+  "$papilio" convert cube.obj cube.glb
+  mkdir out
+  "$papilio" refine cube.glb -o out/fine.obj --levels 1
+  [ "$(cd out && echo *)" = 'fine.mtl fine.obj fine_wood.png' ]
+  [ "$(grep -c ^usemtl out/fine.obj)" = 2 ]
+  "$papilio" refine cube.obj -o out/again.obj --levels 1
+  [ -s out/again_wood.png ]
+}
+
+@test "standard streams have no materials" {
+  cube
+  "$papilio" convert cube.obj cube.glb
+  "$papilio" convert cube.glb - --to obj >out.obj
+  run ! grep -q mtl out.obj
+  [ ! -e out.mtl ]
+  run --separate-stderr "$papilio" convert - out.glb --from obj <cube.obj
+  [ "$status" = 0 ]
+  [[ $stderr == *'name the .obj file instead of -'* ]]
+  "$papilio" convert in.glb plain.obj
+  [ ! -e plain.mtl ]
 }
 
 @test "a folder's scenes stay scenes" {

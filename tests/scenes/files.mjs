@@ -35,6 +35,15 @@ const others = [
   'glTF-Asset-Generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode_11.gltf',
   'simple_skin/simple_skin.gltf',
 ];
+/** .obj files, their numbers of materials and images, and what the validator says of their own normals. */
+const obj = path.join(models, '../OBJ');
+export const objects = [
+  [path.join(obj, 'spider.obj'), 4, 4, ['ACCESSOR_VECTOR3_NON_UNIT']],
+  [path.join(obj, 'regr01.obj'), 12, 0, []],
+  [path.join(obj, 'box_mat_with_spaces.obj'), 1, 0, []],
+  [path.join(obj, 'cube_usemtl.obj'), 3, 0, []],
+  [path.join(obj, 'empty_mat.obj'), 1, 0, []],
+];
 export const animated = [
   path.join(models, 'simple_skin/simple_skin.gltf'),
   path.join(models, 'glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf'),

@@ -11,7 +11,7 @@ import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import draco3d from 'draco3dgltf';
 import validator from 'gltf-validator';
 import { MeshoptDecoder } from 'meshoptimizer';
-import { gltfpack, models, nameOf, profiles, refine, scenes } from './files.mjs';
+import { gltfpack, models, nameOf, objects, papilio, profiles, refine, scenes } from './files.mjs';
 
 const broken = [
   'IndexOutOfRange/IndexOutOfRange.gltf',
@@ -104,6 +104,25 @@ for (const input of scenes) {
       assert.equal(trianglesOf(document), summary.faces);
       assert.ok(summary.faces > 3 * coarse, `${summary.faces} of ${coarse}`);
     }
+  });
+}
+
+for (const [name, materials, images, known] of objects) {
+  test(`${path.basename(name)} becomes a sound scene with its materials, and goes back`, async () => {
+    const scene = path.join(folder, 'object.glb');
+    const convert = (from, to) => execFileSync(papilio, ['convert', from, to], { stdio: 'pipe' });
+    const counts = (document) => [document.getRoot().listMaterials().length, document.getRoot().listTextures().length];
+    convert(name, scene);
+    assert.deepEqual([...(await issues(scene)).keys()], known);
+    const before = await io.read(scene);
+    assert.deepEqual(counts(before), [materials, images]);
+    convert(scene, path.join(folder, 'back.obj'));
+    convert(path.join(folder, 'back.obj'), scene);
+    assert.deepEqual([...(await issues(scene)).keys()], known);
+    const after = await io.read(scene);
+    assert.deepEqual(countsOf(after).images.sort(), countsOf(before).images.sort());
+    assert.deepEqual(counts(after), [materials, images]);
+    assert.equal(trianglesOf(after), trianglesOf(before));
   });
 }
 

@@ -1,0 +1,68 @@
+#include "client/lib/material_attribute.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace papilio::client {
+namespace {
+
+/// Gives each material points of its own. Returns the material of each point.
+std::vector<uint32_t> divide_points(proto::FormattedMesh& mesh, const std::vector<uint32_t>& of_triangle) {
+  std::vector<uint32_t> owner(mesh.positions.size(), none);
+  std::vector<bool> is_owned(mesh.positions.size());
+  std::unordered_map<uint64_t, uint32_t> copies;  // of points that another material owns, by point and material
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (uint32_t& point : mesh.triangles[t]) {
+      if (!is_owned[point]) {
+        is_owned[point] = true;
+        owner[point] = of_triangle.at(t);
+      }
+      if (owner[point] == of_triangle[t]) continue;
+      const auto [copy, is_new] =
+          copies.try_emplace(uint64_t{point} << 32 | of_triangle[t], static_cast<uint32_t>(mesh.positions.size()));
+      if (is_new) {
+        mesh.positions.push_back(Vec3f(mesh.positions[point]));
+        owner.push_back(of_triangle[t]);
+        is_owned.push_back(true);
+        for (Attribute& attribute : mesh.attributes)
+          for (uint32_t c = 0; c < attribute.components; ++c)
+            attribute.values.push_back(double{attribute.values[size_t{point} * attribute.components + c]});
+      }
+      point = copy->second;
+    }
+  return owner;
+}
+
+}  // namespace
+
+void add_material_attribute(proto::gltf::MaterialMesh& model) {
+  const std::vector<uint32_t> owner = divide_points(model.mesh, model.materials.of_triangle);
+  uint32_t id = 0;
+  for (const proto::AttributeFormat& format : model.mesh.format.attributes) id = std::max(id, format.id);
+  Attribute& attribute = model.mesh.attributes.emplace_back();
+  attribute.values.reserve(owner.size());
+  for (const uint32_t material : owner)
+    attribute.values.push_back(material == none ? 0.0 : static_cast<double>(material) + 1);
+  model.mesh.format.attributes.push_back({.kind = proto::AttributeKind::generic,
+                                          .type = proto::ValueType::int32,
+                                          .id = id + 1,
+                                          .name = material_attribute_name});
+}
+
+std::vector<uint32_t> take_material_attribute(proto::FormattedMesh& mesh, size_t count) {
+  std::vector<uint32_t> of_triangle(mesh.triangles.size(), none);
+  const auto format = std::ranges::find_if(mesh.format.attributes, [](const proto::AttributeFormat& other) {
+    return other.kind == proto::AttributeKind::generic && other.name == material_attribute_name;
+  });
+  if (format == mesh.format.attributes.end()) return of_triangle;
+  const auto attribute = mesh.attributes.begin() + (format - mesh.format.attributes.begin());
+  for (size_t t = 0; t < of_triangle.size(); ++t) {
+    const double number = attribute->values[size_t{mesh.triangles[t][0]} * attribute->components];
+    if (number >= 1 && number <= static_cast<double>(count)) of_triangle[t] = static_cast<uint32_t>(number) - 1;
+  }
+  mesh.attributes.erase(attribute);
+  mesh.format.attributes.erase(format);
+  return of_triangle;
+}
+
+}  // namespace papilio::client
