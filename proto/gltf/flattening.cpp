@@ -238,8 +238,8 @@ Elements attribute_elements(const Attribute& attribute, const AttributeFormat& f
 }
 
 /// Returns the triangles of a mesh by material, first of those without.
-std::map<uint32_t, std::vector<Triangle>> triangles_by_material(const FormattedMesh& mesh, const Materials& materials) {
-  std::map<uint32_t, std::vector<Triangle>> groups;  // by the number of the material and one
+std::map<uint32_t, Buffer<Triangle>> triangles_by_material(const FormattedMesh& mesh, const Materials& materials) {
+  std::map<uint32_t, Buffer<Triangle>> groups;  // by the number of the material and one
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     const uint32_t material = materials.of_triangle.empty() ? none : materials.of_triangle.at(t);
     groups[material + 1].push_back(mesh.triangles[t]);
