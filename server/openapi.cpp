@@ -216,13 +216,12 @@ ordered_json refined_answer() {
   types[multipart_type]["schema"]["description"] =
       "Every level as a Draco mesh or a .glb scene of its own with its statistics as headers, the coarse one first, "
       "and a JSON summary. A problem after the stream has begun is its last part.";
-  return {
-      {"description", "The refined mesh"},
-      {"headers", header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
-                                     "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels",
-                                     "Papilio-Unreached", "Papilio-Shape",
-                                     "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
-      {"content", types}};
+  return {{"description", "The refined mesh"},
+          {"headers",
+           header_references({"X-Request-Id", "Papilio-Vertices", "Papilio-Faces", "Papilio-Levels",
+                              "Papilio-Stop-Reason", "Papilio-Error", "Papilio-Error-Pixels", "Papilio-Unreached",
+                              "Papilio-Shape", "Papilio-Found", "Server-Timing", "ETag", "Cache-Control", "Vary"})},
+          {"content", types}};
 }
 
 ordered_json json_answer(const std::string& description, const std::string& schema) {

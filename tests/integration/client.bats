@@ -369,6 +369,8 @@ END
   local line count=0
   "$PAPILIO_BUILD/coarsen" "$PAPILIO_MESHES/cgal/bunny00.off" bunny.obj 600 # as the demo makes it
   "$papilio" convert bunny.obj bunny.drc
+  "$papilio" convert bunny.obj bunny.glb
+  cp bunny.glb model.glb # the reader's own
   while read -r line; do
     [[ $line == *http://localhost:8080/* ]]
     line=${line//http:\/\/localhost:8080/$url}
@@ -376,7 +378,8 @@ END
     no_proxy='*' eval "$line"
     count=$((count + 1))
   done < <(grep '^curl ' "$BATS_TEST_DIRNAME/../../README.md")
-  [ "$count" = 3 ]
+  [ "$count" = 5 ]
+  [ "$("$papilio" info --json fine.glb | jq '.faces > 600')" = true ]
   [ "$(decoded_faces fine.drc)" -gt 600 ]
   [ "$(decoded_faces view.drc)" -gt 600 ]
 }

@@ -99,7 +99,8 @@ export function curlOf(
   withKey: boolean,
 ): string {
   const curl = `curl -sS --fail-with-body${withKey ? ' -H "Authorization: Bearer $PAPILIO_KEY"' : ''}`;
-  if (query === null) return mesh.id === null ? '' : `${curl} -o coarse${extensionOf[mesh.kind]} '${base}v1/meshes/${mesh.id}'`;
+  if (query === null)
+    return mesh.id === null ? '' : `${curl} -o coarse${extensionOf[mesh.kind]} '${base}v1/meshes/${mesh.id}'`;
   const out = `${curl} -o refined${extensionOf[mesh.kind]}`;
   if (mesh.id !== null) return `${out} '${base}v1/meshes/${mesh.id}/refined?${query}'`;
   const body = `-H 'Content-Type: ${mediaTypes[mesh.kind]}' --data-binary @${quoted(mesh.file)}`;
