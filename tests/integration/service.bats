@@ -161,7 +161,8 @@ leave() {
   slowest_small=$(sort -k2 -n "$BATS_TEST_TMPDIR/small" | tail -1 | cut -d' ' -f2)
   slowest_large=$(cat "$BATS_TEST_TMPDIR"/large* | sort -k2 -n | tail -1 | cut -d' ' -f2)
   echo "small $slowest_small s, large $slowest_large s"
-  awk "BEGIN { exit !($slowest_small < $slowest_large / 2) }"
+  # Under the thread sanitizer the steps between two turns take seconds: nothing to be told from times.
+  [[ $PAPILIO_BUILD == */tsan ]] || awk "BEGIN { exit !($slowest_small < $slowest_large / 2) }"
 }
 
 @test "2,000 silent connections do not keep others waiting" {
