@@ -8,8 +8,8 @@
 namespace papilio::test {
 
 /// The scene refined with these parameters.
-[[nodiscard]] inline proto::EncodedLevel refined(const std::string& glb, const proto::QueryFields& fields,
-                                                 const proto::Limits& limits = {}) {
+inline proto::EncodedLevel refined(const std::string& glb, const proto::QueryFields& fields,
+                                   const proto::Limits& limits = {}) {
   return proto::gltf::SceneRefinement(glb, proto::parse_query(fields), limits).run();
 }
 
