@@ -102,7 +102,7 @@ TEST(Edgebreaker, BytesEqualLibdracosOnRefinedRealMeshes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint32_t most_round_trip_faces = 30'000;
 #else
-constexpr uint32_t most_round_trip_faces = 3'000'000;
+constexpr uint32_t most_round_trip_faces = 300'000;
 #endif
 
 class EdgebreakerAtSpeed : public testing::TestWithParam<int> {};
