@@ -85,12 +85,10 @@ void Parking::close() {
 
 void Parking::run() {
   std::array<epoll_event, 64> events{};
-  for (;;) {
-    const int count = ::epoll_wait(epoll_, events.data(), events.size(), milliseconds_to_next_deadline());
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_) return;
-    }
+  // Whoever wakes this up has written before what it is to see, closed or a deadline, and each turn looks for both
+  // after it has taken the calls.
+  while (const std::optional<int> wait = milliseconds_to_wait()) {
+    const int count = ::epoll_wait(epoll_, events.data(), events.size(), *wait);
     for (int i = 0; i < count; ++i) {
       uint64_t counted = 0;
       if (events.at(static_cast<size_t>(i)).data.u64 == wake_id)
@@ -102,8 +100,9 @@ void Parking::run() {
   }
 }
 
-int Parking::milliseconds_to_next_deadline() {
+std::optional<int> Parking::milliseconds_to_wait() {
   const std::lock_guard lock(mutex_);
+  if (closed_) return std::nullopt;
   if (deadlines_.empty()) return -1;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadlines_.begin()->first - Clock::now()).count();
   return static_cast<int>(std::clamp<int64_t>(left, 0, std::numeric_limits<int>::max()));
@@ -111,13 +110,13 @@ int Parking::milliseconds_to_next_deadline() {
 
 std::function<void()> Parking::take_overdue() {
   const std::lock_guard lock(mutex_);
-  if (deadlines_.empty() || deadlines_.begin()->first > Clock::now()) return nullptr;
+  if (closed_ || deadlines_.empty() || deadlines_.begin()->first > Clock::now()) return nullptr;
   return take_locked(deadlines_.begin()->second);
 }
 
 std::function<void()> Parking::take(uint64_t id) {
   const std::lock_guard lock(mutex_);
-  return take_locked(id);
+  return closed_ ? nullptr : take_locked(id);
 }
 
 std::function<void()> Parking::take_locked(uint64_t id) {

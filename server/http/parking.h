@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -37,8 +38,9 @@ class Parking {
   };
 
   void run();
-  [[nodiscard]] int milliseconds_to_next_deadline();
-  /// Takes one out, with its deadline passed by now; empty when there is none.
+  /// Until the next deadline, -1 for no end; nothing once it is closed.
+  [[nodiscard]] std::optional<int> milliseconds_to_wait();
+  /// Takes one out, with its deadline passed by now; empty when there is none, or it is closed, as is the next.
   [[nodiscard]] std::function<void()> take_overdue();
   [[nodiscard]] std::function<void()> take(uint64_t id);
   /// With the mutex held; empty when there is none.

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace papilio::server {
@@ -102,6 +103,18 @@ TEST(Parking, ClosedItKeepsNothing) {
   parking.park(pair.parked(), POLLIN, Clock::now() + 1h, fate.watch());
   EXPECT_TRUE(fate.destroyed);
   EXPECT_EQ(fate.resumed, 0);
+}
+
+// Closing while the thread wakes up for something else: its call must not be lost.
+TEST(Parking, IsClosedWhateverItIsDoing) {
+  const std::array<Pair, 4> pairs;
+  for (int i = 0; i < 5000; ++i) {
+    Parking parking(pairs.size());
+    auto deadline = Clock::now() + 2h;
+    for (const Pair& pair : pairs) parking.park(pair.parked(), POLLIN, deadline -= 1s, [] {});  // each wakes it
+    for (int wait = 0; wait < i % 20; ++wait) std::this_thread::yield();
+    parking.close();
+  }
 }
 
 TEST(Parking, TheSameSocketIsParkedAgainAndAgain) {
