@@ -1,5 +1,6 @@
 #include "proto/gltf/geometry_writer.h"
 
+#include <tuple>
 #include <utility>
 
 #include "proto/gltf/draco_primitive.h"
@@ -34,16 +35,22 @@ class GeometryWriter {
 
   void write(NewGeometry mesh) {
     std::vector<Json> attributes(mesh.geometry.sets.size()), targets(mesh.geometry.sets.size());
+    std::vector<bool> needs_elements(mesh.geometry.sets.size());  // for Draco streams, each of which reads them
+    for (const TrianglePrimitive& primitive : mesh.geometry.primitives)
+      if (is_draco(json_of(mesh, primitive), mesh.geometry.sets[primitive.set])) needs_elements[primitive.set] = true;
     for (const TrianglePrimitive& primitive : mesh.geometry.primitives) {
       if (encoding_.poll) encoding_.poll();
-      Json& json = document_.json["meshes"][mesh.mesh]["primitives"][primitive.number];
+      Json& json = json_of(mesh, primitive);
       VertexSet& set = mesh.geometry.sets[primitive.set];
-      const Compression compression = compression_of(json, set);
-      if (compression == Compression::draco && set.targets.empty())
+      if (is_draco(json, set)) {
         write_draco_primitive(json, set, primitive, mesh.box);
-      else
-        write_plain(json, set, primitive, compression == Compression::meshopt, attributes[primitive.set],
-                    targets[primitive.set]);
+      } else {
+        const bool meshopt = compression_of(json, set) == Compression::meshopt;
+        if (attributes[primitive.set].is_null())
+          std::tie(attributes[primitive.set], targets[primitive.set]) =
+              put_vertices(json, set, meshopt, needs_elements[primitive.set]);
+        write_plain(json, set, primitive, meshopt, attributes[primitive.set], targets[primitive.set]);
+      }
       json.erase("mode");
     }
   }
@@ -56,33 +63,46 @@ class GeometryWriter {
   }
 
  private:
+  Json& json_of(const NewGeometry& mesh, const TrianglePrimitive& primitive) {
+    return document_.json["meshes"][mesh.mesh]["primitives"][primitive.number];
+  }
+
   [[nodiscard]] Compression compression_of(const Json& primitive, const VertexSet& set) const {
     if (encoding_.compression != Compression::same) return encoding_.compression;
     if (find_extension(primitive, draco_extension, "a primitive") != nullptr) return Compression::draco;
     return slots_.is_compressed(set.find("POSITION")->accessor.value()) ? Compression::meshopt : Compression::none;
   }
 
-  /// Writes a primitive without Draco. `attributes`, `targets`: of its set, written with the first primitive of it.
-  void write_plain(Json& json, const VertexSet& set, const TrianglePrimitive& primitive, bool meshopt, Json& attributes,
-                   Json& targets) {
-    if (attributes.is_null()) {
-      attributes = json["attributes"];
-      if (json.contains("targets")) targets = json["targets"];
-      for (const VertexStream& stream : set.attributes)
-        attributes[stream.semantic] = slots_.put(stream.accessor, stream.elements, Use::vertices, meshopt);
-      for (size_t t = 0; t < set.targets.size(); ++t)
-        for (const VertexStream& stream : set.targets[t])
-          targets[t][stream.semantic] = slots_.put(stream.accessor, stream.elements, Use::vertices, meshopt);
-    }
+  [[nodiscard]] bool is_draco(const Json& primitive, const VertexSet& set) const {
+    return compression_of(primitive, set) == Compression::draco && set.targets.empty();
+  }
+
+  /// Writes the vertices of a set, and takes its elements unless it `keeps` them. Returns the attributes and the morph
+  /// targets of its primitives.
+  std::pair<Json, Json> put_vertices(const Json& primitive, VertexSet& set, bool meshopt, bool keeps) {
+    Json attributes = primitive["attributes"];
+    Json targets = primitive.value("targets", Json());
+    const auto put = [&](VertexStream& stream) {
+      return slots_.put(stream.accessor, keeps ? stream.elements : std::move(stream.elements), Use::vertices, meshopt);
+    };
+    for (VertexStream& stream : set.attributes) attributes[stream.semantic] = put(stream);
+    for (size_t t = 0; t < set.targets.size(); ++t)
+      for (VertexStream& stream : set.targets[t]) targets[t][stream.semantic] = put(stream);
+    return {std::move(attributes), std::move(targets)};
+  }
+
+  /// Writes a primitive without Draco, whose vertices are written.
+  void write_plain(Json& json, const VertexSet& set, const TrianglePrimitive& primitive, bool meshopt,
+                   const Json& attributes, const Json& targets) {
     put_indices(json, index_elements(primitive.triangles, set.count), meshopt);
     json["attributes"] = attributes;
     if (!targets.is_null()) json["targets"] = targets;
     erase_draco(json);
   }
 
-  void put_indices(Json& json, const Elements& indices, bool meshopt) {
+  void put_indices(Json& json, Elements indices, bool meshopt) {
     const auto old = index_member(json, "indices", "a primitive");
-    json["indices"] = slots_.put(old, indices, Use::indices, meshopt);
+    json["indices"] = slots_.put(old, std::move(indices), Use::indices, meshopt);
   }
 
   void write_draco_primitive(Json& json, const VertexSet& set, const TrianglePrimitive& primitive,

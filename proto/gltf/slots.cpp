@@ -16,9 +16,9 @@ constexpr uint32_t array_buffer = 34962, element_array_buffer = 34963;  // targe
 constexpr const char* type_names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
 
 /// Returns elements at a stride of a multiple of four bytes.
-std::string strided(const Elements& elements, uint32_t stride) {
+std::string strided(Elements elements, uint32_t stride) {
   const uint32_t size = elements.format.bytes();
-  if (stride == size) return elements.bytes;
+  if (stride == size) return std::move(elements.bytes);
   std::string out(elements.count * stride, '\0');
   for (uint64_t i = 0; i < elements.count; ++i) std::memcpy(&out[i * stride], &elements.bytes[i * size], size);
   return out;
@@ -124,7 +124,7 @@ uint32_t Slots::take_view(std::optional<uint32_t> preferred, Use use) {
   return static_cast<uint32_t>(json_["bufferViews"].size() - 1);
 }
 
-uint32_t Slots::put(std::optional<uint32_t> old, const Elements& elements, Use use, bool compressed) {
+uint32_t Slots::put(std::optional<uint32_t> old, Elements elements, Use use, bool compressed) {
   const uint32_t accessor = take_accessor(old, elements);
   const auto old_view = old ? index_member(old_accessors_[*old], "bufferView", place("accessors", *old)) : std::nullopt;
   ViewContent content;
@@ -134,7 +134,7 @@ uint32_t Slots::put(std::optional<uint32_t> old, const Elements& elements, Use u
   content.strided = use == Use::vertices;
   content.compressed = compressed && elements.count > 0;
   content.mode = use == Use::vertices ? MeshoptMode::attributes : MeshoptMode::triangles;
-  content.bytes = strided(elements, content.stride);
+  content.bytes = strided(std::move(elements), content.stride);
   json_["accessors"][accessor]["bufferView"] = content.view;
   contents_.push_back(std::move(content));
   return accessor;

@@ -24,7 +24,7 @@ class Slots {
 
   /// Puts elements in place of those of the accessor `old`, if it is released and not yet used again; else appends an
   /// accessor like it. Returns the accessor.
-  uint32_t put(std::optional<uint32_t> old, const Elements& elements, Use use, bool compressed);
+  uint32_t put(std::optional<uint32_t> old, Elements elements, Use use, bool compressed);
   /// Describes elements that a Draco stream holds: as `put`, but the accessor has no view.
   uint32_t describe(std::optional<uint32_t> old, const Elements& elements);
   /// Puts a Draco stream in place of that of the view `old`. Returns its view.
