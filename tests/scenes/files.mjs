@@ -3,7 +3,7 @@
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 
-const here = import.meta.dirname;
+const here = new URL('.', import.meta.url).pathname;
 export const papilio = path.join(process.env.PAPILIO_BUILD ?? path.join(here, '../../build/release'), 'papilio');
 export const models = path.join(here, '../../build/deps/scenes/usr/share/assimp/models/glTF2');
 export const gltfpack = path.join(here, '../../build/deps/scenes/usr/bin/gltfpack');

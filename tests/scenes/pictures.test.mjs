@@ -29,7 +29,7 @@ before(async () => {
     const name = request.url.split('?')[0];
     const file = name.startsWith('/three/') ? path.join(three, name.slice(7)) : path.join(folder, name);
     try {
-      const bytes = readFileSync(name === '/page.html' ? path.join(import.meta.dirname, 'page.html') : file);
+      const bytes = readFileSync(name === '/page.html' ? path.join(root, 'tests/scenes/page.html') : file);
       response.writeHead(200, { 'Content-Type': types[path.extname(name)] ?? 'application/octet-stream' }).end(bytes);
     } catch {
       response.writeHead(404).end();

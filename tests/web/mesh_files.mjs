@@ -1,7 +1,5 @@
 // A cube in the formats that the viewer opens, made here: 8 vertices, 12 triangles.
 
-import { crc32, deflateSync } from 'node:zlib';
-
 const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]);
 // Counter-clockwise seen from outside.
 const quads = [
@@ -41,31 +39,18 @@ export function cubeStl() {
   return bytes;
 }
 
-/// A picture of one red pixel.
-function redPng() {
-  const chunk = (type, data) => {
-    const body = Buffer.concat([Buffer.from(type), data]);
-    const length = Buffer.alloc(4);
-    length.writeUInt32BE(data.length);
-    const sum = Buffer.alloc(4);
-    sum.writeUInt32BE(crc32(body));
-    return Buffer.concat([length, body, sum]);
-  };
-  const header = Buffer.from([0, 0, 0, 1, 0, 0, 0, 1, 8, 2, 0, 0, 0]); // 1 by 1, 8 bits of RGB
-  return Buffer.concat([
-    Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'),
-    chunk('IHDR', header),
-    chunk('IDAT', deflateSync(Buffer.from([0, 255, 0, 0]))),
-    chunk('IEND', Buffer.alloc(0)),
-  ]);
-}
+/// A PNG of one red pixel.
+const redPng = Buffer.from(
+  'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC',
+  'base64',
+);
 
 /// A cube; with a texture, red.
 export function cubeGlb({ isTextured = false } = {}) {
   const positions = Buffer.from(new Float32Array(corners.flat()).buffer);
   const indices = Buffer.from(new Uint16Array(triangles.flat()).buffer);
   const places = Buffer.alloc(2 * 4 * corners.length); // of all corners in the picture
-  const image = redPng();
+  const image = redPng;
   const binary = Buffer.concat([positions, indices, places, image, Buffer.alloc((4 - (image.length % 4)) % 4)]);
   const json = {
     asset: { version: '2.0' },
