@@ -1,8 +1,10 @@
 #include "proto/url.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 
+#include "proto/problem.h"
 #include "proto/text.h"
 
 namespace papilio::proto {
@@ -40,6 +42,24 @@ std::optional<std::string> decode_url(std::string_view text, bool plus_is_space)
     i += 2;
   }
   return decoded;
+}
+
+std::string require_decoded(std::string_view text, bool plus_is_space) {
+  if (auto decoded = decode_url(text, plus_is_space)) return *std::move(decoded);
+  throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
+}
+
+std::vector<std::pair<std::string, std::string>> split_query(std::string_view query) {
+  std::vector<std::pair<std::string, std::string>> fields;
+  while (!query.empty()) {
+    const std::string_view field = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(query.size(), field.size() + 1));
+    if (field.empty()) continue;
+    const size_t equals = field.find('=');
+    const std::string_view value = equals == std::string_view::npos ? "" : field.substr(equals + 1);
+    fields.emplace_back(require_decoded(field.substr(0, equals), true), require_decoded(value, true));
+  }
+  return fields;
 }
 
 std::string join_query(const std::vector<std::pair<std::string, std::string>>& fields) {

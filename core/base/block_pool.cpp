@@ -1,3 +1,4 @@
+#include "base/mutex.h"
 #include "papilio/buffer.h"
 
 #if defined(__linux__)
@@ -6,7 +7,6 @@
 
 #include <array>
 #include <bit>
-#include <mutex>
 
 namespace papilio {
 namespace {
@@ -85,7 +85,7 @@ void delete_block(void* block, size_t bytes) noexcept {
 class Spares {
  public:
   [[nodiscard]] void* take(SizeClass size) noexcept {
-    const std::scoped_lock lock(mutex_);
+    const Lock lock(mutex_);
     Link* block = first_[size.index];
     if (block == nullptr) return nullptr;
     first_[size.index] = block->next;
@@ -94,7 +94,7 @@ class Spares {
   }
   /// False where that would be too much.
   [[nodiscard]] bool keep(void* block, SizeClass size) noexcept {
-    const std::scoped_lock lock(mutex_);
+    const Lock lock(mutex_);
     if (bytes_ + size.bytes > spare_limit) return false;
     first_[size.index] = new (block) Link{first_[size.index], size.bytes};
     bytes_ += size.bytes;
@@ -103,7 +103,7 @@ class Spares {
   void release() noexcept {
     std::array<Link*, classes> all{};
     {
-      const std::scoped_lock lock(mutex_);
+      const Lock lock(mutex_);
       std::swap(all, first_);
       bytes_ = 0;
     }
@@ -115,7 +115,7 @@ class Spares {
       }
   }
   [[nodiscard]] size_t bytes() noexcept {
-    const std::scoped_lock lock(mutex_);
+    const Lock lock(mutex_);
     return bytes_;
   }
 
@@ -126,7 +126,7 @@ class Spares {
   };
   static constexpr size_t classes = size_t{64} * steps;
 
-  std::mutex mutex_;
+  Mutex mutex_;
   std::array<Link*, classes> first_{};
   size_t bytes_ = 0;
 };

@@ -36,19 +36,19 @@ PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budg
 }
 
 uint64_t PreparedMesh::State::bytes() const {
-  const std::lock_guard lock(access_);
+  const Lock lock(access_);
   return bytes_;
 }
 
 KeptLevels PreparedMesh::State::kept() const {
-  const std::lock_guard lock(access_);
+  const Lock lock(access_);
   return kept_;
 }
 
 void PreparedMesh::State::keep(KeptLevels levels) const {
   while (levels.size() > 1 && bytes_of(levels) > budget_) levels.pop_back();
   const uint64_t bytes = bytes_of(levels);
-  const std::lock_guard lock(access_);
+  const Lock lock(access_);
   kept_.swap(levels);  // what was kept is given back after the lock
   bytes_ = bytes;
 }

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "base/mutex.h"
 #include "hierarchy/hierarchy.h"
 #include "papilio/prepared_mesh.h"
 #include "papilio/result.h"
@@ -32,9 +32,9 @@ class PreparedMesh::State {
   Options rules_;
   uint64_t budget_;
   ShapeReport shape_;
-  double smallest_angle_;      ///< of the coarse mesh, in radians
-  mutable std::mutex access_;  ///< to the two below
-  mutable KeptLevels kept_;    ///< the coarse level first
+  double smallest_angle_;    ///< of the coarse mesh, in radians
+  mutable Mutex access_;     ///< to the two below
+  mutable KeptLevels kept_;  ///< the coarse level first
   mutable uint64_t bytes_;
 };
 

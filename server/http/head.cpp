@@ -17,24 +17,6 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-std::string percent_decoded(std::string_view text, bool plus_is_space) {
-  if (auto decoded = proto::decode_url(text, plus_is_space)) return *std::move(decoded);
-  throw Problem(Code::bad_request, "The address holds a % without two hexadecimal digits.");
-}
-
-Fields parse_query(std::string_view text) {
-  Fields fields;
-  while (!text.empty()) {
-    const std::string_view field = text.substr(0, text.find('&'));
-    text.remove_prefix(std::min(text.size(), field.size() + 1));
-    if (field.empty()) continue;
-    const size_t equals = field.find('=');
-    const std::string_view value = equals == std::string_view::npos ? "" : field.substr(equals + 1);
-    fields.emplace_back(percent_decoded(field.substr(0, equals), true), percent_decoded(value, true));
-  }
-  return fields;
-}
-
 /// The part of the target that begins with the path: the whole target, or what follows the authority of
 /// "http://host:port/path".
 std::string_view without_origin(std::string_view target) {
@@ -57,10 +39,10 @@ void parse_target(Head& head) {
   const bool is_absolute = target.size() < head.target.size();
   if (!path.starts_with('/') && path != "*" && !(is_absolute && path.empty()))
     throw Problem(Code::bad_request, "The address must be a path that begins with /.");
-  head.path = path.empty() ? "/" : percent_decoded(path, false);
+  head.path = path.empty() ? "/" : proto::require_decoded(path);
   if (std::ranges::any_of(head.path, is_control))
     throw Problem(Code::bad_request, "The path holds a control character.");
-  if (mark != std::string_view::npos) head.query = parse_query(target.substr(mark + 1));
+  if (mark != std::string_view::npos) head.query = proto::split_query(target.substr(mark + 1));
 }
 
 void parse_request_line(std::string_view line, Head& head) {

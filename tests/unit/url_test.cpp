@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/problem.h"
 
 namespace papilio::proto {
 namespace {
@@ -24,6 +29,13 @@ TEST(Url, PlusIsASpaceOnlyInQueries) {
 TEST(Url, PercentSignNeedsTwoDigits) {
   for (const char* bad : {"%", "a%", "%4", "50% off", "%4g", "%-1", "%+1", "%0x", "%%25", "% 1"})
     EXPECT_EQ(decode_url(bad), std::nullopt) << bad;
+}
+
+TEST(Url, QueriesAreSplitAndDecoded) {
+  using Fields = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(split_query("a=1&b=x%2Cy+z&&c&d="), (Fields{{"a", "1"}, {"b", "x,y z"}, {"c", ""}, {"d", ""}}));
+  EXPECT_EQ(split_query(""), Fields{});
+  EXPECT_THROW((void)split_query("a=%2"), Problem);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+# For CMAKE_TOOLCHAIN_FILE: Debian's clang, its C library for WebAssembly (wasi-libc) and its C++ library.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+set(CMAKE_C_COMPILER clang-19)
+set(CMAKE_CXX_COMPILER clang++-19)
+set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_AR /usr/bin/ar)  # of LLVM's there may be an older one, which cannot read these objects
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fignore-exceptions -flto")
+set(CMAKE_EXE_LINKER_FLAGS_INIT
+  "-O0 -mexec-model=reactor -Wl,-mllvm,-inline-threshold=20 -Wl,--gc-sections -Wl,--strip-all -Wl,-z,stack-size=1048576")
