@@ -18,7 +18,7 @@ async function load(name) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
 
-const { boundaryOf, partsOf } = await load('multipart');
+const { boundaryOf, partsOf } = await load('../../npm/src/multipart');
 const link = await load('link');
 const { faultOf, rangeOf, queryOf } = await load('parameters');
 const { valuesFor } = await load('requests');

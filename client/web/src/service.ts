@@ -1,7 +1,7 @@
 // What the page asks of the server.
 
 import { type Bytes, type Encoded, kindOf, mediaTypes } from './model';
-import { boundaryOf, partsOf } from './multipart';
+import { boundaryOf, partsOf } from '../../npm/src/multipart';
 import type { ParameterKind } from './parameters';
 
 export interface Sample {

@@ -8,7 +8,7 @@ export interface Part {
 /// The parameter `boundary` of a Content-Type; null where there is none.
 export function boundaryOf(contentType: string): string | null {
   const match = /;\s*boundary=(?:"([^"]+)"|([^;\s]+))/i.exec(contentType);
-  return match ? (match[1] ?? match[2]) : null;
+  return match?.[1] ?? match?.[2] ?? null;
 }
 
 /// Yields the parts in their order. Each must say its Content-Length. Throws an Error where the answer ends too soon.
@@ -45,7 +45,7 @@ class Bytes {
     while (this.#held < count) await this.#more();
     const out = new Uint8Array(count);
     for (let at = 0; at < count; ) {
-      const chunk = this.#chunks[0];
+      const chunk = this.#chunks[0]!;
       const used = Math.min(chunk.length, count - at);
       out.set(chunk.subarray(0, used), at);
       at += used;
@@ -60,7 +60,7 @@ class Bytes {
   async line(): Promise<string> {
     let text = '';
     for (;;) {
-      const byte = String.fromCharCode((await this.take(1))[0]);
+      const byte = String.fromCharCode((await this.take(1))[0]!);
       if (byte === '\n') return text.endsWith('\r') ? text.slice(0, -1) : text;
       text += byte;
     }
