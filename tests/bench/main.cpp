@@ -133,6 +133,7 @@ int run(const std::string& name, const std::string& json_file) {
   add_table1();
   add_quality();
   add_memory();
+  add_wasm();
   const auto report = std::ranges::find(reports(), name, &Report::name);
   if (report != reports().end()) return run_report(*report, json_file);
   add_uniform();

@@ -26,5 +26,6 @@ void add(Report report);
 void add_table1();
 void add_quality();
 void add_memory();
+void add_wasm();
 
 }  // namespace papilio::bench

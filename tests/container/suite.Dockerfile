@@ -3,6 +3,8 @@
 ARG DEBIAN=debian:13.7-slim
 FROM ${DEBIAN}
 WORKDIR /papilio
+# Pages and the module for browsers are the same on each Debian.
+ENV PAPILIO_TEST_PAGES=no
 COPY dev ./
 COPY tests/support tests/support
 COPY client/web/package.json client/web/package-lock.json client/web/.npmrc client/web/

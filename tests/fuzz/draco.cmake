@@ -1,4 +1,4 @@
-# Draco from the source of Debian's package (tests/support/draco_source.sh), instrumented as the rest is, so that the
+# Draco from the source of Debian's package (tests/support/library_source.sh), instrumented as the rest is, so that the
 # fuzzer sees its way through the decoder. Without undefined-behaviour checks: signed numbers that overflow are how it
 # decodes damaged streams. Without the transcoder, which nothing here uses.
 

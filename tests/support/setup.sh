@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh [--list] [build|page|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there
+# setup.sh [--list] [build|page|wasm|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there
 # yet; without arguments, everything. Says what it does; when there is nothing to do it does nothing, quickly and
 # silently. --list: only prints the names of the packages and programs.
 set -euo pipefail
@@ -19,7 +19,7 @@ if [[ ${1:-} == --list ]]; then
   list=yes
   shift
 fi
-(($#)) || set -- build page test demo bench check fuzz soak container
+(($#)) || set -- build page wasm test demo bench check fuzz soak container
 for purpose in "$@"; do
   case $purpose in
     build)
@@ -27,9 +27,15 @@ for purpose in "$@"; do
         libcli11-dev libmeshoptimizer-dev libssl-dev libhiredis-dev prometheus-cpp-dev ca-certificates)
       ;;
     page) page=yes ;;
+    wasm)
+      page=yes
+      packages+=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 binaryen
+        libmeshoptimizer-dev dpkg-dev ninja-build cmake ca-certificates)
+      ;;
     test)
       meshes=(cgal bunny) libraries=yes scenes=yes
-      packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx chromium fonts-dejavu-core)
+      packages+=(bats perl curl jq draco ca-certificates openssl redis-server nginx)
+      [[ ${PAPILIO_TEST_PAGES:-yes} != yes ]] || packages+=(chromium fonts-dejavu-core)
       programs+=(python3:python3)
       ;;
     demo) meshes+=(cgal) packages+=(curl jq ca-certificates) ;;

@@ -1,0 +1,44 @@
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "tests/bench/markdown_table.h"
+#include "tests/bench/report.h"
+
+// The WebAssembly module beside the native library, as tests/npm/times.mjs measures them.
+
+namespace papilio::bench {
+namespace {
+
+std::string output_of(const char* command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command, "r"), [](FILE* file) { return ::pclose(file); });
+  if (!pipe) throw std::runtime_error("no pipe");
+  std::string text;
+  std::array<char, 256> part{};
+  while (std::fgets(part.data(), part.size(), pipe.get()) != nullptr) text += part.data();
+  return text;
+}
+
+std::vector<ReportRow> print() {
+  std::vector<ReportRow> rows;
+  MarkdownTable table({"median of 9, in turns, ms", "WebAssembly", "native", "native / WebAssembly"});
+  std::istringstream lines(output_of("node tests/npm/times.mjs"));
+  std::string name;
+  double ours = 0, peer = 0;
+  while (lines >> name >> ours >> peer) {
+    rows.push_back({name, ours, peer, "ms"});
+    table.add({name, fixed(ours, 2), fixed(peer, 2), fixed(peer / ours, 2)});
+  }
+  if (rows.empty()) throw std::runtime_error("tests/npm/times.mjs has failed; ./dev wasm builds what it needs");
+  table.print();
+  return rows;
+}
+
+}  // namespace
+
+void add_wasm() { add({"wasm", print}); }
+
+}  // namespace papilio::bench

@@ -1,0 +1,112 @@
+// The package as others get it: packed, installed in a new project, used as it is by node and bundled by Vite.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch, root } from '../web/browser.mjs';
+import { cone } from './requests.mjs';
+
+const vite = createRequire(path.join(root, 'client/web/package.json')).resolve('vite/package.json');
+let folder;
+
+const run = (program, ...args) => execFileSync(program, args, { cwd: folder, encoding: 'utf8' });
+
+before(() => {
+  folder = mkdtempSync(path.join(tmpdir(), 'papilio-package-'));
+  const [{ filename }] = JSON.parse(run('npm', 'pack', '--json', path.join(root, 'build/npm')));
+  writeFileSync(path.join(folder, 'package.json'), '{ "name": "project", "private": true, "type": "module" }');
+  run('npm', 'install', '--offline', '--no-audit', '--no-fund', `./${filename}`);
+});
+after(() => rmSync(folder, { recursive: true }));
+
+test('it holds what it exports, with types, and nothing else', () => {
+  const installed = path.join(folder, 'node_modules/papilio');
+  const { exports } = JSON.parse(readFileSync(path.join(installed, 'package.json'), 'utf8'));
+  const named = Object.values(exports).flatMap((to) => (typeof to === 'string' ? [to] : Object.values(to)));
+  for (const file of named) assert.ok(readFileSync(path.join(installed, file)).length > 0, file);
+  assert.deepEqual(readdirSync(installed).sort(), ['LICENSE', 'README.md', 'dist', 'package.json']);
+  for (const file of readdirSync(path.join(installed, 'dist'))) assert.match(file, /\.(d\.ts|js|wasm)$/);
+});
+
+test('node takes it as it is', () => {
+  const mesh = cone(6);
+  writeFileSync(
+    path.join(folder, 'use.js'),
+    `import { readFileSync } from 'node:fs';
+     import { createRequire } from 'node:module';
+     import { Client } from 'papilio/client';
+     import { Kernel } from 'papilio/wasm';
+     const file = createRequire(import.meta.url).resolve('papilio/papilio.wasm');
+     const kernel = new Kernel(await Kernel.compile(readFileSync(file)));
+     const mesh = kernel.open({ positions: new Float32Array([${mesh.positions}]), triangles: new Uint32Array([${mesh.triangles}]) });
+     console.log(kernel.refine(mesh, { levels: 2 }).mesh.triangles.length / 3, typeof new Client().refine);`,
+  );
+  assert.equal(run(process.execPath, 'use.js'), '96 function\n');
+});
+
+test('TypeScript finds its types', () => {
+  writeFileSync(
+    path.join(folder, 'use.ts'),
+    `import { Client, type Refined } from 'papilio/client';
+     import { Refiner } from 'papilio/wasm';
+     export async function use(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
+       const fine: Refined = await new Client().refine({ type: 'application/x-draco', bytes }, { view: { eye: [0, 0, 3] } });
+       const refiner = await Refiner.start();
+       const mesh = refiner.open({ positions: new Float32Array(), triangles: new Uint32Array() });
+       return fine.faces + (await refiner.refine(mesh)).mesh.triangles.length;
+     }`,
+  );
+  const tsc = path.join(root, 'client/web/node_modules/typescript/bin/tsc');
+  run(process.execPath, tsc, '--noEmit', '--strict', '--target', 'es2022', '--module', 'nodenext', 'use.ts');
+});
+
+test('Vite bundles it, its worker and its module, and the page refines', async () => {
+  const mesh = cone(6);
+  mkdirSync(path.join(folder, 'src'));
+  writeFileSync(
+    path.join(folder, 'index.html'),
+    '<title>page</title><script type="module" src="/src/main.js"></script>',
+  );
+  writeFileSync(
+    path.join(folder, 'src/main.js'),
+    `import { Refiner } from 'papilio/wasm';
+     const refiner = await Refiner.start();
+     const mesh = refiner.open({ positions: new Float32Array([${mesh.positions}]), triangles: new Uint32Array([${mesh.triangles}]) });
+     document.title = 'faces: ' + (await refiner.refine(mesh, { levels: 3 })).mesh.triangles.length / 3;`,
+  );
+  run(
+    process.execPath,
+    path.join(path.dirname(vite), 'bin/vite.js'),
+    'build',
+    '--logLevel',
+    'warn',
+    '--target',
+    'es2022',
+  );
+  const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
+  const server = createServer((request, response) => {
+    try {
+      const name = request.url === '/' ? 'index.html' : request.url;
+      const bytes = readFileSync(path.join(folder, 'dist', name));
+      response.setHeader('Content-Type', types[path.extname(name)] ?? 'application/octet-stream').end(bytes);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
+  const browser = await launch();
+  try {
+    const page = await browser.newPage();
+    await page.goto(`http://127.0.0.1:${server.address().port}/`);
+    await page.waitForFunction(() => document.title.startsWith('faces: '), null, { timeout: 60_000 });
+    assert.equal(await page.title(), 'faces: 384');
+  } finally {
+    await browser.close();
+    server.close();
+  }
+});

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# wasm.sh: builds the WebAssembly module (build/wasm) and the npm package that carries it (build/npm), of what is set up.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "$here/../.."
+mkdir -p build
+[[ -f build/wasm/build.ninja ]] ||
+  cmake -S client/wasm -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/client/wasm/toolchain.cmake" >build/configure.log 2>&1 || {
+  cat build/configure.log >&2
+  exit 1
+}
+"$here/compile.sh" build/wasm wasm
+mkdir -p build/npm
+cp client/npm/package.json client/npm/README.md LICENSE build/npm/
+client/web/node_modules/.bin/tsc -p client/npm --outDir build/npm/dist
+cp build/wasm/papilio.wasm build/npm/dist/
