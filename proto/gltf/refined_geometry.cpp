@@ -26,8 +26,8 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
   const std::vector<RefinedTarget> targets =
       refine_targets(mesh.geometry, mesh.surface, refined, renews_normals ? normals : std::nullopt);
   poll();
-  refined.topology.twin = {};  // not needed any more, and large
   const RefinedPoints points(mesh.geometry, mesh.surface, refined, normals);
+  refined.topology = {};  // not needed any more, and large
   RefinedPrimitives parts = part_primitives(mesh.geometry, points, refined);
   poll();
   NewGeometry made{mesh.number, {}, quantization_box(mesh.surface.mesh.positions)};

@@ -116,19 +116,20 @@ RefinedPoints::RefinedPoints(const MeshGeometry& geometry, const Surface& surfac
       surface_(surface),
       refined_(refined),
       normals_(normals),
-      corner_(refined.attributes.point_count, none) {
-  for (uint32_t h = refined.topology.half_edge_count(); h-- > 0;) corner_[refined.attributes.point[h]] = h;
+      vertex_(refined.attributes.point_count, none) {
+  for (uint32_t h = 0; h < refined.topology.half_edge_count(); ++h)
+    vertex_[refined.attributes.point[h]] = refined.topology.origin[h];
 }
 
 const double* RefinedPoints::provenance_of(uint32_t point) const {
   return &refined_.attributes.attributes[provenance].values[size_t{point} * provenance_numbers];
 }
 
-uint32_t RefinedPoints::primitive(uint32_t half_edge) const {
-  return surface_.primitive_of[static_cast<size_t>(*provenance_of(refined_.attributes.point[half_edge]))];
+uint32_t RefinedPoints::primitive(uint32_t point) const {
+  return surface_.primitive_of[static_cast<size_t>(*provenance_of(point))];
 }
 
-uint32_t RefinedPoints::set(uint32_t point) const { return geometry_.primitives[primitive(corner_[point])].set; }
+uint32_t RefinedPoints::set(uint32_t point) const { return geometry_.primitives[primitive(point)].set; }
 
 Combination RefinedPoints::combination(uint32_t point) const {
   const double* numbers = provenance_of(point);
@@ -149,7 +150,7 @@ RefinedVertex RefinedPoints::refined_vertex(uint32_t point) const {
 
 RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoints& points, const Mesh& refined) {
   RefinedPrimitives out{.sets = std::vector<RefinedVertices>(geometry.sets.size())};
-  Buffer<uint32_t> order;  // by set and vertex; those of a vertex by what they are made of
+  std::vector<uint32_t> order;  // by set and vertex; those of a vertex by what they are made of
   order.reserve(points.count());
   for (uint32_t p = 0; p < points.count(); ++p)
     if (points.is_used(p)) order.push_back(p);
@@ -163,7 +164,7 @@ RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoi
     return of_a != of_b ? of_a < of_b : a < b;
   });
 
-  Buffer<uint32_t> number(points.count());  // of each point in its set
+  std::vector<uint32_t> number(points.count());  // of each point in its set
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t p = order[i];
     RefinedVertices& set = out.sets[points.set(p)];
@@ -175,12 +176,13 @@ RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoi
   }
 
   std::vector<size_t> counts(geometry.primitives.size());
-  for (uint32_t h = 0; h < refined.topology.half_edge_count(); h += 3) ++counts[points.primitive(h)];
+  const Buffer<uint32_t>& corners = refined.attributes.point;
+  for (size_t h = 0; h < corners.size(); h += 3) ++counts[points.primitive(corners[h])];
   out.triangles.resize(counts.size());
   for (size_t p = 0; p < counts.size(); ++p) out.triangles[p].reserve(counts[p]);
-  for (uint32_t h = 0; h < refined.topology.half_edge_count(); h += 3) {
-    const uint32_t* corner = &refined.attributes.point[h];
-    out.triangles[points.primitive(h)].push_back({number[corner[0]], number[corner[1]], number[corner[2]]});
+  for (size_t h = 0; h < corners.size(); h += 3) {
+    const uint32_t* corner = &corners[h];
+    out.triangles[points.primitive(corner[0])].push_back({number[corner[0]], number[corner[1]], number[corner[2]]});
   }
   return out;
 }

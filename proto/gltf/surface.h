@@ -56,21 +56,22 @@ struct RefinedVertex {
 /// The points of a refined surface, as what they are made of.
 class RefinedPoints {
  public:
-  /// All must outlive it. `normals`: number of the attribute with the normals.
+  /// All must outlive it, but for the refined mesh's connectivity, which may be freed afterwards. `normals`: number of
+  /// the attribute with the normals.
   RefinedPoints(const MeshGeometry& geometry, const Surface& surface, const Mesh& refined,
                 std::optional<size_t> normals);
 
-  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(corner_.size()); }
+  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(vertex_.size()); }
   /// Whether any face has the point.
-  [[nodiscard]] bool is_used(uint32_t point) const { return corner_[point] != none; }
+  [[nodiscard]] bool is_used(uint32_t point) const { return vertex_[point] != none; }
   /// The set, in MeshGeometry::sets, of the point's primitive.
   [[nodiscard]] uint32_t set(uint32_t point) const;
   /// The vertex of the refined mesh.
-  [[nodiscard]] uint32_t vertex(uint32_t point) const { return refined_.topology.origin[corner_[point]]; }
+  [[nodiscard]] uint32_t vertex(uint32_t point) const { return vertex_[point]; }
   [[nodiscard]] Combination combination(uint32_t point) const;
   [[nodiscard]] RefinedVertex refined_vertex(uint32_t point) const;
-  /// The primitive, in MeshGeometry::primitives, of the face at a half-edge.
-  [[nodiscard]] uint32_t primitive(uint32_t half_edge) const;
+  /// The primitive, in MeshGeometry::primitives, of the point.
+  [[nodiscard]] uint32_t primitive(uint32_t point) const;
 
  private:
   [[nodiscard]] const double* provenance_of(uint32_t point) const;
@@ -79,13 +80,13 @@ class RefinedPoints {
   const Surface& surface_;
   const Mesh& refined_;
   std::optional<size_t> normals_;
-  Buffer<uint32_t> corner_;  ///< a half-edge at each point
+  std::vector<uint32_t> vertex_;  ///< of each point; `none` where no face has it
 };
 
 /// Some of them, each of which becomes a vertex: computed where it is asked for, as there are many.
 struct RefinedVertices {
   const RefinedPoints* points = nullptr;
-  Buffer<uint32_t> numbers{};
+  std::vector<uint32_t> numbers{};
 
   [[nodiscard]] size_t size() const { return numbers.size(); }
   [[nodiscard]] RefinedVertex operator[](size_t i) const { return points->refined_vertex(numbers[i]); }
