@@ -217,17 +217,23 @@ export class Client {
     const headers = new Headers(request.headers);
     const key = this.#key();
     if (key !== '') headers.set('Authorization', `Bearer ${key}`);
-    let answer: Response;
-    try {
-      answer = await fetch(this.#base + path, { ...request, headers, ...(signal && { signal }) });
-    } catch (error) {
-      if (signal?.aborted) throw error;
-      throw new Problem('unreachable', 'The server cannot be reached. Is it running?', 0, 2);
-    }
+    const answer = await fetchPatiently(this.#base + path, { ...request, headers, ...(signal && { signal }) });
     if (answer.ok || answer.status === 304) return answer;
     const document: unknown = await answer.json().catch(() => ({ detail: `The server answers ${answer.status}.` }));
     const retryAfter = answer.headers.get('Retry-After');
     throw problemOf(document, answer.status, retryAfter === null ? null : Number(retryAfter));
+  }
+}
+
+/// Asks once more where there is no answer: a connection that was kept may have been closed meanwhile, and no call does
+/// more when it is made twice.
+async function fetchPatiently(url: string, request: RequestInit, isLast = false): Promise<Response> {
+  try {
+    return await fetch(url, request);
+  } catch {
+    if (request.signal?.aborted) throw request.signal.reason;
+    if (isLast) throw new Problem('unreachable', 'The server cannot be reached. Is it running?', 0, 2);
+    return fetchPatiently(url, request, true);
   }
 }
 
@@ -245,7 +251,7 @@ async function bytesOf(answer: Response, { signal }: Call): Promise<Bytes> {
   try {
     return new Uint8Array(await answer.arrayBuffer());
   } catch (error) {
-    if (signal?.aborted) throw error;
+    if (signal?.aborted) throw signal.reason;
     throw lost();
   }
 }
@@ -295,7 +301,7 @@ async function* levelsOf(sent: Promise<Response>, { signal }: Call): AsyncGenera
     try {
       next = await parts.next();
     } catch (error) {
-      if (signal?.aborted) throw error;
+      if (signal?.aborted) throw signal.reason;
       throw lost();
     }
     if (next.done) break;
