@@ -22,6 +22,9 @@ using Clock = std::chrono::steady_clock;
 /// Bytes that the prepared meshes of one request may hold.
 constexpr uint64_t prepared_bytes = uint64_t{256} << 20;
 
+/// Bytes of refined vertices from which on memory matters more than the time to get it.
+constexpr uint64_t large_result = uint64_t{4} << 20;
+
 /// Order in which a reason to stop tells more than another.
 int rank_of(StopReason reason) {
   switch (reason) {
@@ -240,6 +243,8 @@ class SceneRefinement::State {
     if (options_.view) making.statistics.error_pixels = 0;
     for (size_t m = 0; m < runs_.size(); ++m) add_mesh(m, levels, making);
     times_.refine += lap();
+    // What is kept for later refinements makes room for a large answer; it takes 2 % of the time to get it again.
+    if (making.held_bytes >= large_result) release_spare_blocks();
     EncodedLevel made{write(std::move(making.replaced)), std::move(making.statistics)};
     times_.encode += lap();
     made.statistics.times = times_;
