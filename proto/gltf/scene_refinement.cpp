@@ -243,7 +243,8 @@ class SceneRefinement::State {
     if (options_.view) making.statistics.error_pixels = 0;
     for (size_t m = 0; m < runs_.size(); ++m) add_mesh(m, levels, making);
     times_.refine += lap();
-    // What is kept for later refinements makes room for a large answer; it takes 2 % of the time to get it again.
+    // What is kept for later refinements makes room for a large answer; to get it again takes a few hundredths of
+    // the time.
     if (making.held_bytes >= large_result) release_spare_blocks();
     EncodedLevel made{write(std::move(making.replaced)), std::move(making.statistics)};
     times_.encode += lap();

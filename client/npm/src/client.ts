@@ -67,20 +67,25 @@ export interface Call {
 /// A refusal, in the server's words (RFC 9457), or why there is no answer (`unreachable`, `unexpected`).
 export class Problem extends Error {
   override name = 'Problem';
+  /// Of HTTP; 0 where there was no answer.
+  readonly status: number;
+  /// Seconds after which to try again; null where that would not help.
+  readonly retryAfter: number | null;
+  /// The parameter at fault; null where none is.
+  readonly parameter: string | null;
+  readonly requestId: string | null;
+
+  /// `code`: stable, `mesh_too_large` for one; `message`: what is wrong and what to do.
   constructor(
-    /// Stable: `mesh_too_large`, for one.
     readonly code: string,
-    /// What is wrong and what to do.
     message: string,
-    /// Of HTTP; 0 where there was no answer.
-    readonly status = 0,
-    /// Seconds after which to try again; null where that would not help.
-    readonly retryAfter: number | null = null,
-    /// The parameter at fault; null where none is.
-    readonly parameter: string | null = null,
-    readonly requestId: string | null = null,
+    details: Partial<Pick<Problem, 'status' | 'retryAfter' | 'parameter' | 'requestId'>> = {},
   ) {
     super(message);
+    this.status = details.status ?? 0;
+    this.retryAfter = details.retryAfter ?? null;
+    this.parameter = details.parameter ?? null;
+    this.requestId = details.requestId ?? null;
   }
 }
 
@@ -232,7 +237,7 @@ async function fetchPatiently(url: string, request: RequestInit, isLast = false)
     return await fetch(url, request);
   } catch {
     if (request.signal?.aborted) throw request.signal.reason;
-    if (isLast) throw new Problem('unreachable', 'The server cannot be reached. Is it running?', 0, 2);
+    if (isLast) throw new Problem('unreachable', 'The server cannot be reached. Is it running?', { retryAfter: 2 });
     return fetchPatiently(url, request, true);
   }
 }
@@ -242,10 +247,16 @@ const pathOf = (id: string) => `v1/meshes/${encodeURIComponent(id)}`;
 function problemOf(document: unknown, status: number, retryAfter: number | null): Problem {
   const { code, detail, title, parameter, request_id } = document as Record<string, string | undefined>;
   const words = detail ?? title ?? 'The server refuses, and does not say why.';
-  return new Problem(code ?? 'unexpected', words, status, retryAfter, parameter ?? null, request_id ?? null);
+  return new Problem(code ?? 'unexpected', words, {
+    status,
+    retryAfter,
+    parameter: parameter ?? null,
+    requestId: request_id ?? null,
+  });
 }
 
-const lost = () => new Problem('unreachable', 'The connection was lost before the mesh was complete.', 0, 2);
+const lost = () =>
+  new Problem('unreachable', 'The connection was lost before the mesh was complete.', { retryAfter: 2 });
 
 async function bytesOf(answer: Response, { signal }: Call): Promise<Bytes> {
   try {
@@ -314,6 +325,6 @@ async function* levelsOf(sent: Promise<Response>, { signal }: Call): AsyncGenera
       yield levelOf(headers, body);
     }
   }
-  if (summary === null) throw new Problem('unexpected', 'The answer ended without its summary.', 0, 2);
+  if (summary === null) throw new Problem('unexpected', 'The answer ended without its summary.', { retryAfter: 2 });
   return summary;
 }

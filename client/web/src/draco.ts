@@ -19,7 +19,9 @@ export async function fetchDecoder(): Promise<DRACOLoader> {
     await (fetching.preload() as DRACOLoader & { decoderPending: Promise<void> }).decoderPending;
   } catch {
     if (loader === fetching) loader = new DRACOLoader(); // for the next try
-    throw new Problem('unreachable', 'The server cannot be reached: the Draco decoder did not come.', 2);
+    throw new Problem('unreachable', 'The server cannot be reached: the Draco decoder did not come.', {
+      retryAfter: 2,
+    });
   }
   return fetching;
 }
@@ -79,7 +81,8 @@ async function loadEncoder(): Promise<EncoderModule> {
     const script = document.createElement('script');
     script.src = encoderUrl;
     script.onload = () => resolve();
-    script.onerror = () => reject(new Problem('unreachable', 'The encoder for other formats cannot be fetched.', 2));
+    script.onerror = () =>
+      reject(new Problem('unreachable', 'The encoder for other formats cannot be fetched.', { retryAfter: 2 }));
     document.head.append(script);
   });
   return globalThis.DracoEncoderModule!({ locateFile: () => encoderWasmUrl });
