@@ -2,44 +2,25 @@
 
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { readFileSync } from 'node:fs';
-import { createServer } from 'node:http';
-import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch } from '../web/browser.mjs';
-import { meshes, nativeResults, randomNumbers, randomQuery, readMesh, root, sizeOf } from './requests.mjs';
+import { startFiles } from './files.mjs';
+import { meshes, nativeResults, randomNumbers, randomQuery, readMesh, sizeOf } from './requests.mjs';
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
-let server;
+let files;
 let browser;
-
-/// Serves the page and the package; pages below /isolated/ may share memory with their workers.
 before(async () => {
-  server = createServer((request, response) => {
-    const name = request.url.replace(/^\/isolated/, '');
-    const file = name === '/page.html' ? path.join(root, 'tests/npm/page.html') : path.join(root, 'build', name);
-    try {
-      const bytes = readFileSync(file);
-      response.setHeader('Content-Type', types[path.extname(name)] ?? 'application/octet-stream');
-      response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
-      if (request.url.startsWith('/isolated')) response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
-      response.end(bytes);
-    } catch {
-      response.writeHead(404).end();
-    }
-  });
-  await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
-  browser = await launch();
+  [files, browser] = await Promise.all([startFiles(), launch()]);
 });
 after(async () => {
   await browser.close();
-  server.close();
+  files.stop();
 });
 
 async function open(where = '') {
   const page = await browser.newPage();
   page.setDefaultTimeout(60_000);
-  await page.goto(`http://127.0.0.1:${server.address().port}${where}/page.html`);
+  await page.goto(`${files.url}${where}/tests/page.html`);
   await page.waitForSelector('html[data-state=ready]', { state: 'attached' });
   return page;
 }

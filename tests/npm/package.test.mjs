@@ -2,13 +2,14 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch, root } from '../web/browser.mjs';
+import { bunnyGlb } from './files.mjs';
 import { cone } from './requests.mjs';
 
 const vite = createRequire(path.join(root, 'client/web/package.json')).resolve('vite/package.json');
@@ -21,6 +22,9 @@ before(() => {
   const [{ filename }] = JSON.parse(run('npm', 'pack', '--json', path.join(root, 'build/npm')));
   writeFileSync(path.join(folder, 'package.json'), '{ "name": "project", "private": true, "type": "module" }');
   run('npm', 'install', '--offline', '--no-audit', '--no-fund', `./${filename}`);
+  mkdirSync(path.join(folder, 'node_modules/@types'));
+  for (const name of ['three', '@types/three'])
+    symlinkSync(path.join(root, 'client/web/node_modules', name), path.join(folder, 'node_modules', name));
 });
 after(() => rmSync(folder, { recursive: true }));
 
@@ -30,7 +34,8 @@ test('it holds what it exports, with types, and nothing else', () => {
   const named = Object.values(exports).flatMap((to) => (typeof to === 'string' ? [to] : Object.values(to)));
   for (const file of named) assert.ok(readFileSync(path.join(installed, file)).length > 0, file);
   assert.deepEqual(readdirSync(installed).sort(), ['LICENSE', 'README.md', 'dist', 'package.json']);
-  for (const file of readdirSync(path.join(installed, 'dist'))) assert.match(file, /\.(d\.ts|js|wasm)$/);
+  for (const file of readdirSync(path.join(installed, 'dist'), { recursive: true }))
+    assert.match(file, /(\.d\.ts|\.js|\.wasm|^three)$/);
 });
 
 test('node takes it as it is', () => {
@@ -53,7 +58,9 @@ test('TypeScript finds its types', () => {
   writeFileSync(
     path.join(folder, 'use.ts'),
     `import { Client, type Refined } from 'papilio/client';
+     import { PapilioLoader, type RefinedModel } from 'papilio/three';
      import { Refiner } from 'papilio/wasm';
+     export const load = (url: string): Promise<RefinedModel> => new PapilioLoader({ server: '/' }).loadAsync(url);
      export async function use(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
        const fine: Refined = await new Client().refine({ type: 'application/x-draco', bytes }, { view: { eye: [0, 0, 3] } });
        const refiner = await Refiner.start();
@@ -62,10 +69,11 @@ test('TypeScript finds its types', () => {
      }`,
   );
   const tsc = path.join(root, 'client/web/node_modules/typescript/bin/tsc');
-  run(process.execPath, tsc, '--noEmit', '--strict', '--target', 'es2022', '--module', 'nodenext', 'use.ts');
+  const options = ['--strict', '--target', 'es2022', '--lib', 'es2022,dom', '--module', 'nodenext', '--skipLibCheck'];
+  run(process.execPath, tsc, '--noEmit', ...options, 'use.ts');
 });
 
-test('Vite bundles it, its worker and its module, and the page refines', async () => {
+test('Vite bundles it, its workers and its module, and the page refines', async () => {
   const mesh = cone(6);
   mkdirSync(path.join(folder, 'src'));
   writeFileSync(
@@ -74,11 +82,24 @@ test('Vite bundles it, its worker and its module, and the page refines', async (
   );
   writeFileSync(
     path.join(folder, 'src/main.js'),
-    `import { Refiner } from 'papilio/wasm';
+    `import { PapilioLoader } from 'papilio/three';
+     import { Refiner } from 'papilio/wasm';
+     import { PerspectiveCamera, Scene, WebGLRenderer } from 'three';
      const refiner = await Refiner.start();
      const mesh = refiner.open({ positions: new Float32Array([${mesh.positions}]), triangles: new Uint32Array([${mesh.triangles}]) });
-     document.title = 'faces: ' + (await refiner.refine(mesh, { levels: 3 })).mesh.triangles.length / 3;`,
+     const [renderer, scene, camera] = [new WebGLRenderer(), new Scene(), new PerspectiveCamera()];
+     camera.position.set(0, 5, 20);
+     camera.lookAt(0, 5, 0);
+     renderer.setSize(600, 600);
+     const model = await new PapilioLoader({ parameters: { view: { error_pixels: 0.25 } } }).loadAsync('./model.glb');
+     scene.add(model);
+     renderer.render(scene, camera);
+     await model.settled();
+     const { faces } = model.statistics;
+     document.title = 'faces: ' + [(await refiner.refine(mesh, { levels: 3 })).mesh.triangles.length / 3, faces > 600];`,
   );
+  mkdirSync(path.join(folder, 'public'));
+  writeFileSync(path.join(folder, 'public/model.glb'), bunnyGlb());
   run(
     process.execPath,
     path.join(path.dirname(vite), 'bin/vite.js'),
@@ -104,7 +125,7 @@ test('Vite bundles it, its worker and its module, and the page refines', async (
     const page = await browser.newPage();
     await page.goto(`http://127.0.0.1:${server.address().port}/`);
     await page.waitForFunction(() => document.title.startsWith('faces: '), null, { timeout: 60_000 });
-    assert.equal(await page.title(), 'faces: 384');
+    assert.equal(await page.title(), 'faces: 384,true');
   } finally {
     await browser.close();
     server.close();

@@ -230,6 +230,60 @@ export class Client {
   }
 }
 
+/// A mesh that is refined again and again: stored with the first refinement, so that later ones send parameters alone; where the server's store cannot take it, it
+/// is sent each time.
+export class RemoteMesh {
+  #id: Promise<string | null> | null = null;
+
+  constructor(
+    readonly client: Client,
+    readonly encoded: Encoded,
+  ) {}
+
+  /// Stores the mesh unless it is. Null where the server's store cannot take it. Rejects with a Problem where the server
+  /// refuses the mesh, or cannot be asked now.
+  get id(): Promise<string | null> {
+    this.#id ??= this.client.store(this.encoded).then(
+      ({ id }) => id,
+      (error: unknown) => {
+        if (error instanceof Problem && ['store_full', 'store_unavailable'].includes(error.code)) return null;
+        this.#id = null; // the next time it is tried again
+        throw error;
+      },
+    );
+    return this.#id;
+  }
+
+  refine(parameters: Parameters | string, call: Call = {}): Promise<Refined> {
+    return this.#asking(async (id) => {
+      if (id === null) return this.client.refine(this.encoded, parameters, call);
+      return (await this.client.refineStored(id, parameters, call))!; // null comes for an ETag alone
+    }, call);
+  }
+
+  /// Hands over the levels as they come, and resolves with what `read` makes of them.
+  levels<T>(parameters: Parameters | string, read: (levels: Levels) => Promise<T>, call: Call = {}): Promise<T> {
+    return this.#asking((id) => {
+      if (id === null) return read(this.client.levels(this.encoded, parameters, call));
+      return read(this.client.levelsOfStored(id, parameters, call));
+    }, call);
+  }
+
+  /// A mesh that the store has given up is stored again.
+  async #asking<T>(work: (id: string | null) => Promise<T>, { signal }: Call): Promise<T> {
+    for (let isAgain = false; ; isAgain = true) {
+      const id = await this.id;
+      signal?.throwIfAborted();
+      try {
+        return await work(id);
+      } catch (error) {
+        if (isAgain || !(error instanceof Problem) || error.code !== 'mesh_not_found') throw error;
+        this.#id = null;
+      }
+    }
+  }
+}
+
 /// Asks once more where there is no answer: a connection that was kept may have been closed meanwhile, and no call does
 /// more when it is made twice.
 async function fetchPatiently(url: string, request: RequestInit, isLast = false): Promise<Response> {

@@ -26,7 +26,7 @@ export interface Triangles {
 }
 
 export interface RefinedTriangles extends Triangles {
-  attributes: { kind: AttributeKind; components: number; values: Float64Array }[];
+  attributes: { kind: AttributeKind; components: number; values: Float64Array | Float32Array }[];
 }
 
 export interface Statistics {

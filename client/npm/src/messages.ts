@@ -7,7 +7,7 @@ export type ToWorker =
   | { kind: 'start'; module: WebAssembly.Module; cancelled: SharedArrayBuffer | null; mostBytes: number }
   | { kind: 'open'; mesh: number; triangles: Triangles }
   | { kind: 'close'; mesh: number }
-  | { kind: 'refine'; request: number; mesh: number; query: string; wantsLevels: boolean };
+  | { kind: 'refine'; request: number; mesh: number; query: string; wantsLevels: boolean; isSingle: boolean };
 
 export type FromWorker =
   | { kind: 'level'; request: number; level: Refined }

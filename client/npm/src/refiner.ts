@@ -19,6 +19,8 @@ export interface RefineOptions {
   signal?: AbortSignal;
   /// Called with each level but the last, coarse first.
   onLevel?: (level: Refined) => void;
+  /// Attributes come as Float32Array, as graphics cards take them.
+  singlePrecision?: boolean;
 }
 
 /// A mesh that was opened. Its arrays must not change.
@@ -72,8 +74,9 @@ class Seat {
       this.meshes.add(task.mesh);
     }
     this.task = task;
-    const { request, query } = task;
-    this.#send({ kind: 'refine', request, mesh: task.mesh.number, query, wantsLevels: !!task.options.onLevel });
+    const { request, query, mesh, options } = task;
+    const [wantsLevels, isSingle] = [!!options.onLevel, options.singlePrecision === true];
+    this.#send({ kind: 'refine', request, mesh: mesh.number, query, wantsLevels, isSingle });
   }
 
   forget(mesh: Mesh): void {

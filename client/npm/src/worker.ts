@@ -14,16 +14,24 @@ function send(message: FromWorker, level?: Refined): void {
   self.postMessage(message, { transfer: arrays.map((array) => array.buffer as ArrayBuffer) });
 }
 
-function refine({ request, mesh, query, wantsLevels }: ToWorker & { kind: 'refine' }): void {
+function inSingle(level: Refined): Refined {
+  for (const attribute of level.mesh.attributes) attribute.values = new Float32Array(attribute.values);
+  return level;
+}
+
+function refine({ request, mesh, query, wantsLevels, isSingle }: ToWorker & { kind: 'refine' }): void {
   try {
     const refined = kernel.refine(meshes.get(mesh)!, query, {
       ...(wantsLevels && {
         onLevel: (level) => {
-          if (!level.statistics.isLast) send({ kind: 'level', request, level }, level);
+          if (level.statistics.isLast) return;
+          if (isSingle) inSingle(level);
+          send({ kind: 'level', request, level }, level);
         },
       }),
       ...(cancelled && { cancelled: () => Atomics.load(cancelled!, 0) === request }),
     });
+    if (isSingle) inSingle(refined);
     send({ kind: 'done', request, refined }, refined);
   } catch (error) {
     const { fault, message, parameter } =

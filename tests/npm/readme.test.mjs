@@ -1,0 +1,93 @@
+// The package's README: each of its examples runs as it stands there, in a page that has what it takes for granted.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch, startServer } from '../web/browser.mjs';
+import { bunnyGlb, page as pageOf, startFiles } from './files.mjs';
+import { cone, root } from './requests.mjs';
+
+const readme = readFileSync(path.join(root, 'client/npm/README.md'), 'utf8');
+const examples = [...readme.matchAll(/```js\n(.*?)```/gs)].map(([, code]) => code);
+
+const served = { '/model.glb': bunnyGlb() };
+let server;
+let files;
+let browser;
+before(async () => {
+  [server, browser] = await Promise.all([startServer('--cors-origins', '*'), launch()]);
+  files = await startFiles(served);
+});
+after(async () => {
+  await browser.close();
+  files.stop();
+  await server.stop();
+});
+
+/// Runs `before`, the example and `after` as one module of a page, and resolves with what `after` says.
+async function run(example, beforeIt, afterIt) {
+  const html = pageOf(
+    `<script type="module">${beforeIt}\n${example}\n${afterIt}\ndocument.title = 'said: ' + JSON.stringify(said);</script>`,
+  );
+  const page = await browser.newPage();
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  served['/example.html'] = html;
+  await page.goto(`${files.url}/example.html`);
+  await page.waitForFunction(() => document.title.startsWith('said: '), null, { timeout: 60_000 }).catch(() => {});
+  assert.deepEqual(faults, []);
+  const title = await page.title();
+  await page.close();
+  return JSON.parse(title.replace('said: ', ''));
+}
+
+test('there is one for each of papilio/three, papilio/wasm and papilio/client', () => {
+  assert.deepEqual(
+    examples.map((code) => /from '(.*?)'/.exec(code)[1]),
+    ['papilio/three', 'papilio/wasm', 'papilio/client'],
+  );
+});
+
+test('papilio/three: a model in a scene that is drawn becomes finer', async () => {
+  const faces = await run(
+    examples[0],
+    `import * as THREE from 'three';
+     const scene = new THREE.Scene();
+     const renderer = new THREE.WebGLRenderer();
+     renderer.setSize(300, 300);
+     const camera = new THREE.PerspectiveCamera(45, 1, 0.1, 100);
+     camera.position.set(0, 5, 20);
+     camera.lookAt(0, 5, 0);`,
+    `renderer.render(scene, camera);
+     await model.settled();
+     const said = model.statistics.faces;`,
+  );
+  assert.ok(faces > 600, `${faces}`);
+});
+
+test('papilio/wasm: a geometry is refined in workers', async () => {
+  const mesh = cone(6);
+  const { triangles, error } = await run(
+    examples[1],
+    `import * as THREE from 'three';
+     const geometry = new THREE.BufferGeometry();
+     geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([${mesh.positions}]), 3));
+     geometry.setIndex([${mesh.triangles}]);`,
+    'const said = { triangles: fine.triangles.length, error: statistics.error };',
+  );
+  assert.ok(triangles > 3 * 6 && error <= 0.001, `${triangles}, ${error}`);
+});
+
+test('papilio/client: a scene comes back level by level', async () => {
+  const faces = await run(
+    examples[2].replace('https://refine.example.com/', server.url),
+    `const file = await (await fetch('/model.glb')).blob();
+     const { signal } = new AbortController();
+     const said = [];
+     const show = (bytes, faces) => said.push([bytes.length > 100, faces]);`,
+    '',
+  );
+  assert.equal(faces[0][1], 600);
+  assert.ok(faces.length > 1 && faces.every(([isLong]) => isLong), JSON.stringify(faces));
+});
