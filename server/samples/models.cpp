@@ -133,7 +133,38 @@ void add_spoke(TriangleMesh& mesh, SineCosine direction, double from, double to,
   add_tube(mesh, inner, outer);
 }
 
+Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
+
 }  // namespace
+
+TriangleMesh knot() {
+  constexpr uint32_t sections = 36;
+  constexpr uint32_t sides = 6;
+  constexpr double size = 3;
+  constexpr double radius = 1.9;
+  TriangleMesh mesh;
+  for (uint32_t s = 0; s < sections; ++s) {
+    const auto [sine, cosine] = sine_and_cosine_of_turn(s, sections);
+    const auto [sine2, cosine2] = sine_and_cosine_of_turn(2 * s, sections);
+    const auto [sine3, cosine3] = sine_and_cosine_of_turn(3 * s, sections);
+    const Vec3d centre{size * (sine + 2 * sine2), size * (cosine - 2 * cosine2), -size * sine3};
+    const Vec3d along{cosine + 4 * cosine2, 4 * sine2 - sine, -3 * cosine3};
+    const Vec3d bend{-sine - 8 * sine2, 8 * cosine2 - cosine, 9 * sine3};
+    const Vec3d binormal = unit(cross(along, bend));
+    const Vec3d normal = unit(cross(binormal, along));
+    for (uint32_t k = 0; k < sides; ++k) {
+      const auto [up, out] = sine_and_cosine_of_turn(k, sides);
+      add_vertex(mesh, centre + radius * out * normal + radius * up * binormal);
+    }
+  }
+  for (uint32_t s = 0; s < sections; ++s)
+    for (uint32_t k = 0; k < sides; ++k) {
+      const uint32_t from = s * sides;
+      const uint32_t to = (s + 1) % sections * sides;
+      add_quad(mesh, {from + k, from + (k + 1) % sides, to + (k + 1) % sides, to + k});
+    }
+  return mesh;
+}
 
 TriangleMesh mug() {
   constexpr uint32_t sectors = 10;

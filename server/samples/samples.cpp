@@ -62,6 +62,7 @@ Sample read_sample(const fs::path& file, const proto::Limits& limits) {
 }  // namespace
 
 Samples::Samples(const std::string& folder, const proto::Limits& limits) {
+  samples_.push_back(generated("knot", knot()));
   samples_.push_back(generated("mug", upright(mug())));
   samples_.push_back(generated("wheel", wheel()));
   if (folder.empty()) return;

@@ -72,10 +72,10 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   ((total > 50000 && total < 400000))
 }
 
-@test "a mug and a wheel are always there, and can be refined" {
+@test "a knot, a mug and a wheel are always there, and can be refined" {
   request "$url/v1/info"
-  [ "$(jq -c '[.samples[] | [.name, .vertices, .faces]]' "$body")" = '[["mug",172,344],["wheel",163,290]]' ]
-  for name in mug wheel; do
+  [ "$(jq -c '[.samples[] | [.name, .vertices, .faces]]' "$body")" = '[["knot",216,432],["mug",172,344],["wheel",163,290]]' ]
+  for name in knot mug wheel; do
     request "$url/v1/info"
     expected=$(jq -r ".samples[] | select(.name == \"$name\") | .faces" "$body")
     bytes=$(jq -r ".samples[] | select(.name == \"$name\") | .bytes" "$body")
@@ -102,8 +102,8 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   echo "no mesh" >"$BATS_TEST_TMPDIR/samples/readme.txt"
   BATS_FILE_TMPDIR=$BATS_TEST_TMPDIR start_server --samples "$BATS_TEST_TMPDIR/samples"
   request "$url/v1/info"
-  [ "$(field 'samples | map(.name) | join(" ")')" = "mug wheel rabbit-600" ]
-  [ "$(field 'samples[2].faces')" = 600 ]
+  [ "$(field 'samples | map(.name) | join(" ")')" = "knot mug wheel rabbit-600" ]
+  [ "$(field 'samples[3].faces')" = 600 ]
   request "$url/v1/samples/rabbit-600"
   cmp "$body" "$coarse"
   stop_server

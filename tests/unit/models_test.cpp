@@ -34,12 +34,15 @@ void expect_clean(const TriangleMesh& model, const Expected& expected) {
   EXPECT_TRUE(test::is_consistent(mesh));
 }
 
+TEST(Models, KnotIsClosedAndOneTube) { expect_clean(server::knot(), {216, 432, 0}); }
+
 TEST(Models, MugHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::mug(), {172, 344, 0}); }
 
 TEST(Models, WheelHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::wheel(), {163, 290, 18}); }
 
 TEST(Models, FacesLookOutward) {
   // The clay of a mug of these measures, and the wheel's parts added up: torus, hub, spokes; all coarse polygons.
+  EXPECT_GT(signed_volume(server::knot()), 500);
   EXPECT_NEAR(signed_volume(server::mug()), 115, 15);
   EXPECT_NEAR(signed_volume(server::wheel()), 8300, 500);
 }
