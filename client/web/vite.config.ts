@@ -1,3 +1,4 @@
+import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
 import { defineConfig, type Plugin } from 'vite';
@@ -34,8 +35,16 @@ function gzipped(): Plugin {
   };
 }
 
+// The npm package, as ./dev builds it.
+const built = process.env.PAPILIO_PACKAGE ?? fileURLToPath(new URL('../../build/npm', import.meta.url));
+
 export default defineConfig({
+  resolve: {
+    alias: [{ find: /^papilio\/(client|three|wasm)$/, replacement: `${built}/dist/$1.js` }],
+    dedupe: ['three'], // the package has none of its own
+  },
   base: './', // behind a proxy the page may be anywhere
   build: { target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 1000, emptyOutDir: true },
   plugins: [withoutUnusedDecoders(), gzipped()],
+  worker: { format: 'es' },
 });

@@ -3,14 +3,14 @@
 ARG DEBIAN=debian:13.7-slim
 FROM ${DEBIAN}
 WORKDIR /papilio
-# Pages and the module for browsers are the same on each Debian.
+# What pages show is the same on each Debian.
 ENV PAPILIO_TEST_PAGES=no
 COPY dev ./
 COPY tests/support tests/support
 COPY client/web/package.json client/web/package-lock.json client/web/.npmrc client/web/
 COPY tests/openapi/package.json tests/openapi/package-lock.json tests/openapi/.npmrc tests/openapi/
 COPY tests/scenes/package.json tests/scenes/package-lock.json tests/scenes/.npmrc tests/scenes/
-RUN tests/support/setup.sh build page test
+RUN tests/support/setup.sh build wasm test && tests/support/library_source.sh meshoptimizer libmeshoptimizer-dev
 COPY . .
 ENV PAPILIO_UNITY=ON
 RUN --mount=type=cache,target=/root/.cache/ccache ./dev test

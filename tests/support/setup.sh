@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh [--list] [build|page|wasm|test|demo|bench|check|fuzz|soak|container]...: installs what these need and is not there
+# setup.sh [--list] [build|page|wasm|test|demo|bench|screenshots|check|fuzz|soak|container]...: installs what these need and is not there
 # yet; without arguments, everything. Says what it does; when there is nothing to do it does nothing, quickly and
 # silently. --list: only prints the names of the packages and programs.
 set -euo pipefail
@@ -30,7 +30,7 @@ for purpose in "$@"; do
     wasm)
       page=yes
       packages+=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 binaryen
-        libmeshoptimizer-dev dpkg-dev ninja-build cmake ca-certificates)
+        libmeshoptimizer-dev dpkg-dev ninja-build cmake ccache ca-certificates)
       ;;
     test)
       meshes=(cgal bunny) libraries=yes scenes=yes
@@ -40,6 +40,7 @@ for purpose in "$@"; do
       ;;
     demo) meshes+=(cgal) packages+=(curl jq ca-certificates) ;;
     bench) meshes=(cgal bunny) libraries=yes packages+=(ca-certificates) ;;
+    screenshots) packages+=(webp) ;;
     check) page=yes libraries=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
     fuzz) packages+=(libgtest-dev clang libclang-rt-dev dpkg-dev ca-certificates) ;;
     soak) meshes=(cgal bunny) libraries=yes packages+=(wrk curl jq ca-certificates) ;;

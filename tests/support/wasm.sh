@@ -10,7 +10,17 @@ mkdir -p build
   exit 1
 }
 "$here/compile.sh" build/wasm wasm
-mkdir -p build/npm
-cp client/npm/package.json client/npm/README.md LICENSE build/npm/
-client/web/node_modules/.bin/tsc -p client/npm --outDir build/npm/dist
-cp build/wasm/papilio.wasm build/npm/dist/
+
+# What has not changed keeps its date: the viewer is built of it.
+rm -rf build/npm.new
+mkdir -p build/npm.new build/npm
+cp client/npm/package.json client/npm/README.md LICENSE build/npm.new/
+client/web/node_modules/.bin/tsc -p client/npm --outDir build/npm.new/dist
+cp build/wasm/papilio.wasm build/npm.new/dist/
+(cd build/npm && find . -type f) | while read -r file; do
+  [[ -f build/npm.new/$file ]] || rm "build/npm/$file"
+done
+(cd build/npm.new && find . -type f) | while read -r file; do
+  cmp -s "build/npm.new/$file" "build/npm/$file" || install -D -m 644 "build/npm.new/$file" "build/npm/$file"
+done
+rm -rf build/npm.new

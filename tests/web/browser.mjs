@@ -69,9 +69,13 @@ export function serverAndBrowser() {
   return shared;
 }
 
-/// A page of its own on this server, and all that goes wrong in it: `faults` lists errors in the console, exceptions
+/// The hash of a page that shows the mug four ways, all of them by the server.
+export const fourWays =
+  'mesh=mug&show=coarse,uniform,adaptive,view&look=wireframe&levels=3&tolerance=0.001&view.error_pixels=0.5&view.edge_pixels=0';
+
+/// A page of its own on this server, with all its settings open, and all that goes wrong in it: `faults` lists errors in the console, exceptions
 /// and requests to other hosts; what a refusal of the server leaves in the console only where `countRefusals`.
-export async function openPage(browser, url, { hash = '', countRefusals = true, ...options } = {}) {
+export async function openPage(browser, url, { hash = fourWays, countRefusals = true, ...options } = {}) {
   const context = await browser.newContext({
     viewport: { width: 1000, height: 700 },
     ...options,
@@ -88,7 +92,8 @@ export async function openPage(browser, url, { hash = '', countRefusals = true, 
     const at = new URL(request.url());
     if (at.protocol !== 'blob:' && at.protocol !== 'data:' && at.host !== new URL(url).host) faults.push(request.url());
   });
-  await page.goto(url + (hash ? `#${hash}` : ''));
+  await page.goto(url + (hash && !url.includes('#') ? `#${hash}` : ''));
+  await page.evaluate(() => (document.getElementById('advanced').open = true));
   return { page, faults, context };
 }
 
@@ -184,14 +189,18 @@ export async function drag(page, right, down) {
 }
 
 /// Drops a file on the page, as from the desktop.
-export async function drop(page, name, bytes) {
+export const drop = (page, name, bytes) => dropAll(page, [[name, bytes]]);
+
+/// Drops files together; each is a name and bytes.
+export async function dropAll(page, files) {
   const transfer = await page.evaluateHandle(
-    ([fileName, text]) => {
+    (dropped) => {
       const data = new DataTransfer();
-      data.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], fileName));
+      for (const [name, text] of dropped)
+        data.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
       return data;
     },
-    [name, Buffer.from(bytes).toString('base64')],
+    files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]),
   );
   await page.dispatchEvent('#stage', 'dragover', { dataTransfer: transfer });
   await page.dispatchEvent('#stage', 'drop', { dataTransfer: transfer });

@@ -1,12 +1,12 @@
-// screenshots.mjs FOLDER SAMPLES SCENE: the README's pictures of the viewer, as PNG.
+// screenshots.mjs FOLDER SAMPLES SCENE FRAMES: the README's pictures of the viewer, as PNG; in FRAMES those of its recording.
 
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { done, drag, drop, launch, openPage, startServer } from './browser.mjs';
 
-const [folder, samples, scene] = process.argv.slice(2);
-mkdirSync(folder, { recursive: true });
+const [folder, samples, scene, frames] = process.argv.slice(2);
+for (const made of [folder, frames]) mkdirSync(made, { recursive: true });
 const [server, browser] = await Promise.all([startServer('--samples', samples), launch()]);
 
 /// Once nothing changes any more.
@@ -49,6 +49,42 @@ try {
   await textured.page.waitForFunction(() => document.title.startsWith('controller.glb'));
   await done(textured.page, ['coarse', 'adaptive']);
   await save(textured.page, 'scene');
+
+  // What the page does while it is turned, wiped and zoomed.
+  const { page } = await openPage(browser, server.url, {
+    viewport: { width: 960, height: 480 },
+    hash: 'mesh=knot&show=coarse,view&as=wipe&look=wireframe&where=here&ground=studio&view.error_pixels=0.5&output.normals=true',
+  });
+  const made = page.locator('.panel[data-mode=view][data-by=here][data-state=done]');
+  await made.waitFor();
+  const stage = await page.locator('#stage').boundingBox();
+  let count = 0;
+  const record = async () => {
+    await made.waitFor();
+    await page.screenshot({ path: join(frames, `${String(count++).padStart(3, '0')}.png`), clip: stage });
+  };
+  const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 3];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let step = 0; step < 30; ++step) {
+    await page.mouse.move(x + 6 * step, y + 2 * step);
+    await record();
+  }
+  await page.mouse.up();
+  for (let step = 0; step <= 15; ++step) {
+    await page.locator('#wipe').fill(String(500 - 30 * step));
+    await record();
+  }
+  await page.mouse.move(x, y + 40);
+  for (let step = 0; step < 14; ++step) {
+    await page.mouse.wheel(0, -100);
+    await page.waitForTimeout(100);
+    await record();
+  }
+  for (let step = 0; step <= 15; ++step) {
+    await page.locator('#wipe').fill(String(50 + 30 * step));
+    await record();
+  }
 } finally {
   await browser.close();
   await server.stop();

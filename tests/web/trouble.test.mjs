@@ -12,6 +12,7 @@ import {
   drag,
   drop,
   facesOf,
+  fourWays,
   meshes,
   openPage,
   run,
@@ -149,7 +150,7 @@ test('the server cannot be asked what it has: said, with a way to go on', async 
   const page = await shared.browser.newPage();
   const gone = /\/v1\/|\.wasm/;
   await page.route(gone, (route) => route.abort());
-  await page.goto(shared.server.url);
+  await page.goto(`${shared.server.url}#${fourWays}`);
   await page.locator('#alert', { hasText: 'cannot be reached' }).waitFor();
   await page.unroute(gone);
   await page.getByRole('button', { name: 'Try again' }).click();

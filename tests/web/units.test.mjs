@@ -65,7 +65,10 @@ test('the boundary is found in all ways to write it', () => {
 const defaults = {
   mesh: 'mug',
   modes: [...link.modes],
+  arrangement: 'wipe',
   look: 'wireframe',
+  where: 'here',
+  ground: 'page',
   camera: null,
   frozen: null,
   values: new Map([['levels', '3']]),
@@ -75,7 +78,10 @@ test('a state comes back from its link; what a link cannot mean is passed over',
   const state = {
     mesh: 'f'.repeat(64),
     modes: ['coarse', 'view'],
+    arrangement: 'wipe',
     look: 'distance',
+    where: 'here',
+    ground: 'studio',
     camera: { eye: [1, -2.5, 3e-7], target: [0, 0, 1e9] },
     frozen: { eye: [0, 0, 3], target: [0, 0, 0], pixels: [640, 480] },
     values: new Map([
@@ -88,7 +94,9 @@ test('a state comes back from its link; what a link cannot mean is passed over',
   assert.deepEqual(link.fromHash('', defaults), defaults);
   assert.deepEqual(link.fromHash('#mesh=wheel', defaults), { ...defaults, mesh: 'wheel' });
   const strange = link.fromHash('#mesh=a&show=none,coarse&look=red&camera=1,2,x,4,5,6&levels=1', defaults);
-  assert.deepEqual(strange, { ...defaults, mesh: 'a', modes: ['coarse'], values: new Map([['levels', '1']]) });
+  // As links were before these could be chosen.
+  const earlier = { ...defaults, arrangement: 'panels', where: 'server' };
+  assert.deepEqual(strange, { ...earlier, mesh: 'a', modes: ['coarse'], values: new Map([['levels', '1']]) });
 });
 
 test('commands say what they mean to a shell, whatever a file is called', () => {
@@ -132,9 +140,17 @@ test('what chooses where to refine has no part in the uniform result, nor a view
     }),
   );
   const view = { eye: [0, 0, 1 / 3], target: [0, 0, 0], pixels: [800, 600] };
-  const names = (mode) => [...valuesFor(mode, values, view).keys()];
-  assert.deepEqual(names('uniform'), ['w', 'output.speed']);
+  const names = (mode) => [...valuesFor(mode, values, view, 100).keys()];
+  assert.deepEqual(names('uniform'), ['w', 'output.speed', 'levels']);
   assert.deepEqual(names('adaptive'), ['tolerance', 'max_faces', 'w', 'output.speed']);
   const kinds = ['view.eye', 'view.viewport', 'w'].map((name) => ({ name }));
-  assert.equal(queryOf(valuesFor('view', values, view), kinds), 'view.eye=0,0,0.333333&view.viewport=800,600&w=0.1');
+  assert.equal(
+    queryOf(valuesFor('view', values, view, 100), kinds),
+    'view.eye=0,0,0.333333&view.viewport=800,600&w=0.1',
+  );
+  // Levels are chosen by the size, and without a target the adaptive result is as near as the picture asks for.
+  const levels = (faces) => valuesFor('uniform', new Map(), view, faces).get('levels');
+  assert.deepEqual([12, 4000, 70_000, 1e6].map(levels), ['3', '3', '1', '1']);
+  const pixels = new Map([['view.error_pixels', '0.5']]);
+  assert.equal(valuesFor('adaptive', pixels, view, 100).get('tolerance'), '0.0005');
 });

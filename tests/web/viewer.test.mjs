@@ -10,7 +10,9 @@ import {
   done,
   drag,
   drop,
+  dropAll,
   facesOf,
+  fourWays,
   meshes,
   openPage,
   picture,
@@ -20,7 +22,7 @@ import {
   surfaceDistances,
   serverAndBrowser,
 } from './browser.mjs';
-import { cubeGlb, cubeObj, cubePly, cubeStl } from './mesh_files.mjs';
+import { cubeGlb, cubeGltf, cubeObj, cubeOff, cubePly, cubeStl, texturedCubePly } from './mesh_files.mjs';
 import { startProxy } from './proxy.mjs';
 
 const shared = serverAndBrowser();
@@ -100,7 +102,7 @@ test('the sample and the parameters are asked for at once', async () => {
   const events = [];
   page.on('request', (request) => events.push(`> ${new URL(request.url()).pathname}`));
   page.on('response', (response) => events.push(`< ${new URL(response.url()).pathname}`));
-  await page.goto(shared.server.url);
+  await page.goto(`${shared.server.url}#${fourWays}`);
   await done(page);
   const firstAnswer = events.findIndex((event) => event.startsWith('< /v1/'));
   const before = events.slice(0, firstAnswer);
@@ -210,6 +212,8 @@ test('files of all formats are opened, and sent as Draco, scenes as they are', a
     ['cube.obj', cubeObj()],
     ['cube.ply', cubePly()],
     ['cube.stl', cubeStl()],
+    ['cube.off', cubeOff()],
+    ['textured.ply', texturedCubePly()],
     ['cube.GLB', cubeGlb()],
   ]) {
     const [stored] = await Promise.all([
@@ -237,7 +241,9 @@ test('files of all formats are opened, and sent as Draco, scenes as they are', a
 });
 
 test('a scene is shown with its textures in every panel, and saved as .glb', async () => {
-  const { page, faults } = await openPage(shared.browser, shared.server.url, { hash: 'mesh=mug&look=shaded' });
+  const { page, faults } = await openPage(shared.browser, shared.server.url, {
+    hash: `${fourWays}&look=shaded`.replace('look=wireframe&', ''),
+  });
   await done(page);
   assert.equal(await page.locator('#parameter-split_instances').count(), 0);
   await drop(page, 'red.glb', cubeGlb({ isTextured: true }));
@@ -266,6 +272,29 @@ test('a scene is shown with its textures in every panel, and saved as .glb', asy
   const { red, drawn } = await redShare(again.page, await picture(again.page, 'uniform'));
   assert.ok(red > 0.9 * drawn);
   assert.deepEqual([...faults, ...again.faults], []);
+});
+
+test('a .gltf file is opened with the files that it names, or misses them by name', async () => {
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
+  await done(page);
+  const files = cubeGltf();
+  await dropAll(page, files.slice(1));
+  await page.locator('#alert-text', { hasText: /cube\.gltf needs .*cube%20one\.bin: drop or pick both/ }).waitFor();
+  await dropAll(page, files);
+  await page.locator('.panel[data-mode=uniform][data-faces="768"]').waitFor();
+  await done(page);
+  await page.getByLabel('Shaded').check();
+  const { red, drawn } = await redShare(page, await picture(page, 'uniform'));
+  assert.ok(drawn > 0.1 && red > 0.9 * drawn, `${red} of ${drawn} are red`);
+  assert.equal(await page.title(), 'cube.glb – Papilio');
+  for (const [text, words] of [
+    ['OFF\n4 1 0\n0 0 0\n', /fewer vertices and faces than it says/],
+    ['OFF\n1 1 0\n0 0 0\n3 0 0 9\n', /names a vertex that is not there/],
+  ]) {
+    await drop(page, 'broken.off', text);
+    await page.locator('#alert-text', { hasText: words }).waitFor();
+  }
+  assert.deepEqual(faults, []);
 });
 
 test('the command shown gives the bytes that are on screen', async () => {

@@ -1,11 +1,30 @@
 // The commands that ask for what is on screen, to be copied.
 
 import { button, element } from './elements';
+import { curlOf, type Mode } from './link';
+import type { OpenMesh } from './mesh';
+import { extensionOf } from './model';
+import { hasKey } from './service';
 
 export interface Command {
   mode: string;
   title: string;
   text: string;
+}
+
+/// `id`: of the stored mesh, or null. `queryFor`: null for the mesh as it is.
+export function commandsFor(
+  mesh: OpenMesh,
+  id: string | null,
+  shown: readonly { mode: Mode; title: string }[],
+  queryFor: (mode: Mode) => string | null,
+): Command[] {
+  const base = new URL('.', location.href).href;
+  const { kind } = mesh.encoded;
+  const file = mesh.name.endsWith(extensionOf[kind]) ? mesh.name : `mesh${extensionOf[kind]}`;
+  return shown
+    .map(({ mode, title }) => ({ mode, title, text: curlOf(base, queryFor(mode), { id, file, kind }, hasKey()) }))
+    .filter(({ text }) => text !== '');
 }
 
 export function commandRows(commands: Command[]): HTMLElement[] {

@@ -1,6 +1,6 @@
 // What the page shows before anybody has chosen, and the words for what can be chosen.
 
-import { type Look, modes, type State } from './link';
+import type { Arrangement, Ground, Look, Place, State } from './link';
 
 export const lookTitles: Record<Look, string> = {
   shaded: 'Shaded',
@@ -8,18 +8,25 @@ export const lookTitles: Record<Look, string> = {
   level: 'By level',
   distance: 'By distance to uniform',
 };
+export const arrangementTitles: Record<Arrangement, string> = {
+  wipe: 'One picture, before and after',
+  panels: 'Side by side',
+};
+export const placeTitles: Record<Place, string> = { here: 'in this browser', server: 'on the server' };
+export const groundTitles: Record<Ground, string> = { page: 'Plain', light: 'Light', dark: 'Dark', studio: 'Studio' };
 
 /// What a user who has set nothing sees.
 export const defaults: State = {
-  mesh: 'mug',
-  modes: [...modes],
-  look: 'wireframe',
+  mesh: 'knot',
+  modes: ['coarse', 'view'],
+  arrangement: 'wipe',
+  look: 'shaded',
+  where: 'here',
+  ground: 'page',
   camera: null,
   frozen: null,
   values: new Map([
-    ['levels', '3'],
-    ['tolerance', '0.001'],
     ['view.error_pixels', '0.5'],
-    ['view.edge_pixels', '0'],
+    ['output.normals', 'true'],
   ]),
 };

@@ -9,6 +9,9 @@ const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 }
 const significant = (n: number | undefined) => (n === undefined ? null : String(Number(n.toPrecision(2))));
 const milliseconds = (n: number | undefined) => (n === undefined ? null : n.toFixed(n < 10 ? 1 : 0));
 
+/// That came from the server for this mesh.
+export const bytesOf = (shown: Shown) => shown.encoded?.bytes.length ?? 0;
+
 /// `uniformFaces`: of the uniform result; `uniformBytes`: null where it was not fetched.
 export function figures(panels: Panel[], uniformFaces: number, uniformBytes: number | null): Node[] {
   const shown = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
@@ -17,16 +20,16 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
   const rows: Row[] = [
     ['faces', (one) => whole(one.faces)],
     ['vertices', (one) => whole(one.vertices)],
-    ['bytes', (one) => whole(one.encoded.bytes.length), 'Of the file'],
+    ['bytes', (one) => whole(bytesOf(one)), 'That were sent for it; none for what is made here'],
     [
       'all levels',
       (one) => whole(one.levels.reduce((sum, { bytes }) => sum + bytes.length, 0)),
       'Bytes of all levels that came, this one with them',
     ],
     ['fewer faces', (one) => saved(one.faces, uniformFaces), 'Than the uniform result'],
-    ['fewer bytes', (one) => saved(one.encoded.bytes.length, uniformBytes), 'Than the uniform result'],
+    ['fewer bytes', (one) => saved(bytesOf(one), uniformBytes), 'Than the uniform result'],
     ['decode ms', (one) => milliseconds(one.timing.decode), 'Of the server'],
-    ['refine ms', (one) => milliseconds(one.timing.refine), 'Of the server'],
+    ['refine ms', (one) => milliseconds(one.timing.refine), 'Of the server, or of this browser'],
     ['encode ms', (one) => milliseconds(one.timing.encode), 'Of the server'],
     ['round trip ms', (one) => milliseconds(one.roundTrip ?? undefined), 'From the request to the mesh, here'],
     [
@@ -57,11 +60,11 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
   const bars = element('div', 'bars');
   bars.setAttribute('aria-hidden', 'true'); // the table has it in numbers
   const most = Math.max(...shown.map((one) => one.shown.faces));
-  const mostBytes = Math.max(...shown.map((one) => one.shown.encoded.bytes.length));
+  const mostBytes = Math.max(...shown.map((one) => bytesOf(one.shown)));
   for (const { panel, shown: one } of shown) {
     bars.append(element('span', '', panel.shortTitle));
     const pair = element('span', 'pair');
-    pair.append(bar('faces', one.faces / most), bar('bytes', one.encoded.bytes.length / mostBytes));
+    pair.append(bar('faces', one.faces / most), bar('bytes', bytesOf(one) / mostBytes));
     bars.append(pair);
   }
   const key = element('p', 'bar-key');

@@ -1,4 +1,4 @@
-// Keys and dropped files.
+// Keys and files.
 
 import { find } from './elements';
 import type { Stage } from './stage';
@@ -26,8 +26,13 @@ export function listenToKeys(surface: HTMLElement, stage: Stage): void {
   });
 }
 
-/// Files dropped anywhere on the page. `onDrop`: null where it was no file.
-export function listenToDrops(onDrop: (file: File | null) => void): void {
+/// Files that are picked, or dropped anywhere on the page. `onFiles`: with none where what was dropped is no file.
+export function listenToFiles(onFiles: (files: File[]) => void): void {
+  const picked = find<HTMLInputElement>('file');
+  picked.addEventListener('change', () => {
+    if (picked.files?.length) onFiles([...picked.files]);
+    picked.value = ''; // the same file may be opened again
+  });
   const hint = find('drop-hint');
   document.addEventListener('dragover', (event) => {
     event.preventDefault();
@@ -39,6 +44,6 @@ export function listenToDrops(onDrop: (file: File | null) => void): void {
   document.addEventListener('drop', (event) => {
     event.preventDefault();
     hint.hidden = true;
-    onDrop(event.dataTransfer?.files[0] ?? null);
+    onFiles([...(event.dataTransfer?.files ?? [])]);
   });
 }

@@ -9,6 +9,18 @@ export type Mode = (typeof modes)[number];
 export const looks = ['shaded', 'wireframe', 'level', 'distance'] as const;
 export type Look = (typeof looks)[number];
 
+/// One picture with a wipe between two meshes, or a panel for each mesh.
+export const arrangements = ['wipe', 'panels'] as const;
+export type Arrangement = (typeof arrangements)[number];
+
+/// Who refines for the view: this browser, or the server.
+export const places = ['here', 'server'] as const;
+export type Place = (typeof places)[number];
+
+export const grounds = ['page', 'light', 'dark', 'studio'] as const;
+/// What is behind the mesh.
+export type Ground = (typeof grounds)[number];
+
 type Triple = [number, number, number];
 
 export interface Camera {
@@ -24,9 +36,12 @@ export interface Frozen extends Camera {
 export interface State {
   /// A sample's name or a stored mesh's id; empty: a mesh that only this page has.
   mesh: string;
-  /// Those shown side by side, one panel each.
+  /// Those shown; of a wipe the first and the last.
   modes: Mode[];
+  arrangement: Arrangement;
   look: Look;
+  where: Place;
+  ground: Ground;
   /// Null: as opening a mesh has it.
   camera: Camera | null;
   /// The view that the refinement is for, where that is not the camera's.
@@ -42,7 +57,8 @@ export const isStored = (mesh: string): boolean => isId(mesh);
 export function toHash(state: State): string {
   const fields: [string, string][] = [];
   if (state.mesh) fields.push(['mesh', state.mesh]);
-  fields.push(['show', state.modes.join(',')], ['look', state.look]);
+  fields.push(['show', state.modes.join(',')], ['as', state.arrangement], ['look', state.look]);
+  fields.push(['where', state.where], ['ground', state.ground]);
   if (state.camera) fields.push(['camera', cameraText(state.camera)]);
   if (state.frozen) fields.push(['frozen', [cameraText(state.frozen), ...state.frozen.pixels].join(',')]);
   fields.push(...state.values);
@@ -59,13 +75,20 @@ export function fromHash(hash: string, defaults: State): State {
   const known = modes.filter((mode) => shown.includes(mode));
   if (known.length > 0) state.modes = known;
   state.mesh = fields.get('mesh') ?? defaults.mesh;
-  state.look = looks.find((look) => look === fields.get('look')) ?? defaults.look;
+  const chosen = <T extends string>(name: string, from: readonly T[], otherwise: T) =>
+    from.find((one) => one === fields.get(name)) ?? otherwise;
+  state.look = chosen('look', looks, defaults.look);
+  // Links of earlier versions do not say these, and showed what they meant so.
+  const isEarlier = fields.has('show');
+  state.arrangement = chosen('as', arrangements, isEarlier ? 'panels' : defaults.arrangement);
+  state.where = chosen('where', places, isEarlier ? 'server' : defaults.where);
+  state.ground = chosen('ground', grounds, 'page');
   state.camera = cameraOf(numbersOf(fields.get('camera'), 6));
   const frozen = numbersOf(fields.get('frozen'), 8);
   const kept = cameraOf(frozen);
   state.frozen = kept && { ...kept, pixels: frozen!.slice(6) as [number, number] };
   if (fields.has('show')) {
-    const own = new Set(['mesh', 'show', 'look', 'camera', 'frozen']);
+    const own = new Set(['mesh', 'show', 'as', 'look', 'where', 'ground', 'camera', 'frozen']);
     state.values = new Map([...fields].filter(([name]) => !own.has(name)));
   }
   return state;

@@ -1,4 +1,6 @@
 import './style.css';
+import './stage.css';
+import './aside.css';
 
 import { find } from './elements';
 import { Viewer } from './viewer';

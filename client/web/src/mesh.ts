@@ -1,19 +1,24 @@
-// The mesh that is open: its bytes, its picture, and its place in the server's store.
+// The mesh that is open: its bytes, its picture, and who refines it.
 
+import { RemoteMesh } from 'papilio/client';
 import type { BufferGeometry } from 'three';
 
-import type { Decoded, Encoded } from './model';
-import { type Level, Problem, refine, store, type Summary } from './service';
+import { Here } from './here';
+import { type Decoded, type Encoded, mediaTypes } from './model';
+import { client, type Level, levelOf, read, type Summary } from './service';
 
 export class OpenMesh {
-  #id: Promise<string | null> | null = null;
+  readonly #remote: RemoteMesh;
+  #here: Promise<Here | null> | null = null;
 
   constructor(
     /// A file's or a sample's.
     readonly name: string,
     readonly encoded: Encoded,
     readonly decoded: Decoded,
-  ) {}
+  ) {
+    this.#remote = new RemoteMesh(client, { type: mediaTypes[encoded.kind], bytes: encoded.bytes });
+  }
 
   get geometry(): BufferGeometry {
     return this.decoded.geometry;
@@ -23,31 +28,29 @@ export class OpenMesh {
     return this.encoded.kind === 'scene';
   }
 
-  /// Stores the mesh unless it is. Null where the server's store cannot take it: it is then sent with each request.
-  /// Rejects with a Problem where the server refuses the mesh, or cannot be asked now.
+  /// As RemoteMesh has it.
   get id(): Promise<string | null> {
-    if (this.#id === null) {
-      const stored = store(this.encoded).catch((error: unknown) => {
-        if (error instanceof Problem && ['store_full', 'store_unavailable'].includes(error.code)) return null;
-        this.#id = null; // the next time it is tried again
-        throw error;
-      });
-      this.#id = stored;
-    }
-    return this.#id;
+    return this.#remote.id;
   }
 
-  /// As `refine` of service.ts. A mesh that the store has given up is stored again.
+  /// Its refinement in this browser; null where this browser cannot.
+  get here(): Promise<Here | null> {
+    this.#here ??= Here.of(this.decoded).catch(() => null);
+    return this.#here;
+  }
+
+  /// Refines it by the server. Calls onLevel for each level of a mesh as it comes, the coarse mesh first; for a scene,
+  /// whose levels would each bring its images again, with the result alone. Rejects with a Problem, or with an AbortError
+  /// once the signal says so.
   async refine(query: string, onLevel: (level: Level) => void, signal: AbortSignal): Promise<Summary> {
-    for (let isAgain = false; ; isAgain = true) {
-      const id = await this.id;
-      signal.throwIfAborted();
-      try {
-        return await refine(this.encoded, id, query, onLevel, signal);
-      } catch (error) {
-        if (isAgain || !(error instanceof Problem) || error.code !== 'mesh_not_found') throw error;
-        this.#id = null;
-      }
-    }
+    if (!this.isScene) return this.#remote.levels(query, (levels) => read(levels, onLevel), { signal });
+    const fine = await this.#remote.refine(query, { signal });
+    onLevel(levelOf(fine));
+    return fine.summary;
+  }
+
+  dispose(): void {
+    void this.#here?.then((here) => here?.dispose());
+    this.decoded.dispose();
   }
 }

@@ -22,7 +22,7 @@ export function kindOf(mediaType: string | null): Encoded['kind'] | null {
 /// What a file is decoded to.
 export interface Decoded {
   /// All triangles as one indexed mesh, where they are in the scene.
-  geometry: BufferGeometry;
+  readonly geometry: BufferGeometry;
   /// The scene with its materials; null for a mesh.
   scene: Object3D | null;
   /// Each mesh counted once, however often it is shown.

@@ -1,20 +1,30 @@
-// A file that the user drops or picks: a .drc mesh or a .glb scene as it is, other formats by three's loaders as a Draco
-// mesh of positions and triangles alone.
+// Files that the user drops or picks: a .drc mesh or a .glb scene as it is, a .gltf file with those that it names as a .glb,
+// other formats by three's loaders as a Draco mesh of positions and triangles alone.
 
 import { type BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
 
 import { encode } from './draco';
+import { packGlb } from './gltf_files';
 import type { Encoded } from './model';
+import { readOff } from './off';
 import { Problem } from './service';
 
-export const extensions = ['.drc', '.obj', '.ply', '.stl', '.glb'];
+export const extensions = ['.drc', '.obj', '.ply', '.stl', '.off', '.glb', '.gltf'];
 
-/// Rejects with a Problem. `maxBytes`: of the service.
-export async function readMeshFile(file: File, maxBytes: number): Promise<Encoded> {
-  const extension = /\.[^.]*$/.exec(file.name.toLowerCase())?.[0] ?? '';
+const extensionIn = (name: string) => /\.[^.]*$/.exec(name.toLowerCase())?.[0] ?? '';
+
+/// The mesh among files that were dropped together: the others are what it names.
+export function meshAmong(files: readonly File[]): File {
+  return files.find(({ name }) => extensions.includes(extensionIn(name))) ?? files[0];
+}
+
+/// `files`: those that came with it, itself among them. Rejects with a Problem. `maxBytes`: of the service.
+export async function readMeshFile(file: File, files: readonly File[], maxBytes: number): Promise<Encoded> {
+  const extension = extensionIn(file.name);
   if (!extensions.includes(extension))
     throw new Problem('unsupported', `${file.name} is no mesh file. Open one of ${extensions.join(', ')}.`);
   if (file.size === 0) throw new Problem('empty', `${file.name} is empty.`);
+  if (extension === '.gltf') return { kind: 'scene', bytes: await packGlb(file, files) };
   const kind = extension === '.drc' ? 'draco' : extension === '.glb' ? 'scene' : null;
   if (kind !== null && file.size > maxBytes)
     throw new Problem('body_too_large', `${file.name} has ${file.size} bytes; this server takes ${maxBytes}.`);
@@ -44,9 +54,12 @@ async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeomet
     }
     case '.ply': {
       const { PLYLoader } = await import('three/examples/jsm/loaders/PLYLoader.js');
-      const geometry = new PLYLoader().parse(bytes);
-      return geometry.index === null ? [] : [geometry]; // without faces the points are no triangles
+      const head = new TextDecoder().decode(bytes.slice(0, 10_000));
+      if (!/^element face [1-9]/m.test(head)) return []; // the points are no triangles
+      return [new PLYLoader().parse(bytes)];
     }
+    case '.off':
+      return [readOff(new TextDecoder().decode(bytes))];
     default: {
       const { STLLoader } = await import('three/examples/jsm/loaders/STLLoader.js');
       return [new STLLoader().parse(bytes)];

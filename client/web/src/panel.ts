@@ -1,9 +1,10 @@
-// One of the meshes that are compared: what is asked of the server for it, and what has come.
+// One of the meshes that are compared: what is asked for, of the server or of the kernel here, and what has come.
 
 import type { BufferGeometry } from 'three';
 
 import { decode } from './decode';
 import { button, element } from './elements';
+import { type Made, problemOf } from './here';
 import { LevelsOfVertices } from './levels';
 import type { Mode } from './link';
 import type { OpenMesh } from './mesh';
@@ -24,18 +25,28 @@ const longestPause = 60;
 export interface Shown {
   mesh: OpenMesh;
   decoded: Decoded;
-  geometry: BufferGeometry;
-  encoded: Encoded;
+  readonly geometry: BufferGeometry;
+  /// Null for what was made in this browser: nothing was sent.
+  encoded: Encoded | null;
   vertices: number;
   faces: number;
-  /// Milliseconds by stage of the server; empty for the coarse mesh.
+  /// Milliseconds by stage, of the server or of the kernel here; empty for the coarse mesh.
   timing: Record<string, number>;
   /// Milliseconds from the request to the decoded mesh.
   roundTrip: number | null;
   /// Null while further levels may come, and for the coarse mesh.
   summary: Summary | null;
-  /// The meshes up to this one, coarse first; of a scene this one alone.
+  /// The meshes up to this one, coarse first; of a scene this one alone, of what was made here none.
   levels: Encoded[];
+}
+
+/// What a panel is asked to show.
+export interface Request {
+  /// Of the server; null: the coarse mesh as it is.
+  query: string | null;
+  /// Makes it in this browser, now; null: the server is asked.
+  make: (() => Promise<Made>) | null;
+  note: string;
 }
 
 export class Panel {
@@ -51,7 +62,8 @@ export class Panel {
   shown: Shown | null = null;
   /// Why what was asked for last did not come; null: it has, or may yet.
   problem: Problem | null = null;
-  #asked: { mesh: OpenMesh; query: string | null } | null = null;
+  #asked: { mesh: OpenMesh; request: Request } | null = null;
+  #isMaking = false;
   #abort: AbortController | null = null;
   #retries = 0;
   #retryTimer: ReturnType<typeof setTimeout> | undefined;
@@ -76,7 +88,7 @@ export class Panel {
     head.append(element('span', 'space'));
     const actions = head.appendChild(element('span', 'actions'));
     this.#enlarge = actions.appendChild(button('', () => this.onEnlarge()));
-    this.#save = actions.appendChild(button('Save', () => this.#saveFile()));
+    this.#save = actions.appendChild(button('Save', () => void this.#saveFile()));
     this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh to a file`);
     this.#save.hidden = true;
     this.setEnlarged(false);
@@ -90,13 +102,16 @@ export class Panel {
     this.#tell('idle');
   }
 
-  /// Asks for the mesh with this query (null: the coarse mesh as it is) unless that is what is shown or on its way. What
-  /// is on its way is aborted; what is shown stays until there is better.
-  ask(mesh: OpenMesh, query: string | null, note = ''): void {
-    this.#givenNote = note;
+  /// Asks for this unless it is what is shown or on its way. What is on its way from the server is aborted; what is being
+  /// made here is shown when it is done, and then the latest is made. What is shown stays until there is better.
+  ask(mesh: OpenMesh, request: Request): void {
+    this.#givenNote = request.note;
     this.#showNote();
-    if (this.#asked?.mesh === mesh && this.#asked.query === query) return;
-    this.#asked = { mesh, query };
+    const before = this.#asked;
+    const isSame =
+      before?.request.query === request.query && (before.request.make === null) === (request.make === null);
+    if (before?.mesh === mesh && isSame) return;
+    this.#asked = { mesh, request };
     this.#retries = 0;
     this.#start();
   }
@@ -133,7 +148,8 @@ export class Panel {
   #start(): void {
     this.#abort?.abort();
     clearTimeout(this.#retryTimer);
-    const { mesh, query } = this.#asked!;
+    const { mesh, request } = this.#asked!;
+    const { query } = request;
     const abort = new AbortController();
     this.#abort = abort;
     this.#message.replaceChildren();
@@ -144,10 +160,39 @@ export class Panel {
       return;
     }
     this.#tell('busy');
+    if (request.make !== null) {
+      if (!this.#isMaking) void this.#makeLatest();
+      return;
+    }
     this.#refine(mesh, query, abort.signal).catch((error: unknown) => {
       if (abort.signal.aborted) return;
       this.#fail(error);
     });
+  }
+
+  /// Makes what is asked for here, until that is what is shown.
+  async #makeLatest(): Promise<void> {
+    this.#isMaking = true;
+    for (let isLatest = false; !isLatest; ) {
+      const asked = this.#asked;
+      if (!asked?.request.make) break;
+      try {
+        const made = await asked.request.make();
+        if (asked.mesh === this.#asked?.mesh && this.#asked.request.make) this.#show(shownOf(asked.mesh, made));
+        else made.decoded.dispose();
+        isLatest = asked === this.#asked;
+        if (isLatest) this.#tell('done');
+      } catch (error) {
+        isLatest = asked === this.#asked;
+        const problem = problemOf(error);
+        if (isLatest && problem) this.#fail(problem);
+        else if (isLatest) {
+          this.#asked = { mesh: asked.mesh, request: { ...asked.request, make: null } };
+          this.#start();
+        }
+      }
+    }
+    this.#isMaking = false;
   }
 
   async #refine(mesh: OpenMesh, query: string, signal: AbortSignal): Promise<void> {
@@ -159,7 +204,9 @@ export class Panel {
       this.#show({
         mesh,
         decoded,
-        geometry: decoded.geometry,
+        get geometry() {
+          return decoded.geometry;
+        },
         encoded: encoded[level],
         vertices: levels[level].vertices,
         faces: levels[level].faces,
@@ -204,6 +251,7 @@ export class Panel {
     this.shown = shown;
     this.#caption.textContent = `${shown.faces.toLocaleString('en')} faces`;
     this.element.dataset.faces = String(shown.faces);
+    this.element.dataset.by = shown.encoded === null ? 'here' : 'server';
     this.#save.hidden = false;
     this.#showNote();
     this.onChange();
@@ -241,22 +289,53 @@ export class Panel {
     this.#retryTimer = setTimeout(() => this.#countDown(seconds - 1, again), 1000);
   }
 
-  #saveFile(): void {
-    if (this.shown === null) return;
+  /// What was made here is a file once the server has encoded it.
+  async #saveFile(): Promise<void> {
+    const { shown } = this;
+    if (shown === null) return;
+    let encoded = shown.encoded;
+    try {
+      if (encoded === null) {
+        const { query } = this.#asked!.request;
+        await shown.mesh.refine(query!, (level) => (encoded = level.encoded), new AbortController().signal);
+      }
+    } catch (error) {
+      this.#fail(error);
+      return;
+    }
+    const { kind, bytes } = encoded!;
     const link = document.createElement('a');
-    const { kind, bytes } = this.shown.encoded;
     link.href = URL.createObjectURL(new Blob([bytes]));
-    link.download = `${this.shown.mesh.name.replace(/\.[^.]*$/, '')}-${this.mode}${extensionOf[kind]}`;
+    link.download = `${shown.mesh.name.replace(/\.[^.]*$/, '')}-${this.mode}${extensionOf[kind]}`;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
   }
+}
+
+function shownOf(mesh: OpenMesh, { decoded, summary, milliseconds }: Made): Shown {
+  return {
+    mesh,
+    decoded,
+    get geometry() {
+      return decoded.geometry;
+    },
+    encoded: null,
+    vertices: decoded.vertices,
+    faces: decoded.faces,
+    timing: { refine: milliseconds },
+    roundTrip: null,
+    summary,
+    levels: [],
+  };
 }
 
 function coarse(mesh: OpenMesh): Shown {
   return {
     mesh,
     decoded: mesh.decoded,
-    geometry: mesh.geometry,
+    get geometry() {
+      return mesh.geometry;
+    },
     encoded: mesh.encoded,
     vertices: mesh.decoded.vertices,
     faces: mesh.decoded.faces,

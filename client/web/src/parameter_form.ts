@@ -56,7 +56,10 @@ export class ParameterForm {
   #row(kind: ParameterKind): HTMLElement {
     const row = element('div', 'parameter');
     const id = `parameter-${kind.name}`;
-    const label = element('label', '', kind.name);
+    // In words, and as requests have it.
+    const label = element('label', '', kind.description.split(/[;:.]( |$)/)[0]);
+    if (kind.unit) label.append(` (${kind.unit})`);
+    label.append(' ', element('code', '', kind.name));
     label.htmlFor = id;
     const input = inputFor(kind);
     input.id = id;

@@ -9,15 +9,24 @@ import type { Look } from './link';
 import type { OpenMesh } from './mesh';
 import type { Panel, Shown } from './panel';
 import type { Stage } from './stage';
+import { hide, type Path } from './tree';
 
 export class Pictures {
   /// By what they are of, to which uniform mesh, and [faces] in the mesh's units.
   #distances = new WeakMap<Shown, { uniform: Shown; faces: Float32Array }>();
   #abort = new AbortController();
+  /// Parts of a scene that are not shown.
+  #hidden: ReadonlySet<Path> = new Set();
   /// What each panel's picture is of.
   #drawn = new Map<Panel, { shown: Shown; how: string }>();
 
   constructor(readonly stage: Stage) {}
+
+  set hidden(paths: ReadonlySet<Path>) {
+    this.#hidden = paths;
+    for (const { shown } of this.#drawn.values()) if (shown.decoded.scene) hide(shown.decoded.scene, paths);
+    this.stage.draw();
+  }
 
   /// Draws these panels; what was being drawn is given up. `levels`: as many as were asked for. `uniform`: what distances
   /// are to, or why that is not there. Rejects where a mesh cannot be decoded.
@@ -84,6 +93,7 @@ export class Pictures {
   #put(picture: Picture, how: string, make: () => Object3D): void {
     if (this.#has(picture, how)) return;
     this.#drawn.set(picture.panel, { shown: picture.shown, how });
+    if (picture.shown.decoded.scene) hide(picture.shown.decoded.scene, this.#hidden);
     this.stage.show(picture.panel.element, make());
   }
 }

@@ -42,30 +42,45 @@ export async function decodeScene(bytes: Bytes): Promise<Decoded> {
     throw new Problem('mesh_not_gltf', error instanceof Error ? error.message : String(error));
   }
   scene.userData.hasMaterials = true;
-  scene.updateMatrixWorld(true);
-  const geometries = new Set<BufferGeometry>();
   scene.traverse((object) => {
     if (!isMesh(object)) return;
-    geometries.add(object.geometry);
     for (const material of ([] as Material[]).concat(object.material))
       Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }); // edges lie in front
   });
-  const geometry = mergedGeometry(scene);
-  if (geometry.index!.count === 0) throw new Problem('mesh_unsupported', 'There are no triangles in this file.');
+  const decoded = decodedScene(scene);
+  if (decoded.faces === 0) throw new Problem('mesh_unsupported', 'There are no triangles in this file.');
+  decoded.missing.push(...missing);
+  return decoded;
+}
+
+/// The triangles of all of it are put together when they are asked for.
+export function decodedScene(scene: Object3D): Decoded {
+  scene.updateMatrixWorld(true);
+  const geometries = new Set<BufferGeometry>();
+  scene.traverse((object) => isMesh(object) && geometries.add(object.geometry));
   let vertices = 0;
   let faces = 0;
   for (const one of geometries) {
     vertices += one.getAttribute('position').count;
     faces += Math.floor(cornersOf(one) / 3);
   }
-  const dispose = () => {
-    geometry.dispose();
-    disposeScene(scene);
+  let merged: BufferGeometry | null = null;
+  return {
+    get geometry() {
+      return (merged ??= mergedGeometry(scene));
+    },
+    scene,
+    vertices,
+    faces,
+    missing: [],
+    dispose: () => {
+      merged?.dispose();
+      disposeScene(scene);
+    },
   };
-  return { geometry, scene, vertices, faces, missing: [...missing], dispose };
 }
 
-function isMesh(object: Object3D): object is Mesh {
+export function isMesh(object: Object3D): object is Mesh {
   return object instanceof Mesh && (object.geometry as BufferGeometry).hasAttribute('position');
 }
 

@@ -1,7 +1,8 @@
 // What the page asks of the server, by the client of the npm package.
 
-import { Client, type EncodedLevel, Problem, type Summary } from '../../npm/src/client';
-import { type Encoded, kindOf, mediaTypes } from './model';
+import { Client, type EncodedLevel, type Levels, Problem, type Summary } from 'papilio/client';
+
+import { type Encoded, kindOf } from './model';
 import type { ParameterKind } from './parameters';
 
 export { Problem, type Summary };
@@ -31,7 +32,7 @@ export interface Level {
 
 /// The key that is sent with each request; empty: none.
 let key = '';
-const client = new Client({ key: () => key });
+export const client = new Client({ key: () => key });
 
 export function setKey(text: string): void {
   key = text;
@@ -53,35 +54,13 @@ export async function fetchStored(id: string): Promise<Encoded> {
   return encodedOf(await client.stored(id));
 }
 
-/// Stores the mesh; resolves with its id.
-export async function store({ kind, bytes }: Encoded): Promise<string> {
-  return (await client.store({ type: mediaTypes[kind], bytes })).id;
-}
-
-/// Refines a mesh or a scene: the stored one of this id, or where the server could not store it (null) the bytes. Calls
-/// onLevel for each level of a mesh as it comes, the coarse mesh first; for a scene, whose levels would each bring its
-/// images again, with the result alone. Rejects with a Problem, or with an AbortError once the signal says so.
-export async function refine(
-  { kind, bytes }: Encoded,
-  id: string | null,
-  query: string,
-  onLevel: (level: Level) => void,
-  signal: AbortSignal,
-): Promise<Summary> {
-  const mesh = { type: mediaTypes[kind], bytes };
-  if (kind === 'scene') {
-    const fine = await (id === null
-      ? client.refine(mesh, query, { signal })
-      : client.refineStored(id, query, { signal }));
-    onLevel(levelOf(fine!));
-    return fine!.summary;
-  }
-  const levels = id === null ? client.levels(mesh, query, { signal }) : client.levelsOfStored(id, query, { signal });
+/// Hands over the levels as they come, and resolves with the summary.
+export async function read(levels: Levels, onLevel: (level: Level) => void): Promise<Summary> {
   for await (const level of levels) onLevel(levelOf(level));
   return levels.summary;
 }
 
-function levelOf(level: EncodedLevel): Level {
+export function levelOf(level: EncodedLevel): Level {
   const { vertices, faces, timing } = level;
   return { encoded: encodedOf(level), vertices, faces, timing };
 }

@@ -7,20 +7,25 @@ import {
   CameraHelper,
   DirectionalLight,
   type Object3D,
-  OrthographicCamera,
+  type OrthographicCamera,
   PerspectiveCamera,
   PMREMGenerator,
   Quaternion,
+  Raycaster,
   Scene,
   Sphere,
   Spherical,
   type Texture,
+  Vector2,
   Vector3,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 
+import { cameraOf, type Lens, orthographic } from './camera';
+import { framed } from './framing';
+import { glide } from './glide';
 import type { Camera, Frozen } from './link';
 
 /// How long the camera must have been still to be at rest, in milliseconds.
@@ -32,13 +37,6 @@ interface View {
   ambient: AmbientLight;
   content: Object3D | null;
   frustum: CameraHelper | null;
-}
-
-/// How the picture is made, apart from where the camera is.
-export interface Lens {
-  fovY: number; // degrees
-  isOrthographic: boolean;
-  up: [number, number, number];
 }
 
 export class Stage {
@@ -63,6 +61,9 @@ export class Stage {
   /// A finger or a button is down: the camera is not at rest, however still.
   #isHeld = false;
   #isDue = false;
+  /// Where the first panel's picture ends and the last one's begins, which lie in the same place; null: they do not.
+  #wipe: number | null = null;
+  #stopGliding = () => {};
 
   /// `surface` is as large as the canvas; on it the mesh is turned. Throws where the browser has no WebGL.
   constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
@@ -70,6 +71,17 @@ export class Stage {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#controls = this.#makeControls();
     new ResizeObserver(() => this.#moved()).observe(surface);
+    surface.addEventListener('dblclick', (event) => this.#focus(event));
+    surface.addEventListener('pointerdown', () => this.#stopGliding());
+    surface.addEventListener('wheel', () => this.#stopGliding(), { passive: true });
+  }
+
+  /// A share of the width; null: panels side by side.
+  set wipe(share: number | null) {
+    this.#wipe = share;
+    // In panels beside each other the cursor is not where the picture is.
+    this.#controls.zoomToCursor = share !== null || this.#panels.length === 1;
+    this.draw();
   }
 
   /// The panels on screen: what each shows is drawn where it lies. Others keep what they show.
@@ -95,11 +107,11 @@ export class Stage {
     view.content = content;
     if (content) view.scene.add(content);
     // Metals show what is round them.
-    const isLit = hasMaterials(content);
-    view.scene.environment = isLit ? this.#roomLight() : null;
+    const isColoured = content?.userData.isColoured === true; // by what must be read
+    view.scene.environment = isColoured ? null : this.#roomLight();
     view.scene.environmentIntensity = 0.5; // white stays below white
-    view.light.intensity = isLit ? 1.5 : 2.4;
-    view.ambient.intensity = isLit ? 0 : 0.7;
+    view.light.intensity = isColoured ? 2.4 : 1.5;
+    view.ambient.intensity = isColoured ? 0.7 : 0;
     this.draw();
   }
 
@@ -110,14 +122,7 @@ export class Stage {
       view.frustum?.dispose();
       view.frustum = null;
       if (camera === null) continue;
-      const distance = new Vector3(...camera.eye).distanceTo(new Vector3(...camera.target));
-      const aspect = camera.pixels[0] / camera.pixels[1];
-      const looking = new PerspectiveCamera(this.#lens.fovY, aspect, distance / 8, distance);
-      looking.up.set(...this.#lens.up);
-      looking.position.set(...camera.eye);
-      looking.lookAt(new Vector3(...camera.target));
-      looking.updateMatrixWorld();
-      view.frustum = new CameraHelper(looking);
+      view.frustum = new CameraHelper(cameraOf(camera, this.#lens, 1 / 8, 1));
       view.scene.add(view.frustum);
     }
     this.draw();
@@ -161,29 +166,8 @@ export class Stage {
   }
 
   resetCamera(): void {
-    const position = this.#framed?.getAttribute('position');
-    if (position === undefined) return;
-    const aspect = Math.min(...this.#panels.map(aspectOf));
-    const high = 0.9 * Math.tan((this.#lens.fovY * Math.PI) / 360); // the caption takes the rest
-    const wide = 0.95 * aspect * Math.tan((this.#lens.fovY * Math.PI) / 360);
-    const up = new Vector3(...this.#lens.up).normalize();
-    const axes = [new Vector3(0, 0, 1), new Vector3(1, 0, 0)];
-    const front = axes.find((axis) => Math.abs(axis.dot(up)) < 0.8)!; // with y up, z
-    const side = up.clone().cross(front).normalize();
-    const towards = side.clone().cross(up).addScaledVector(side, 0.55).normalize().addScaledVector(up, 0.4).normalize();
-    const right = up.clone().cross(towards).normalize();
-    const above = towards.clone().cross(right);
-    const { center } = this.#sphere;
-    // From where the last vertex comes into the picture.
-    let distance = 0;
-    const point = new Vector3();
-    for (let v = 0; v < position.count; ++v) {
-      point.fromBufferAttribute(position, v).sub(center);
-      const across = Math.max(Math.abs(point.dot(above)) / high, Math.abs(point.dot(right)) / wide);
-      distance = Math.max(distance, point.dot(towards) + across);
-    }
-    const eye = towards.multiplyScalar(distance).add(center);
-    this.camera = { eye: eye.toArray(), target: center.toArray() };
+    if (this.#framed !== null)
+      this.camera = framed(this.#framed, this.#sphere, Math.min(...this.#panels.map(aspectOf)), this.#lens);
   }
 
   /// Turns about the target; angles in radians.
@@ -235,7 +219,7 @@ export class Stage {
     this.#isHeld = false;
     this.#camera.up.set(...this.#lens.up);
     const controls = new OrbitControls(this.#camera, this.#surface);
-    controls.zoomToCursor = false;
+    controls.zoomToCursor = this.#wipe !== null || this.#panels.length === 1;
     controls.addEventListener('start', () => (this.#isHeld = true));
     controls.addEventListener('end', () => {
       this.#isHeld = false;
@@ -264,31 +248,60 @@ export class Stage {
     this.#camera.fov = this.#lens.fovY;
     this.#camera.near = Math.max(toMesh - 3 * this.#sphere.radius, toTarget / 1000);
     this.#camera.far = Math.max(toMesh + 3 * this.#sphere.radius, 2 * toTarget);
-    for (const element of this.#panels) {
+    for (const [i, element] of this.#panels.entries()) {
       const { scene, light } = this.#views.get(element)!;
       const at = element.getBoundingClientRect();
-      const place = [at.left - bounds.left, bounds.bottom - at.bottom, at.width, at.height] as const;
-      this.#renderer.setViewport(...place);
-      this.#renderer.setScissor(...place);
-      this.#camera.aspect = aspectOf(element);
-      this.#camera.updateProjectionMatrix();
-      this.#camera.updateMatrixWorld();
+      const [left, bottom] = [at.left - bounds.left, bounds.bottom - at.bottom];
+      this.#renderer.setViewport(left, bottom, at.width, at.height);
+      const [from, to] = this.#wipe === null ? [0, 1] : i === 0 ? [0, this.#wipe] : [this.#wipe, 1];
+      this.#renderer.setScissor(left + from * at.width, bottom, (to - from) * at.width, at.height);
+      const camera = this.#lookingAt(element);
       // From over the left shoulder.
       light.position.set(-0.5, 0.7, 0.6).multiplyScalar(toTarget).applyMatrix4(this.#camera.matrixWorld);
       light.target.position.copy(this.#controls.target);
-      this.#renderer.render(scene, this.#lens.isOrthographic ? this.#orthographic(toTarget) : this.#camera);
+      this.#renderer.render(scene, camera);
     }
   }
 
-  /// Shows at every depth what perspective shows at the target.
-  #orthographic(toTarget: number): OrthographicCamera {
-    const height = toTarget * Math.tan((this.#camera.fov * Math.PI) / 360);
-    const width = height * this.#camera.aspect;
-    const camera = new OrthographicCamera(-width, width, height, -height, this.#camera.near, this.#camera.far);
+  /// The camera with the panel's picture.
+  #lookingAt(element: HTMLElement): PerspectiveCamera | OrthographicCamera {
+    this.#camera.aspect = aspectOf(element);
+    this.#camera.updateProjectionMatrix();
+    this.#camera.updateMatrixWorld();
+    if (!this.#lens.isOrthographic) return this.#camera;
+    const toTarget = this.#camera.position.distanceTo(this.#controls.target);
+    const camera = orthographic(this.#camera.fov, this.#camera.aspect, toTarget);
+    camera.near = this.#camera.near;
+    camera.far = this.#camera.far;
     camera.position.copy(this.#camera.position);
     camera.quaternion.copy(this.#camera.quaternion);
+    camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
     return camera;
+  }
+
+  /// Turns about what is pointed at from now on, from half as far.
+  #focus({ clientX, clientY }: MouseEvent): void {
+    const isAt = (box: DOMRect) =>
+      clientX >= box.left && clientX < box.right && clientY >= box.top && clientY < box.bottom;
+    const element = this.#panels.filter((panel) => isAt(panel.getBoundingClientRect())).at(-1);
+    const content = element && this.#views.get(element)?.content;
+    if (!content) return;
+    const box = element.getBoundingClientRect();
+    const at = new Vector2(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(at, this.#lookingAt(element));
+    ray.params.Line.threshold = 0;
+    const hit = ray.intersectObject(content, true).find(({ face }) => face);
+    if (hit === undefined) return;
+    const from = this.camera;
+    const eye = new Vector3(...from.eye)
+      .sub(new Vector3(...from.target))
+      .multiplyScalar(0.5)
+      .add(hit.point);
+    this.#stopGliding();
+    const to = { eye: eye.toArray(), target: hit.point.toArray() };
+    this.#stopGliding = glide(from, to, (camera) => (this.camera = camera));
   }
 }
 
@@ -297,16 +310,9 @@ function aspectOf(element: HTMLElement): number {
   return Math.max(width, 1) / Math.max(height, 1);
 }
 
-/// Whether it is a scene with materials of its own, or has one.
-function hasMaterials(content: Object3D | null): boolean {
-  return content !== null && [content, ...content.children].some(({ userData }) => userData.hasMaterials === true);
-}
-
 /// Scenes with materials of their own are shown again in other looks, and freed by those who decoded them.
 function dispose(content: Object3D | null): void {
   if (content === null || content.userData.hasMaterials === true) return;
   for (const child of [...content.children]) dispose(child);
-  const { geometry, material } = content as { geometry?: { dispose(): void }; material?: { dispose(): void } };
-  geometry?.dispose();
-  material?.dispose();
+  (content as { geometry?: { dispose(): void } }).geometry?.dispose(); // materials are for all pictures
 }

@@ -1,44 +1,43 @@
 // The page: what is open, what is shown of it, and what the user has set.
 
-import { commandRows, copy } from './commands';
+import { Alert } from './alert';
+import { Asker, lensOf } from './asker';
+import { commandRows, commandsFor, copy } from './commands';
+import { Controls } from './controls';
 import { decode } from './decode';
-import { defaults, lookTitles } from './defaults';
+import { defaults } from './defaults';
 import { fetchDecoder } from './draco';
-import { addChoice, button, element, find } from './elements';
-import { figures } from './figures';
-import { listenToDrops, listenToKeys } from './input';
-import {
-  curlOf,
-  type Frozen,
-  fromHash,
-  isStored,
-  type Look,
-  looks,
-  type Mode,
-  modes,
-  shortest,
-  type State,
-  toHash,
-} from './link';
+import { addChoice, find } from './elements';
+import { listenToFiles, listenToKeys } from './input';
+import { askForKey, listenToKey } from './key_form';
+import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest, type State, toHash } from './link';
 import { OpenMesh } from './mesh';
-import { type Encoded, extensionOf } from './model';
-import { extensions, readMeshFile } from './open_file';
+import { MeshSelect } from './mesh_select';
+import type { Encoded } from './model';
+import { extensions, meshAmong, readMeshFile } from './open_file';
 import { Panel } from './panel';
 import { ParameterForm } from './parameter_form';
-import { queryOf } from './parameters';
 import { Pictures } from './pictures';
-import { levelsOf, noteFor, valuesFor } from './requests';
-import { fetchInfo, fetchSample, fetchStored, hasKey, type Info, Problem, setKey } from './service';
+import { levelsOf } from './requests';
+import { Results } from './results';
+import { fetchInfo, fetchSample, fetchStored, Problem } from './service';
 import { Stage } from './stage';
+import { showParts } from './tree';
+import { Wipe } from './wipe';
 
 export class Viewer {
   #state: State = fromHash(location.hash, defaults);
-  #info: Info | null = null;
   #mesh: OpenMesh | null = null;
   #panels = new Map(modes.map((mode) => [mode, new Panel(mode)]));
   #form = new ParameterForm(find<HTMLFormElement>('parameters'));
+  #controls = new Controls();
+  #alert = new Alert();
+  #wipe = new Wipe();
   #stage: Stage;
   #pictures: Pictures;
+  #results: Results;
+  #select = new MeshSelect();
+  #asker: Asker;
   /// How many meshes were asked to be opened.
   #opening = 0;
 
@@ -46,12 +45,19 @@ export class Viewer {
   constructor() {
     this.#stage = new Stage(find<HTMLCanvasElement>('canvas'), find('panels'));
     this.#pictures = new Pictures(this.#stage);
-    this.#stage.onMove = () => this.#showCamera();
+    this.#results = new Results(this.#pictures);
+    this.#asker = new Asker(() => ({ state: this.#state, look: this.#look(), view: this.#view() }));
+    this.#asker.onChange = () => this.#refresh();
+    this.#stage.onMove = () => this.#cameraMoves();
     this.#stage.onRest = () => this.#cameraRests();
     for (const panel of this.#panels.values()) {
       panel.onChange = () => this.#showResults();
       panel.onProblem = (problem) => this.#point(problem);
-      panel.onEnlarge = () => this.#setModes(this.#state.modes.length > 1 ? [panel.mode] : [...modes]);
+      panel.onEnlarge = () => {
+        const isAlone = this.#visible().length === 1;
+        this.#state.arrangement = 'panels';
+        this.#setModes(isAlone ? [...modes] : [panel.mode]);
+      };
     }
     this.#makeChoices();
     this.#listen();
@@ -61,7 +67,7 @@ export class Viewer {
   /// Fetches what is to be there first; again what could not be had.
   async start(): Promise<void> {
     fetchDecoder().catch(() => {}); // told by what is decoded
-    const info = this.#info === null ? this.#fetchInfo() : null;
+    const info = this.#asker.info === null ? this.#fetchInfo() : null;
     await Promise.all([info, this.#mesh === null ? this.#openNamed(this.#state.mesh) : null]);
   }
 
@@ -69,14 +75,13 @@ export class Viewer {
 
   async #fetchInfo(): Promise<void> {
     try {
-      this.#info = await fetchInfo();
+      this.#asker.info = await fetchInfo();
     } catch (error) {
       this.#tell(error, () => void this.start());
       return;
     }
     this.#showParameters();
-    const samples = this.#info.samples.map(({ name, faces }) => new Option(`${name} (${faces} faces)`, name));
-    find('sample').replaceChildren(...samples);
+    this.#select.samples = this.#asker.info.samples;
     this.#nameMesh();
     this.#refresh();
   }
@@ -86,9 +91,11 @@ export class Viewer {
     await this.#open(name, true, () => (isStored(name) ? fetchStored(name) : fetchSample(name)));
   }
 
-  async #openFile(file: File): Promise<void> {
-    const most = this.#info?.limits.max_body_bytes ?? Infinity;
-    await this.#open(file.name, false, () => readMeshFile(file, most));
+  /// A mesh, and what it names besides.
+  async #openFiles(files: File[]): Promise<void> {
+    const most = this.#asker.info?.limits.max_body_bytes ?? Infinity;
+    const file = meshAmong(files);
+    await this.#open(file.name.replace(/\.gltf$/i, '.glb'), false, () => readMeshFile(file, files, most));
   }
 
   /// What is open stays so unless all goes well.
@@ -115,14 +122,17 @@ export class Viewer {
   #show(mesh: OpenMesh, isNamed: boolean): void {
     // The first one may come with a link's camera.
     if (this.#mesh !== null) this.#state.camera = this.#state.frozen = null;
-    this.#mesh?.decoded.dispose();
+    this.#mesh?.dispose();
     this.#mesh = mesh;
+    this.#asker.mesh = mesh;
     this.#showParameters();
     this.#showChoices();
+    showParts(mesh.decoded.scene, (hidden) => (this.#pictures.hidden = hidden));
     this.#state.mesh = isNamed ? mesh.name : '';
     const { missing } = mesh.decoded;
-    this.#alert(missing.length > 0 ? `${mesh.name} has no ${missing.join(', ')} inside, which is shown white.` : null);
-    this.#setLens();
+    if (missing.length > 0) this.#alert.show(`${mesh.name} has no ${missing.join(', ')} inside, which is shown white.`);
+    else this.#alert.hide();
+    this.#stage.setLens(lensOf(this.#state.values));
     this.#stage.frame(mesh.geometry);
     if (this.#state.camera) this.#stage.camera = this.#state.camera;
     this.#showFrozen();
@@ -135,46 +145,29 @@ export class Viewer {
   #showParameters(): void {
     const ofScenes = ['output.compress', 'split_instances'];
     const isScene = this.#mesh?.isScene ?? false;
-    this.#form.setKinds((this.#info?.parameters ?? []).filter(({ name }) => isScene || !ofScenes.includes(name)));
+    this.#form.setKinds((this.#asker.info?.parameters ?? []).filter(({ name }) => isScene || !ofScenes.includes(name)));
     this.#form.setValues(this.#state.values);
     if (!isScene) for (const name of ofScenes) this.#state.values.delete(name);
   }
 
   #nameMesh(): void {
-    const select = find<HTMLSelectElement>('sample');
-    const name = this.#mesh?.name ?? this.#state.mesh;
-    const words = isStored(name) ? `stored ${name.slice(0, 8)}` : name;
-    select.querySelector('option[data-own]')?.remove();
-    if (![...select.options].some((option) => option.value === name)) {
-      const option = new Option(words, name);
-      option.dataset.own = '';
-      select.add(option);
-    }
-    select.value = name;
-    document.title = `${words} – Papilio`;
+    this.#select.name = this.#mesh?.name ?? this.#state.mesh;
   }
 
   // Asking
 
   /// Asks for what is shown and not there yet.
   #refresh(): void {
-    this.#setLens();
+    this.#stage.setLens(lensOf(this.#state.values));
     this.#writeLink();
     const mesh = this.#mesh;
     if (mesh === null) return;
-    const { values, look } = this.#state;
     for (const [mode, panel] of this.#panels) {
-      const isNeeded = this.#state.modes.includes(mode) || (mode === 'uniform' && look === 'distance');
+      const isNeeded = this.#visible().includes(panel) || (mode === 'uniform' && this.#state.look === 'distance');
       if (!isNeeded) panel.stop();
-      else if (mode === 'coarse') panel.ask(mesh, null);
-      else if (this.#info) panel.ask(mesh, this.#queryFor(mode, this.#info), noteFor(mode, values));
+      else this.#asker.ask(panel);
     }
     void this.#writeCommands(mesh);
-  }
-
-  #queryFor(mode: Mode, info: Info): string {
-    const view = this.#state.frozen ?? this.#view();
-    return queryOf(valuesFor(mode, this.#state.values, view), info.parameters);
   }
 
   /// What the camera sees now, in the panel that is for it.
@@ -183,16 +176,11 @@ export class Viewer {
     return { ...this.#stage.camera, pixels: this.#stage.pixelsOf(panel.element) };
   }
 
-  #setLens(): void {
-    const { values } = this.#state;
-    const up = (values.get('view.up') ?? '').split(',').map(Number);
-    const isUp = up.length === 3 && up.every(Number.isFinite) && up.some((x) => x !== 0);
-    const fovY = Number(values.get('view.fov_y') ?? 45);
-    this.#stage.setLens({
-      fovY: fovY > 0 && fovY < 180 ? fovY : 45,
-      isOrthographic: values.get('view.projection') === 'orthographic',
-      up: isUp ? (up as [number, number, number]) : [0, 1, 0],
-    });
+  /// What is refined here follows the camera.
+  #cameraMoves(): void {
+    this.#showCamera();
+    const panel = this.#panels.get('view')!;
+    if (this.#visible().includes(panel) && this.#asker.isLive) this.#asker.ask(panel);
   }
 
   #cameraRests(): void {
@@ -211,34 +199,33 @@ export class Viewer {
 
   #setPanels(): void {
     const shown = this.#visible();
+    const isWiped = this.#state.arrangement === 'wipe' && shown.length > 1;
     for (const panel of shown) panel.setEnlarged(shown.length === 1);
     const container = find('panels');
+    container.dataset.as = isWiped ? 'wipe' : 'panels';
     container.dataset.count = String(shown.length);
     container.replaceChildren(...shown.map((panel) => panel.element));
     this.#stage.setPanels(shown.map((panel) => panel.element));
+    this.#wipe.isShown = isWiped;
+    this.#stage.wipe = isWiped ? this.#wipe.share : null;
+    find('stage').dataset.ground = this.#state.ground;
     this.#showFrozen();
     this.#showResults();
   }
 
+  /// Of a wipe the first and the last that are chosen; one alone is coarse beside itself.
   #visible(): Panel[] {
-    return this.#state.modes.map((mode) => this.#panels.get(mode)!);
+    const { arrangement } = this.#state;
+    let chosen = this.#state.modes;
+    if (arrangement === 'wipe') chosen = chosen.length > 1 ? [chosen[0], chosen.at(-1)!] : ['coarse', 'view'];
+    return chosen.map((mode) => this.#panels.get(mode)!);
   }
 
-  /// Pictures and figures of what has come.
   #showResults(): void {
-    const mesh = this.#mesh;
-    const latest = this.#panels.get('uniform')!.shown;
-    const uniform = latest !== null && latest.mesh === mesh && latest.summary !== null ? latest : null;
-    const levels = levelsOf(this.#state.values);
-    const failure = this.#panels.get('uniform')!.problem;
-    const missing = failure ? `no uniform result: ${failure.message}` : 'waiting for the uniform result …';
-    this.#pictures
-      .draw(this.#visible(), this.#look(), levels, uniform ?? missing)
+    const levels = levelsOf(this.#state.values, this.#mesh?.decoded.faces ?? 0);
+    this.#results
+      .show(this.#mesh, this.#visible(), this.#panels.get('uniform')!, levels, this.#look())
       .catch((error: unknown) => this.#tell(error));
-    if (mesh === null) return;
-    const current = this.#visible().filter((panel) => panel.shown?.mesh === mesh);
-    const uniformFaces = uniform?.faces ?? mesh.decoded.faces * 4 ** levels;
-    find('figures').replaceChildren(...figures(current, uniformFaces, uniform?.encoded.bytes.length ?? null));
   }
 
   /// Where the camera is, in the form.
@@ -258,21 +245,23 @@ export class Viewer {
     history.replaceState(null, '', `#${toHash(this.#state)}`);
   }
 
-  async #writeCommands(mesh: OpenMesh): Promise<void> {
+  /// Stores the mesh, of which a file's has a name in links from then on. Null where the server cannot store it.
+  async #store(mesh: OpenMesh): Promise<string | null> {
     const id = await mesh.id.catch(() => null); // the panels tell
-    if (mesh !== this.#mesh || this.#info === null) return;
-    if (this.#state.mesh === '' && id !== null) {
-      this.#state.mesh = id; // a file's mesh has a name in links once it is stored
+    if (mesh === this.#mesh && this.#state.mesh === '' && id !== null) {
+      this.#state.mesh = id;
       this.#writeLink();
     }
-    const base = new URL('.', location.href).href;
-    const { kind } = mesh.encoded;
-    const file = mesh.name.endsWith(extensionOf[kind]) ? mesh.name : `mesh${extensionOf[kind]}`;
-    const commands = this.#visible().map(({ mode, title }) => {
-      const query = mode === 'coarse' ? null : this.#queryFor(mode, this.#info!);
-      return { mode, title, text: curlOf(base, query, { id, file, kind }, hasKey()) };
-    });
-    find('commands').replaceChildren(...commandRows(commands.filter(({ text }) => text !== '')));
+    return id;
+  }
+
+  /// Where they are looked at: what is refined here is not sent anywhere.
+  async #writeCommands(mesh: OpenMesh): Promise<void> {
+    if (!find<HTMLDetailsElement>('advanced').open) return;
+    const id = await this.#store(mesh);
+    if (mesh !== this.#mesh || this.#asker.info === null) return;
+    const queryFor = (mode: Mode) => (mode === 'coarse' ? null : this.#asker.queryFor(mode));
+    find('commands').replaceChildren(...commandRows(commandsFor(mesh, id, this.#visible(), queryFor)));
   }
 
   // The user
@@ -281,24 +270,33 @@ export class Viewer {
     for (const mode of modes) {
       const title = this.#panels.get(mode)!.title;
       addChoice(find('modes'), { type: 'checkbox', name: 'mode', value: mode }, title, (isOn) => {
-        const others = this.#state.modes.filter((one) => one !== mode);
+        const others = this.#visible()
+          .map((panel) => panel.mode)
+          .filter((one) => one !== mode);
+        this.#state.arrangement = 'panels';
         this.#setModes(isOn || others.length === 0 ? [...others, mode] : others);
       });
     }
-    for (const look of looks)
-      addChoice(find('looks'), { type: 'radio', name: 'look', value: look }, lookTitles[look], () => {
-        this.#state.look = look;
-        this.#showResults();
-        this.#refresh();
-      });
+    this.#controls.onChoice = (choice) => {
+      Object.assign(this.#state, choice);
+      if (choice.arrangement === 'panels' && this.#visible().length < 3) this.#state.modes = [...modes];
+      if (choice.arrangement === 'wipe') this.#state.modes = ['coarse', 'view'];
+      if (this.#mesh) this.#asker.mesh = this.#mesh;
+      this.#showChoices();
+      this.#setPanels();
+      this.#refresh();
+    };
+    this.#controls.onParameter = (name, value) => {
+      this.#setParameter(name, value);
+      this.#form.setValues(this.#state.values);
+    };
     this.#showChoices();
   }
 
   #showChoices(): void {
-    for (const input of document.querySelectorAll<HTMLInputElement>('input[name=mode], input[name=look]')) {
-      input.checked = [...this.#state.modes, this.#look()].some((value) => value === input.value);
-      input.disabled = input.value === 'level' && this.#mesh?.isScene === true;
-    }
+    for (const input of document.querySelectorAll<HTMLInputElement>('input[name=mode]'))
+      input.checked = this.#visible().some(({ mode }) => mode === input.value);
+    this.#controls.show(this.#state, this.#look(), this.#mesh?.isScene === true);
   }
 
   #setModes(chosen: Mode[]): void {
@@ -310,16 +308,10 @@ export class Viewer {
 
   #listen(): void {
     const stage = this.#stage;
-    const select = find<HTMLSelectElement>('sample');
-    select.addEventListener('change', () => void this.#openNamed(select.value));
-    const file = find<HTMLInputElement>('file');
-    file.addEventListener('change', () => {
-      if (file.files?.[0]) void this.#openFile(file.files[0]);
-      file.value = ''; // the same file may be opened again
-    });
-    listenToDrops((dropped) => {
-      if (dropped) void this.#openFile(dropped);
-      else this.#alert(`That is no file. Drop one of ${extensions.join(', ')}.`);
+    this.#select.onChoice = (name) => void this.#openNamed(name);
+    listenToFiles((files) => {
+      if (files.length > 0) void this.#openFiles(files);
+      else this.#alert.show(`That is no file. Drop one of ${extensions.join(', ')}.`);
     });
     listenToKeys(find('stage'), stage);
     const frozen = find<HTMLInputElement>('frozen');
@@ -330,18 +322,21 @@ export class Viewer {
     });
     find('reset-camera').addEventListener('click', () => stage.resetCamera());
     const copyLink = find<HTMLButtonElement>('copy-link');
-    copyLink.addEventListener('click', () => void copy(location.href, copyLink));
-    find('alert-close').addEventListener('click', () => this.#alert(null));
-    const key = find<HTMLInputElement>('key');
-    find('key-form').addEventListener('submit', (event) => event.preventDefault()); // Enter is a change too
-    key.addEventListener('change', () => this.#setKey(key.value.trim()));
+    copyLink.addEventListener('click', async () => {
+      if (this.#mesh !== null) await this.#store(this.#mesh);
+      void copy(location.href, copyLink);
+    });
+    find('advanced').addEventListener('toggle', () => this.#mesh && void this.#writeCommands(this.#mesh));
+    this.#wipe.onChange = (share) => {
+      if (this.#state.arrangement === 'wipe') stage.wipe = share;
+    };
+    listenToKey(() => this.#keyChanged());
     this.#form.onChange = (name, value) => this.#setParameter(name, value);
     window.addEventListener('hashchange', () => void this.#followLink());
   }
 
-  #setKey(key: string): void {
-    setKey(key);
-    this.#alert(null);
+  #keyChanged(): void {
+    this.#alert.hide();
     for (const panel of this.#panels.values()) panel.stop();
     if (this.#mesh === null) void this.#openNamed(this.#state.mesh);
     else this.#refresh();
@@ -357,6 +352,7 @@ export class Viewer {
     }
     if (value === null) this.#state.values.delete(name);
     else this.#state.values.set(name, value);
+    this.#showChoices();
     this.#refresh();
   }
 
@@ -378,24 +374,12 @@ export class Viewer {
   #tell(error: unknown, again?: () => void): void {
     if (error instanceof Problem) this.#point(error);
     const mayDoBetter = error instanceof Problem && error.retryAfter !== null;
-    this.#alert(error instanceof Error ? error.message : String(error), mayDoBetter ? again : undefined);
+    this.#alert.show(error instanceof Error ? error.message : String(error), mayDoBetter ? again : undefined);
   }
 
   /// Shows where something can be done about it.
   #point(problem: Problem): void {
     if (problem.parameter) this.#form.setFault(problem.parameter, problem.message);
-    if (problem.code === 'unauthorized' || problem.code === 'forbidden') find('key-form').hidden = false;
-  }
-
-  /// Null: nothing is wrong any more.
-  #alert(words: string | null, again?: () => void): void {
-    find('alert').hidden = words === null;
-    find('alert-text').replaceChildren(element('span', '', words ?? ''));
-    if (again === undefined) return;
-    const retry = button('Try again', () => {
-      this.#alert(null);
-      again();
-    });
-    find('alert-text').append(' ', retry);
+    if (problem.code === 'unauthorized' || problem.code === 'forbidden') askForKey();
   }
 }

@@ -1,0 +1,26 @@
+// What the page says when something is wrong, above everything.
+
+import { button, element, find } from './elements';
+
+export class Alert {
+  constructor() {
+    find('alert-close').addEventListener('click', () => this.hide());
+  }
+
+  /// `again`: offers to try it again.
+  show(words: string, again?: () => void): void {
+    find('alert').hidden = false;
+    find('alert-text').replaceChildren(element('span', '', words));
+    if (again === undefined) return;
+    const retry = button('Try again', () => {
+      this.hide();
+      again();
+    });
+    find('alert-text').append(' ', retry);
+  }
+
+  hide(): void {
+    find('alert').hidden = true;
+    find('alert-text').replaceChildren();
+  }
+}

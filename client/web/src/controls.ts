@@ -1,0 +1,62 @@
+// What most users set: how fine, what becomes of hard edges, who refines, and how it is shown.
+
+import { addChoice, find } from './elements';
+import { arrangementTitles, groundTitles, lookTitles, placeTitles } from './defaults';
+import { arrangements, grounds, type Look, looks, places, type State } from './link';
+import type { Values } from './parameters';
+
+/// Pixels of error at the ends of the slider.
+const [coarsest, finest] = [16, 0.125];
+
+export class Controls {
+  /// The user has chosen something other of these.
+  onChoice: (choice: Partial<Pick<State, 'arrangement' | 'look' | 'where' | 'ground'>>) => void = () => {};
+  /// The user has set a parameter; null: back to its default.
+  onParameter: (name: string, value: string | null) => void = () => {};
+  #detail = find<HTMLInputElement>('detail');
+
+  constructor() {
+    this.#detail.addEventListener('input', () => {
+      const pixels = coarsest * (finest / coarsest) ** (Number(this.#detail.value) / 100);
+      this.onParameter('view.error_pixels', String(Number(pixels.toPrecision(2))));
+    });
+    const radio = (id: string, name: string, value: string, title: string, choose: () => void) =>
+      addChoice(find(id), { type: 'radio', name, value }, title, choose);
+    radio('edges', 'edges', 'keep', 'keep', () => this.onParameter('shape', null));
+    radio('edges', 'edges', 'round', 'round', () => this.onParameter('shape', 'organic'));
+    for (const where of places) radio('places', 'where', where, placeTitles[where], () => this.onChoice({ where }));
+    for (const arrangement of arrangements)
+      radio('arrangements', 'as', arrangement, arrangementTitles[arrangement], () => this.onChoice({ arrangement }));
+    for (const look of looks) radio('looks', 'look', look, lookTitles[look], () => this.onChoice({ look }));
+    for (const ground of grounds)
+      radio('grounds', 'ground', ground, groundTitles[ground], () => this.onChoice({ ground }));
+  }
+
+  /// `look`: as it is shown; `isScene`: of which levels do not come one by one.
+  show({ arrangement, where, ground, values }: State, look: Look, isScene: boolean): void {
+    const chosen = new Map<string, string>([
+      ['as', arrangement],
+      ['where', where],
+      ['ground', ground],
+      ['look', look],
+      ['edges', edgesOf(values)],
+    ]);
+    for (const [name, value] of chosen)
+      for (const input of document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)) {
+        input.checked = input.value === value;
+        if (name === 'look') input.disabled = input.value === 'level' && isScene;
+      }
+    const pixels = Number(values.get('view.error_pixels') ?? NaN);
+    find('detail-words').textContent = Number.isNaN(pixels)
+      ? 'as Advanced says'
+      : `within ${pixels} pixel${pixels === 1 ? '' : 's'}`;
+    if (Number.isNaN(pixels) || this.#detail === document.activeElement) return;
+    this.#detail.value = String((100 * Math.log(pixels / coarsest)) / Math.log(finest / coarsest));
+  }
+}
+
+/// Neither, where the shape was named in another way.
+function edgesOf(values: Values): string {
+  const shape = values.get('shape') ?? 'auto';
+  return shape === 'auto' ? 'keep' : shape === 'organic' ? 'round' : '';
+}

@@ -1,0 +1,85 @@
+// A .gltf file and the buffers and images that it names, as one .glb.
+
+import type { Bytes } from './model';
+import { Problem } from './service';
+
+interface Named {
+  uri?: string;
+  bufferView?: number;
+  mimeType?: string;
+}
+interface Document {
+  buffers?: { uri?: string; byteLength: number }[];
+  bufferViews?: { buffer: number; byteOffset?: number; byteLength: number }[];
+  images?: Named[];
+}
+
+const mediaTypes: Record<string, string> = {
+  png: 'image/png',
+  jpg: 'image/jpeg',
+  jpeg: 'image/jpeg',
+  webp: 'image/webp',
+};
+const padded = (length: number) => (length + 3) & ~3;
+
+/// `files`: what was dropped or picked with it, by whose names the document's addresses are found. Rejects with a Problem
+/// where a buffer is missing; an image that is missing stays named.
+export async function packGlb(gltf: File, files: readonly File[]): Promise<Bytes> {
+  let document: Document;
+  try {
+    document = JSON.parse(await gltf.text()) as Document;
+  } catch {
+    throw new Problem('damaged', `${gltf.name} is no glTF: it is not JSON.`);
+  }
+  const find = async (uri: string): Promise<Bytes | null> => {
+    if (uri.startsWith('data:')) return new Uint8Array(await (await fetch(uri)).arrayBuffer());
+    const name = decodeURIComponent(uri).split('/').at(-1);
+    const file = files.find((one) => one.name === name);
+    return file ? new Uint8Array(await file.arrayBuffer()) : null;
+  };
+  const chunks: Bytes[] = [];
+  let length = 0;
+  const append = (bytes: Bytes): number => {
+    const at = length;
+    chunks.push(bytes);
+    length += padded(bytes.length);
+    return at;
+  };
+  const views = (document.bufferViews ??= []);
+  for (const [b, { uri, byteLength }] of (document.buffers ?? []).entries()) {
+    const bytes = uri === undefined ? null : await find(uri);
+    if (bytes === null || bytes.length < byteLength)
+      throw new Problem('missing_file', `${gltf.name} needs ${uri ?? 'a buffer'}: drop or pick both files together.`);
+    const at = append(bytes);
+    for (const view of views)
+      if (view.buffer === b) Object.assign(view, { buffer: -1, byteOffset: at + (view.byteOffset ?? 0) });
+  }
+  for (const image of document.images ?? []) {
+    const bytes = image.uri === undefined ? null : await find(image.uri);
+    if (bytes === null) continue;
+    image.mimeType ??= mediaTypes[image.uri!.split('.').at(-1)!.toLowerCase()] ?? 'image/png';
+    image.bufferView = views.push({ buffer: -1, byteOffset: append(bytes), byteLength: bytes.length }) - 1;
+    delete image.uri;
+  }
+  for (const view of views) view.buffer = 0;
+  document.buffers = [{ byteLength: length }];
+  return glbOf(new TextEncoder().encode(JSON.stringify(document)), chunks, length);
+}
+
+function glbOf(json: Uint8Array, chunks: Bytes[], binaryLength: number): Bytes {
+  const jsonLength = padded(json.length);
+  const glb = new Uint8Array(28 + jsonLength + binaryLength);
+  const words = new DataView(glb.buffer);
+  const head = [0x46546c67, 2, glb.length, jsonLength, 0x4e4f534a];
+  for (const [i, word] of head.entries()) words.setUint32(4 * i, word, true);
+  glb.fill(0x20, 20, 20 + jsonLength);
+  glb.set(json, 20);
+  words.setUint32(20 + jsonLength, binaryLength, true);
+  words.setUint32(24 + jsonLength, 0x004e4942, true);
+  let at = 28 + jsonLength;
+  for (const chunk of chunks) {
+    glb.set(chunk, at);
+    at += padded(chunk.length);
+  }
+  return glb;
+}

@@ -1,0 +1,36 @@
+// Pictures and figures of what has come.
+
+import { find } from './elements';
+import { figures } from './figures';
+import type { Look } from './link';
+import type { OpenMesh } from './mesh';
+import type { Panel } from './panel';
+import type { Pictures } from './pictures';
+import { costOf } from './strip';
+
+export class Results {
+  #figuresDue: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(readonly pictures: Pictures) {}
+
+  /// `uniform`: the panel with the uniform result of so many levels, which others are compared with, on screen or not.
+  /// Rejects where a mesh cannot be decoded.
+  async show(mesh: OpenMesh | null, panels: Panel[], uniform: Panel, levels: number, look: Look): Promise<void> {
+    const latest = uniform.shown;
+    const reference = latest !== null && latest.mesh === mesh && latest.summary !== null ? latest : null;
+    const { problem } = uniform;
+    const missing = problem ? `no uniform result: ${problem.message}` : 'waiting for the uniform result …';
+    if (mesh !== null) {
+      const current = panels.filter((panel) => panel.shown?.mesh === mesh);
+      const refined = current.filter(({ mode }) => mode !== 'coarse').at(-1)?.shown;
+      find('cost').replaceChildren(...(refined ? costOf(refined, mesh.decoded.faces) : []));
+      // While the camera moves there is something new with each picture: tables can wait.
+      clearTimeout(this.#figuresDue);
+      this.#figuresDue = setTimeout(() => {
+        const faces = reference?.faces ?? mesh.decoded.faces * 4 ** levels;
+        find('figures').replaceChildren(...figures(current, faces, reference?.encoded?.bytes.length ?? null));
+      }, 100);
+    }
+    await this.pictures.draw(panels, look, levels, reference ?? missing);
+  }
+}

@@ -1,0 +1,22 @@
+// What the refined mesh costs and what was found of it, in one line at the picture.
+
+import { element } from './elements';
+import { bytesOf } from './figures';
+import type { Shown } from './panel';
+
+const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 });
+
+/// `coarseFaces`: of the mesh that was opened.
+export function costOf(shown: Shown, coarseFaces: number): Node[] {
+  const { summary, timing } = shown;
+  const bytes = bytesOf(shown);
+  const took = Object.values(timing).reduce((sum, one) => sum + one, 0);
+  const parts = [`${whole(coarseFaces)} → ${whole(shown.faces)} faces`];
+  parts.push(shown.encoded === null ? '0 bytes sent: refined here' : `${whole(bytes)} bytes from the server`);
+  if (took > 0) parts.push(`${took.toFixed(took < 10 ? 1 : 0)} ms`);
+  if (summary?.error_pixels !== undefined) parts.push(`within ${Number(summary.error_pixels.toPrecision(2))} px`);
+  const nodes: Node[] = parts.map((text) => element('span', '', text));
+  if (summary?.shape?.startsWith('mechanical'))
+    nodes.push(element('span', 'found', 'This looks mechanical: its hard edges stay sharp.'));
+  return nodes;
+}

@@ -1,0 +1,69 @@
+// The parts of a scene, by name, each to be hidden and shown.
+
+import type { Object3D } from 'three';
+
+import { element, find } from './elements';
+import { isMesh } from './scene';
+
+/// Where a part is in its scene: the numbers of the children that lead there, "0/2/1".
+export type Path = string;
+
+/// More would be no help to anybody.
+const most = 500;
+
+/// Shows the tree of a scene, if it has parts. `onHidden`: the user has hidden parts or shows them again; none at first.
+export function showParts(scene: Object3D | null, onHidden: (hidden: ReadonlySet<Path>) => void): void {
+  const hidden = new Set<Path>();
+  onHidden(hidden);
+  const tree =
+    scene &&
+    treeOf(scene, (path, isHidden) => {
+      if (isHidden) hidden.add(path);
+      else hidden.delete(path);
+      onHidden(hidden);
+    });
+  find('parts-section').hidden = tree === null;
+  find('parts').replaceChildren(...(tree ? [tree] : []));
+}
+
+/// Null where there is nothing to choose from.
+function treeOf(scene: Object3D, onToggle: (path: Path, isHidden: boolean) => void): HTMLElement | null {
+  let meshes = 0;
+  scene.traverse((object) => (meshes += Number(isMesh(object))));
+  if (meshes < 2) return null;
+  let left = most;
+  const listOf = (parent: Object3D, path: Path): HTMLElement => {
+    const list = element('ul');
+    for (const [i, child] of parent.children.entries()) {
+      if (left === 0 || !hasMesh(child)) continue;
+      --left;
+      const at = path === '' ? String(i) : `${path}/${i}`;
+      const label = element('label');
+      const input = element('input');
+      input.type = 'checkbox';
+      input.checked = true;
+      input.addEventListener('change', () => onToggle(at, !input.checked));
+      label.append(input, ` ${child.name || (isMesh(child) ? 'Mesh' : 'Group')}`);
+      const item = element('li');
+      item.append(label);
+      if (child.children.some(hasMesh)) item.append(listOf(child, at));
+      list.append(item);
+    }
+    return list;
+  };
+  return listOf(scene, '');
+}
+
+/// Hides these parts of a scene, or of a refined copy of it, and shows the others.
+export function hide(scene: Object3D, hidden: ReadonlySet<Path>): void {
+  scene.traverse((object) => (object.visible = true));
+  for (const path of hidden) {
+    let at: Object3D | undefined = scene;
+    for (const i of path.split('/')) at = at?.children[Number(i)];
+    if (at) at.visible = false;
+  }
+}
+
+function hasMesh(object: Object3D): boolean {
+  return isMesh(object) || object.children.some(hasMesh);
+}

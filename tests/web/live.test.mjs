@@ -1,0 +1,254 @@
+// The page as it opens: one picture, refined in the browser while the camera moves, and the few settings that most need.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+
+import {
+  axeSource,
+  compare,
+  done,
+  drag,
+  drop,
+  facesOf,
+  meshes,
+  openPage,
+  picture,
+  refinements,
+  serverAndBrowser,
+} from './browser.mjs';
+import { cubeObj, skinnedGlb, twoCubesGlb } from './mesh_files.mjs';
+
+const shared = serverAndBrowser();
+const open = (options = {}) => openPage(shared.browser, shared.server.url, { hash: '', ...options });
+const quiet = (page) => page.waitForTimeout(700);
+
+/// Resolves once the kernel here has made what the camera sees.
+const madeHere = (page) => page.locator('.panel[data-mode=view][data-by=here][data-state=done]').waitFor();
+
+/// The faces of what was made here, whenever they change from now on.
+async function watchFaces(page) {
+  await page.evaluate(() => {
+    window.seen = [];
+    const panel = document.querySelector('.panel[data-mode=view]');
+    new MutationObserver(() => window.seen.push(panel.dataset.faces)).observe(panel, {
+      attributeFilter: ['data-faces'],
+    });
+  });
+  return () => page.evaluate(() => window.seen.map(Number));
+}
+
+test('it opens on a model, before and after in one picture, refined here and sent nowhere', async () => {
+  const context = await shared.browser.newContext();
+  const page = await context.newPage();
+  const [posts, faults] = [[], []];
+  page.on('request', (request) => request.method() === 'POST' && posts.push(request.url()));
+  page.on('pageerror', (error) => faults.push(String(error)));
+  await page.goto(shared.server.url);
+  await madeHere(page);
+  await quiet(page);
+  assert.equal(await page.locator('#sample').inputValue(), 'knot');
+  assert.equal(await page.locator('.panel').count(), 2);
+  assert.ok((await facesOf(page, 'view')) > 4 * (await facesOf(page, 'coarse')));
+  assert.match(
+    await page.locator('#cost').innerText(),
+    /432 → [\d,]+ faces.*0 bytes sent: refined here.*ms.*within .* px/s,
+  );
+  // Left and right of the line are not the same, and the line can be moved by keys.
+  const middle = await picture(page, 'view');
+  const wipe = page.locator('#wipe');
+  await wipe.fill('1000');
+  const coarse = await picture(page, 'view');
+  await wipe.fill('0');
+  const fine = await picture(page, 'view');
+  assert.ok((await compare(page, coarse, fine)).differing > 0.02);
+  assert.ok((await compare(page, coarse, middle)).differing > 0.01);
+  assert.ok((await compare(page, middle, fine)).differing > 0.01);
+  assert.deepEqual([posts, faults], [[], []]);
+});
+
+test('it refines while the camera moves, and asks the server for nothing', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await quiet(page);
+  const made = refinements(page);
+  const seen = await watchFaces(page);
+  const box = await page.locator('#stage').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let step = 1; step <= 20; ++step) {
+    await page.mouse.move(x + 12 * step, y + 4 * step);
+    await page.waitForTimeout(50);
+  }
+  const whileHeld = await seen();
+  await page.mouse.up();
+  await madeHere(page);
+  assert.ok(whileHeld.length >= 3, `${whileHeld}`);
+  assert.deepEqual(made, []);
+  // Nearer, more of what is left is large.
+  const words = await page.locator('#cost').innerText();
+  assert.ok(Number(/within ([\d.]+) px/.exec(words)[1]) <= 0.5, words);
+  assert.deepEqual(faults, []);
+});
+
+test('a frozen view keeps its refinement here too', async () => {
+  const { page } = await open();
+  await madeHere(page);
+  await page.getByLabel(/Freeze the view/).check();
+  await madeHere(page);
+  const faces = await facesOf(page, 'view');
+  const seen = await watchFaces(page);
+  await drag(page, 200, 40);
+  await quiet(page);
+  assert.deepEqual(await seen(), []);
+  assert.equal(await facesOf(page, 'view'), faces);
+});
+
+test('detail is one slider, hard edges are kept or rounded', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await drop(page, 'cube.obj', cubeObj());
+  await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
+  await madeHere(page);
+  // A cube is mechanical: nothing to refine, until its edges are to be round.
+  await page.locator('.panel[data-mode=view][data-faces="12"]').waitFor();
+  assert.match(await page.locator('#cost').innerText(), /looks mechanical/);
+  await page.getByLabel('round', { exact: true }).check();
+  await page.waitForFunction(() => document.querySelector('.panel[data-mode=view]').dataset.faces > 100);
+  await madeHere(page);
+  const slider = page.getByLabel('Detail', { exact: true });
+  const faces = [];
+  for (const [value, words] of [
+    ['0', 'within 16 pixels'],
+    ['57.142857', 'within 1 pixel'],
+    ['100', 'within 0.13 pixels'],
+  ]) {
+    await slider.fill(value);
+    assert.equal(await page.locator('#detail-words').innerText(), words);
+    await quiet(page);
+    await madeHere(page);
+    faces.push(await facesOf(page, 'view'));
+  }
+  assert.ok(faces[0] < faces[1] && faces[1] < faces[2], `${faces}`);
+  assert.match(page.url(), /shape=organic/);
+  assert.deepEqual(faults, []);
+});
+
+test('the server refines when asked to, and what that costs is said', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  const faces = await facesOf(page, 'view');
+  await Promise.all([page.waitForRequest(/refined\?/), page.getByLabel('on the server').check()]);
+  await page.locator('.panel[data-mode=view][data-by=server][data-state=done]').waitFor();
+  assert.match(await page.locator('#cost').innerText(), /[\d,]+ bytes from the server/);
+  // The same request: the same faces.
+  assert.equal(await facesOf(page, 'view'), faces);
+  await page.getByLabel('in this browser').check();
+  await madeHere(page);
+  assert.equal(await facesOf(page, 'view'), faces);
+  // The other looks and arrangements, and back.
+  await page.getByLabel('Side by side').check();
+  await done(page);
+  assert.equal(await page.locator('.panel').count(), 4);
+  await page.getByLabel('One picture, before and after').check();
+  await madeHere(page);
+  assert.equal(await page.locator('.panel').count(), 2);
+  assert.deepEqual(faults, []);
+});
+
+test('a scene is refined here part by part, and its parts can be hidden', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await drop(page, 'two.glb', twoCubesGlb());
+  await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
+  await page.getByLabel('round', { exact: true }).check();
+  await page.waitForFunction(() => document.querySelector('.panel[data-mode=view]').dataset.faces > 200);
+  await madeHere(page);
+  const names = await page.locator('#parts label').allInnerTexts();
+  assert.deepEqual(
+    names.map((name) => name.trim()),
+    ['first', 'second'],
+  );
+  await page.locator('#wipe').fill('0');
+  await quiet(page);
+  const both = await picture(page, 'view');
+  await page.getByLabel('second', { exact: true }).uncheck();
+  const one = await picture(page, 'view');
+  const { drawn } = await compare(page, both, one);
+  const left = await compare(page, one, both);
+  assert.ok(left.drawn < 0.7 * drawn, `${left.drawn} of ${drawn}`);
+  // It stays hidden in what is refined next.
+  await drag(page, 60, 10);
+  await madeHere(page);
+  assert.ok((await compare(page, await picture(page, 'view'), both)).drawn < 0.7 * drawn);
+  await page.getByLabel('second', { exact: true }).check();
+  assert.deepEqual(faults, []);
+});
+
+test('what the kernel cannot do the server does', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  const asked = page.waitForRequest(/refined\?/);
+  await drop(page, 'skinned.glb', skinnedGlb());
+  await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
+  await asked;
+  await page.locator('.panel[data-mode=view][data-by=server][data-state=done]').waitFor();
+  assert.deepEqual(faults, []);
+});
+
+test('a double click looks at what was clicked, from nearer', async () => {
+  const { page } = await open();
+  await madeHere(page);
+  await quiet(page);
+  const distance = async () => {
+    const [ex, ey, ez, tx, ty, tz] = new URLSearchParams(new URL(page.url()).hash.slice(1))
+      .get('camera')
+      .split(',')
+      .map(Number);
+    return Math.hypot(ex - tx, ey - ty, ez - tz);
+  };
+  await drag(page, 5, 0); // the link has the camera once it has moved
+  await quiet(page);
+  const before = await distance();
+  // Where the knot is: it is not drawn in its middle.
+  const box = await page.locator('#stage').boundingBox();
+  for (let x = box.x + 0.3 * box.width; x < box.x + 0.7 * box.width; x += 25) {
+    await page.mouse.dblclick(x, box.y + box.height / 2);
+    await quiet(page);
+    if ((await distance()) < 0.9 * before) break;
+  }
+  const after = await distance();
+  assert.ok(Math.abs(after / before - 0.5) < 0.01, `${after} of ${before}`);
+});
+
+test('a fine mesh is refined to the picture, not to millions of faces', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await drop(page, 'elephant.obj', readFileSync(join(meshes, 'elephant2000.obj')));
+  await page.waitForFunction(() => document.title.startsWith('elephant'));
+  await madeHere(page);
+  const faces = await facesOf(page, 'view');
+  assert.ok(faces > 4000 && faces < 64_000, `${faces}`);
+  assert.deepEqual(faults, []);
+});
+
+for (const [what, options] of [
+  ['light', { colorScheme: 'light' }],
+  ['dark', { colorScheme: 'dark' }],
+  ['on a phone', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
+])
+  test(`the page as it opens is as axe-core wants it: ${what}`, async () => {
+    const { page } = await open(options);
+    await madeHere(page);
+    await page.evaluate(readFileSync(axeSource, 'utf8'));
+    for (const ground of ['Plain', 'Light', 'Dark', 'Studio']) {
+      await page.getByLabel(ground, { exact: true }).check();
+      const found = await page.evaluate(async () => (await globalThis.axe.run()).violations);
+      const told = found.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`);
+      assert.deepEqual(told, [], ground);
+    }
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `${overflow} pixels wider than the screen`);
+  });
