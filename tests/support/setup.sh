@@ -30,7 +30,7 @@ for purpose in "$@"; do
     wasm)
       page=yes
       packages+=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 binaryen
-        libmeshoptimizer-dev dpkg-dev ninja-build cmake ccache ca-certificates)
+        libmeshoptimizer-dev nlohmann-json3-dev dpkg-dev ninja-build cmake ccache ca-certificates)
       ;;
     test)
       meshes=(cgal bunny) libraries=yes scenes=yes

@@ -171,6 +171,10 @@ test('a scene is refined here part by part, and its parts can be hidden', async 
     names.map((name) => name.trim()),
     ['first', 'second'],
   );
+  await page.locator('#wipe').fill('1000');
+  await quiet(page);
+  const before = await picture(page, 'coarse');
+  assert.ok((await compare(page, before, before)).drawn > 0.1, 'before is drawn, too');
   await page.locator('#wipe').fill('0');
   await quiet(page);
   const both = await picture(page, 'view');

@@ -47,8 +47,9 @@ export class Asker {
     const { state } = this.page();
     const note = noteFor(mode, state.values);
     if (this.#mesh === null) return;
-    // What this browser may refine is not sent anywhere before that is known.
+    // What this browser may refine is not sent anywhere before that is known. A scene is in one picture at a time.
     const isUndecided = mode === 'view' && state.where === 'here' && this.#here === undefined;
+    if (isUndecided && this.#mesh.isScene) return;
     if (mode === 'coarse' || isUndecided) panel.ask(this.#mesh, { query: null, make: null, note });
     else if (this.info !== null)
       panel.ask(this.#mesh, { query: this.queryFor(mode), make: mode === 'view' ? this.#maker() : null, note });
