@@ -172,6 +172,7 @@ test('a scene is refined here part by part, and its parts can be hidden', async 
     ['first', 'second'],
   );
   await page.locator('#wipe').fill('1000');
+  await page.getByLabel('Dark', { exact: true }).check();
   await quiet(page);
   const before = await picture(page, 'coarse');
   assert.ok((await compare(page, before, before)).drawn > 0.1, 'before is drawn, too');

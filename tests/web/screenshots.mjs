@@ -19,7 +19,7 @@ async function save(page, name) {
 const screen = { viewport: { width: 1280, height: 800 } };
 try {
   // The same mesh four ways.
-  const wide = 'levels=3&tolerance=0.001&view.error_pixels=0.5&view.edge_pixels=0';
+  const wide = 'view.error_pixels=0.5&output.normals=true';
   const four = await openPage(browser, server.url, {
     ...screen,
     hash: `mesh=bunny&show=coarse,uniform,adaptive,view&look=wireframe&${wide}`,
@@ -52,7 +52,7 @@ try {
 
   // What the page does while it is turned, wiped and zoomed.
   const { page } = await openPage(browser, server.url, {
-    viewport: { width: 960, height: 480 },
+    viewport: { width: 1180, height: 560 },
     hash: 'mesh=knot&show=coarse,view&as=wipe&look=wireframe&where=here&ground=studio&view.error_pixels=0.5&output.normals=true',
   });
   const made = page.locator('.panel[data-mode=view][data-by=here][data-state=done]');

@@ -11,6 +11,7 @@ import {
   LineSegments,
   Mesh,
   MeshStandardMaterial,
+  type MeshStandardMaterialParameters,
   type Object3D,
   SkinnedMesh,
   Vector3,
@@ -19,7 +20,7 @@ import {
 
 import type { Decoded } from './model';
 
-function material(options: { color?: number; vertexColors?: boolean; flatShading: boolean }): MeshStandardMaterial {
+function material(options: MeshStandardMaterialParameters): MeshStandardMaterial {
   return new MeshStandardMaterial({
     ...options,
     roughness: 0.55,
@@ -32,9 +33,9 @@ function material(options: { color?: number; vertexColors?: boolean; flatShading
 }
 
 // Each is for all pictures: a material that comes and goes has its shaders compiled again each time.
-const smoothSurface = material({ color: 0x9fb2c4, flatShading: false });
-const facets = material({ color: 0x9fb2c4, flatShading: true });
-const colouredFacets = material({ vertexColors: true, flatShading: true });
+const smoothSurface = material({ color: 0xa9bccd, flatShading: false });
+const facets = material({ color: 0xa9bccd, flatShading: true });
+const colouredFacets = material({ vertexColors: true, flatShading: true, toneMapped: false });
 const lines = new LineBasicMaterial({ color: 0x16344f, transparent: true });
 
 /// A scene with its materials. A mesh has facets as they are; it is smooth where it has normals.

@@ -6,6 +6,7 @@ import {
   type BufferGeometry,
   CameraHelper,
   DirectionalLight,
+  NeutralToneMapping,
   type Object3D,
   type OrthographicCamera,
   PerspectiveCamera,
@@ -69,6 +70,8 @@ export class Stage {
   constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
     this.#surface = surface;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.#renderer.toneMapping = NeutralToneMapping; // what is white keeps its shades
+    this.#renderer.toneMappingExposure = 1;
     this.#controls = this.#makeControls();
     new ResizeObserver(() => this.#moved()).observe(surface);
     surface.addEventListener('dblclick', (event) => this.#focus(event));
