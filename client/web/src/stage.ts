@@ -6,13 +6,13 @@ import {
   type BufferGeometry,
   CameraHelper,
   DirectionalLight,
-  NeutralToneMapping,
   type Object3D,
   type OrthographicCamera,
   PerspectiveCamera,
   PMREMGenerator,
   Quaternion,
   Raycaster,
+  ReinhardToneMapping,
   Scene,
   Sphere,
   Spherical,
@@ -70,8 +70,8 @@ export class Stage {
   constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
     this.#surface = surface;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.#renderer.toneMapping = NeutralToneMapping; // what is white keeps its shades
-    this.#renderer.toneMappingExposure = 1;
+    this.#renderer.toneMapping = ReinhardToneMapping; // what is white keeps its shades
+    this.#renderer.toneMappingExposure = 1.6;
     this.#controls = this.#makeControls();
     new ResizeObserver(() => this.#moved()).observe(surface);
     surface.addEventListener('dblclick', (event) => this.#focus(event));
