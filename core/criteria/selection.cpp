@@ -160,12 +160,6 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgeMarks Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
-                           const Region& region) const {
-  if (camera_) return edges_shown(mesh, trial.normals, trial.planes, longest, box, *camera_, region);
-  return region.has_edge;
-}
-
 EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                             const Buffer<uint32_t>& shared) const {
   if (!camera_) return {};
@@ -175,14 +169,6 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<d
 Buffer<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
   if (options_.flatness.empty()) return region.edges();
   return marked(find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
-}
-
-Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                   const EdgeMarks& shown) const {
-  Buffer<uint32_t> edges = curved(mesh, trial, level, region);
-  keep_if(edges, [&](uint32_t e) { return shown[e] != 0; });
-  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
-  return edges;
 }
 
 Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,

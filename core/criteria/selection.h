@@ -115,19 +115,12 @@ class Selection {
     return camera_ ? camera_->highest_pixels_per_unit(box) : 0;
   }
 
-  /// Marks the region's edges that the view shows, however small they look; all of them without a view. `longest` [V]
-  /// edges (view_culling.h), `box` of the vertices. [E]
-  [[nodiscard]] EdgeMarks shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
-                                const Region& region) const;
-  /// The same, edge by edge. `shared`: the half-edges at shared edges.
+  /// The edges that the view shows, however small they look; all of them without a view. `longest` [V] edges
+  /// (view_culling.h), `box` of the vertices; `shared`: the half-edges at shared edges.
   [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                                  const Buffer<uint32_t>& shared) const;
-  /// The region's edges that flatness (with growth) and the view want split: the paper's method, in its order. `level`
-  /// is the one to be made, from 1; `shown` as above. In ascending order.
-  [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                        const EdgeMarks& shown) const;
-
-  /// The same, of the edges whose error (below) may be `least` or more.
+  /// The region's edges that flatness (with growth) and the view want split, the paper's method, in its order; of these
+  /// those whose error (below) may be `least` or more. `level` is the one to be made, from 1. In ascending order.
   [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                         const EdgesShown& shown, const Box& box, float least) const;
 

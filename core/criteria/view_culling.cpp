@@ -165,20 +165,6 @@ Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>&
   return longest;
 }
 
-EdgeMarks edges_shown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
-                      const Buffer<double>& longest, const Box& box, const Camera& camera, const Region& region) {
-  const Topology& topology = mesh.topology;
-  Sight sight(mesh, normals, planes, longest, box, camera);
-  Buffer<uint8_t> seen_by(topology.edge_count(), 0);
-  for (uint32_t f : region.faces) {
-    const uint8_t of_face = sight.of_face(f);
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) seen_by[topology.edge[h]] |= of_face;
-  }
-  EdgeMarks marks(topology.edge_count(), 0);
-  for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = seen_by[e] == seen ? region.has_edge[e] : 0;
-  return marks;
-}
-
 /// What was found of faces already.
 class EdgesShown::Memory {
  public:
@@ -250,24 +236,13 @@ void EdgesShown::keep_shown(const Region& region, Buffer<uint32_t>& edges) const
     keep_if(edges, [&](uint32_t e) { return memory.is_shown(e); });
 }
 
-bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels) {
-  if (edge_pixels == 0) return true;
-  const uint32_t h = mesh.topology.half_edge[edge];
-  return !camera.looks_shorter(to_double(mesh.positions[mesh.topology.origin[h]]),
-                               to_double(mesh.positions[mesh.topology.tip(h)]), edge_pixels);
-}
-
 void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges) {
   if (edge_pixels == 0) return;
-  keep_if(edges, [&](uint32_t e) { return looks_long(mesh, e, camera, edge_pixels); });
-}
-
-void cull_by_view(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera, double edge_pixels,
-                  EdgeMarks& marks) {
-  const EdgeMarks shown = edges_shown(mesh, normals, {}, longest_edges(mesh), bounding_box(mesh.positions), camera,
-                                      whole_region(mesh.topology));
-  for (uint32_t e = 0; e < marks.size(); ++e)
-    if (marks[e] != 0 && (shown[e] == 0 || !looks_long(mesh, e, camera, edge_pixels))) marks[e] = 0;
+  const auto end = [&](uint32_t vertex) { return to_double(mesh.positions[vertex]); };
+  keep_if(edges, [&](uint32_t e) {
+    const uint32_t h = mesh.topology.half_edge[e];
+    return !camera.looks_shorter(end(mesh.topology.origin[h]), end(mesh.topology.tip(h)), edge_pixels);
+  });
 }
 
 }  // namespace papilio

@@ -26,20 +26,15 @@ using FacePlanes = LazyValues<float>;
 [[nodiscard]] Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions,
                                                  const Buffer<uint32_t>* faces = nullptr);
 
-/// Marks the region's edges that the view shows, the paper's section 3.2: not those all of whose faces have all three
-/// vertices outside (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so
-/// edges on the silhouette are shown; a face without normal is never away). `box` of the vertices. Shapes: normals [F],
-/// longest [V], marks [E].
-[[nodiscard]] EdgeMarks edges_shown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
-                                    const Buffer<double>& longest, const Box& box, const Camera& camera,
-                                    const Region& region);
-
-/// The same, edge by edge: a face is looked at when one of its edges is asked for. What it is made of must outlive it.
+/// The edges that a view shows, the paper's section 3.2: not those all of whose faces have all three vertices outside
+/// (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so edges on the
+/// silhouette are shown; a face without normal is never away). A face is looked at when one of its edges is asked for.
+/// The mesh and its arrays must outlive this.
 class EdgesShown {
  public:
   /// All edges are.
   EdgesShown();
-  /// Shapes as above; `shared`: the half-edges at shared edges.
+  /// Shapes: normals [F], longest [V]; `box` of the vertices; `shared`: the half-edges at shared edges.
   EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes, const Buffer<double>& longest,
              const Box& box, const Camera& camera, const Buffer<uint32_t>& shared);
   EdgesShown(EdgesShown&& other) noexcept;
@@ -57,15 +52,7 @@ class EdgesShown {
   std::unique_ptr<Memory> memory_;  ///< none: all are
 };
 
-/// Whether the edge looks at least so long, in pixels.
-[[nodiscard]] bool looks_long(const Mesh& mesh, uint32_t edge, const Camera& camera, double edge_pixels);
-
-/// Keeps those edges of the list that do.
+/// Keeps those edges of the list that look at least so long, in pixels.
 void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges);
-
-/// Unmarks the edges that the view does not need: those that it does not show (`edges_shown`) and those that look
-/// shorter than `edge_pixels`. Shapes: normals [F], marks [E].
-void cull_by_view(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera, double edge_pixels,
-                  EdgeMarks& marks);
 
 }  // namespace papilio

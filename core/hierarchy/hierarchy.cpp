@@ -181,9 +181,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   HierarchyLevel level;
   level.is_whole = true;
   level.complete.assign(mesh.topology.vertex_count, 1);
-  if (std::ranges::find(mesh.topology.kind, EdgeKind::shared) != mesh.topology.kind.end())
-    for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
-      if (mesh.topology.kind[mesh.topology.edge[h]] == EdgeKind::shared) level.shared.push_back(h);
+  level.shared = shared_half_edges(mesh.topology);
   level.box = bounding_box(mesh.positions);
   level.features = find_features(mesh.topology);
   level.mesh = std::move(mesh);

@@ -17,6 +17,14 @@ Region whole_region(const Topology& mesh) {
 
 Buffer<uint32_t> Region::edges() const { return marked(has_edge); }
 
+Buffer<uint32_t> shared_half_edges(const Topology& mesh) {
+  Buffer<uint32_t> shared;
+  if (std::ranges::find(mesh.kind, EdgeKind::shared) == mesh.kind.end()) return shared;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+    if (mesh.kind[mesh.edge[h]] == EdgeKind::shared) shared.push_back(h);
+  return shared;
+}
+
 namespace {
 
 using Word = uint64_t;

@@ -36,4 +36,7 @@ void keep_if(Buffer<uint32_t>& numbers, const IsWanted& is_wanted) {
 /// The numbers of what is marked, in ascending order. Marks are 0 or 1.
 [[nodiscard]] Buffer<uint32_t> marked(const Buffer<uint8_t>& marks);
 
+/// The half-edges at shared edges, in ascending order.
+[[nodiscard]] Buffer<uint32_t> shared_half_edges(const Topology& mesh);
+
 }  // namespace papilio

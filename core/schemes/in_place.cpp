@@ -53,10 +53,11 @@ class InPlace {
     trial_->forget();
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);
-    const bool has_view = selection_.camera() != nullptr;
-    shown_ = selection_.shown(mesh_, *trial_, has_view ? longest_edges(mesh_) : Buffer<double>{}, box_, region_);
+    if (selection_.camera() != nullptr) longest_ = longest_edges(mesh_);
+    shown_ = selection_.shown(mesh_, *trial_, longest_, box_, shared_half_edges(mesh_.topology));
+    const float least = options_.max_faces > 0 ? 0 : selection_.threshold();
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
-      const Buffer<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_);
+      const Buffer<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_, box_, least);
       targets_.assign(mesh_.topology.edge_count(), 0);
       for (uint32_t e : wanted) targets_[e] = 1;
       if (selection_.is_by_error()) keep_largest_errors(wanted);
@@ -90,7 +91,7 @@ class InPlace {
     if (!options_.measure_error) return;
     ErrorLeft left(selection_);
     for (uint32_t e : region_.edges())
-      if (shown_[e] != 0)
+      if (shown_[e])
         left.add(mesh_, *trial_, selection_.highest_pixels_per_unit(box_), e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
     result_.error_pixels = left.pixels();
@@ -124,8 +125,9 @@ class InPlace {
   Result result_;
   std::optional<Trial> trial_;
   Region region_;
-  Box box_;          ///< all of the mesh
-  EdgeMarks shown_;  ///< by the view
+  Box box_;                 ///< all of the mesh
+  Buffer<double> longest_;  ///< [V] edges (view_culling.h); empty without a view
+  EdgesShown shown_;
   EdgeMarks targets_;
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;

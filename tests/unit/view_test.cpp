@@ -38,8 +38,18 @@ std::string refused_option(const View& view) {
 }
 
 EdgeMarks seen(const Mesh& mesh, const View& view, double edge_pixels = 0) {
-  EdgeMarks marks(mesh.topology.edge_count(), 1);
-  cull_by_view(mesh, face_normals(mesh), Camera(view), edge_pixels, marks);
+  const Camera camera(view);
+  const Buffer<Vec3f> normals = face_normals(mesh);
+  const Buffer<double> longest = longest_edges(mesh);
+  const FacePlanes none_kept;
+  const EdgesShown shown(mesh, normals, none_kept, longest, bounding_box(mesh.positions), camera,
+                         shared_half_edges(mesh.topology));
+  const Region all = whole_region(mesh.topology);
+  Buffer<uint32_t> edges = all.edges();
+  shown.keep_shown(all, edges);
+  keep_long(mesh, camera, edge_pixels, edges);
+  EdgeMarks marks(mesh.topology.edge_count(), 0);
+  for (uint32_t e : edges) marks[e] = 1;
   return marks;
 }
 
@@ -186,7 +196,7 @@ TEST(Camera, WhatIsDecidedInFloatsIsSo) {
   EXPECT_LT(unsure, asked / 4);  // of those that are anywhere; far from the origin there are more
 }
 
-TEST(CullByView, KeepsTheFrontAndItsSilhouette) {
+TEST(EdgesShown, KeepsTheFrontAndItsSilhouette) {
   const Mesh mesh = build_mesh(cube());
   View view = looking_down_z();
   view.eye = {0.5, 0.5, 5};
@@ -200,7 +210,7 @@ TEST(CullByView, KeepsTheFrontAndItsSilhouette) {
   }
 }
 
-TEST(CullByView, DropsWhatIsOutsideTheFrustum) {
+TEST(EdgesShown, DropsWhatIsOutsideTheFrustum) {
   const Mesh mesh = build_mesh(grid(40, 40));  // edges of length 1 to sqrt 2, in z = 0
   View view = looking_down_z();
   view.eye = {20, 20, 5};
@@ -222,7 +232,7 @@ TEST(CullByView, DropsWhatIsOutsideTheFrustum) {
   }
 }
 
-TEST(CullByView, DropsEdgesThatLookShort) {
+TEST(EdgesShown, DropsEdgesThatLookShort) {
   const Mesh mesh = build_mesh(grid(4, 4));
   View view = looking_down_z();  // 25 pixels a unit: edges of 25, diagonals of 35
   view.eye = {2, 2, 10};
@@ -263,7 +273,7 @@ TEST(Camera, FacingIsTheCosineToTheViewer) {
   EXPECT_EQ(Camera(view).facing({4, 0, 0}, {1, 0, 0}), 0);
 }
 
-TEST(CullByView, FaceWithoutAreaIsNeverAway) {
+TEST(EdgesShown, FaceWithoutAreaIsNeverAway) {
   const Mesh mesh = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
   EXPECT_EQ(marked_count(seen(mesh, looking_down_z())), 3U);
 }
