@@ -140,18 +140,17 @@ Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigne
   margin_ = static_cast<float>(2e-6 * (length(farthest_corner(box)) + farthest));
 }
 
-Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1 : 0) {
+Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1.0F : 0.0F) {
   const Vec3d high = farthest_corner(box);
-  from_ = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
+  const Vec3d from = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
   // No less than the distance of anything in the box, and than the products above.
-  const double size = length(high) + length(from_);
-  rounding_ = 1e-6 * size;
-  surely_away_ = rounding_ + 1.001 * away_epsilon * size;
+  const double size = length(high) + length(from);
+  const double rounding = 1e-6 * size;
   const bool fits = size < most_in_floats;
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  from_in_floats_ = fits ? to_float(from_) : Vec3f{};
-  surely_towards_in_floats_ = fits ? static_cast<float>(-rounding_) : -infinity;
-  surely_away_in_floats_ = fits ? static_cast<float>(surely_away_) : infinity;
+  from_ = fits ? to_float(from) : Vec3f{};
+  surely_towards_ = fits ? static_cast<float>(-rounding) : -infinity;
+  surely_away_ = fits ? static_cast<float>(rounding + 1.001 * away_epsilon * size) : infinity;
 }
 
 double Camera::facing(Vec3d point, Vec3d normal) const {

@@ -39,7 +39,7 @@ class Camera {
   /// The set (bits) of those of the five planes inside of which not all of the box is certain to be.
   [[nodiscard]] unsigned planes_through(const Box& box) const;
   enum class Answer : uint8_t { no, yes, unsure };
-  /// Decides most of `is_away`, from less, for faces in the box.
+  /// Decides most of `is_away`, of four faces in the box at once.
   class QuickAway;
   /// Decides most of `is_outside`, of four planes at once, for points in the box.
   class QuickOutside;
@@ -69,30 +69,22 @@ class Camera {
 class Camera::QuickAway {
  public:
   QuickAway(const Camera& camera, const Box& box);
-  /// `plane`: the product of the unit normal with a point of the face, rounded to float.
-  [[nodiscard]] Answer operator()(Vec3f normal, float plane) const {
-    const double along = perspective_ * plane - dot(to_double(normal), from_);
-    return along < -rounding_ ? Answer::no : along > surely_away_ ? Answer::yes : Answer::unsure;
-  }
   struct FourAnswers {
     Mask4 no, yes;
   };
-  /// The same of four, in floats. Nothing is decided where a float could not hold what the eye is away.
+  /// `planes`: the products of the unit normals with points of the faces. Nothing is decided where a float could not
+  /// hold what the eye is away.
   [[nodiscard]] FourAnswers operator()(const Vec3x4& normals, Float4 planes) const {
-    const Float4 along =
-        static_cast<float>(perspective_) * planes -
-        (from_in_floats_.x * normals.x + from_in_floats_.y * normals.y + from_in_floats_.z * normals.z);
-    const Mask4 no = along < surely_towards_in_floats_;
-    const Mask4 yes = along > surely_away_in_floats_;
+    const Float4 along = perspective_ * planes - (from_.x * normals.x + from_.y * normals.y + from_.z * normals.z);
+    const Mask4 no = along < surely_towards_;
+    const Mask4 yes = along > surely_away_;
     return {no, yes};
   }
 
  private:
-  double perspective_;  ///< 1 or 0
-  Vec3d from_;
-  double rounding_, surely_away_;
-  Vec3f from_in_floats_;
-  float surely_towards_in_floats_, surely_away_in_floats_;
+  float perspective_;  ///< 1 or 0
+  Vec3f from_;
+  float surely_towards_, surely_away_;
 };
 
 class Camera::QuickOutside {

@@ -109,11 +109,10 @@ void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const
   }
 }
 
-void Trial::keep_more(const Topology& mesh) {
+void Trial::keep(const Topology& mesh) {
   forget();
-  planes = FacePlanes(mesh.face_count(), infinity);
   products = NormalProducts(mesh.edge_count(), infinity);
-  transitions = LazyValues<uint32_t>(mesh.face_count(), 0);
+  is_kept = true;
 }
 
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
@@ -163,7 +162,7 @@ bool Selection::later_level_is_finer(int level) const {
 EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                             const Buffer<uint32_t>& shared) const {
   if (!camera_) return {};
-  return {mesh, trial.normals, trial.planes, longest, box, *camera_, shared};
+  return {mesh, trial.normals, longest, box, *camera_, shared};
 }
 
 Buffer<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
@@ -180,7 +179,7 @@ Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int lev
     keep_if(edges, [&](uint32_t e) { return trial.no_less_than_deviation_at(e) >= needed; });
     if (!trial.has_ranges()) keep_if(edges, [&](uint32_t e) { return trial.most_deviation_at(mesh, e) >= needed; });
     // Where more views are to come, the deviation itself serves all of them, whether this one shows the edge or not.
-    if (!trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
+    if (trial.is_kept) keep_if(edges, [&](uint32_t e) { return trial.deviation_at(mesh, e) >= needed; });
   }
   shown.keep_shown(region, edges);
   if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);

@@ -44,15 +44,14 @@ struct Trial {
   LazyValues<float> least{};   ///< [T] no more than these; 0 where nothing is known; empty without rooms
   Buffer<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
 
-  FacePlanes planes{};                 ///< (view_culling.h)
-  NormalProducts products{};           ///< (flatness.h)
-  LazyValues<uint32_t> transitions{};  ///< [F] (transition.h)
+  NormalProducts products{};  ///< (flatness.h)
+  bool is_kept = false;       ///< for later requests too: what one finds serves all
 
   static constexpr int unknown = -1;
   /// Makes room for what is found out about what was made; nothing is known yet.
   void forget();
-  /// Makes room for what is found out, and for what only later requests gain by: planes, products and transitions.
-  void keep_more(const Topology& mesh);
+  /// Makes room for what is found out, and for what only later requests gain by.
+  void keep(const Topology& mesh);
   /// The number of a tried edge's vertex in `made`.
   [[nodiscard]] uint32_t number(uint32_t edge) const { return tried.before.empty() ? edge : tried.before[edge]; }
   [[nodiscard]] Vec3f at(uint32_t edge) const { return made[number(edge)]; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/index_range.h"
@@ -19,11 +18,10 @@ enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
 class Sight {
  public:
   /// `longest` [V] edges; `box` of the vertices.
-  Sight(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes, const Buffer<double>& longest,
-        const Box& box, const Camera& camera)
+  Sight(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
+        const Camera& camera)
       : mesh_(mesh),
         normals_(normals),
-        planes_(planes),
         longest_(longest),
         camera_(camera),
         quick_(camera, box),
@@ -36,8 +34,8 @@ class Sight {
     uint8_t sight = is_face_away(f) ? 0 : is_towards;
     return sight | (is_inside_somewhere(f) ? is_inside : 0);
   }
-  /// The same of four faces, the children of one (four_children.h), from their first. Not where planes are kept, nor
-  /// before all vertices were looked at.
+  /// The same of four faces, the children of one (four_children.h), from their first. Not before all vertices were
+  /// looked at.
   void of_four(uint32_t first, uint8_t* sights) const {
     const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh_.topology.origin[size_t{3} * first]);
     std::array<Vec3fa, 6> p;
@@ -58,7 +56,6 @@ class Sight {
     put_sight(is_away[2], in[5] | in[4] | in[2], sights + 2);
     put_sight(is_away[3], in[3] | in[4] | in[5], sights + 3);
   }
-  [[nodiscard]] bool forgets_planes() const { return planes_.empty(); }
   /// Finds what will be asked of vertices at once, where most of them will be: in their order that costs less.
   void look_at_vertices() {
     if (through_ == 0) inside_.assign(mesh_.topology.vertex_count, is_inside);
@@ -90,22 +87,13 @@ class Sight {
     return are_inside[0] | are_inside[1] | are_inside[2];
   }
   [[nodiscard]] bool is_face_away(uint32_t f) const {
-    constexpr float not_known = std::numeric_limits<float>::infinity();
-    const float plane = planes_.empty() ? not_known : planes_.get(f);
-    if (plane != not_known) {
-      const Camera::Answer is_away = quick_(normals_[f], plane);
-      if (is_away != Camera::Answer::unsure) return is_away == Camera::Answer::yes;
-    }
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
-    const Vec3d normal = to_double(normals_[f]);
-    if (!planes_.empty()) planes_.put(f, static_cast<float>(dot(normal, centroid)));
-    return has_normal(normals_[f]) && camera_.is_away(centroid, normal);
+    return has_normal(normals_[f]) && camera_.is_away(centroid, to_double(normals_[f]));
   }
 
   const Mesh& mesh_;
   const Buffer<Vec3f>& normals_;
-  const FacePlanes& planes_;
   const Buffer<double>& longest_;
   const Camera& camera_;
   const Camera::QuickAway quick_;
@@ -118,8 +106,7 @@ class Sight {
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera) {
   const Buffer<double> longest = longest_edges(mesh);
-  const FacePlanes none_kept;
-  Sight sight(mesh, normals, none_kept, longest, bounding_box(mesh.positions), camera);
+  Sight sight(mesh, normals, longest, bounding_box(mesh.positions), camera);
   std::vector<bool> hidden(mesh.topology.face_count());
   for (uint32_t f = 0; f < hidden.size(); ++f) hidden[f] = sight.of_face(f) != seen;
   return hidden;
@@ -199,7 +186,7 @@ class EdgesShown::Memory {
     const Buffer<uint32_t>& faces = region.faces;
     const bool are_many = faces.size() > mesh_.vertex_count;
     if (are_many) sight_.look_at_vertices();
-    if (are_many && region.is_in_fours && sight_.forgets_planes())
+    if (are_many && region.is_in_fours)
       for (size_t i = 0; i < faces.size(); i += 4) sight_.of_four(faces[i], &of_face_[faces[i]]);
     else
       for (uint32_t f : faces) (void)of_face(f);
@@ -216,10 +203,9 @@ class EdgesShown::Memory {
 };
 
 EdgesShown::EdgesShown() = default;
-EdgesShown::EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes,
-                       const Buffer<double>& longest, const Box& box, const Camera& camera,
-                       const Buffer<uint32_t>& shared)
-    : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, planes, longest, box, camera), shared)) {}
+EdgesShown::EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
+                       const Camera& camera, const Buffer<uint32_t>& shared)
+    : memory_(std::make_unique<Memory>(mesh, Sight(mesh, normals, longest, box, camera), shared)) {}
 EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
 EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;
 EdgesShown::~EdgesShown() = default;

@@ -3,17 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include "base/lazy_values.h"
 #include "criteria/camera.h"
 #include "mesh/region.h"
 #include "mesh/split_plan.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
-
-/// Of each face [F] the product of its unit normal with its centroid, infinity where it was not asked for yet. May be
-/// empty: then nothing is kept.
-using FacePlanes = LazyValues<float>;
 
 /// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
 /// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
@@ -35,8 +30,8 @@ class EdgesShown {
   /// All edges are.
   EdgesShown();
   /// Shapes: normals [F], longest [V]; `box` of the vertices; `shared`: the half-edges at shared edges.
-  EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const FacePlanes& planes, const Buffer<double>& longest,
-             const Box& box, const Camera& camera, const Buffer<uint32_t>& shared);
+  EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
+             const Camera& camera, const Buffer<uint32_t>& shared);
   EdgesShown(EdgesShown&& other) noexcept;
   EdgesShown& operator=(EdgesShown&& other) noexcept;
   EdgesShown(const EdgesShown&) = delete;

@@ -79,7 +79,7 @@ class ErrorFinder {
       float too_little = surely_too_little(k);
       // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
       Buffer<uint32_t> edges = choice.region.edges();
-      if (trial.planes.empty()) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
+      if (!trial.is_kept) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
       for (uint32_t e : edges) {
         if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
         if (!may_matter(*choice.level, e, scales_[k]) || is_near(k, e, 1)) continue;
@@ -284,7 +284,7 @@ class ErrorFinder {
   [[nodiscard]] bool is_near(size_t k, uint32_t e, double share) const {
     const HierarchyLevel& level = *levels_[k].level;
     // Where more views are to come what was found serves them, too.
-    if (!level.trial.planes.empty())
+    if (level.trial.is_kept)
       return !left_.may_grow_by(share * level.trial.most_deviation_at(level.mesh, e), scales_[k]);
     const Vec3d off = share * (to_double(level.trial.at(e)) - midpoint(level.mesh, e));
     constexpr double rounding = 1 - 1e-6;

@@ -17,16 +17,6 @@ Buffer<Vec3f> grown_normals(const Mesh& mesh, const Buffer<Vec3f>& known, const 
   return normals;
 }
 
-/// The same for what is known of planes and products.
-void keep_known(const Topology& mesh, const HierarchyLevel& known, const Buffer<uint32_t>& moved, const Trial& trial) {
-  const Topology& before = known.mesh.topology;
-  for (uint32_t f = 0; f < moved.size(); ++f) {
-    trial.planes.put(moved[f], known.trial.planes.get(f));
-    for (uint32_t i = 0; i < 3; ++i)
-      trial.products.put(mesh.edge[3 * moved[f] + i], known.trial.products.get(before.edge[3 * f + i]));
-  }
-}
-
 /// For each edge of the level the number of its vertex among those that the known level has made; `none`. [E]
 Buffer<uint32_t> find_known_vertices(const Topology& mesh, const HierarchyLevel& known, const Buffer<uint32_t>& moved) {
   Buffer<uint32_t> rank(mesh.edge_count(), none);
@@ -51,8 +41,7 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
   const Buffer<Vec3f> made = make_vertices(level.mesh, trial.normals, options, rest);
 
   trial.made.resize_for_overwrite(trial.tried.count());
-  trial.keep_more(level.mesh.topology);
-  keep_known(level.mesh.topology, known, moved, trial);
+  trial.keep(level.mesh.topology);
   for (uint32_t e = 0; e < marks.size(); ++e) {
     if (!trial.tried.is_split(e)) continue;
     const uint32_t at = trial.tried.before[e];
@@ -61,7 +50,6 @@ void try_grown_level(HierarchyLevel& level, const Options& options, const Hierar
     trial.deviations.put(at, known.trial.deviations.get(rank[e]));
     trial.bounds.put(at, known.trial.bounds.get(rank[e]));
   }
-  for (uint32_t f = 0; f < moved.size(); ++f) trial.transitions.put(moved[f], known.trial.transitions.get(f));
 }
 
 }  // namespace papilio

@@ -171,8 +171,7 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, parent, child, red, shared, longest) +
                    size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
-  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.transitions.bytes() +
-           trial.planes.bytes() + trial.products.bytes();
+  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.products.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
 }

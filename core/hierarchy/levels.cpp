@@ -13,7 +13,7 @@ namespace papilio {
 namespace {
 
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
-constexpr uint64_t bytes_per_kept_face = 122;
+constexpr uint64_t bytes_per_kept_face = 114;
 /// All of a level costs about as much as so large a part of it.
 constexpr double part_as_dear_as_all = 0.75;
 /// All of its connectivity, which follows by formula, as much as so large a part's.
@@ -129,7 +129,7 @@ void Levels::make(const Buffer<uint8_t>& red) {
     TrialContext context{.features = &level->features, .threads = progress_.threads()};
     if (level->is_whole) context.parents = &parents;
     level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
-    level->trial.keep_more(level->mesh.topology);
+    level->trial.keep(level->mesh.topology);
     add_kept(level);
   } else {
     try_for_once(*level, parents);

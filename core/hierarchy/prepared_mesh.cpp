@@ -29,7 +29,7 @@ PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budg
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
     level->trial = try_split(level->mesh, rules_, complete_edges(*level), {.features = &level->features});
-    level->trial.keep_more(level->mesh.topology);
+    level->trial.keep(level->mesh.topology);
     kept_ = {std::move(level)};
     bytes_ = bytes_of(kept_);
   });

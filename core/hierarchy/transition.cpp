@@ -84,9 +84,6 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
   return squared_cosine_of_smallest_angle(squared_length(b - a), squared_length(c - b), squared_length(a - c));
 }
 
-/// Trial::transitions has three bits for each mask from 1 to 6.
-constexpr unsigned shift_of(unsigned mask) { return 3 * (mask - 1); }
-
 uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
   const SplitFace split(level, face, mask);
   uint32_t found = Transition::is_known;
@@ -101,18 +98,6 @@ uint32_t judge(const HierarchyLevel& level, uint32_t face, unsigned mask, double
   const double most = most_cosine * most_cosine;
   if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most)
     found |= Transition::has_sliver;
-  return found;
-}
-
-/// What is known of the face, or found out now.
-uint32_t find_in(const HierarchyLevel& level, uint32_t face, unsigned mask, double most_cosine) {
-  const LazyValues<uint32_t>& transitions = level.trial.transitions;
-  if (transitions.empty()) return judge(level, face, mask, most_cosine);
-  const unsigned shift = shift_of(mask);
-  const uint32_t known = transitions.get(face);
-  if ((known >> shift & Transition::is_known) != 0) return known >> shift;
-  const uint32_t found = judge(level, face, mask, most_cosine);
-  transitions.put(face, known | found << shift);
   return found;
 }
 
@@ -290,7 +275,7 @@ class SliverFinder {
       const auto& [f, mask] = waiting.splits[i];
       uint32_t is = found[i / 4][i % 4];
       if (is == 0) [[unlikely]]
-        is = find_in(level_, f, mask, most_cosine_);
+        is = papilio::judge(level_, f, mask, most_cosine_);
       choice_.transitions[f] = Transition::with_mask(is, mask);
       if ((is & Transition::has_sliver) != 0) with_sliver_.push_back(f);
     }
@@ -329,27 +314,21 @@ double most_cosine_beside(double smallest_angle) { return cosine_of_small_angle(
 
 uint32_t Transition::find(const LevelChoice& choice, uint32_t face, unsigned mask, double most_cosine) {
   const uint32_t bits = known(choice, face, mask);
-  return bits != 0 ? bits : find_in(*choice.level, face, mask, most_cosine);
+  return bits != 0 ? bits : judge(*choice.level, face, mask, most_cosine);
 }
 
 void avoid_slivers(LevelChoice& choice, double most_cosine) {
   if (choice.split_edges.empty()) return;
-  const HierarchyLevel& level = *choice.level;
-  const Topology& mesh = level.mesh.topology;
+  const Topology& mesh = choice.level->mesh.topology;
   const auto must_be_divided = [&](uint32_t f) {
     const unsigned mask = choice.split_mask(f);
     return mask != 0 && mask != 7 && (Transition::find(choice, f, mask, most_cosine) & Transition::has_sliver) != 0 &&
            choice.may_divide(f);
   };
   choice.find_masks();
+  if (choice.transitions.empty()) choice.transitions.assign(mesh.face_count(), 0);
   // The order decides where dividing one makes a sliver of another.
-  Buffer<uint32_t> faces;
-  if (level.trial.planes.empty()) {
-    if (choice.transitions.empty()) choice.transitions.assign(mesh.face_count(), 0);
-    faces = SliverFinder(choice, most_cosine).run();
-  } else {
-    for (const auto& split : choice.faces_split_in_part()) faces.push_back(split.face);
-  }
+  Buffer<uint32_t> faces = SliverFinder(choice, most_cosine).run();
   erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const uint32_t f = faces.back();
