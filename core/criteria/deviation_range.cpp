@@ -37,8 +37,7 @@ namespace {
 /// Where what an edge's range is made of lies in its arrays.
 struct Place {
   Place() = default;
-  [[gnu::always_inline]] Place(const DeviationBounds& of, uint32_t edge)
-      : made(of.tried.before.empty() ? edge : of.tried.before[edge]) {
+  [[gnu::always_inline]] Place(const DeviationBounds& of, uint32_t edge) : made(edge) {
     const Topology& mesh = of.mesh.topology;
     const uint32_t h = mesh.half_edge[edge];
     a = mesh.origin[h];

@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "mesh/split_plan.h"
 #include "papilio/mesh.h"
 
 // What the deviations of many edges (deviation.h) are at least and at most, at a fraction of their cost: enough to tell
@@ -24,8 +23,7 @@ struct DeviationBounds {
   const Mesh& mesh;
   const Buffer<Vec3f>& normals;  ///< [F], of faces that have room
   const Buffer<float>& rooms;    ///< [F] as above
-  const SplitPlan& tried;        ///< of none: all edges
-  const Buffer<Vec3f>& made;     ///< [tried.count()]
+  const Buffer<Vec3f>& made;     ///< [E]
 
   /// Writes the ranges of the edges, which were tried; of one to `most_at_once`, and there must be room for three more.
   /// Mostly both ends are within a few millionths of how far the vertex is from the midpoint. Where the deviation is

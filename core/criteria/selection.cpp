@@ -22,8 +22,19 @@ constexpr float never = -infinity;
 /// No less than the number, which is not negative.
 float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
-/// Those of all edges for which that can be done; what is made of the others means nothing. [E]
-Buffer<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
+/// Of the edges that are complete.
+Buffer<Vec3f> make_vertices_by_w(const Mesh& mesh, const TensionField* tension, double w, const TrialContext& context) {
+  const uint32_t edges = mesh.topology.edge_count();
+  const SplitPlan plan(context.complete == nullptr ? EdgeMarks(edges, 1) : *context.complete);
+  Buffer<Vec3f> planned = butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(w), tension);
+  if (plan.count() == edges) return planned;
+  Buffer<Vec3f> made(edges);
+  for (uint32_t e = 0; e < edges; ++e)
+    if (plan.is_split(e)) made[e] = planned[plan.before[e]];
+  return made;
+}
+
+Buffer<Vec3f> make_plain_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
   const Topology& topology = mesh.topology;
   auto made = Buffer<Vec3f>::for_overwrite(topology.edge_count());
   std::optional<Features> found;
@@ -40,11 +51,6 @@ Buffer<Vec3f> make_all_vertices(const Mesh& mesh, const TensionField* tension, c
   return made;
 }
 
-std::optional<TensionField> find_tension(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options) {
-  if (options.tension == Tension::off) return std::nullopt;
-  return tension_field(mesh, normals, options.tension);
-}
-
 Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
   if (context.normals_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
   return normals_of_fours(mesh, *context.normals_of, context.threads);
@@ -53,31 +59,17 @@ Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const T
 }  // namespace
 
 Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
-                            const SplitPlan& plan, const TrialContext& context) {
-  const Topology& topology = mesh.topology;
-  const std::optional<TensionField> field = find_tension(mesh, normals, options);
+                            const TrialContext& context) {
+  std::optional<TensionField> field;
+  if (options.tension != Tension::off) field = tension_field(mesh, normals, options.tension);
   const TensionField* tension = field ? &*field : nullptr;
-  constexpr uint32_t one_as_dear_as = 4;  // of all, face by face
-  if (options.w != 0 || plan.count() < topology.edge_count() / one_as_dear_as)
-    return butterfly(topology, mesh.positions, plan, static_cast<float>(options.w), tension);
-  Buffer<Vec3f> made = make_all_vertices(mesh, tension, context);
-  if (plan.count() == made.size()) return made;
-  auto planned = Buffer<Vec3f>::for_overwrite(plan.count());
-  for (uint32_t e = 0; e < made.size(); ++e)
-    if (plan.is_split(e)) planned[plan.before[e]] = made[e];
-  return planned;
+  return options.w != 0 ? make_vertices_by_w(mesh, tension, options.w, context)
+                        : make_plain_vertices(mesh, tension, context);
 }
 
-Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges, const TrialContext& context) {
-  Trial trial{.normals = normals_asked_of(mesh, options, context), .tried = SplitPlan(try_edges)};
-  trial.made = make_vertices(mesh, trial.normals, options, trial.tried, context);
-  return trial;
-}
-
-Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context) {
+Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& context) {
   Trial trial{.normals = normals_asked_of(mesh, options, context)};
-  const std::optional<TensionField> tension = find_tension(mesh, trial.normals, options);
-  trial.made = make_all_vertices(mesh, tension ? &*tension : nullptr, context);
+  trial.made = make_vertices(mesh, trial.normals, options, context);
   trial.is_of_some = context.asked_of != nullptr || context.part != nullptr;
   return trial;
 }
@@ -97,14 +89,14 @@ void Trial::prepare_errors(const Mesh& mesh, const Options& options, const Trial
 }
 
 void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const {
-  const DeviationBounds finder{mesh, normals, rooms, tried, made};
+  const DeviationBounds finder{mesh, normals, rooms, made};
   std::array<DeviationRange, DeviationBounds::most_at_once + 3> ranges;
   for (size_t first = 0; first < edges.size(); first += DeviationBounds::most_at_once) {
     const auto some = edges.subspan(first, std::min(DeviationBounds::most_at_once, edges.size() - first));
     finder.find(some, ranges.data());
     for (size_t i = 0; i < some.size(); ++i) {
-      bounds.put(number(some[i]), ranges[i].most);
-      least.put(number(some[i]), ranges[i].least);
+      bounds.put(some[i], ranges[i].most);
+      least.put(some[i], ranges[i].least);
     }
   }
 }
@@ -118,20 +110,17 @@ void Trial::keep(const Topology& mesh) {
 double Trial::most_deviation_at(const Mesh& mesh, uint32_t edge) const {
   float known = no_less_than_deviation_at(edge);
   if (known != infinity) return known;
-  const uint32_t h = mesh.topology.half_edge[edge];
-  known = rounded_up(std::sqrt(squared_distance_to_middle(at(edge), mesh.positions[mesh.topology.origin[h]],
-                                                          mesh.positions[mesh.topology.tip(h)])));
-  if (!bounds.empty()) bounds.put(number(edge), known);
+  known = rounded_up(std::sqrt(squared_offset(mesh, edge)));
+  if (!bounds.empty()) bounds.put(edge, known);
   return known;
 }
 
 double Trial::deviation_at(const Mesh& mesh, uint32_t edge) const {
   if (deviations.empty()) return deviation(mesh, edge, at(edge));
-  const uint32_t i = number(edge);
-  double known = deviations.get(i);
+  double known = deviations.get(edge);
   if (known == unknown) {
-    deviations.put(i, known = deviation(mesh, edge, made[i]));
-    bounds.put(i, rounded_up(known));
+    deviations.put(edge, known = deviation(mesh, edge, made[edge]));
+    bounds.put(edge, rounded_up(known));
   }
   return known;
 }

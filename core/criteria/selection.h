@@ -27,22 +27,21 @@ struct TrialContext {
   /// Those of the parents of whose children normals are asked; null: all.
   const Buffer<uint32_t>* normals_of = nullptr;
   const Buffer<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
-  const Part* part = nullptr;  ///< of the parents that it was split from (split_part_in_four); null: all
-  int threads = 1;             ///< at most so many work on it
+  const Part* part = nullptr;           ///< of the parents that it was split from (split_part_in_four); null: all
+  const EdgeMarks* complete = nullptr;  ///< the edges for which w can be applied; null: all
+  int threads = 1;                      ///< at most so many work on it
 };
 
-/// What is known of a level's edges before any is split. `made` holds the positions that the new vertices of the edges
-/// in `tried` would have: T of them.
+/// What is known of a level's edges before any is split. Of edges that could not be computed, and of those not asked
+/// for, the arrays mean nothing.
 struct Trial {
-  Buffer<Vec3f> normals{};  ///< [F]
-  SplitPlan tried{};        ///< the edges whose new vertices were computed; of none: see `made`
-  Buffer<Vec3f> made{};     ///< [T]; where `tried` is of none [E], of which only what could be computed counts
-  bool is_of_some = false;  ///< where `tried` is of none: whether only some were asked for
-  LazyValues<double>
-      deviations{};            ///< [T] the deviations of these edges (deviation.h); or unknown; empty: none is kept
-  LazyValues<float> bounds{};  ///< [T] no less than these; infinity where nothing is known; empty as above
-  LazyValues<float> least{};   ///< [T] no more than these; 0 where nothing is known; empty without rooms
-  Buffer<float> rooms{};       ///< [F] (deviation_range.h); empty where no ranges are found
+  Buffer<Vec3f> normals{};          ///< [F]
+  Buffer<Vec3f> made{};             ///< [E] the positions that their new vertices would have
+  bool is_of_some = false;          ///< whether only some were asked for
+  LazyValues<double> deviations{};  ///< [E] the deviations (deviation.h); or unknown; empty: none is kept
+  LazyValues<float> bounds{};       ///< [E] no less than these; infinity where nothing is known; empty as above
+  LazyValues<float> least{};        ///< [E] no more than these; 0 where nothing is known; empty without rooms
+  Buffer<float> rooms{};            ///< [F] (deviation_range.h); empty where no ranges are found
 
   NormalProducts products{};  ///< (flatness.h)
   bool is_kept = false;       ///< for later requests too: what one finds serves all
@@ -52,10 +51,14 @@ struct Trial {
   void forget();
   /// Makes room for what is found out, and for what only later requests gain by.
   void keep(const Topology& mesh);
-  /// The number of a tried edge's vertex in `made`.
-  [[nodiscard]] uint32_t number(uint32_t edge) const { return tried.before.empty() ? edge : tried.before[edge]; }
-  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[number(edge)]; }
-  /// That of a tried edge. `mesh` is the one tried.
+  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[edge]; }
+  /// Squared distance of a tried edge's vertex from the edge's middle. `mesh` is the one tried.
+  [[nodiscard]] double squared_offset(const Mesh& mesh, uint32_t edge) const {
+    const uint32_t h = mesh.topology.half_edge[edge];
+    return squared_distance_to_middle(at(edge), mesh.positions[mesh.topology.origin[h]],
+                                      mesh.positions[mesh.topology.tip(h)]);
+  }
+  /// The deviation of a tried edge.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, and cheap: the deviation itself where somebody has asked for it.
   struct KnownDeviation {
@@ -63,17 +66,17 @@ struct Trial {
     bool is_exact;
   };
   [[nodiscard]] KnownDeviation known_deviation_at(const Mesh& mesh, uint32_t edge) const {
-    const double known = deviations.get(number(edge));
+    const double known = deviations.get(edge);
     return known != unknown ? KnownDeviation{known, true} : KnownDeviation{most_deviation_at(mesh, edge), false};
   }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, of what is known already; infinity where nothing is.
   [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const {
-    return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(number(edge));
+    return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(edge);
   }
   /// Never more than that, of what is known already.
-  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(number(edge)); }
+  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(edge); }
   /// Makes room for what the options ask of deviations: none where they hold them against nothing. Where against a
   /// tolerance, has ranges found (deviation_range.h). Not for what is kept: where more views are to come the deviations
   /// themselves serve all of them.
@@ -83,15 +86,11 @@ struct Trial {
   void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
 };
 
-/// The positions [plan.count()] of the new vertices of the plan's edges, under the options' tension and w.
+/// The positions [E] of the new vertices of all edges for which that can be done, under the options' tension and w.
 [[nodiscard]] Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
-                                          const SplitPlan& plan, const TrialContext& context = {});
-/// Computes the new vertices of the edges marked in `try_edges`, under the options' tension and w.
-[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const EdgeMarks& try_edges,
-                              const TrialContext& context = {});
-/// Computes those of all edges for which that can be done, without telling which they are, and makes no room for what
-/// is found out about them: for one request alone. Not with w.
-[[nodiscard]] Trial try_everything(const Mesh& mesh, const Options& options, const TrialContext& context);
+                                          const TrialContext& context = {});
+/// Computes the new vertices, and the normals that this takes. No room is made for what is found out about them.
+[[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& context = {});
 
 class Selection {
  public:

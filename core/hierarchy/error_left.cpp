@@ -153,7 +153,6 @@ class ErrorFinder {
           is_split_(choice_.split.data()),
           positions_(choice_.level->mesh.positions.data()),
           made_(choice_.level->trial.made.data()),
-          number_(choice_.level->trial.tried.before.empty() ? nullptr : choice_.level->trial.tried.before.data()),
           share_squared_{no_share, no_share, 1, static_cast<float>(split_leaves * split_leaves)},
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
@@ -162,7 +161,7 @@ class ErrorFinder {
     /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
     /// where the edge does not. (What is read of such an edge may not even be a number.)
     [[nodiscard, gnu::always_inline]] Vec3fa weighed(uint32_t e, Vec3fa from, Vec3fa to) const {
-      const Vec3fa off = widen(made_[number_ == nullptr ? e : number_[e]]) - 0.5F * (from + to);
+      const Vec3fa off = widen(made_[e]) - 0.5F * (from + to);
       return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
     }
     /// Of the largest of each direction of some edges: whether all of these are too little to matter.
@@ -198,7 +197,6 @@ class ErrorFinder {
     const LevelChoice& choice_;
     const uint8_t *may_be_split_, *is_split_;
     const Vec3f *positions_, *made_;
-    const uint32_t* number_;              ///< of an edge's vertex; null: its own
     std::array<float, 4> share_squared_;  ///< by whether the edge may be split (2), and whether it is (1)
     DeviationCutoff too_near_;
   };

@@ -168,8 +168,8 @@ uint64_t HierarchyLevel::bytes() const {
   const auto size = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
   const Topology& t = mesh.topology;
   uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
-                   size(complete, parent, child, red, shared, longest) +
-                   size(trial.normals, trial.rooms, trial.tried.before, trial.made) + size(mesh.attributes.point);
+                   size(complete, parent, child, red, shared, longest) + size(trial.normals, trial.rooms, trial.made) +
+                   size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
   bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.products.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
@@ -261,7 +261,7 @@ Box box_with_new_vertices(const HierarchyLevel& above, const Buffer<uint32_t>& e
   Vec3fa least{{min.x, min.y, min.z, 0}};
   Vec3fa most{{max.x, max.y, max.z, 0}};
   for (uint32_t e : edges) {
-    const Vec3fa p = widen(above.trial.made[above.trial.number(e)]);
+    const Vec3fa p = widen(above.trial.made[e]);
     least = lesser(p, least);
     most = larger(p, most);
   }

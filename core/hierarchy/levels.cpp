@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "criteria/view_culling.h"
-#include "hierarchy/grow_level.h"
 #include "hierarchy/transition.h"
 #include "mesh/attributes.h"
 #include "mesh/displacement.h"
@@ -13,13 +12,24 @@ namespace papilio {
 namespace {
 
 /// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
-constexpr uint64_t bytes_per_kept_face = 114;
+constexpr uint64_t bytes_per_kept_face = 108;
 /// All of a level costs about as much as so large a part of it.
 constexpr double part_as_dear_as_all = 0.75;
 /// All of its connectivity, which follows by formula, as much as so large a part's.
 constexpr double part_as_dear_as_formula = 0.45;
 /// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
 constexpr double part_as_dear_as_all_kept = 1.0 / 3;
+
+/// Takes over the deviations that were found on a level of the same depth that holds less. `moved` [F of known]: where
+/// its faces are in the level.
+void carry_deviations(const HierarchyLevel& known, const Buffer<uint32_t>& moved, const HierarchyLevel& level) {
+  for (uint32_t e = 0; e < known.mesh.topology.edge_count(); ++e) {
+    const uint32_t h = known.mesh.topology.half_edge[e];
+    const uint32_t at = level.mesh.topology.edge[3 * moved[Topology::face(h)] + h % 3];
+    level.trial.deviations.put(at, known.trial.deviations.get(e));
+    level.trial.bounds.put(at, known.trial.bounds.get(e));
+  }
+}
 
 bool covers(const Buffer<uint8_t>& known, const Buffer<uint8_t>& red) {
   return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
@@ -33,8 +43,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
   const TrialContext context{.features = &level->features, .threads = progress.threads()};
-  level->trial = options.w == 0 ? try_everything(level->mesh, options, context)
-                                : try_split(level->mesh, options, complete_edges(*level), context);
+  level->trial = try_split(level->mesh, options, context);
   level->trial.prepare_errors(level->mesh, options, context);
   levels_.push_back(std::move(level));
 }
@@ -77,8 +86,8 @@ bool Levels::make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red) {
   }
   moved_ = std::move(moved);
   progress_.poll();
-  level->longest = longest_edges_below(parents_of(*level, below.parents), level->mesh.positions);
-  try_grown_level(*level, options_, known, moved_);
+  keep_tried(*level, parents_of(*level, below.parents));
+  carry_deviations(known, moved_, *level);
   add_kept(level);
   return true;
 }
@@ -124,12 +133,8 @@ void Levels::make(const Buffer<uint8_t>& red) {
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
   const Topology& parents = parents_of(*level, below.parents);
-  if (is_kept || options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
   if (is_kept) {
-    TrialContext context{.features = &level->features, .threads = progress_.threads()};
-    if (level->is_whole) context.parents = &parents;
-    level->trial = try_split(level->mesh, options_, complete_edges(*level), context);
-    level->trial.keep(level->mesh.topology);
+    keep_tried(*level, parents);
     add_kept(level);
   } else {
     try_for_once(*level, parents);
@@ -151,7 +156,7 @@ bool Levels::make_whole(const Buffer<uint8_t>& red) {
   TrialContext context{
       .features = &level->features, .parents = &parents, .normals_of = &below_red, .threads = progress_.threads()};
   if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
-  level->trial = try_everything(level->mesh, options_, context);
+  level->trial = try_split(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);
   return true;
@@ -161,8 +166,7 @@ bool Levels::make_last(const Buffer<uint8_t>& red) {
   const HierarchyLevel& above = *levels_.back();
   const Topology& parents = above.mesh.topology;
   if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      has_displacements(levels_[0]->mesh.attributes) || above.trial.made.size() != parents.edge_count() ||
-      !has_room_for_whole())
+      has_displacements(levels_[0]->mesh.attributes) || !has_room_for_whole())
     return false;
   const Part part(parents, red);
   const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
@@ -173,7 +177,7 @@ bool Levels::make_last(const Buffer<uint8_t>& red) {
   }
   const TrialContext context{
       .features = &above.features, .parents = &parents, .part = &part, .threads = progress_.threads()};
-  level->trial = try_everything(level->mesh, options_, context);
+  level->trial = try_split(level->mesh, options_, context);
   level->trial.prepare_errors(level->mesh, options_, context);
   levels_.push_back(level);
   return true;
@@ -190,26 +194,29 @@ const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& 
   return level.is_whole ? levels_.back()->mesh.topology : held;
 }
 
+void Levels::keep_tried(HierarchyLevel& level, const Topology& parents) const {
+  level.longest = longest_edges_below(parents, level.mesh.positions);
+  const EdgeMarks complete = options_.w != 0 ? complete_edges(level) : EdgeMarks{};
+  level.trial = try_split(
+      level.mesh, options_,
+      {.features = &level.features, .parents = &parents, .complete = &complete, .threads = progress_.threads()});
+  level.trial.keep(level.mesh.topology);
+}
+
 void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
-  constexpr size_t one_as_dear_as = 4;  // of all, family by family
-  TrialContext context{.features = &level.features, .parents = &parents, .threads = progress_.threads()};
+  if (options_.view) level.longest = longest_edges_below(parents, level.mesh.positions);
+  const EdgeMarks complete = options_.w != 0 ? complete_edges(level) : EdgeMarks{};
+  TrialContext context{
+      .features = &level.features, .parents = &parents, .complete = &complete, .threads = progress_.threads()};
   Buffer<uint32_t> below_red;  // fours of faces
-  bool are_few = false;
   if (!level.is_whole) {
     below_red.resize(level.parent.size());
     std::iota(below_red.begin(), below_red.end(), 0U);
     keep_if(below_red, [&](uint32_t i) { return level.red[level.parent[i]] != 0; });
     context.normals_of = &below_red;
-    if (is_next_last()) {
-      are_few = one_as_dear_as * below_red.size() < level.parent.size();
-      context.asked_of = &below_red;
-    }
+    if (is_next_last()) context.asked_of = &below_red;
   }
-  if (are_few || options_.w != 0)
-    level.trial = try_split(level.mesh, options_,
-                            context.asked_of == nullptr ? complete_edges(level) : edges_below_red(level), context);
-  else
-    level.trial = try_everything(level.mesh, options_, context);
+  level.trial = try_split(level.mesh, options_, context);
   level.trial.prepare_errors(level.mesh, options_, context);
 }
 

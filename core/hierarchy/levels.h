@@ -55,6 +55,8 @@ class Levels {
   [[nodiscard]] bool is_next_last() const;
   /// What a level below the deepest was split from; `held` as in LevelBelow.
   [[nodiscard]] const Topology& parents_of(const HierarchyLevel& level, const Topology& held) const;
+  /// Tries all edges of a level that is kept; `parents`: as above.
+  void keep_tried(HierarchyLevel& level, const Topology& parents) const;
   /// Tries the edges of a level that is not kept, as far as this request may ask for them; `parents`: as above.
   void try_for_once(HierarchyLevel& level, const Topology& parents) const;
   void add_kept(std::shared_ptr<const HierarchyLevel> level);

@@ -17,8 +17,7 @@ double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
   const HierarchyLevel& level = *choice.level;
   const Topology& mesh = level.mesh.topology;
   const uint32_t h = mesh.half_edge[edge];
-  const double offset = std::sqrt(squared_distance_to_middle(level.trial.at(edge), level.mesh.positions[mesh.origin[h]],
-                                                             level.mesh.positions[mesh.tip(h)]));
+  const double offset = std::sqrt(level.trial.squared_offset(level.mesh, edge));
   if (mesh.kind[edge] != EdgeKind::smooth || offset <= enough) return offset;
   // A vertex that slides along one side of a bend leaves the edge behind.
   const Buffer<Vec3f>& normals = level.trial.normals;

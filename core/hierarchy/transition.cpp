@@ -178,7 +178,7 @@ class FourJudge {
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t h = 3 * split.face + (first + i) % 3;
       __builtin_prefetch(level_.mesh.positions.data() + mesh_.origin[h]);
-      if (i < 2) __builtin_prefetch(level_.trial.made.data() + level_.trial.number(mesh_.edge[h]));
+      if (i < 2) __builtin_prefetch(level_.trial.made.data() + mesh_.edge[h]);
     }
   }
 
@@ -212,8 +212,8 @@ class FourJudge {
   }
   /// The new vertices on them.
   [[nodiscard, gnu::always_inline]] Vec3x4 middles(const Index4& h) const {
-    const auto number = [&](uint32_t half_edge) { return level_.trial.number(mesh_.edge[half_edge]); };
-    return at(level_.trial.made, {number(h[0]), number(h[1]), number(h[2]), number(h[3])});
+    const auto& edge = mesh_.edge;
+    return at(level_.trial.made, {edge[h[0]], edge[h[1]], edge[h[2]], edge[h[3]]});
   }
 
   const HierarchyLevel& level_;

@@ -49,7 +49,7 @@ class InPlace {
   /// Finds the next level that has targets, and these; 0 when there is none. Notes the deviation that is left.
   int find_targets() {
     if (result_.levels == options_.levels && options_.levels > 0) return 0;  // its split edges are noted already
-    trial_.emplace(try_split(mesh_, options_, EdgeMarks(mesh_.topology.edge_count(), 1)));
+    trial_.emplace(try_split(mesh_, options_));
     trial_->forget();
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);

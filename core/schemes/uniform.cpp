@@ -63,7 +63,7 @@ class Uniform {
       Vec3f* made = make_room(topology.edge_count());
       uniform_butterfly(topology, features_, mesh_.positions.data(), made, &field, progress_.threads());
     } else {
-      const Buffer<Vec3f> made = papilio::make_vertices(mesh_, normals, options_, everything());
+      const Buffer<Vec3f> made = papilio::make_vertices(mesh_, normals, options_);
       mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
     }
   }

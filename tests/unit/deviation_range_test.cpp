@@ -23,13 +23,12 @@ namespace {
 struct Tried {
   Mesh mesh;
   Buffer<Vec3f> made;
-  SplitPlan plan{EdgeMarks(mesh.topology.edge_count(), 1)};
   Buffer<Vec3f> normals = face_normals(mesh);
   Buffer<float> rooms = rooms_at_sides(mesh, nullptr, 1);
 
   [[nodiscard]] std::vector<DeviationRange> ranges(const std::vector<uint32_t>& edges) const {
     constexpr size_t at_once = DeviationBounds::most_at_once;
-    const DeviationBounds bounds{mesh, normals, rooms, plan, made};
+    const DeviationBounds bounds{mesh, normals, rooms, made};
     std::vector<DeviationRange> ranges(edges.size() + 3);
     for (size_t i = 0; i < edges.size(); i += at_once)
       bounds.find(std::span(edges).subspan(i, std::min(at_once, edges.size() - i)), &ranges[i]);

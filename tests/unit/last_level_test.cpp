@@ -38,7 +38,7 @@ std::vector<std::shared_ptr<HierarchyLevel>> ring_levels(std::mt19937& random) {
     const auto level = std::make_shared<HierarchyLevel>(coarsest_level(build_mesh(shape)));
     EXPECT_TRUE(level->features.are_rings());
     const Options options{.tension = Tension::off};
-    level->trial = try_everything(level->mesh, options, {.features = &level->features});
+    level->trial = try_split(level->mesh, options, {.features = &level->features});
     levels.push_back(level);
   }
   return levels;
@@ -133,9 +133,8 @@ TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
       const Part part(mesh, red);
       const HierarchyLevel last = refine_last_level(*above, red, part);
       const SomeOfAll of_all(mesh, red, part, last);
-      const Trial all = try_everything(whole.mesh, options, {.features = &whole.features});
-      const Trial some =
-          try_everything(last.mesh, options, {.features = &above->features, .parents = &mesh, .part = &part});
+      const Trial all = try_split(whole.mesh, options, {.features = &whole.features});
+      const Trial some = try_split(last.mesh, options, {.features = &above->features, .parents = &mesh, .part = &part});
       const Topology& topology = last.mesh.topology;
       for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
         if (of_all.is_other(h) || of_all.is_other(topology.twin[h])) continue;

@@ -227,7 +227,7 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
     const Options options{.tension = Tension::off};
     HierarchyLevel level = coarsest_level(mesh);
     for (int k = 1; k < 4; ++k) {
-      level.trial = try_split(level.mesh, options, complete_edges(level));
+      level.trial = try_split(level.mesh, options);
       Buffer<uint8_t> red(level.mesh.topology.face_count());
       for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent_of(f)] != 0;
       for (uint8_t& is_red : red) is_red &= random() % 16 == 0 ? 1 : 0;
@@ -251,26 +251,6 @@ TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
     }
   }
   EXPECT_GT(known, 10000U);
-}
-
-TEST(MakeVertices, IsTheSameForSomeEdgesAndForAll) {
-  std::mt19937 random(4);
-  for (const Mesh& mesh : shaken_meshes())
-    for (const Tension tension : {Tension::off, Tension::soft, Tension::sharp})
-      for (const unsigned one_in : {2, 10}) {
-        EdgeMarks marks(mesh.topology.edge_count());
-        for (uint8_t& mark : marks) mark = random() % one_in == 0 ? 1 : 0;
-        const SplitPlan plan(marks);
-        const Buffer<Vec3f> normals = face_normals(mesh);
-        const Options options{.tension = tension};
-        const Buffer<Vec3f> all = make_vertices(mesh, normals, options, everything(mesh));
-        const Buffer<Vec3f> some = make_vertices(mesh, normals, options, plan);
-        ASSERT_EQ(some.size(), plan.count());
-        for (uint32_t e = 0; e < marks.size(); ++e)
-          if (marks[e] != 0) {
-            ASSERT_EQ(some[plan.before[e]], all[e]);
-          }
-      }
 }
 
 TEST(UniformError, IsTheLargestDeviation) {
