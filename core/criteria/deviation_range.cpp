@@ -6,16 +6,15 @@
 
 #include "base/index_range.h"
 #include "base/parallel.h"
-#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
 namespace {
 
-[[nodiscard, gnu::always_inline]] inline Float4 rooms_of_four(const Mesh& mesh, const Index4& faces) {
+[[nodiscard]] Float4 rooms_of_four(const Mesh& mesh, const Index4& faces) {
   constexpr float least_sine = 1e-4F;  // of narrower ones too little is certain
   constexpr float rounding = 0.99F;
-  const auto corners = [&](uint32_t i) PAPILIO_INLINED {
+  const auto corners = [&](uint32_t i) {
     const auto& origin = mesh.topology.origin;
     return at(mesh.positions,
               {origin[3 * faces[0] + i], origin[3 * faces[1] + i], origin[3 * faces[2] + i], origin[3 * faces[3] + i]});
@@ -37,7 +36,7 @@ namespace {
 /// Where what an edge's range is made of lies in its arrays.
 struct Place {
   Place() = default;
-  [[gnu::always_inline]] Place(const DeviationBounds& of, uint32_t edge) : made(edge) {
+  Place(const DeviationBounds& of, uint32_t edge) : made(edge) {
     const Topology& mesh = of.mesh.topology;
     const uint32_t h = mesh.half_edge[edge];
     a = mesh.origin[h];
@@ -51,13 +50,13 @@ struct Place {
 };
 
 /// The room on both sides; none on a curve, where the deviation is another.
-[[nodiscard, gnu::always_inline]] inline float room(const DeviationBounds& of, const Place& place) {
+[[nodiscard]] float room(const DeviationBounds& of, const Place& place) {
   return place.is_smooth ? std::min(of.rooms[place.face], of.rooms[place.twin_face]) : 0;
 }
 
-[[gnu::always_inline]] inline void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
+void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
   constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
-  const auto points = [place](const Buffer<Vec3f>& from, uint32_t Place::*which) PAPILIO_INLINED {
+  const auto points = [place](const Buffer<Vec3f>& from, uint32_t Place::*which) {
     return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
   };
   const Vec3x4 a = points(of.mesh.positions, &Place::a);
@@ -96,26 +95,21 @@ Buffer<float> rooms_at_sides(const Mesh& mesh, const Buffer<uint32_t>* fours, in
   const IndexRange of((count + 3) / 4, fours);
   auto rooms = Buffer<float>::for_overwrite(count);
   for_each_part(parts_of(4 * of.size(), threads), of.size(), [&](uint32_t, uint32_t first, uint32_t last) {
-    run_wide([&]() PAPILIO_INLINED {
-      for (uint32_t i = first; i < last; ++i) {
-        const uint32_t most = count - 1;
-        const uint32_t f = 4 * of[i];
-        const Float4 four =
-            rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
-        for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
-      }
-    });
+    for (uint32_t i = first; i < last; ++i) {
+      const uint32_t most = count - 1;
+      const uint32_t f = 4 * of[i];
+      const Float4 four = rooms_of_four(mesh, {f, std::min(f + 1, most), std::min(f + 2, most), std::min(f + 3, most)});
+      for (uint32_t k = 0; k < 4 && f + k < count; ++k) rooms[f + k] = four[k];
+    }
   });
   return rooms;
 }
 
 void DeviationBounds::find(std::span<const uint32_t> edges, DeviationRange* ranges) const {
   std::array<Place, most_at_once + 3> places;
-  run_wide([&]() PAPILIO_INLINED {
-    for (size_t i = 0; i < edges.size(); ++i) places[i] = Place(*this, edges[i]);
-    for (size_t i = 0; i < 3; ++i) places[edges.size() + i] = places[0];
-    for (size_t i = 0; i < edges.size(); i += 4) find_four(*this, &places[i], ranges + i);
-  });
+  for (size_t i = 0; i < edges.size(); ++i) places[i] = Place(*this, edges[i]);
+  for (size_t i = 0; i < 3; ++i) places[edges.size() + i] = places[0];
+  for (size_t i = 0; i < edges.size(); i += 4) find_four(*this, &places[i], ranges + i);
 }
 
 }  // namespace papilio

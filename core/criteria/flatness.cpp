@@ -9,7 +9,6 @@
 #include "mesh/curve.h"
 #include "mesh/four_children.h"
 #include "mesh/normals.h"
-#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -80,7 +79,7 @@ struct CurvedMarker {
     const uint32_t* edge = &edge_of[size_t{3} * first];
     const Vec3x4 own = at(normals, {first, first + 1, first + 2, first + 3});
     // Of each of the first three children what is across two of its sides, and what is beside it: the fourth.
-    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) PAPILIO_INLINED {
+    const auto across = [&](uint32_t h0, uint32_t h1, uint32_t h2) __attribute__((always_inline)) {
       const uint32_t last = Topology::face(twin[h2]);
       return at(normals, {Topology::face(twin[h0]), Topology::face(twin[h1]), last, last});
     };
@@ -169,12 +168,10 @@ class CurvedFinder {
                               .marks = marks.data(),
                               .least = least_in_floats_,
                               .spread = static_cast<uint8_t>(with_others ? 1 : 0)};
-    run_wide([&]() PAPILIO_INLINED {
-      if (region.is_in_fours)
-        marker.mark_fours(region.faces);
-      else
-        for (uint32_t f : region.faces) marker.mark(f);
-    });
+    if (region.is_in_fours)
+      marker.mark_fours(region.faces);
+    else
+      for (uint32_t f : region.faces) marker.mark(f);
     return marks;
   }
 
@@ -191,7 +188,7 @@ class CurvedFinder {
   }
 
   /// Of the three smooth edges of a face; the fourth means nothing.
-  [[nodiscard, gnu::always_inline]] Mask4 are_curved_at(uint32_t f) const {
+  [[nodiscard]] Mask4 are_curved_at(uint32_t f) const {
     const uint32_t* twin = &topology_.twin[size_t{3} * f];
     const Vec3x4 others = at(normals_, {Topology::face(twin[0]), Topology::face(twin[1]), Topology::face(twin[2]), f});
     return are_curved(splat<3>(others), others, least_in_floats_);

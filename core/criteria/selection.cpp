@@ -52,8 +52,7 @@ Buffer<Vec3f> make_plain_vertices(const Mesh& mesh, const TensionField* tension,
 }
 
 Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
-  if (context.normals_of == nullptr || options.tension != Tension::off) return face_normals(mesh, context.threads);
-  return normals_of_fours(mesh, *context.normals_of, context.threads);
+  return face_normals(mesh, context.threads, options.tension == Tension::off ? context.normals_of : nullptr);
 }
 
 }  // namespace

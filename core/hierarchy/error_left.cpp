@@ -8,8 +8,6 @@
 
 #include "criteria/deviation_cutoff.h"
 #include "mesh/four_children.h"
-#include "simd/dispatch.h"
-#include "simd/float4.h"
 #include "simd/vec3fa.h"
 #include "split/split_pattern.h"
 
@@ -117,22 +115,20 @@ class ErrorFinder {
     }
     FarFinder far(*this, k);
     const Buffer<uint32_t>& faces = levels_[k].region.faces;
-    run_wide([&]() PAPILIO_INLINED {
-      for (size_t i = 0; i < faces.size(); i += 4) {
-        if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
-        const uint32_t h = 3 * faces[i];
-        const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
-        std::array<Vec3fa, 6> at;
-        for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
-        const uint32_t* edge = &mesh.edge[h];
-        Vec3fa farthest{};
-        visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) PAPILIO_INLINED {
-          farthest = larger(far.weighed(edge[half_edge], at[from], at[to]), farthest);
-        });
-        if (!far.is_too_near(farthest)) [[unlikely]]
-          far.look_at_four(edge, at);
-      }
-    });
+    for (size_t i = 0; i < faces.size(); i += 4) {
+      if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
+      const uint32_t h = 3 * faces[i];
+      const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
+      std::array<Vec3fa, 6> at;
+      for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
+      const uint32_t* edge = &mesh.edge[h];
+      Vec3fa farthest{};
+      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) __attribute__((always_inline)) {
+        farthest = larger(far.weighed(edge[half_edge], at[from], at[to]), farthest);
+      });
+      if (!far.is_too_near(farthest)) [[unlikely]]
+        far.look_at_four(edge, at);
+    }
   }
 
   /// Whether each of the four children of a face is divided in its turn: then nothing of them is in the result.

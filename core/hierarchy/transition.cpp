@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/trigonometry.h"
-#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -109,8 +108,7 @@ class FourJudge {
 
   using Split = LevelChoice::PartlySplit;
   /// What judge() finds, of four faces all of which have one or all two split edges; 0 where that is not certain.
-  [[nodiscard, gnu::always_inline]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits,
-                                                                 bool has_two) const {
+  [[nodiscard]] std::array<uint32_t, 4> find(const std::array<Split, 4>& splits, bool has_two) const {
     const std::array<Index4, 3> side = sides(splits);
     const Vec3x4 a = corners(side[0]);
     const Vec3x4 b = corners(side[1]);
@@ -184,10 +182,10 @@ class FourJudge {
 
  private:
   /// Of two numbers as squared_cosine() gives them, with more room than rounding takes.
-  [[nodiscard, gnu::always_inline]] static Mask4 is_surely_less(Float4 a, Float4 b) { return a < (1 - 2e-5F) * b; }
-  [[nodiscard, gnu::always_inline]] static Float4 squared_length(const Vec3x4& a) { return dot(a, a); }
+  [[nodiscard]] static Mask4 is_surely_less(Float4 a, Float4 b) { return a < (1 - 2e-5F) * b; }
+  [[nodiscard]] static Float4 squared_length(const Vec3x4& a) { return dot(a, a); }
   /// squared_cosine_of_smallest_angle(), of usual numbers.
-  [[nodiscard, gnu::always_inline]] static Float4 squared_cosine(Float4 a, Float4 b, Float4 c) {
+  [[nodiscard]] static Float4 squared_cosine(Float4 a, Float4 b, Float4 c) {
     const Float4 shorter = lesser(a, b);
     const Float4 shortest = lesser(shorter, c);
     const Float4 one = larger(a, b);
@@ -197,7 +195,7 @@ class FourJudge {
   }
 
   /// The half-edges of the faces, [i] of each the i-th from the first that is split.
-  [[nodiscard, gnu::always_inline]] static std::array<Index4, 3> sides(const std::array<Split, 4>& splits) {
+  [[nodiscard]] static std::array<Index4, 3> sides(const std::array<Split, 4>& splits) {
     std::array<Index4, 3> side;
     for (size_t k = 0; k < 4; ++k) {
       const uint8_t* first = &turned[first_target[splits[k].mask]];
@@ -206,12 +204,12 @@ class FourJudge {
     return side;
   }
   /// Where these half-edges of the four faces begin.
-  [[nodiscard, gnu::always_inline]] Vec3x4 corners(const Index4& h) const {
+  [[nodiscard]] Vec3x4 corners(const Index4& h) const {
     const auto& origin = mesh_.origin;
     return at(level_.mesh.positions, {origin[h[0]], origin[h[1]], origin[h[2]], origin[h[3]]});
   }
   /// The new vertices on them.
-  [[nodiscard, gnu::always_inline]] Vec3x4 middles(const Index4& h) const {
+  [[nodiscard]] Vec3x4 middles(const Index4& h) const {
     const auto& edge = mesh_.edge;
     return at(level_.trial.made, {edge[h[0]], edge[h[1]], edge[h[2]], edge[h[3]]});
   }
@@ -261,16 +259,14 @@ class SliverFinder {
     const size_t count = (waiting.count + 3) / 4 * 4;
     std::fill(waiting.splits.begin() + waiting.count, waiting.splits.begin() + count, waiting.splits[0]);
     std::array<std::array<uint32_t, 4>, 16> found;
-    run_wide([&]() PAPILIO_INLINED {
-      const auto splits = [&](size_t i) PAPILIO_INLINED {
-        return std::array<Split, 4>{waiting.splits[i], waiting.splits[i + 1], waiting.splits[i + 2],
-                                    waiting.splits[i + 3]};
-      };
-      if (has_two_targets(waiting.splits[0].mask))
-        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), true);
-      else
-        for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), false);
-    });
+    const auto splits = [&](size_t i) {
+      return std::array<Split, 4>{waiting.splits[i], waiting.splits[i + 1], waiting.splits[i + 2],
+                                  waiting.splits[i + 3]};
+    };
+    if (has_two_targets(waiting.splits[0].mask))
+      for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), true);
+    else
+      for (size_t i = 0; i < count; i += 4) found[i / 4] = judge_four_.find(splits(i), false);
     for (size_t i = 0; i < waiting.count; ++i) {
       const auto& [f, mask] = waiting.splits[i];
       uint32_t is = found[i / 4][i % 4];

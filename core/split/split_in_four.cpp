@@ -7,7 +7,6 @@
 #include "base/index_range.h"
 #include "base/parallel.h"
 #include "mesh/four_children.h"
-#include "simd/dispatch.h"
 #include "simd/float4.h"
 
 namespace papilio {
@@ -75,15 +74,13 @@ class FourSplitter {
       child_.half_edge.resize_for_overwrite(rule_.inner_edge(room));
     }
     for_each_part(parts_of(faces_.size(), threads), faces_.size(), [this](uint32_t, uint32_t first, uint32_t last) {
-      run_wide([this, first, last]() PAPILIO_INLINED {
-        for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
-      });
+      for (uint32_t i = first; i < last; ++i) split_face(i, faces_[i]);
     });
     return std::move(child_);
   }
 
  private:
-  [[gnu::always_inline]] void split_face(uint32_t number, uint32_t f) {
+  void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
     const uint32_t base = 12 * number;
     const SidesAtOnce corner = read_at_once(&mesh_.origin[h]);

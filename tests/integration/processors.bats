@@ -14,5 +14,5 @@ print(hashlib.sha256("".join(math.sin(i / 1e4).hex() for i in range(200000)).enc
   run env GLIBC_TUNABLES=$older "$PAPILIO_BUILD/unit_tests" --gtest_filter='RecordedResults.*'
   echo "$output"
   [ "$status" = 0 ]
-  [[ $output == *"[  PASSED  ] 3 tests."* ]]
+  [[ $output == *"[  PASSED  ] 2 tests."* ]]
 }

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <random>
 
-#include "core/simd/dispatch.h"
 #include "tests/support/shapes.h"
 
 namespace papilio {
@@ -46,23 +45,13 @@ TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
   EXPECT_GT(without, 10U);
 }
 
-TEST(FaceNormals, AreTheSameWithoutAvx2) {
-  for (const Mesh& mesh : meshes_with_normals()) {
-    const Buffer<Vec3f> with = face_normals(mesh);
-    allow_avx2(false);
-    const Buffer<Vec3f> without = face_normals(mesh);
-    allow_avx2(true);
-    for (uint32_t f = 0; f < with.size(); ++f) ASSERT_TRUE(are_same_bits(with[f], without[f])) << f;
-  }
-}
-
 TEST(FaceNormals, OfFoursAreThoseAskedOf) {
   std::mt19937 random(6);
   const Mesh mesh = build_mesh(torus(16, 8));
   Buffer<uint32_t> fours;
   for (uint32_t i = 0; i < mesh.topology.face_count() / 4; ++i)
     if (random() % 2 == 0) fours.push_back(i);
-  const Buffer<Vec3f> normals = normals_of_fours(mesh, fours, 2);
+  const Buffer<Vec3f> normals = face_normals(mesh, 2, &fours);
   ASSERT_EQ(normals.size(), mesh.topology.face_count());
   for (uint32_t i : fours)
     for (uint32_t f = 4 * i; f < 4 * i + 4; ++f) EXPECT_TRUE(are_same_bits(normals[f], face_normal(mesh, f))) << f;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/base/trigonometry.h"
-#include "core/simd/dispatch.h"
 #include "papilio/algorithm_version.h"
 #include "papilio/refine.h"
 #include "proto/draco_writer.h"
@@ -231,12 +230,6 @@ void expect_recorded_core_results() {
 }
 
 TEST(RecordedResults, OfTheCoreChangeOnlyWithTheAlgorithmVersion) { expect_recorded_core_results(); }
-
-TEST(RecordedResults, OfTheCoreAreTheSameWithoutAvx2) {
-  allow_avx2(false);
-  expect_recorded_core_results();
-  allow_avx2(true);
-}
 
 TEST(RecordedResults, EncodedChangeOnlyWithTheEncodingVersion) {
   expect_recorded(encoded_results, recorded_encoding_version, encoding_version, "encoding_version", encoded_result);

@@ -8,7 +8,6 @@
 #include <thread>
 #include <tuple>
 
-#include "core/simd/dispatch.h"
 #include "papilio/refine.h"
 #include "server/samples/models.h"
 #include "tests/support/invariants.h"
@@ -110,42 +109,6 @@ TEST(RedGreen, ThreadsGiveTheSameBits) {
       threads.emplace_back([&] { result = refine(coarse, options).mesh.triangles(); });
   }
   for (const TriangleMesh& result : results) EXPECT_EQ(result, expected);
-}
-
-/// Has what runs meanwhile do without the widest instructions.
-class WithoutAvx2 {
- public:
-  WithoutAvx2() { allow_avx2(false); }
-  WithoutAvx2(const WithoutAvx2&) = delete;
-  WithoutAvx2& operator=(const WithoutAvx2&) = delete;
-  ~WithoutAvx2() { allow_avx2(true); }
-};
-
-TEST(RedGreen, IsTheSameWithWhatEveryMachineHas) {
-  const auto same = [](const Mesh& coarse, const Options& options) {
-    const Result with = refine(coarse, options);
-    const WithoutAvx2 guard;
-    const Result without = refine(coarse, options);
-    EXPECT_EQ(with.mesh.triangles(), without.mesh.triangles());
-    EXPECT_EQ(with.error, without.error);
-    EXPECT_EQ(with.error_pixels, without.error_pixels);
-    return with.mesh.topology.face_count();
-  };
-  TriangleMesh waves = grid(20, 15);
-  for (Vec3f& p : waves.positions) p.z = std::sin(p.x) * std::cos(p.y);
-  for (const Mesh& coarse :
-       {build_mesh(real_mesh("bunny600.obj")), build_mesh(waves), build_mesh(box({4, 4, 4}, {1, 1, 1}))})
-    for (const Tension tension : {Tension::off, Tension::soft}) {
-      EXPECT_GT(same(coarse, {.levels = 3, .flatness = {0.9, 0.95, 0.99}, .tension = tension, .shape = Shape::plain}),
-                700U);
-      EXPECT_GT(same(coarse, {.levels = 3, .tension = tension, .shape = Shape::plain, .tolerance = 1e-4}), 700U);
-      same(coarse, {.levels = 3,
-                    .view = view_of(coarse, {0, 0, 1}),
-                    .tension = tension,
-                    .shape = Shape::plain,
-                    .tolerance = 1e-3});
-      same(coarse, {.levels = 3, .tension = tension, .shape = Shape::plain, .max_faces = 3000});
-    }
 }
 
 std::string test_name(const ::testing::TestParamInfo<const char*>& info) {
