@@ -1,100 +1,63 @@
 #include "mesh/connect.h"
 
 #include <algorithm>
-#include <array>
+#include <compare>
+#include <span>
 
 namespace papilio {
 namespace {
 
-/// Half-edges sorted into edges: a run of half-edges between the same two vertices each.
-struct EdgeRuns {
-  Buffer<uint32_t> half_edges;  ///< [H] ordered by lower vertex, then higher vertex, then half-edge
-  Buffer<uint32_t> starts;      ///< where each run starts; one more at the end
+/// A half-edge, to be sorted by the two vertices that it runs between.
+struct EdgeSide {
+  uint32_t lower, higher, half_edge;
+  friend auto operator<=>(const EdgeSide&, const EdgeSide&) = default;
 };
+/// All between the same two vertices, in ascending order.
+using EdgeSides = std::span<const EdgeSide>;
 
-/// A half-edge and the higher of its vertices, to be sorted by both.
-struct EdgeEnd {
-  uint32_t higher, half_edge;
-  friend bool operator<(EdgeEnd a, EdgeEnd b) {
-    return a.higher != b.higher ? a.higher < b.higher : a.half_edge < b.half_edge;
-  }
-};
-
-/// Few as a rule, and nearly in order.
-void sort_ends(EdgeEnd* first, EdgeEnd* last) {
-  constexpr ptrdiff_t few = 24;
-  if (last - first > few) {
-    std::sort(first, last);
-    return;
-  }
-  for (EdgeEnd* at = first; at != last; ++at) {
-    const EdgeEnd end = *at;
-    EdgeEnd* to = at;
-    for (; to != first && end < to[-1]; --to) *to = to[-1];
-    *to = end;
-  }
+/// The half-edges that are chosen, edge by edge.
+template <class IsChosen>
+Buffer<EdgeSide> sort_into_edges(const Topology& mesh, const IsChosen& is_chosen) {
+  Buffer<EdgeSide> sides;
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+    if (is_chosen(h))
+      sides.push_back({std::min(mesh.origin[h], mesh.tip(h)), std::max(mesh.origin[h], mesh.tip(h)), h});
+  std::ranges::sort(sides);
+  return sides;
+}
+Buffer<EdgeSide> sort_into_edges(const Topology& mesh) {
+  return sort_into_edges(mesh, [](uint32_t) { return true; });
 }
 
-EdgeRuns sort_into_edges(const Topology& mesh) {
-  const uint32_t count = mesh.half_edge_count();
-  Buffer<uint32_t> bucket(size_t{mesh.vertex_count} + 1, 0);  // of each lower vertex: where it ends, once it is filled
-  const auto for_each_half_edge = [&](const auto& visit) {
-    for (uint32_t first = 0; first < count; first += 3) {
-      const uint32_t* v = &mesh.origin[first];
-      visit(first, v[0], v[1]);
-      visit(first + 1, v[1], v[2]);
-      visit(first + 2, v[2], v[0]);
-    }
-  };
-  for_each_half_edge([&](uint32_t, uint32_t a, uint32_t b) { ++bucket[std::min(a, b) + 1]; });
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) bucket[v + 1] += bucket[v];
-  auto ends = Buffer<EdgeEnd>::for_overwrite(count);
-  for_each_half_edge([&](uint32_t h, uint32_t a, uint32_t b) { ends[bucket[std::min(a, b)]++] = {std::max(a, b), h}; });
-
-  EdgeRuns runs;
-  runs.half_edges.resize_for_overwrite(count);
-  runs.starts.resize_for_overwrite(size_t{count} + 1);
-  uint32_t* start = runs.starts.data();
-  uint32_t begin = 0;
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    const uint32_t end = bucket[v];
-    sort_ends(&ends[begin], ends.data() + end);
-    uint32_t higher = none;
-    for (uint32_t k = begin; k < end; ++k) {
-      runs.half_edges[k] = ends[k].half_edge;
-      *start = k;
-      start += ends[k].higher != higher ? 1 : 0;
-      higher = ends[k].higher;
-    }
-    begin = end;
+/// Calls visit(sides) for each edge.
+template <class Visit>
+void for_each_edge(const Buffer<EdgeSide>& sides, const Visit& visit) {
+  for (size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].lower == sides[first].lower && sides[last].higher == sides[first].higher)
+      ++last;
+    visit(EdgeSides(&sides[first], last - first));
   }
-  *start++ = count;
-  runs.starts.resize_for_overwrite(static_cast<size_t>(start - runs.starts.data()));
-  return runs;
 }
 
 /// Drops each face that has the vertices and orientation of an earlier one. Only faces at edges that two
 /// half-edges run along in one direction can repeat. Returns how many were dropped. `corner_point` [H] or empty.
-uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs, std::vector<uint32_t>& corner_point) {
+uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std::vector<uint32_t>& corner_point) {
   struct Candidate {
     Triangle rotated;  ///< starting at its lowest vertex
     uint32_t face;
   };
   std::vector<Candidate> candidates;
-  for (size_t r = 0; r + 1 < runs.starts.size(); ++r) {
-    const uint32_t begin = runs.starts[r];
-    const uint32_t end = runs.starts[r + 1];
-    uint32_t forward = 0;
-    for (uint32_t k = begin; k < end; ++k)
-      forward += mesh.origin[runs.half_edges[k]] < mesh.tip(runs.half_edges[k]) ? 1 : 0;
-    if (forward < 2 && end - begin - forward < 2) continue;
-    for (uint32_t k = begin; k < end; ++k) {
-      uint32_t h = Topology::face(runs.half_edges[k]) * 3;
+  for_each_edge(sides, [&](EdgeSides edge) {
+    const auto forward =
+        std::ranges::count_if(edge, [&](const EdgeSide& side) { return mesh.origin[side.half_edge] == side.lower; });
+    if (forward < 2 && static_cast<ptrdiff_t>(edge.size()) - forward < 2) return;
+    for (const EdgeSide& side : edge) {
+      uint32_t h = Topology::face(side.half_edge) * 3;
       for (int turn = 0; turn < 2 && mesh.origin[h] > std::min(mesh.tip(h), mesh.apex(h)); ++turn) ++h;
       candidates.push_back({{mesh.origin[h], mesh.tip(h), mesh.apex(h)}, Topology::face(h)});
     }
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+  });
+  std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
     return a.rotated != b.rotated ? a.rotated < b.rotated : a.face < b.face;
   });
   std::vector<bool> repeated;
@@ -118,72 +81,9 @@ uint32_t drop_repeated_faces(Topology& mesh, const EdgeRuns& runs, std::vector<u
   return dropped;
 }
 
-/// Finds twins; numbers edges in the order of their first half-edge, so that they lie in memory as the faces do.
-class Connector {
- public:
-  Connector(Topology& mesh, const EdgeRuns& runs, BuildReport& report) : mesh_(mesh), runs_(runs), report_(report) {}
-
-  void run() {
-    const uint32_t count = mesh_.half_edge_count();
-    mesh_.twin.assign(count, none);
-    find_twins();
-    mesh_.edge.resize_for_overwrite(count);
-    mesh_.half_edge.resize_for_overwrite(runs_.starts.size() - 1);
-    mesh_.kind.assign(mesh_.half_edge.size(), EdgeKind::smooth);
-    uint32_t edges = 0;
-    for (uint32_t h = 0; h < count; ++h) {
-      const uint32_t t = mesh_.twin[h];
-      if (t == none ? !is_first_on_curve(h) : t < h) continue;
-      mesh_.half_edge[edges] = h;
-      mesh_.edge[h] = edges;
-      if (t == none)
-        number_curve(h, edges);
-      else
-        mesh_.edge[t] = edges;
-      ++edges;
-    }
-  }
-
- private:
-  void find_twins() {
-    for (uint32_t r = 0; r + 1 < runs_.starts.size(); ++r) {
-      const uint32_t first = runs_.half_edges[runs_.starts[r]];
-      if (runs_.starts[r + 1] - runs_.starts[r] == 2) {
-        const uint32_t second = runs_.half_edges[runs_.starts[r] + 1];
-        if (mesh_.origin[first] != mesh_.origin[second]) {
-          mesh_.twin[first] = second;
-          mesh_.twin[second] = first;
-          continue;
-        }
-      }
-      if (curve_.empty()) curve_.assign(mesh_.half_edge_count(), none);
-      curve_[first] = r;
-    }
-  }
-
-  [[nodiscard]] bool is_first_on_curve(uint32_t h) const { return curve_[h] != none; }
-
-  /// The edge of half-edge `first` and of those that have no twin because of what lies there.
-  void number_curve(uint32_t first, uint32_t edge) {
-    const uint32_t begin = runs_.starts[curve_[first]];
-    const uint32_t end = runs_.starts[curve_[first] + 1];
-    for (uint32_t k = begin; k < end; ++k) mesh_.edge[runs_.half_edges[k]] = edge;
-    mesh_.kind[edge] = end - begin == 1 ? EdgeKind::boundary : EdgeKind::shared;
-    uint32_t& found = end - begin == 1   ? report_.boundary_edges
-                      : end - begin == 2 ? report_.misoriented_edges
-                                         : report_.non_manifold_edges;
-    ++found;
-  }
-
-  Topology& mesh_;
-  const EdgeRuns& runs_;
-  BuildReport& report_;
-  Buffer<uint32_t> curve_;  ///< [H] of an edge without twins, at its first half-edge: its run; empty if there is none
-};
-
-/// The same in one pass, where every edge has one face, or two that are wound alike, as most meshes have it: edges that
-/// are known are looked up in a list at their lower vertex. False, and to be done again by the other, where one has
-/// more, or such a list is too long to be gone through for every edge.
+/// Finds twins, and numbers edges as number_edges() does, in one pass, where every edge has one face, or two that are
+/// wound alike, as most meshes have it: edges that are known are looked up in a list at their lower vertex. False, and
+/// to be done in another way, where one has more, or such a list is too long to be gone through for every edge.
 class ManifoldConnector {
  public:
   explicit ManifoldConnector(Topology& mesh) : mesh_(mesh), first_at_(mesh.vertex_count, none) {}
@@ -263,11 +163,24 @@ uint32_t fan_size(const Topology& mesh, uint32_t h) {
 
 void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& report) {
   if (ManifoldConnector(mesh).run(report)) return;
-  for (Buffer<uint32_t>* of_edges : {&mesh.twin, &mesh.edge, &mesh.half_edge}) of_edges->clear();
-  EdgeRuns runs = sort_into_edges(mesh);
-  report.repeated_faces = drop_repeated_faces(mesh, runs, corner_point);
-  if (report.repeated_faces > 0) runs = sort_into_edges(mesh);
-  Connector(mesh, runs, report).run();
+  forget_edges(mesh);
+  Buffer<EdgeSide> sides = sort_into_edges(mesh);
+  report.repeated_faces = drop_repeated_faces(mesh, sides, corner_point);
+  if (report.repeated_faces > 0) sides = sort_into_edges(mesh);
+  mesh.twin.assign(mesh.half_edge_count(), none);
+  for_each_edge(sides, [&](EdgeSides edge) {
+    const uint32_t first = edge.front().half_edge;
+    const uint32_t last = edge.back().half_edge;
+    if (edge.size() == 2 && mesh.origin[first] != mesh.origin[last]) {
+      mesh.twin[first] = last;
+      mesh.twin[last] = first;
+    } else {
+      ++(edge.size() == 1   ? report.boundary_edges
+         : edge.size() == 2 ? report.misoriented_edges
+                            : report.non_manifold_edges);
+    }
+  });
+  number_edges(mesh);
 }
 
 std::vector<uint32_t> find_pinched(const Topology& mesh) {
@@ -283,19 +196,16 @@ std::vector<uint32_t> find_pinched(const Topology& mesh) {
   return pinched;
 }
 
+// In the order of their first half-edges, so that edges lie in memory as the faces do.
 void number_edges(Topology& mesh) {
   if (mesh.has_edges()) return;
   mesh.darts.clear();
-  using OpenEnd = std::array<uint32_t, 3>;  // lower vertex, higher vertex, half-edge
-  std::vector<OpenEnd> open;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
-    if (mesh.twin[h] == none)
-      open.push_back({std::min(mesh.origin[h], mesh.tip(h)), std::max(mesh.origin[h], mesh.tip(h)), h});
-  std::sort(open.begin(), open.end());
-  const auto meet = [](const OpenEnd& one, const OpenEnd& other) { return one[0] == other[0] && one[1] == other[1]; };
-
   mesh.edge.assign(mesh.half_edge_count(), none);
-  for (size_t i = 0; i < open.size(); ++i) mesh.edge[open[i][2]] = i > 0 && meet(open[i - 1], open[i]) ? 0 : none;
+  // Half-edges without a twin between the same two vertices have one edge: all but the first get its number later.
+  const Buffer<EdgeSide> open = sort_into_edges(mesh, [&](uint32_t h) { return mesh.twin[h] == none; });
+  for_each_edge(open, [&](EdgeSides edge) {
+    for (const EdgeSide& side : edge.subspan(1)) mesh.edge[side.half_edge] = 0;
+  });
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
     if (mesh.edge[h] != none) continue;
     mesh.edge[h] = mesh.edge_count();
@@ -303,11 +213,11 @@ void number_edges(Topology& mesh) {
     mesh.half_edge.push_back(h);
     mesh.kind.push_back(mesh.twin[h] == none ? EdgeKind::boundary : EdgeKind::smooth);
   }
-  for (size_t i = 1; i < open.size(); ++i) {
-    if (!meet(open[i - 1], open[i])) continue;
-    mesh.edge[open[i][2]] = mesh.edge[open[i - 1][2]];
-    mesh.kind[mesh.edge[open[i][2]]] = EdgeKind::shared;
-  }
+  for_each_edge(open, [&](EdgeSides edge) {
+    const uint32_t number = mesh.edge[edge.front().half_edge];
+    for (const EdgeSide& side : edge.subspan(1)) mesh.edge[side.half_edge] = number;
+    if (edge.size() > 1) mesh.kind[number] = EdgeKind::shared;
+  });
 }
 
 void forget_edges(Topology& mesh) {
