@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/hypotenuse.h"
 #include "base/trigonometry.h"
@@ -10,10 +9,6 @@
 
 namespace papilio {
 namespace {
-
-/// The small positive number of section 3.2.2: the sine of the angle by which a face must be turned past
-/// edge-on.
-constexpr double away_epsilon = 1e-3;
 
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -69,13 +64,7 @@ Camera::Camera(const View& view) : perspective_(view.projection == Projection::p
              Plane{forward_, dot(forward_, eye_) + near_}};
 }
 
-bool Camera::is_outside(Vec3d centre, double radius, unsigned planes) const {
-  for (unsigned i = 0; i < planes_.size(); ++i)
-    if ((planes >> i & 1U) != 0 && dot(planes_[i].normal, centre) - planes_[i].offset < -radius) return true;
-  return false;
-}
-
-unsigned Camera::planes_through(const Box& box) const {
+std::vector<Camera::Plane> Camera::planes_through(const Box& box) const {
   constexpr double margin = 1e-9;
   const auto least = [&](const Plane& p) {
     double sum = -p.offset;
@@ -89,8 +78,9 @@ unsigned Camera::planes_through(const Box& box) const {
     add(p.normal.z, box.min.z, box.max.z);
     return sum - margin * size;
   };
-  unsigned through = 0;
-  for (unsigned i = 0; i < planes_.size(); ++i) through |= least(planes_[i]) > 0 ? 0U : 1U << i;
+  std::vector<Plane> through;
+  for (const Plane& plane : planes_)
+    if (!(least(plane) > 0)) through.push_back(plane);
   return through;
 }
 
@@ -105,54 +95,6 @@ double Camera::highest_pixels_per_unit(const Box& box) const {
 }
 
 /// The sine is compared as a square, without a root.
-bool Camera::is_away(Vec3d point, Vec3d normal) const {
-  const Vec3d sight = perspective_ ? point - eye_ : forward_;
-  const double along = dot(sight, normal);
-  return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
-}
-
-namespace {
-
-/// What is farther is not looked at in floats.
-constexpr double most_in_floats = 1e18;
-
-/// As far from the origin as anything in the box.
-Vec3d farthest_corner(const Box& box) {
-  return {std::max(std::abs(box.min.x), std::abs(box.max.x)), std::max(std::abs(box.min.y), std::abs(box.max.y)),
-          std::max(std::abs(box.min.z), std::abs(box.max.z))};
-}
-
-}  // namespace
-
-Camera::QuickOutside::QuickOutside(const Camera& camera, const Box& box, unsigned planes)
-    : is_certain_((planes >> near_plane & 1U) == 0) {
-  constexpr float nowhere = std::numeric_limits<float>::max();
-  double farthest = 0;  // plane from the origin
-  for (size_t i = 0; i < 4; ++i) {
-    if (std::abs(camera.planes_[i].offset) > most_in_floats) is_certain_ = false;
-    const Plane plane = is_certain_ && (planes >> i & 1U) != 0 ? camera.planes_[i] : Plane{{}, -nowhere};
-    normals_.x[i] = static_cast<float>(plane.normal.x);
-    normals_.y[i] = static_cast<float>(plane.normal.y);
-    normals_.z[i] = static_cast<float>(plane.normal.z);
-    offsets_[i] = static_cast<float>(plane.offset);
-    if (plane.offset != -nowhere) farthest = std::max(farthest, std::abs(plane.offset));
-  }
-  margin_ = static_cast<float>(2e-6 * (length(farthest_corner(box)) + farthest));
-}
-
-Camera::QuickAway::QuickAway(const Camera& camera, const Box& box) : perspective_(camera.perspective_ ? 1.0F : 0.0F) {
-  const Vec3d high = farthest_corner(box);
-  const Vec3d from = camera.perspective_ ? camera.eye_ : -1.0 * camera.forward_;
-  // No less than the distance of anything in the box, and than the products above.
-  const double size = length(high) + length(from);
-  const double rounding = 1e-6 * size;
-  const bool fits = size < most_in_floats;
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  from_ = fits ? to_float(from) : Vec3f{};
-  surely_towards_ = fits ? static_cast<float>(-rounding) : -infinity;
-  surely_away_ = fits ? static_cast<float>(rounding + 1.001 * away_epsilon * size) : infinity;
-}
-
 double Camera::facing(Vec3d point, Vec3d normal) const {
   if (!perspective_) return -dot(forward_, normal);
   const Vec3d sight = point - eye_;

@@ -121,76 +121,30 @@ TEST(Camera, AwayDependsOnWhereTheFaceIsInAPerspectiveView) {
   EXPECT_FALSE(camera.is_away({0, 0, 0}, {1, 0, 0}));  // edge on
 }
 
-/// A view of something as large as `size` at `place`.
-View random_view(std::mt19937& random, double size, Vec3d place) {
-  std::uniform_real_distribution<double> within(-1, 1);
-  const auto anywhere = [&](double far) { return far * Vec3d{within(random), within(random), within(random)}; };
-  View view;
-  view.eye = place + anywhere(random() % 16 == 0 ? 1e60 : 3 * size);
-  view.target = place + anywhere(size);
-  view.up = anywhere(1);
-  view.fov_y = 30 + 20 * within(random);
-  view.near = 1e-9 * size;
-  view.projection = random() % 3 == 0 ? Projection::orthographic : Projection::perspective;
-  return view;
-}
-
-TEST(Camera, WhatIsDecidedInFloatsIsSo) {
+TEST(Camera, PlanesThroughABoxDecideAboutItsPoints) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> within(-1, 1);
-  size_t asked = 0, outside = 0, away = 0, unsure = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const double size = std::pow(10, 12 * within(random));
-    const Vec3d place =
-        random() % 3 == 0 ? 300 * size * Vec3d{within(random), within(random), within(random)} : Vec3d{};
-    const View view = random_view(random, size, place);
+  const auto anywhere = [&](double far) { return far * Vec3d{within(random), within(random), within(random)}; };
+  size_t outside = 0, spared = 0;
+  for (int i = 0; i < 500; ++i) {
+    View view;
+    view.eye = anywhere(3);
+    view.target = anywhere(1);
+    view.up = anywhere(1);
+    view.projection = i % 3 == 0 ? Projection::orthographic : Projection::perspective;
     const Camera camera(view);
-    const auto point = [&] { return to_float(place + size * Vec3d{within(random), within(random), within(random)}); };
-    std::array<Vec3f, 4> points{point(), point(), point(), point()};
-    // Two of them as near to the border of what is outside as floats are.
-    Vec3d one = to_double(points[0]);
-    Vec3d other = to_double(points[1]);
-    for (int step = 0; step < 60 && camera.is_outside(one, 0) != camera.is_outside(other, 0); ++step) {
-      const Vec3d middle = 0.5 * (one + other);
-      (camera.is_outside(middle, 0) == camera.is_outside(one, 0) ? one : other) = middle;
-      points[2] = to_float(one);
-      points[3] = to_float(other);
-    }
-    const Box box = bounding_box(points);
-    const unsigned through = camera.planes_through(box);
-    if ((through >> 4 & 1U) != 0) continue;  // the near plane
-    const Camera::QuickOutside is_outside(camera, box, through);
-    const Camera::QuickAway is_away(camera, box);
-    Buffer<Vec3f> normals;
-    Float4 planes{};
-    for (size_t k = 0; k < 4; ++k) {
-      const double radius = random() % 2 == 0 ? 0 : 0.1 * size * std::abs(within(random));
-      const Camera::Answer answer = is_outside(points[k], static_cast<float>(radius));
-      if (answer != Camera::Answer::unsure) {
-        ASSERT_EQ(answer == Camera::Answer::yes, camera.is_outside(to_double(points[k]), radius)) << i;
-      }
-      ++asked;
-      outside += answer == Camera::Answer::yes ? 1 : 0;
-      unsure += k < 2 && answer == Camera::Answer::unsure ? 1 : 0;
-      // Some faces are seen nearly from their edge.
-      Vec3d normal{within(random), within(random), within(random)};
-      if (random() % 16 == 0) normal = cross(normal, to_double(points[k]) - view.eye);
-      normals.push_back(to_float((1 / length(normal)) * normal));
-      planes[k] = dot(normals[k], points[k]);
-    }
-    const auto [no, yes] = is_away(at(normals, {0, 1, 2, 3}), planes);
-    for (size_t k = 0; k < 4; ++k) {
-      const bool is_so = camera.is_away(to_double(points[k]), to_double(normals[k]));
-      ASSERT_FALSE(no[k] != 0 && is_so) << i;
-      ASSERT_FALSE(yes[k] != 0 && !is_so) << i;
-      away += yes[k] != 0 ? 1 : 0;
-      unsure += k < 2 && (no[k] | yes[k]) == 0 ? 1 : 0;
+    Buffer<Vec3f> points;
+    for (int k = 0; k < 10; ++k) points.push_back(to_float(anywhere(0.5)));
+    const std::vector<Camera::Plane> planes = camera.planes_through(bounding_box(points));
+    spared += 5 - planes.size();
+    for (const Vec3f& p : points) {
+      const double radius = i % 2 == 0 ? 0 : 0.1 * std::abs(within(random));
+      EXPECT_EQ(Camera::is_outside(planes, to_double(p), radius), camera.is_outside(to_double(p), radius));
+      outside += camera.is_outside(to_double(p), radius) ? 1 : 0;
     }
   }
-  EXPECT_GT(asked, 1000U);
-  EXPECT_GT(outside, asked / 10);
-  EXPECT_GT(away, asked / 10);
-  EXPECT_LT(unsure, asked / 4);  // of those that are anywhere; far from the origin there are more
+  EXPECT_GT(outside, 500U);
+  EXPECT_GT(spared, 500U);
 }
 
 TEST(EdgesShown, KeepsTheFrontAndItsSilhouette) {
