@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "criteria/view_culling.h"
 #include "hierarchy/transition.h"
@@ -77,18 +78,15 @@ bool Levels::make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red) {
   for (uint32_t f = 0; f < known.red.size(); ++f)
     if (known.red[f] != 0) red[moved_.empty() ? f : moved_[f]] = 1;
   if (!may_keep(red)) return false;
-  LevelBelow below = refine_level(*levels_.back(), std::move(red), progress_.threads());
-  const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
+  add_level(std::move(red), Retention::kept);
+  const HierarchyLevel& level = *levels_.back();
   Buffer<uint32_t> moved(known.mesh.topology.face_count());
   for (uint32_t f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent_of(f);
-    moved[f] = level->first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
+    moved[f] = level.first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
   }
   moved_ = std::move(moved);
-  progress_.poll();
-  keep_tried(*level, parents_of(*level, below.parents));
-  carry_deviations(known, moved_, *level);
-  add_kept(level);
+  carry_deviations(known, moved_, level);
   return true;
 }
 
@@ -123,64 +121,73 @@ Buffer<uint8_t> Levels::or_everything(Buffer<uint8_t> red, double as_dear) const
 }
 
 void Levels::make(const Buffer<uint8_t>& red) {
-  if (prepared_ == nullptr && (make_last(red) || make_whole(red))) return;
-  Buffer<uint8_t> more = prepared_ == nullptr ? or_everything(red, part_as_dear_as_all)
-                                              : or_everything(with_margin(red), part_as_dear_as_all_kept);
-  if (prepared_ != nullptr && !may_keep(more)) more = or_everything(red, part_as_dear_as_all);
-  const bool is_kept = may_keep(more);
-  if (prepared_ != nullptr && !is_kept && make_last(red)) return;
-  LevelBelow below = refine_level(*levels_.back(), std::move(more), progress_.threads());
+  if (prepared_ != nullptr) {
+    Buffer<uint8_t> more = or_everything(with_margin(red), part_as_dear_as_all_kept);
+    if (!may_keep(more)) more = or_everything(red, part_as_dear_as_all);
+    if (may_keep(more)) return add_level(std::move(more), Retention::kept);
+  }
+  add_level(red, Retention::for_once);
+}
+
+void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
+  const HierarchyLevel& above = *levels_.back();
+  const Topology& mesh = above.mesh.topology;
+  const int threads = progress_.threads();
+  const bool is_kept = retention == Retention::kept;
+  const bool is_plain = options_.tension == Tension::off && options_.w == 0;
+  LevelBelow below;
+  std::optional<Part> part;
+  Buffer<uint32_t> held;  // faces that have children, where all are made and some tried
+  if (!is_kept && is_plain && may_hold_red_alone()) {
+    part.emplace(mesh, red);
+    below.level = refine_last_level(above, std::move(red), *part, threads);
+  } else {
+    if (!is_kept && above.is_tried_whole() && has_room_for_whole()) held = marked(with_neighbours(mesh, red));
+    const double as_dear = is_plain ? part_as_dear_as_formula : part_as_dear_as_all;
+    if (!held.empty() && static_cast<double>(held.size()) >= as_dear * static_cast<double>(red.size()))
+      below.level = refine_whole_level(above, std::move(red), threads);
+    else
+      below = refine_level(above, std::move(red), threads);
+  }
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
-  const Topology& parents = parents_of(*level, below.parents);
-  if (is_kept) {
-    keep_tried(*level, parents);
-    add_kept(level);
-  } else {
-    try_for_once(*level, parents);
-    levels_.push_back(level);
+
+  const Topology& parents = level->is_whole || part ? mesh : below.parents;
+  if (is_kept || options_.view) {
+    const Buffer<uint32_t> round_red = part ? marked(with_neighbours(mesh, level->red)) : Buffer<uint32_t>{};
+    level->longest = longest_edges_below(parents, level->mesh.positions, part ? &round_red : nullptr);
   }
+  const EdgeMarks complete = options_.w != 0 ? complete_edges(*level) : EdgeMarks{};
+  TrialContext context{.features = part ? &above.features : &level->features,
+                       .parents = &parents,
+                       .part = part ? &*part : nullptr,
+                       .complete = &complete,
+                       .threads = threads};
+  Buffer<uint32_t> below_red;  // fours of faces
+  if (!is_kept && !part) {
+    const uint32_t fours = level->mesh.topology.face_count() / 4;
+    below_red.resize(fours);
+    std::iota(below_red.begin(), below_red.end(), 0U);
+    keep_if(below_red, [&](uint32_t i) { return level->red[level->parent_of(4 * i)] != 0; });
+    context.normals_of = &below_red;
+    if (is_plain && is_next_last())
+      context.asked_of = &below_red;
+    else if (is_plain && level->is_whole && !held.empty() && held.size() < fours)
+      context.asked_of = &held;
+  }
+  level->trial = try_split(level->mesh, options_, context);
+  if (is_kept)
+    level->trial.keep(level->mesh.topology);
+  else
+    level->trial.prepare_errors(level->mesh, options_, context);
+  levels_.push_back(level);
+  to_keep_ += is_kept ? 1 : 0;
+  has_grown_ |= is_kept;
 }
 
-bool Levels::make_whole(const Buffer<uint8_t>& red) {
-  const HierarchyLevel& above = *levels_.back();
-  const Topology& parents = above.mesh.topology;
-  if (!above.is_tried_whole() || options_.tension != Tension::off || options_.w != 0 || !has_room_for_whole())
-    return false;
-  const Buffer<uint32_t> held = marked(with_neighbours(parents, red));
-  if (static_cast<double>(held.size()) < part_as_dear_as_formula * static_cast<double>(red.size())) return false;
-  const auto level = std::make_shared<HierarchyLevel>(refine_whole_level(above, red, progress_.threads()));
-  progress_.poll();
-  if (options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
-  const Buffer<uint32_t> below_red = marked(red);
-  TrialContext context{
-      .features = &level->features, .parents = &parents, .normals_of = &below_red, .threads = progress_.threads()};
-  if (held.size() < red.size()) context.asked_of = is_next_last() ? &below_red : &held;
-  level->trial = try_split(level->mesh, options_, context);
-  level->trial.prepare_errors(level->mesh, options_, context);
-  levels_.push_back(level);
-  return true;
-}
-
-bool Levels::make_last(const Buffer<uint8_t>& red) {
-  const HierarchyLevel& above = *levels_.back();
-  const Topology& parents = above.mesh.topology;
-  if (!is_next_last() || options_.tension != Tension::off || options_.w != 0 || !above.features.are_rings() ||
-      has_displacements(levels_[0]->mesh.attributes) || !has_room_for_whole())
-    return false;
-  const Part part(parents, red);
-  const auto level = std::make_shared<HierarchyLevel>(refine_last_level(above, red, part, progress_.threads()));
-  progress_.poll();
-  if (options_.view) {
-    const Buffer<uint32_t> round_them = marked(with_neighbours(parents, red));
-    level->longest = longest_edges_below(parents, level->mesh.positions, &round_them);
-  }
-  const TrialContext context{
-      .features = &above.features, .parents = &parents, .part = &part, .threads = progress_.threads()};
-  level->trial = try_split(level->mesh, options_, context);
-  level->trial.prepare_errors(level->mesh, options_, context);
-  levels_.push_back(level);
-  return true;
+bool Levels::may_hold_red_alone() const {
+  return is_next_last() && levels_.back()->features.are_rings() && !has_displacements(levels_[0]->mesh.attributes) &&
+         has_room_for_whole();
 }
 
 bool Levels::has_room_for_whole() const {
@@ -189,42 +196,6 @@ bool Levels::has_room_for_whole() const {
 }
 
 bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }
-
-const Topology& Levels::parents_of(const HierarchyLevel& level, const Topology& held) const {
-  return level.is_whole ? levels_.back()->mesh.topology : held;
-}
-
-void Levels::keep_tried(HierarchyLevel& level, const Topology& parents) const {
-  level.longest = longest_edges_below(parents, level.mesh.positions);
-  const EdgeMarks complete = options_.w != 0 ? complete_edges(level) : EdgeMarks{};
-  level.trial = try_split(
-      level.mesh, options_,
-      {.features = &level.features, .parents = &parents, .complete = &complete, .threads = progress_.threads()});
-  level.trial.keep(level.mesh.topology);
-}
-
-void Levels::try_for_once(HierarchyLevel& level, const Topology& parents) const {
-  if (options_.view) level.longest = longest_edges_below(parents, level.mesh.positions);
-  const EdgeMarks complete = options_.w != 0 ? complete_edges(level) : EdgeMarks{};
-  TrialContext context{
-      .features = &level.features, .parents = &parents, .complete = &complete, .threads = progress_.threads()};
-  Buffer<uint32_t> below_red;  // fours of faces
-  if (!level.is_whole) {
-    below_red.resize(level.parent.size());
-    std::iota(below_red.begin(), below_red.end(), 0U);
-    keep_if(below_red, [&](uint32_t i) { return level.red[level.parent[i]] != 0; });
-    context.normals_of = &below_red;
-    if (is_next_last()) context.asked_of = &below_red;
-  }
-  level.trial = try_split(level.mesh, options_, context);
-  level.trial.prepare_errors(level.mesh, options_, context);
-}
-
-void Levels::add_kept(std::shared_ptr<const HierarchyLevel> level) {
-  levels_.push_back(std::move(level));
-  ++to_keep_;
-  has_grown_ = true;
-}
 
 void Levels::hand_back() {
   if (!has_grown_) return;

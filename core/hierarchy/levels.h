@@ -43,23 +43,18 @@ class Levels {
   /// those marked.
   [[nodiscard]] Buffer<uint8_t> or_everything(Buffer<uint8_t> red, double as_dear) const;
   void make(const Buffer<uint8_t>& red);
-  /// The same where it costs less to make all of the level, of which then only that is tried which may be asked for;
-  /// false, and nothing is done, where that is not so.
-  bool make_whole(const Buffer<uint8_t>& red);
-  /// The same where nothing will lie below, as cheaply as that can be done (refine_last_level); false, and nothing is
-  /// done, where that cannot be.
-  bool make_last(const Buffer<uint8_t>& red);
+  /// Whether a level is held for later requests too, or for this one alone, of which then no more is tried than this
+  /// request may ask for.
+  enum class Retention { kept, for_once };
+  /// Adds a level that holds the children of the deepest one's faces marked `red` [F] and of those round them; all of
+  /// it where that costs less, and where nothing will lie below and it is for once, `red` alone (refine_last_level).
+  void add_level(Buffer<uint8_t> red, Retention retention);
+  /// Whether that last is possible for the plain rules.
+  [[nodiscard]] bool may_hold_red_alone() const;
   /// Whether the limits allow all of the next level.
   [[nodiscard]] bool has_room_for_whole() const;
   /// Whether no level will lie below the one below the deepest.
   [[nodiscard]] bool is_next_last() const;
-  /// What a level below the deepest was split from; `held` as in LevelBelow.
-  [[nodiscard]] const Topology& parents_of(const HierarchyLevel& level, const Topology& held) const;
-  /// Tries all edges of a level that is kept; `parents`: as above.
-  void keep_tried(HierarchyLevel& level, const Topology& parents) const;
-  /// Tries the edges of a level that is not kept, as far as this request may ask for them; `parents`: as above.
-  void try_for_once(HierarchyLevel& level, const Topology& parents) const;
-  void add_kept(std::shared_ptr<const HierarchyLevel> level);
 
   const Options& options_;
   const Progress& progress_;
