@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 
 // The four children of a face all of whose edges are split (split_in_four.h): their twelve half-edges, three a child.
 
@@ -48,43 +47,6 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
       second[0], first[1], inner + 1,  //
       inner + 2, second[1], first[2],  //
       inner + 1, inner + 2, inner);
-}
-
-/// One number a side, in a register; the fourth means nothing.
-using SidesAtOnce = uint32_t __attribute__((vector_size(16)));
-[[nodiscard]] inline SidesAtOnce at_once(const OfSides& sides) { return SidesAtOnce{sides[0], sides[1], sides[2], 0}; }
-/// Of an array that has room behind its end (papilio/buffer.h): four are read.
-[[nodiscard]] inline SidesAtOnce read_at_once(const uint32_t* sides) {
-  SidesAtOnce read;
-  std::memcpy(&read, sides, sizeof(read));
-  return read;
-}
-
-/// The same as above, from registers.
-inline void put_corners_of_four(SidesAtOnce corner, SidesAtOnce middle, uint32_t* to) {
-  const std::array<SidesAtOnce, 3> rows{__builtin_shufflevector(corner, middle, 0, 4, 6, 4),
-                                        __builtin_shufflevector(corner, middle, 1, 5, 6, 5),
-                                        __builtin_shufflevector(corner, middle, 2, 4, 5, 6)};
-  std::memcpy(to, rows.data(), sizeof(rows));
-}
-/// What twins and edges have in common: numbers that belong to the first and second halves of the sides; inside, those
-/// of the outer children, of child 0, 1 and 2, and those of the one in the middle.
-inline void put_sides_of_four(SidesAtOnce first, SidesAtOnce second, SidesAtOnce inside, SidesAtOnce of_middle,
-                              uint32_t* to) {
-  const std::array<SidesAtOnce, 3> rows{
-      __builtin_shufflevector(__builtin_shufflevector(first, inside, 0, 4, 0, 4), second, 0, 1, 6, 4),
-      __builtin_shufflevector(__builtin_shufflevector(first, inside, 1, 5, 1, 5),
-                              __builtin_shufflevector(inside, second, 2, 5, 2, 5), 0, 1, 4, 5),
-      __builtin_shufflevector(__builtin_shufflevector(first, of_middle, 2, 4, 2, 4), of_middle, 0, 1, 5, 6)};
-  std::memcpy(to, rows.data(), sizeof(rows));
-}
-inline void put_twins_of_four(uint32_t base, SidesAtOnce against_first, SidesAtOnce against_second, uint32_t* to) {
-  constexpr SidesAtOnce inside{11, 9, 10, 0}, of_middle{5, 6, 1, 0};
-  put_sides_of_four(against_first, against_second, base + inside, base + of_middle, to);
-}
-inline void put_edges_of_four(SidesAtOnce first, SidesAtOnce second, uint32_t inner, uint32_t* to) {
-  constexpr SidesAtOnce inside{0, 1, 2, 0}, of_middle{1, 2, 0, 0};
-  put_sides_of_four(first, second, inner + inside, inner + of_middle, to);
 }
 
 /// The six vertices of the four, from their corners [12]: the parent's, and then the middles of its sides.

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "base/index_range.h"
 #include "base/parallel.h"
 #include "mesh/four_children.h"
-#include "simd/float4.h"
 
 namespace papilio {
 namespace {
@@ -83,28 +81,19 @@ class FourSplitter {
   void split_face(uint32_t number, uint32_t f) {
     const uint32_t h = 3 * f;
     const uint32_t base = 12 * number;
-    const SidesAtOnce corner = read_at_once(&mesh_.origin[h]);
-    const SidesAtOnce edge = read_at_once(&mesh_.edge[h]);
-    put_corners_of_four(corner, mesh_.vertex_count + edge, &child_.origin[base]);
     const OfSides twin{numbers_.half_edge(mesh_.twin[h]), numbers_.half_edge(mesh_.twin[h + 1]),
                        numbers_.half_edge(mesh_.twin[h + 2])};
-    const SidesAtOnce twins = at_once(twin);
-    const auto without_twin = std::bit_cast<SidesAtOnce>(twins == none);
-    const SidesAtOnce firsts = 4 * twins;
-    const SidesAtOnce seconds = at_once({second_half(twin[0]), second_half(twin[1]), second_half(twin[2])});
-    put_twins_of_four(base, seconds | without_twin, firsts | without_twin, &child_.twin[base]);
+    rule_.split(number, &mesh_.origin[h], twin.data(), &mesh_.edge[h], &child_.origin[base], &child_.twin[base]);
     if (!numbers_edges) return;
-    // Of each side the half at the half-edge's tip comes first where that is the lower vertex.
-    const SidesAtOnce next_corner = __builtin_shufflevector(corner, corner, 1, 2, 0, 3);
-    const auto is_downward = std::bit_cast<SidesAtOnce>(corner > next_corner);
-    const SidesAtOnce first = 2 * at_once({numbers_.edge(edge[0]), numbers_.edge(edge[1]), numbers_.edge(edge[2])}) -
-                              is_downward;  // all bits set: minus one
-    put_edges_of_four(first, first ^ 1, rule_.inner_edge(number), &child_.edge[base]);
+    const OfSides edge{numbers_.edge(mesh_.edge[h]), numbers_.edge(mesh_.edge[h + 1]),
+                       numbers_.edge(mesh_.edge[h + 2])};
+    uint32_t* child_edge = &child_.edge[base];
+    rule_.number_edges(number, &mesh_.origin[h], edge.data(), child_edge);
     constexpr OfSides first_half_edge{0, 4, 8}, second_half_edge{3, 7, 2};
     for (uint32_t i = 0; i < 3; ++i) {
       if (!is_named_after(3 * number + i, twin[i], h + i)) continue;
-      child_.half_edge[first[i]] = base + first_half_edge[i];
-      child_.half_edge[first[i] ^ 1U] = base + second_half_edge[i];
+      child_.half_edge[child_edge[first_half_edge[i]]] = base + first_half_edge[i];
+      child_.half_edge[child_edge[second_half_edge[i]]] = base + second_half_edge[i];
     }
     put(&child_.half_edge[rule_.inner_edge(number)], base + 11, base + 9, base + 10);
   }
