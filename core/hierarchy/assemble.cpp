@@ -13,15 +13,15 @@
 namespace papilio {
 namespace {
 
-/// A level, and what becomes of its faces. Levels lie in an array: the one below is behind.
+/// A level, and what becomes of its faces.
 struct AssembledLevel {
   const LevelChoice* choice;
   const Topology* mesh;
-  bool has_below;
-  const uint32_t* edge;         ///< [H] of the mesh
-  const uint8_t* is_split;      ///< [E]
-  const uint8_t* mask;          ///< [F] (LevelChoice); null where it is not known
-  Buffer<uint32_t> new_vertex;  ///< [E] number in the result of the edge's vertex; written where split
+  AssembledLevel* below = nullptr;  ///< the next level; null: this is the last
+  const uint32_t* edge;             ///< [H] of the mesh
+  const uint8_t* is_split;          ///< [E]
+  const uint8_t* mask;              ///< [F] (LevelChoice); null where it is not known
+  Buffer<uint32_t> new_vertex;      ///< [E] number in the result of the edge's vertex; written where split
 
   /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
   /// what becomes of it.
@@ -32,9 +32,9 @@ struct AssembledLevel {
   Buffer<uint32_t> shown;
   Buffer<Fate> fates;
 
-  [[nodiscard]] bool is_divided(uint32_t f) const { return has_below && choice->red[f] != 0; }
+  [[nodiscard]] bool is_divided(uint32_t f) const { return below != nullptr && choice->red[f] != 0; }
   /// The first child of a divided face.
-  [[nodiscard]] uint32_t child(uint32_t f) const { return this[1].choice->level->first_child_of(f); }
+  [[nodiscard]] uint32_t child(uint32_t f) const { return below->choice->level->first_child_of(f); }
 };
 
 /// The edges that are split. In order are already those that were wanted; behind them lie those that these need.
@@ -115,7 +115,7 @@ class Assembler {
       AssembledLevel& level = levels_.emplace_back();
       level.choice = &choice;
       level.mesh = &mesh;
-      level.has_below = levels_.size() < levels.size();
+      if (levels_.size() > 1) levels_[levels_.size() - 2].below = &level;  // which stays where it is
       level.edge = mesh.edge.data();
       level.is_split = choice.split.data();
       level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
@@ -152,12 +152,12 @@ class Assembler {
   [[gnu::noinline]] void place_children(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
     if (!coarse_.attributes.empty()) remember(level, f, nullptr);
     const OfSides middle = middles(level, f);
-    AssembledLevel& below = (&level)[1];
+    AssembledLevel& below = *level.below;
     const uint32_t child = level.child(f);
     std::array<uint32_t, 12> corners;
     put_corners_of_four({corner[0], corner[1], corner[2]}, middle, corners.data());
     const FourMasks masks = masks_of_four(below, child);
-    if (masks == all_in_four && !below.has_below && !has_curves_or_points_) {
+    if (masks == all_in_four && below.below == nullptr && !has_curves_or_points_) {
       cut_in_sixteen(below, child, corners.data());
       return;
     }
@@ -354,7 +354,7 @@ class Assembler {
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };
-      out_.attributes.point.assign(level.has_below ? (&level)[1].mesh->half_edge_count() : 0, none);
+      out_.attributes.point.assign(level.below != nullptr ? level.below->mesh->half_edge_count() : 0, none);
       for (size_t i = 0; i < level.shown.size(); ++i) {
         const uint32_t f = level.shown[i];
         const auto& [first, cut_in_result] = level.fates[i];
