@@ -181,11 +181,11 @@ Buffer<float> Selection::errors(const Mesh& mesh, const Trial& trial, const Buff
   const bool least_will_do = reaching == Reaching::no_more && trial.has_ranges() && measure_.grows_with_distance();
   const auto error = [&](uint32_t e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };
   for (uint32_t e : wanted) {
-    const auto [distance, is_exact] = trial.known_deviation_at(mesh, e);
-    errors[e] = measure_.most_error(distance, scale);
+    const double most = trial.most_deviation_at(mesh, e);
+    errors[e] = measure_.most_error(most, scale);
     if (errors[e] < threshold) continue;
-    errors[e] = error(e, distance);
-    if (errors[e] < threshold || is_exact) continue;
+    errors[e] = error(e, most);
+    if (errors[e] < threshold) continue;
     if (least_will_do) {
       errors[e] = error(e, trial.no_more_than_deviation_at(e));
       if (errors[e] >= threshold) continue;

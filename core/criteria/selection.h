@@ -60,15 +60,6 @@ struct Trial {
   }
   /// The deviation of a tried edge.
   [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
-  /// Never less than that, and cheap: the deviation itself where somebody has asked for it.
-  struct KnownDeviation {
-    double distance;
-    bool is_exact;
-  };
-  [[nodiscard]] KnownDeviation known_deviation_at(const Mesh& mesh, uint32_t edge) const {
-    const double known = deviations.get(edge);
-    return known != unknown ? KnownDeviation{known, true} : KnownDeviation{most_deviation_at(mesh, edge), false};
-  }
   /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
   [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
   /// Never less than that, of what is known already; infinity where nothing is.
