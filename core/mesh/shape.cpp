@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/trigonometry.h"
 #include "mesh/crease.h"
 #include "mesh/hinge.h"
@@ -17,25 +17,6 @@ constexpr double flat_degrees = 0.5, least_outline_degrees = 3, sharp_degrees = 
 constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;
 constexpr double broader = 1.5;              // by so much a flat must be broader than what it ends at
 constexpr double flat_share_of_size = 2e-6;  // of the diagonal or the largest coordinate
-
-/// Sets of faces, joined one by one.
-class FaceSets {
- public:
-  explicit FaceSets(uint32_t faces) : above_(faces) { std::iota(above_.begin(), above_.end(), 0U); }
-  /// The face that stands for the set that f is in.
-  uint32_t find(uint32_t f) {
-    while (above_[f] != f) f = above_[f] = above_[above_[f]];
-    return f;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    above_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  Buffer<uint32_t> above_;
-};
 
 class ShapeFinder {
  public:
@@ -122,7 +103,7 @@ class ShapeFinder {
   [[nodiscard]] bool is_sharp(uint32_t e) const { return cosines_[e] < sharp_cosine_; }
 
   void find_creases() {
-    FaceSets flats(topology_.face_count());
+    DisjointSets flats(topology_.face_count());
     for (uint32_t e = 0; e < topology_.edge_count(); ++e)
       if (has_two_faces(e) && is_flat(e)) flats.join(face_of(e), other_face_of(e));
     const std::vector<Flat> of = measure(flats);
@@ -144,7 +125,7 @@ class ShapeFinder {
     }
   };
 
-  std::vector<Flat> measure(FaceSets& flats) const {
+  std::vector<Flat> measure(DisjointSets& flats) const {
     std::vector<Flat> of(topology_.face_count());  // of the flat that this face stands for
     const auto at = [&](uint32_t h) { return to_double(mesh_.positions[topology_.origin[h]]); };
     for (uint32_t f = 0; f < topology_.face_count(); ++f) {
@@ -210,7 +191,7 @@ class ShapeFinder {
   const double sharp_cosine_ = cosine_of_degrees(sharp_degrees);
   Mesh& mesh_;
   Topology& topology_;
-  FaceSets components_;
+  DisjointSets components_;
   Buffer<double> cosines_;         ///< [E] of the angle between the two faces' normals
   Buffer<uint8_t> is_mechanical_;  ///< [F]
   uint32_t marked_ = 0;            ///< creases of smoothing groups

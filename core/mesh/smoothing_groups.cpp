@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/disjoint_sets.h"
+
 namespace papilio {
 namespace {
 
@@ -19,25 +21,13 @@ std::vector<double> groups_of_faces(const Mesh& mesh) {
 
 /// Returns [F] whether all faces of a face's component, connected by edges between two faces, have one group.
 std::vector<bool> find_uniform(const Topology& mesh, const std::vector<double>& groups) {
-  std::vector<bool> is_uniform(groups.size()), is_seen(groups.size());
-  std::vector<uint32_t> component;
-  for (uint32_t first = 0; first < groups.size(); ++first) {
-    if (is_seen[first]) continue;
-    component.assign(1, first);
-    is_seen[first] = true;
-    bool has_one_group = true;
-    for (size_t next = 0; next < component.size(); ++next) {
-      const uint32_t f = component[next];
-      has_one_group = has_one_group && groups[f] == groups[first];
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        if (mesh.twin[h] == none || is_seen[Topology::face(mesh.twin[h])]) continue;
-        is_seen[Topology::face(mesh.twin[h])] = true;
-        component.push_back(Topology::face(mesh.twin[h]));
-      }
-    }
-    if (has_one_group)
-      for (const uint32_t f : component) is_uniform[f] = true;
-  }
+  DisjointSets components(mesh.face_count());
+  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+    if (mesh.twin[h] != none) components.join(Topology::face(h), Topology::face(mesh.twin[h]));
+  std::vector<bool> is_uniform(groups.size(), true);
+  for (uint32_t f = 0; f < groups.size(); ++f)
+    if (groups[f] != groups[components.find(f)]) is_uniform[components.find(f)] = false;
+  for (uint32_t f = 0; f < groups.size(); ++f) is_uniform[f] = is_uniform[components.find(f)];
   return is_uniform;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "mesh/normals.h"
 
 namespace papilio {
@@ -57,22 +57,13 @@ std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Bu
 
 /// One vertex of each component of which nothing is left.
 std::vector<uint32_t> lost_components(const Topology& before, const std::vector<uint32_t>& kept) {
-  std::vector<uint32_t> root(before.vertex_count);
-  std::iota(root.begin(), root.end(), 0U);
-  const auto find = [&](uint32_t v) {
-    for (; root[v] != v; v = root[v]) root[v] = root[root[v]];
-    return v;
-  };
-  for (uint32_t h = 0; h < before.half_edge_count(); ++h) {
-    const uint32_t a = find(before.origin[h]);
-    const uint32_t b = find(before.tip(h));
-    root[std::max(a, b)] = std::min(a, b);
-  }
+  DisjointSets components(before.vertex_count);
+  for (uint32_t h = 0; h < before.half_edge_count(); ++h) components.join(before.origin[h], before.tip(h));
   std::vector<bool> alive(before.vertex_count);
-  for (uint32_t v : kept) alive[find(v)] = true;
+  for (uint32_t v : kept) alive[components.find(v)] = true;
   std::vector<uint32_t> lost;
   for (uint32_t v = 0; v < before.vertex_count; ++v)
-    if (root[v] == v && !alive[v]) lost.push_back(v);
+    if (components.find(v) == v && !alive[v]) lost.push_back(v);
   return lost;
 }
 
