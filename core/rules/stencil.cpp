@@ -37,14 +37,4 @@ CurveSpoke CurveRule::spoke(uint32_t i) const {
           sine_of_twice / (2 * triangles_)};
 }
 
-std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke) {
-  const CurveRule rules(triangles);
-  const CurveSpoke rule = rules.spoke(spoke);
-  std::vector<double> weights{rule.centre, rule.end};
-  for (uint32_t j = 1; j < triangles; ++j)
-    weights.push_back(rule.sine_1 * rules.sine(j) + rule.sine_2 * rules.sine(2 * j));
-  weights.push_back(-rule.end);
-  return weights;
-}
-
 }  // namespace papilio::stencil

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "base/trigonometry.h"
@@ -101,7 +100,5 @@ class CurveRule {  // the rows of all spokes of such a vertex
   std::vector<SineCosine> angles_;        ///< [K] of multiples of pi / K
   double of_centre_, of_end_, over_end_;  ///< what is the same for all spokes
 };
-/// The explicit weights: the centre, then c_0..c_K.
-[[nodiscard]] std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke);
 
 }  // namespace papilio::stencil

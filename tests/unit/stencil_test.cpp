@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <vector>
 
 namespace papilio::stencil {
 namespace {
@@ -12,6 +13,17 @@ namespace {
 constexpr double tolerance = 1e-13;
 
 double sum(const std::vector<double>& weights) { return std::accumulate(weights.begin(), weights.end(), 0.0); }
+
+/// The explicit weights of a spoke of a vertex on a curve: the centre, then c_0..c_K.
+std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke) {
+  const CurveRule rules(triangles);
+  const CurveSpoke rule = rules.spoke(spoke);
+  std::vector<double> weights{rule.centre, rule.end};
+  for (uint32_t j = 1; j < triangles; ++j)
+    weights.push_back(rule.sine_1 * rules.sine(j) + rule.sine_2 * rules.sine(2 * j));
+  weights.push_back(-rule.end);
+  return weights;
+}
 
 TEST(Stencil, RegularRuleSumsToOneForEveryW) {
   for (double w : {-0.0625, 0.0, 1.0 / 64, 0.125}) {
