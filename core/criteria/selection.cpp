@@ -22,33 +22,28 @@ constexpr float never = -infinity;
 /// No less than the number, which is not negative.
 float rounded_up(double number) { return static_cast<float>(1.000001 * number + std::numeric_limits<float>::min()); }
 
-/// Of the edges that are complete.
-Buffer<Vec3f> make_vertices_by_w(const Mesh& mesh, const TensionField* tension, double w, const TrialContext& context) {
+/// Writes those of the edges that are complete.
+void make_vertices_by_w(const Mesh& mesh, const TensionField* tension, double w, const TrialContext& context,
+                        Vec3f* made) {
   const uint32_t edges = mesh.topology.edge_count();
   const SplitPlan plan(context.complete == nullptr ? EdgeMarks(edges, 1) : *context.complete);
-  Buffer<Vec3f> planned = butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(w), tension);
-  if (plan.count() == edges) return planned;
-  Buffer<Vec3f> made(edges);
+  const Buffer<Vec3f> planned = butterfly(mesh.topology, mesh.positions, plan, static_cast<float>(w), tension);
   for (uint32_t e = 0; e < edges; ++e)
     if (plan.is_split(e)) made[e] = planned[plan.before[e]];
-  return made;
 }
 
-Buffer<Vec3f> make_plain_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context) {
-  const Topology& topology = mesh.topology;
-  auto made = Buffer<Vec3f>::for_overwrite(topology.edge_count());
+void make_plain_vertices(const Mesh& mesh, const TensionField* tension, const TrialContext& context, Vec3f* made) {
+  const Vec3f* positions = mesh.positions.data();
+  const Topology* topology = mesh.topology.origin.empty() ? nullptr : &mesh.topology;
   std::optional<Features> found;
-  if (context.features == nullptr) found = find_features(topology);
+  if (context.features == nullptr) found = find_features(*topology);
   const Features& features = found ? *found : *context.features;
-  if (tension == nullptr && context.part != nullptr)
-    uniform_butterfly_below(*context.parents, *context.part, features, mesh.positions.data(), made.data(),
-                            context.threads);
-  else if (tension == nullptr && context.parents != nullptr)
-    uniform_butterfly_below(*context.parents, &topology, features, mesh.positions.data(), made.data(), context.threads,
-                            context.asked_of);
+  if (tension != nullptr || context.parents == nullptr)
+    uniform_butterfly(*topology, features, positions, made, tension, context.threads);
+  else if (context.part != nullptr)
+    uniform_butterfly_below(*context.parents, *context.part, features, positions, made, context.threads);
   else
-    uniform_butterfly(topology, features, mesh.positions.data(), made.data(), tension, context.threads);
-  return made;
+    uniform_butterfly_below(*context.parents, topology, features, positions, made, context.threads, context.asked_of);
 }
 
 Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const TrialContext& context) {
@@ -57,18 +52,21 @@ Buffer<Vec3f> normals_asked_of(const Mesh& mesh, const Options& options, const T
 
 }  // namespace
 
-Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
-                            const TrialContext& context) {
+void make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options, const TrialContext& context,
+                   Vec3f* made) {
   std::optional<TensionField> field;
   if (options.tension != Tension::off) field = tension_field(mesh, normals, options.tension);
   const TensionField* tension = field ? &*field : nullptr;
-  return options.w != 0 ? make_vertices_by_w(mesh, tension, options.w, context)
-                        : make_plain_vertices(mesh, tension, context);
+  if (options.w != 0)
+    make_vertices_by_w(mesh, tension, options.w, context, made);
+  else
+    make_plain_vertices(mesh, tension, context, made);
 }
 
 Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& context) {
   Trial trial{.normals = normals_asked_of(mesh, options, context)};
-  trial.made = make_vertices(mesh, trial.normals, options, context);
+  trial.made.resize_for_overwrite(mesh.topology.edge_count());
+  make_vertices(mesh, trial.normals, options, context, trial.made.data());
   trial.is_of_some = context.asked_of != nullptr || context.part != nullptr;
   return trial;
 }

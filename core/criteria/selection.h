@@ -77,9 +77,11 @@ struct Trial {
   void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
 };
 
-/// The positions [E] of the new vertices of all edges for which that can be done, under the options' tension and w.
-[[nodiscard]] Buffer<Vec3f> make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options,
-                                          const TrialContext& context = {});
+/// Writes to `made` [E] the positions of the new vertices of all edges for which that can be done, under the options'
+/// tension and w; `normals` [F] where there is tension. The mesh's faces may be left out where the rules are plain, its
+/// parents are given, and all features are rings.
+void make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options, const TrialContext& context,
+                   Vec3f* made);
 /// Computes the new vertices, and the normals that this takes. No room is made for what is found out about them.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& context = {});
 

@@ -8,8 +8,6 @@
 #include "mesh/normals.h"
 #include "rules/features.h"
 #include "rules/split_displacements.h"
-#include "rules/tension.h"
-#include "rules/uniform_butterfly.h"
 #include "schemes/uniform_error.h"
 #include "split/split.h"
 #include "split/split_in_four.h"
@@ -51,38 +49,13 @@ class Uniform {
 
   /// Appends the new vertices to the positions.
   void make_vertices() {
-    const Topology& topology = mesh_.topology;
-    if (is_plain_) {
-      make_plain_vertices();
-      return;
-    }
     const Buffer<Vec3f> normals =
         options_.tension == Tension::off ? Buffer<Vec3f>{} : face_normals(mesh_, progress_.threads());
-    if (options_.w == 0) {
-      const TensionField field = tension_field(mesh_, normals, options_.tension);
-      Vec3f* made = make_room(topology.edge_count());
-      uniform_butterfly(topology, features_, mesh_.positions.data(), made, &field, progress_.threads());
-    } else {
-      const Buffer<Vec3f> made = papilio::make_vertices(mesh_, normals, options_);
-      mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
-    }
-  }
-
-  void make_plain_vertices() {
-    const Topology& topology = mesh_.topology;
-    Vec3f* made = make_room(edge_count());
-    const Vec3f* positions = mesh_.positions.data();
-    if (level_ == 1)
-      uniform_butterfly(topology, features_, positions, made, nullptr, progress_.threads());
-    else
-      uniform_butterfly_below(parents_, is_left_out() ? nullptr : &topology, features_, positions, made,
-                              progress_.threads());
-  }
-
-  /// For so many positions behind those that are there: where they begin.
-  Vec3f* make_room(uint32_t count) {
-    mesh_.positions.resize_for_overwrite(mesh_.positions.size() + count);
-    return mesh_.positions.data() + mesh_.topology.vertex_count;
+    mesh_.positions.resize_for_overwrite(mesh_.positions.size() + edge_count());
+    const TrialContext context{.features = &features_,
+                               .parents = is_plain_ && level_ > 1 ? &parents_ : nullptr,
+                               .threads = progress_.threads()};
+    papilio::make_vertices(mesh_, normals, options_, context, mesh_.positions.data() + mesh_.topology.vertex_count);
   }
 
   void measure_error() {
