@@ -35,9 +35,7 @@ namespace {
 
 /// Where what an edge's range is made of lies in its arrays.
 struct Place {
-  Place() = default;
-  Place(const DeviationBounds& of, uint32_t edge) : made(edge) {
-    const Topology& mesh = of.mesh.topology;
+  Place(const Topology& mesh, uint32_t edge) {
     const uint32_t h = mesh.half_edge[edge];
     a = mesh.origin[h];
     b = mesh.tip(h);
@@ -45,48 +43,9 @@ struct Place {
     is_smooth = mesh.kind[edge] == EdgeKind::smooth;
     twin_face = is_smooth ? Topology::face(mesh.twin[h]) : face;
   }
-  uint32_t made, a, b, face, twin_face;
+  uint32_t a, b, face, twin_face;
   bool is_smooth;
 };
-
-/// The room on both sides; none on a curve, where the deviation is another.
-[[nodiscard]] float room(const DeviationBounds& of, const Place& place) {
-  return place.is_smooth ? std::min(of.rooms[place.face], of.rooms[place.twin_face]) : 0;
-}
-
-void find_four(const DeviationBounds& of, const Place* place, DeviationRange* ranges) {
-  constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
-  const auto points = [place](const Buffer<Vec3f>& from, uint32_t Place::*which) {
-    return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
-  };
-  const Vec3x4 a = points(of.mesh.positions, &Place::a);
-  const Vec3x4 along = points(of.mesh.positions, &Place::b) - a;
-  const Vec3x4 off = points(of.made, &Place::made) - a - 0.5F * along;
-  const Float4 along_squared = dot(along, along);
-  const Float4 off_squared = dot(off, off);
-  const Float4 rooms{room(of, place[0]), room(of, place[1]), room(of, place[2]), room(of, place[3])};
-  const auto are_usual = is_usual(along_squared);
-  const auto has_room = are_usual & (off_squared < rooms * rooms);
-
-  // The foot of the vertex on a face's plane is in the face, or beyond the edge and no other side; then the edge is
-  // nearest.
-  const Vec3x4 inward = cross(along, off);
-  const Float4 to_edge = dot(inward, inward) / along_squared;
-  const Vec3x4 normal = points(of.normals, &Place::face);
-  const Vec3x4 twin_normal = points(of.normals, &Place::twin_face);
-  const Float4 height = dot(off, normal);
-  const Float4 twin_height = dot(off, twin_normal);
-  const Float4 to_face = dot(inward, normal) >= Float4{} ? height * height : to_edge;
-  const Float4 to_twin_face = dot(inward, twin_normal) <= Float4{} ? twin_height * twin_height : to_edge;
-
-  constexpr float smallest = std::numeric_limits<float>::min();
-  const Float4 distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
-  const Float4 most_off = sum_of_magnitudes(off);
-  const Float4 unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
-  const Float4 least = has_room ? larger(distance - unsure, Float4{}) : Float4{};
-  const Float4 most = (are_usual ? distance : most_off) + unsure;
-  for (int i = 0; i < 4; ++i) ranges[i] = {least[i], most[i]};
-}
 
 }  // namespace
 
@@ -105,11 +64,45 @@ Buffer<float> rooms_at_sides(const Mesh& mesh, const Buffer<uint32_t>* fours, in
   return rooms;
 }
 
-void DeviationBounds::find(std::span<const uint32_t> edges, DeviationRange* ranges) const {
-  std::array<Place, most_at_once + 3> places;
-  for (size_t i = 0; i < edges.size(); ++i) places[i] = Place(*this, edges[i]);
-  for (size_t i = 0; i < 3; ++i) places[edges.size() + i] = places[0];
-  for (size_t i = 0; i < edges.size(); i += 4) find_four(*this, &places[i], ranges + i);
+std::array<DeviationRange, 4> DeviationBounds::find(const std::array<uint32_t, 4>& edges) const {
+  constexpr float rounding = 2e-6F;  // more than that of normals and of what is computed here, as a share of the edge
+  const Topology& topology = mesh.topology;
+  const std::array<Place, 4> place{Place(topology, edges[0]), Place(topology, edges[1]), Place(topology, edges[2]),
+                                   Place(topology, edges[3])};
+  const auto points = [&place](const Buffer<Vec3f>& from, uint32_t Place::*which) {
+    return at(from, {place[0].*which, place[1].*which, place[2].*which, place[3].*which});
+  };
+  // The room on both sides; none on a curve, where the deviation is another.
+  const auto room = [&](size_t i) {
+    return place[i].is_smooth ? std::min(rooms[place[i].face], rooms[place[i].twin_face]) : 0;
+  };
+  const Vec3x4 a = points(mesh.positions, &Place::a);
+  const Vec3x4 along = points(mesh.positions, &Place::b) - a;
+  const Vec3x4 off = at(made, edges) - a - 0.5F * along;
+  const Float4 along_squared = dot(along, along);
+  const Float4 off_squared = dot(off, off);
+  const Float4 room_of_each{room(0), room(1), room(2), room(3)};
+  const auto are_usual = is_usual(along_squared);
+  const auto has_room = are_usual & (off_squared < room_of_each * room_of_each);
+
+  // The foot of the vertex on a face's plane is in the face, or beyond the edge and no other side; then the edge is
+  // nearest.
+  const Vec3x4 inward = cross(along, off);
+  const Float4 to_edge = dot(inward, inward) / along_squared;
+  const Vec3x4 normal = points(normals, &Place::face);
+  const Vec3x4 twin_normal = points(normals, &Place::twin_face);
+  const Float4 height = dot(off, normal);
+  const Float4 twin_height = dot(off, twin_normal);
+  const Float4 to_face = dot(inward, normal) >= Float4{} ? height * height : to_edge;
+  const Float4 to_twin_face = dot(inward, twin_normal) <= Float4{} ? twin_height * twin_height : to_edge;
+
+  constexpr float smallest = std::numeric_limits<float>::min();
+  const Float4 distance = root(has_room ? lesser(to_face, to_twin_face) : off_squared);
+  const Float4 most_off = sum_of_magnitudes(off);
+  const Float4 unsure = rounding * (sum_of_magnitudes(along) + most_off) + smallest;
+  const Float4 least = has_room ? larger(distance - unsure, Float4{}) : Float4{};
+  const Float4 most = (are_usual ? distance : most_off) + unsure;
+  return {{{least[0], most[0]}, {least[1], most[1]}, {least[2], most[2]}, {least[3], most[3]}}};
 }
 
 }  // namespace papilio

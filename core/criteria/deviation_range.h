@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <array>
 
 #include "papilio/mesh.h"
 
@@ -25,11 +25,9 @@ struct DeviationBounds {
   const Buffer<float>& rooms;    ///< [F] as above
   const Buffer<Vec3f>& made;     ///< [E]
 
-  /// Writes the ranges of the edges, which were tried; of one to `most_at_once`, and there must be room for three more.
-  /// Mostly both ends are within a few millionths of how far the vertex is from the midpoint. Where the deviation is
-  /// not found easily they are 0 and all of that.
-  void find(std::span<const uint32_t> edges, DeviationRange* ranges) const;
-  static constexpr size_t most_at_once = 128;
+  /// The ranges of four edges, which were tried. Mostly both ends are within a few millionths of how far the vertex is
+  /// from the midpoint. Where the deviation is not found easily they are 0 and all of that.
+  [[nodiscard]] std::array<DeviationRange, 4> find(const std::array<uint32_t, 4>& edges) const;
 };
 
 }  // namespace papilio

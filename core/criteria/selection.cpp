@@ -87,13 +87,13 @@ void Trial::prepare_errors(const Mesh& mesh, const Options& options, const Trial
 
 void Trial::find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const {
   const DeviationBounds finder{mesh, normals, rooms, made};
-  std::array<DeviationRange, DeviationBounds::most_at_once + 3> ranges;
-  for (size_t first = 0; first < edges.size(); first += DeviationBounds::most_at_once) {
-    const auto some = edges.subspan(first, std::min(DeviationBounds::most_at_once, edges.size() - first));
-    finder.find(some, ranges.data());
-    for (size_t i = 0; i < some.size(); ++i) {
-      bounds.put(some[i], ranges[i].most);
-      least.put(some[i], ranges[i].least);
+  for (size_t first = 0; first < edges.size(); first += 4) {
+    std::array<uint32_t, 4> four{};
+    for (size_t i = 0; i < 4; ++i) four[i] = edges[std::min(first + i, edges.size() - 1)];
+    const std::array<DeviationRange, 4> ranges = finder.find(four);
+    for (size_t i = 0; i < 4; ++i) {
+      bounds.put(four[i], ranges[i].most);
+      least.put(four[i], ranges[i].least);
     }
   }
 }

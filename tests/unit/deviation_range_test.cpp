@@ -27,12 +27,14 @@ struct Tried {
   Buffer<float> rooms = rooms_at_sides(mesh, nullptr, 1);
 
   [[nodiscard]] std::vector<DeviationRange> ranges(const std::vector<uint32_t>& edges) const {
-    constexpr size_t at_once = DeviationBounds::most_at_once;
     const DeviationBounds bounds{mesh, normals, rooms, made};
-    std::vector<DeviationRange> ranges(edges.size() + 3);
-    for (size_t i = 0; i < edges.size(); i += at_once)
-      bounds.find(std::span(edges).subspan(i, std::min(at_once, edges.size() - i)), &ranges[i]);
-    ranges.resize(edges.size());
+    std::vector<DeviationRange> ranges;
+    for (size_t i = 0; i < edges.size(); i += 4) {
+      const auto edge = [&](size_t k) { return edges[std::min(i + k, edges.size() - 1)]; };
+      const auto four = bounds.find({edge(0), edge(1), edge(2), edge(3)});
+      ranges.insert(ranges.end(), four.begin(),
+                    four.begin() + std::min<ptrdiff_t>(4, std::ssize(edges) - std::ssize(ranges)));
+    }
     return ranges;
   }
   [[nodiscard]] std::vector<DeviationRange> all_ranges() const {
