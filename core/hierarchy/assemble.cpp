@@ -37,17 +37,6 @@ struct AssembledLevel {
   [[nodiscard]] uint32_t child(uint32_t f) const { return below->choice->level->first_child_of(f); }
 };
 
-/// The edges that are split. In order are already those that were wanted; behind them lie those that these need.
-Buffer<uint32_t> split_in_order(const LevelChoice& choice) {
-  constexpr ptrdiff_t few = 64;  // one of so many edges: more cost less to find than to sort
-  Buffer<uint32_t> numbers = choice.split_edges;
-  const auto behind = std::ranges::is_sorted_until(numbers);
-  if (few * (numbers.end() - behind) > static_cast<ptrdiff_t>(choice.split.size())) return marked(choice.split);
-  std::sort(behind, numbers.end());
-  std::inplace_merge(numbers.begin(), behind, numbers.end());
-  return numbers;
-}
-
 /// Goes through the levels' faces, and writes down what is in the result. Each edge of the result has a number, its
 /// slot, which both faces at it know, whatever level they are of: in it the one that comes first leaves its half-edge,
 /// and the one that comes second finds its twin there.
@@ -120,7 +109,7 @@ class Assembler {
       level.is_split = choice.split.data();
       level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
       level.new_vertex.resize_for_overwrite(mesh.edge_count());
-      for (uint32_t e : split_in_order(choice)) {
+      for (uint32_t e : marked(choice.split)) {
         out_.positions[vertex] = choice.level->trial.at(e);
         level.new_vertex[e] = vertex++;
       }
