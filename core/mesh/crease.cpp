@@ -3,21 +3,17 @@
 #include <algorithm>
 
 #include "base/trigonometry.h"
+#include "mesh/curve.h"
 #include "mesh/normals.h"
 
 namespace papilio {
 
 std::vector<uint32_t> find_darts(const Topology& mesh) {
-  std::vector<uint8_t> curves(mesh.vertex_count, 0);
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-    if (mesh.kind[e] == EdgeKind::smooth) continue;
-    const uint32_t h = mesh.half_edge[e];
-    for (uint32_t v : {mesh.origin[h], mesh.tip(h)}) curves[v] = static_cast<uint8_t>(std::min(curves[v] + 1, 2));
-  }
+  const VertexDegrees curves(mesh, [&](uint32_t e) { return mesh.kind[e] != EdgeKind::smooth; });
   // A single curve can only be a crease: boundaries and shared edges come in pairs at a vertex.
   std::vector<uint32_t> darts;
   for (uint32_t v = 0; v < mesh.vertex_count; ++v)
-    if (curves[v] == 1 && !std::ranges::binary_search(mesh.pinched, v)) darts.push_back(v);
+    if (curves.degree[v] == 1 && !std::ranges::binary_search(mesh.pinched, v)) darts.push_back(v);
   return darts;
 }
 

@@ -6,6 +6,30 @@
 
 namespace papilio {
 
+/// For each vertex [V] how many of some edges meet there, 3 standing for more, and the exclusive or of their other
+/// ends.
+struct VertexDegrees {
+  VertexDegrees() = default;  ///< of no vertices
+  /// Of the edges that are chosen. O(V + E).
+  template <class IsChosen>
+  VertexDegrees(const Topology& mesh, const IsChosen& is_chosen)
+      : degree(mesh.vertex_count, 0), neighbours(mesh.vertex_count, 0) {
+    const auto join = [&](uint32_t v, uint32_t other) {
+      if (degree[v] < 3) ++degree[v];
+      neighbours[v] ^= other;
+    };
+    for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
+      if (!is_chosen(e)) continue;
+      const uint32_t h = mesh.half_edge[e];
+      join(mesh.origin[h], mesh.tip(h));
+      join(mesh.tip(h), mesh.origin[h]);
+    }
+  }
+
+  std::vector<uint8_t> degree;
+  std::vector<uint32_t> neighbours;
+};
+
 /// How boundaries, shared edges and creases go on beyond the ends of their edges.
 ///
 /// At a vertex with exactly two curve edges the curve goes from one to the other. Where more meet, a boundary
@@ -23,13 +47,12 @@ class CurveNeighbours {
   [[nodiscard]] uint32_t after(uint32_t h) const;
 
  private:
-  [[nodiscard]] bool passes_through(uint32_t vertex) const { return degree_[vertex] == 2; }
+  [[nodiscard]] bool passes_through(uint32_t vertex) const { return curves_.degree[vertex] == 2; }
 
   static constexpr uint8_t ends_here = 4;
 
   const Topology& mesh_;
-  std::vector<uint8_t> degree_;  ///< [V] curve edges at the vertex, 3 standing for more; or `ends_here`, at a corner
-  std::vector<uint32_t> neighbours_;  ///< [V] exclusive or of their other ends
+  VertexDegrees curves_;  ///< of curve edges; the degree of a corner is `ends_here`
 };
 
 }  // namespace papilio

@@ -243,8 +243,8 @@ class TensedRules {
 
   /// The feature's next vertex after `end`, coming from `other`: where it goes on, turning by less than 60 degrees.
   [[nodiscard]] Point beyond(uint32_t end, uint32_t other) const {
-    if (field_.feature_degree[end] != 2) return reflected(end, other);
-    const uint32_t next = field_.feature_neighbours[end] ^ other;
+    if (field_.features.degree[end] != 2) return reflected(end, other);
+    const uint32_t next = field_.features.neighbours[end] ^ other;
     const Vec3d u = widen(place_[end] - place_[other]);
     const Vec3d v = widen(place_[next] - place_[end]);
     return dot(u, v) > 0.5 * length(u) * length(v) ? p_[next] : reflected(end, other);

@@ -5,24 +5,6 @@
 #include "mesh/normals.h"
 
 namespace papilio {
-namespace {
-
-void find_features(const Topology& mesh, TensionField& field) {
-  field.feature_degree.assign(mesh.vertex_count, 0);
-  field.feature_neighbours.assign(mesh.vertex_count, 0);
-  const auto join = [&](uint32_t v, uint32_t other) {
-    if (field.feature_degree[v] < 3) ++field.feature_degree[v];
-    field.feature_neighbours[v] ^= other;
-  };
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-    if (!field.is_sharp(e)) continue;
-    const uint32_t h = mesh.half_edge[e];
-    join(mesh.origin[h], mesh.tip(h));
-    join(mesh.tip(h), mesh.origin[h]);
-  }
-}
-
-}  // namespace
 
 double hinge_factor(double normal_product) {
   constexpr double nothing_at = 0;  // 90 degrees
@@ -41,7 +23,7 @@ TensionField tension_field(const Mesh& mesh, const Buffer<Vec3f>& normals, Tensi
     const Vec3f n2 = normals[Topology::face(topology.twin[h])];
     if (has_normal(n1) && has_normal(n2)) field.factor[e] = static_cast<float>(hinge_factor(dot(n1, n2)));
   }
-  if (field.follow_features) find_features(topology, field);
+  if (field.follow_features) field.features = {topology, [&](uint32_t e) { return field.is_sharp(e); }};
   if (topology.shape.has_rules) field.shape = shape_field(mesh, normals);
   return field;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
+#include "mesh/curve.h"
 #include "papilio/mesh.h"
 #include "papilio/options.h"
 #include "rules/shape_rules.h"
@@ -25,10 +25,7 @@ inline constexpr double tension_bound = 0.2;
 struct TensionField {
   Buffer<float> factor;  ///< [E] the edge's factor as a hinge; 1 where it has not two faces with normals
   bool follow_features = false;
-  /// With `follow_features`, [V]: how many sharp edges (factor under 1/2) meet there, 3 standing for more, and the
-  /// exclusive or of their other ends.
-  std::vector<uint8_t> feature_degree{};
-  std::vector<uint32_t> feature_neighbours{};
+  VertexDegrees features{};           ///< with `follow_features`: of the sharp edges (factor under 1/2)
   std::optional<ShapeField> shape{};  ///< where the mesh has shape rules
 
   [[nodiscard]] bool is_sharp(uint32_t e) const { return factor[e] < 0.5F; }
