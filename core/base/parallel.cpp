@@ -11,19 +11,11 @@ uint32_t parts_of(uint32_t count, int threads) {
   return std::clamp(count / least_per_thread, 1U, static_cast<uint32_t>(std::max(threads, 1)));
 }
 
-#if defined(__wasm__)  // whose standard library has no threads
-
-void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint32_t, uint32_t, uint32_t)>& work) {
-  for (uint32_t part = 0; part < parts; ++part) {
-    const auto start_of = [&](uint32_t p) { return static_cast<uint32_t>(uint64_t{count} * p / parts); };
-    work(part, start_of(part), start_of(part + 1));
-  }
-}
-
-#else
-
 void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint32_t, uint32_t, uint32_t)>& work) {
   const auto start_of = [&](uint32_t part) { return static_cast<uint32_t>(uint64_t{count} * part / parts); };
+#if defined(__wasm__)  // whose standard library has no threads
+  for (uint32_t part = 0; part < parts; ++part) work(part, start_of(part), start_of(part + 1));
+#else
   if (parts <= 1) {
     work(0, 0, count);
     return;
@@ -49,8 +41,7 @@ void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
-}
-
 #endif
+}
 
 }  // namespace papilio
