@@ -30,7 +30,6 @@ class ResultSurface {
   [[nodiscard]] const LevelChoice& choice(uint32_t k) const { return levels_[k]; }
   [[nodiscard]] const HierarchyLevel& level(uint32_t k) const { return *levels_[k].level; }
   [[nodiscard]] const Topology& topology(uint32_t k) const { return level(k).mesh.topology; }
-  [[nodiscard]] uint32_t level_count() const { return static_cast<uint32_t>(levels_.size()); }
   [[nodiscard]] Corners corners(uint32_t k, uint32_t f) const;
   /// The new vertices of the face's edges; the middle where none was computed.
   [[nodiscard]] Corners new_vertices(uint32_t k, uint32_t f, const Corners& corner) const;

@@ -1,9 +1,5 @@
 #pragma once
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
 #include <array>
 #include <bit>
 #include <cmath>
@@ -25,25 +21,17 @@ using Index4 = std::array<uint32_t, 4>;
 [[nodiscard]] inline Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
 [[nodiscard]] inline Float4 magnitude(Float4 a) { return larger(a, -a); }
 [[nodiscard]] inline Float4 root(Float4 a) {
-#if defined(__x86_64__)
-  return _mm_sqrt_ps(a);
-#endif
-  return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+  return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};  // of which compilers make one
 }
 
 [[nodiscard]] inline bool is_any(Mask4 truths) {
-#if defined(__x86_64__)
-  return _mm_movemask_ps(std::bit_cast<__m128>(truths)) != 0;
-#endif
   const auto words = std::bit_cast<std::array<uint64_t, 2>>(truths);
   return (words[0] | words[1]) != 0;
 }
-[[nodiscard]] inline bool is_all(Mask4 truths) { return !is_any(~truths); }
 
 struct Vec3x4 {
   Float4 x, y, z;
 
-  friend Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Vec3x4 operator*(float s, const Vec3x4& a) { return {s * a.x, s * a.y, s * a.z}; }
 };
@@ -82,17 +70,6 @@ template <int which>
 }
 [[nodiscard]] inline Vec3x4 at(const Buffer<Vec3f>& points, const Index4& numbers) {
   return at(points.data(), numbers);
-}
-
-/// One vector beside the other again, the fourth of each 0.
-[[nodiscard]] inline std::array<Vec3fa, 4> transposed(const Vec3x4& a) {
-  const Float4 xy = __builtin_shufflevector(a.x, a.y, 0, 4, 1, 5);
-  const Float4 z0 = __builtin_shufflevector(a.z, Float4{}, 0, 4, 1, 5);
-  const Float4 xy_behind = __builtin_shufflevector(a.x, a.y, 2, 6, 3, 7);
-  const Float4 z0_behind = __builtin_shufflevector(a.z, Float4{}, 2, 6, 3, 7);
-  return {Vec3fa{__builtin_shufflevector(xy, z0, 0, 1, 4, 5)}, Vec3fa{__builtin_shufflevector(xy, z0, 2, 3, 6, 7)},
-          Vec3fa{__builtin_shufflevector(xy_behind, z0_behind, 0, 1, 4, 5)},
-          Vec3fa{__builtin_shufflevector(xy_behind, z0_behind, 2, 3, 6, 7)}};
 }
 
 /// True where the fourth power of a length, given squared, is surely a number that has all its digits.
