@@ -7,23 +7,9 @@
 
 #include "papilio/mesh.h"
 #include "proto/mesh_format.h"
+#include "proto/quantization_box.h"
 
 namespace papilio::proto {
-
-/// Cube whose grid quantizes positions. It depends on the coarse mesh alone, so a vertex keeps its position in all
-/// levels and views.
-struct QuantizationBox {
-  Vec3f origin;     ///< lowest corner
-  float range = 0;  ///< edge length
-};
-
-/// Returns the cube about the centre of the bounding box. Its edge is the longest side of the box, padded by an eighth
-/// at both ends because refinement expands the surface. Draco's grid also encodes positions beyond the cube. Throws
-/// `Problem` mesh_unusable for a mesh smaller than 1e-30.
-[[nodiscard]] QuantizationBox quantization_box(const Buffer<Vec3f>& coarse);
-
-/// Returns the largest distance by which a grid of so many bits moves a position, for meshes with this bounding box.
-[[nodiscard]] double grid_distance(const Box& coarse, int position_bits);
 
 /// Formats and grids with which attributes are written. The grids depend on the coarse mesh alone, as interpolated
 /// values stay in its range.

@@ -10,6 +10,7 @@
 #include "papilio/view.h"
 #include "proto/name_suggestion.h"
 #include "proto/problem.h"
+#include "proto/quantization_box.h"
 #include "proto/text.h"
 #include "proto/url.h"
 

@@ -14,10 +14,6 @@
 extern "C" {
 #endif
 
-#if defined(__GNUC__)
-#pragma GCC visibility push(default) /* what a shared library exports */
-#endif
-
 /* Why a call failed. */
 typedef enum papilio_fault {
   PAPILIO_NO_FAULT = 0,
@@ -103,10 +99,6 @@ void papilio_result_free(papilio_result* result); /* NULL does nothing */
 papilio_fault papilio_last_fault(void);
 const char* papilio_last_message(void);   /* what is wrong and what to do, one or two sentences */
 const char* papilio_last_parameter(void); /* the parameter's name, or "" */
-
-#if defined(__GNUC__)
-#pragma GCC visibility pop
-#endif
 
 #ifdef __cplusplus
 }

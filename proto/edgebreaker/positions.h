@@ -2,7 +2,7 @@
 
 #include <draco/core/encoder_buffer.h>
 
-#include "proto/draco_writer.h"
+#include "proto/quantization_box.h"
 #include "proto/edgebreaker/surface.h"
 #include "proto/edgebreaker/vertex_order.h"
 

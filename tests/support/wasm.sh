@@ -4,8 +4,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
 mkdir -p build
-[[ -f build/wasm/build.ninja ]] ||
-  cmake -S client/wasm -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/client/wasm/toolchain.cmake" >build/configure.log 2>&1 || {
+# Each time: sources may have come or gone.
+cmake -S client/wasm -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/client/wasm/toolchain.cmake" >build/configure.log 2>&1 || {
   cat build/configure.log >&2
   exit 1
 }
