@@ -2,9 +2,9 @@
 
 #include "papilio/mesh.h"
 
-// The server's own samples, made by program: a knot that is round once it is refined, and stand-ins for the models of the
-// paper's Table 1, which cannot be found, with the same counts and topology. Lengths in centimetres, z up. Closed, wound
-// counter-clockwise seen from outside, no two positions equal.
+// The server's own samples, made by program: a knot that is round once it is refined, and stand-ins for the models of
+// the paper's Table 1, which cannot be found, with the same counts and topology. Lengths in centimetres, z up. Closed,
+// wound counter-clockwise seen from outside, no two positions equal.
 
 namespace papilio::server {
 
