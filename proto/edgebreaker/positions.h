@@ -2,9 +2,9 @@
 
 #include <draco/core/encoder_buffer.h>
 
-#include "proto/quantization_box.h"
 #include "proto/edgebreaker/surface.h"
 #include "proto/edgebreaker/vertex_order.h"
+#include "proto/quantization_box.h"
 
 namespace papilio::proto::edgebreaker {
 
