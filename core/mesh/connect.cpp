@@ -10,7 +10,8 @@ namespace {
 /// A half-edge, to be sorted by the two vertices that it runs between.
 struct EdgeSide {
   uint32_t lower, higher, half_edge;
-  friend auto operator<=>(const EdgeSide&, const EdgeSide&) = default;
+  friend auto operator<=>(const EdgeSide&,
+                          const EdgeSide&) = default;  // NOLINT(modernize-use-nullptr): a bug of version 14
 };
 /// All between the same two vertices, in ascending order.
 using EdgeSides = std::span<const EdgeSide>;
