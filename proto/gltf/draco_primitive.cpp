@@ -57,7 +57,7 @@ std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, co
   return elements_of(format, attribute.values);
 }
 
-/// Returns the vertices and triangles of a primitive as the core and Draco take them.
+/// Returns the vertices and triangles of a primitive as the core takes them, and their format.
 FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
                         std::vector<std::pair<std::string, uint32_t>>& ids) {
   FormattedMesh mesh;
@@ -79,6 +79,22 @@ FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
       attribute.values[i] = stream.elements.number(i / format.components, i % format.components);
   }
   return mesh;
+}
+
+/// Returns the stream of a primitive, and in `ids` its attributes.
+std::string compress(const VertexSet& set, const Buffer<Triangle>& triangles, const QuantizationBox& box,
+                     const OutputOptions& options, const std::function<void()>& poll,
+                     std::vector<std::pair<std::string, uint32_t>>& ids) {
+  MeshFormat format;
+  const Mesh mesh = [&] {
+    FormattedMesh input = formatted(set, triangles, ids);
+    format = std::move(input.format);
+    return translate_errors([&] { return build_mesh(input); });
+  }();
+  AttributeEncoding encoding = attribute_encoding(mesh, std::move(format));
+  for (size_t a = 0; a < encoding.grids.size(); ++a)  // weights on a grid would not add up to 1
+    if (ids[a + 1].first.starts_with("WEIGHTS_")) encoding.grids[a].range = 0;
+  return write_draco(mesh, box, options, encoding, poll);
 }
 
 }  // namespace
@@ -113,12 +129,7 @@ EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Trian
                                         const QuantizationBox& box, const OutputOptions& options,
                                         const std::function<void()>& poll) {
   EncodedPrimitive made;
-  FormattedMesh input = formatted(set, triangles, made.ids);
-  const Mesh mesh = translate_errors([&] { return build_mesh(input); });
-  AttributeEncoding encoding = attribute_encoding(mesh, input.format);
-  for (size_t a = 0; a < encoding.grids.size(); ++a)  // weights on a grid would not add up to 1
-    if (made.ids[a + 1].first.starts_with("WEIGHTS_")) encoding.grids[a].range = 0;
-  made.stream = write_draco(mesh, box, options, encoding, poll);
+  made.stream = compress(set, triangles, box, options, poll, made.ids);
   const Limits no_limits{.max_input_faces = face_count_limit,
                          .max_input_vertices = face_count_limit,
                          .max_output_faces = face_count_limit};
