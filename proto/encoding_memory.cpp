@@ -27,7 +27,7 @@ uint64_t size_of(ValueType type) {
 
 }  // namespace
 
-OutputBytes encoding_bytes(const Mesh& coarse, bool adds_normals, const AttributeEncoding& encoding) {
+OutputBytes encoding_bytes(const std::vector<Attribute>& coarse, bool adds_normals, const MeshFormat& format) {
   OutputBytes bytes{.face = face_bytes, .point = 0};
   uint64_t most_components = 0;
   const auto add = [&](ValueType type, uint64_t components) {
@@ -36,16 +36,14 @@ OutputBytes encoding_bytes(const Mesh& coarse, bool adds_normals, const Attribut
     bytes.point += attribute_point_bytes + components * (size_of(type) + stream_copies * in_stream);
     most_components = std::max(most_components, components);
   };
-  for (size_t a = 0; a < encoding.format.attributes.size(); ++a)
-    add(encoding.format.attributes[a].type, coarse.attributes.attributes[a].components);
+  for (size_t a = 0; a < format.attributes.size(); ++a) add(format.attributes[a].type, coarse[a].components);
   if (adds_normals) add(ValueType::float32, 3);
   if (most_components > 0) bytes.face += seam_face_bytes;
-  const auto is_normal = [](const AttributeFormat& format) { return format.kind == AttributeKind::normal; };
-  if (adds_normals || std::ranges::any_of(encoding.format.attributes, is_normal)) {
+  const auto is_normal = [](const AttributeFormat& attribute) { return attribute.kind == AttributeKind::normal; };
+  if (adds_normals || std::ranges::any_of(format.attributes, is_normal)) {
     bytes.face += dressed_face_bytes;
     bytes.point += dressed_point_bytes;
-    for (const Attribute& attribute : coarse.attributes.attributes)
-      bytes.point += sizeof(double) * attribute.components;
+    for (const Attribute& attribute : coarse) bytes.point += sizeof(double) * attribute.components;
   }
   if (most_components > 0) bytes.point += value_point_bytes + component_point_bytes * most_components;
   return bytes;

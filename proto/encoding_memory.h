@@ -5,8 +5,9 @@
 
 namespace papilio::proto {
 
-/// Returns an upper bound of the memory of `write_draco` for a mesh refined from `coarse`, including the stream.
-/// `adds_normals`: to those that `encoding` describes.
-[[nodiscard]] OutputBytes encoding_bytes(const Mesh& coarse, bool adds_normals, const AttributeEncoding& encoding);
+/// Returns an upper bound of the memory of `write_draco` for a mesh refined from one with these attributes, whose
+/// values do not matter, including the stream. `adds_normals`: to those that `format` describes.
+[[nodiscard]] OutputBytes encoding_bytes(const std::vector<Attribute>& coarse, bool adds_normals,
+                                         const MeshFormat& format);
 
 }  // namespace papilio::proto

@@ -110,7 +110,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   encoding_ = coarse().attributes;
   const auto& formats = encoding_.format.attributes;
   if (std::ranges::find(formats, AttributeKind::normal, &AttributeFormat::kind) != formats.end()) adds_normals_ = false;
-  options_.output = encoding_bytes(coarse().mesh, adds_normals_, encoding_);
+  options_.output = encoding_bytes(coarse().mesh.attributes.attributes, adds_normals_, encoding_.format);
   options_.edges = adds_normals_;  // they are divided at creases
   if (adds_normals_) append_normals(encoding_);
   translate_errors([&] { check_room(coarse().mesh, options_); });

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "proto/draco_reader.h"
+#include "proto/encoding_memory.h"
 #include "proto/error_translation.h"
+#include "proto/gltf/extensions.h"
 #include "proto/gltf/vertices.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -57,6 +59,16 @@ std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, co
   return elements_of(format, attribute.values);
 }
 
+/// An attribute without values, and its format.
+std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, uint32_t id) {
+  const ElementFormat& format = stream.elements.format;
+  const auto* type = std::ranges::find(stored_types, format.type, &std::pair<ComponentType, ValueType>::first);
+  Attribute attribute;
+  attribute.components = format.components;
+  return {std::move(attribute),
+          {.kind = kind_of(stream.semantic), .type = type->second, .normalized = format.normalized, .id = id}};
+}
+
 /// Returns the vertices and triangles of a primitive as the core takes them, and their format.
 FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
                         std::vector<std::pair<std::string, uint32_t>>& ids) {
@@ -66,17 +78,14 @@ FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
   ids.emplace_back("POSITION", 0);
   for (const VertexStream& stream : set.attributes) {
     if (stream.semantic == "POSITION") continue;
-    const ElementFormat& format = stream.elements.format;
     const auto id = static_cast<uint32_t>(ids.size());
     ids.emplace_back(stream.semantic, id);
-    const auto* type = std::ranges::find(stored_types, format.type, &std::pair<ComponentType, ValueType>::first);
-    mesh.format.attributes.push_back(
-        {.kind = kind_of(stream.semantic), .type = type->second, .normalized = format.normalized, .id = id});
-    Attribute& attribute = mesh.attributes.emplace_back();
-    attribute.components = format.components;
-    attribute.values.resize(set.count * format.components);
+    auto [attribute, format] = attribute_of(stream, id);
+    attribute.values.resize(set.count * attribute.components);
     for (size_t i = 0; i < attribute.values.size(); ++i)
-      attribute.values[i] = stream.elements.number(i / format.components, i % format.components);
+      attribute.values[i] = stream.elements.number(i / attribute.components, i % attribute.components);
+    mesh.attributes.push_back(std::move(attribute));
+    mesh.format.attributes.push_back(std::move(format));
   }
   return mesh;
 }
@@ -142,6 +151,28 @@ EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Trian
     made.decoded.attributes.push_back({semantic, set.find(semantic)->accessor, *find_elements(decoded, id, format)});
   }
   return made;
+}
+
+bool becomes_draco(const Json& primitive, const VertexSet& set, Compression requested) {
+  if (!set.targets.empty()) return false;
+  if (requested != Compression::same) return requested == Compression::draco;
+  return find_extension(primitive, draco_extension, "a primitive") != nullptr;
+}
+
+OutputBytes draco_bytes(const VertexSet& set) {
+  std::vector<Attribute> attributes;
+  MeshFormat format;
+  for (const VertexStream& stream : set.attributes) {
+    if (stream.semantic == "POSITION") continue;
+    auto [attribute, described] = attribute_of(stream, 0);
+    attributes.push_back(std::move(attribute));
+    format.attributes.push_back(std::move(described));
+  }
+  OutputBytes bytes = encoding_bytes(attributes, false, format);
+  bytes.face += sizeof(Triangle);
+  bytes.point += bytes_of_vertex(set);
+  for (const Attribute& attribute : attributes) bytes.point += attribute.components * sizeof(double);
+  return bytes;
 }
 
 }  // namespace papilio::proto::gltf

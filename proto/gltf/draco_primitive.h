@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "papilio/options.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/compression.h"
 #include "proto/gltf/geometry.h"
 
 // Primitives compressed by KHR_draco_mesh_compression.
@@ -36,5 +38,11 @@ struct EncodedPrimitive {
 [[nodiscard]] EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Triangle>& triangles,
                                                       const QuantizationBox& box, const OutputOptions& options,
                                                       const std::function<void()>& poll = {});
+
+/// Returns whether a primitive with these vertices is written as a Draco stream. Morph targets are not.
+[[nodiscard]] bool becomes_draco(const Json& primitive, const VertexSet& set, Compression requested);
+
+/// Returns an upper bound of the memory of `encode_draco_primitive`, with the streams and triangles that it reads.
+[[nodiscard]] OutputBytes draco_bytes(const VertexSet& set);
 
 }  // namespace papilio::proto::gltf

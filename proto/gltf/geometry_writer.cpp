@@ -45,7 +45,7 @@ class GeometryWriter {
       if (is_draco(json, set)) {
         write_draco_primitive(json, set, primitive, mesh.box);
       } else {
-        const bool meshopt = compression_of(json, set) == Compression::meshopt;
+        const bool meshopt = is_meshopt(json, set);
         if (attributes[primitive.set].is_null())
           std::tie(attributes[primitive.set], targets[primitive.set]) =
               put_vertices(json, set, meshopt, needs_elements[primitive.set]);
@@ -67,14 +67,15 @@ class GeometryWriter {
     return document_.json["meshes"][mesh.mesh]["primitives"][primitive.number];
   }
 
-  [[nodiscard]] Compression compression_of(const Json& primitive, const VertexSet& set) const {
-    if (encoding_.compression != Compression::same) return encoding_.compression;
-    if (find_extension(primitive, draco_extension, "a primitive") != nullptr) return Compression::draco;
-    return slots_.is_compressed(set.find("POSITION")->accessor.value()) ? Compression::meshopt : Compression::none;
+  [[nodiscard]] bool is_draco(const Json& primitive, const VertexSet& set) const {
+    return becomes_draco(primitive, set, encoding_.compression);
   }
 
-  [[nodiscard]] bool is_draco(const Json& primitive, const VertexSet& set) const {
-    return compression_of(primitive, set) == Compression::draco && set.targets.empty();
+  /// Whether EXT_meshopt_compression compresses a primitive that Draco does not.
+  [[nodiscard]] bool is_meshopt(const Json& primitive, const VertexSet& set) const {
+    if (encoding_.compression != Compression::same) return encoding_.compression == Compression::meshopt;
+    if (find_extension(primitive, draco_extension, "a primitive") != nullptr) return false;
+    return slots_.is_compressed(set.find("POSITION")->accessor.value());
   }
 
   /// Writes the vertices of a set, and takes its elements unless it `keeps` them. Returns the attributes and the morph

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/gltf/draco_primitive.h"
 #include "proto/gltf/interpolation.h"
 #include "proto/gltf/morph_targets.h"
 
@@ -45,12 +46,18 @@ NewGeometry unrefined_geometry(const SceneMesh& mesh) {
   return {mesh.number, mesh.geometry, quantization_box(mesh.surface.mesh.positions)};
 }
 
-OutputBytes output_bytes(const SceneMesh& mesh) {
+OutputBytes output_bytes(const SceneMesh& mesh, const Json& primitives, Compression requested) {
   constexpr uint64_t bytes_of_parting = 40;  // of a point: its numbers, and its place in their order
   OutputBytes bytes{.face = 36, .point = bytes_of_parting};
   for (const VertexSet& set : mesh.geometry.sets)
     bytes.point = std::max(bytes.point, 2 * bytes_of_vertex(set) + bytes_of_parting);
   bytes.point += mesh.surface.target_count * 2 * sizeof(Vec3d);
+  for (const TrianglePrimitive& primitive : mesh.geometry.primitives) {
+    const VertexSet& set = mesh.geometry.sets[primitive.set];
+    if (!becomes_draco(primitives[primitive.number], set, requested)) continue;
+    const OutputBytes draco = draco_bytes(set);
+    bytes = {.face = std::max(bytes.face, draco.face), .point = std::max(bytes.point, draco.point)};
+  }
   return bytes;
 }
 

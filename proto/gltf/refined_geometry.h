@@ -17,7 +17,8 @@ namespace papilio::proto::gltf {
 /// Returns the geometry of a mesh as it came.
 [[nodiscard]] NewGeometry unrefined_geometry(const SceneMesh& mesh);
 
-/// Returns an upper bound of the memory for parting a refined mesh into primitives and writing them.
-[[nodiscard]] OutputBytes output_bytes(const SceneMesh& mesh);
+/// Returns an upper bound of the memory for parting a refined mesh into primitives and writing them. `primitives`:
+/// those of the mesh in the document.
+[[nodiscard]] OutputBytes output_bytes(const SceneMesh& mesh, const Json& primitives, Compression requested);
 
 }  // namespace papilio::proto::gltf

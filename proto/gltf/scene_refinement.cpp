@@ -132,7 +132,8 @@ class SceneRefinement::State {
       auto& options = runs_[m].options;
       if (options) {
         options->face_limit = limits_.max_output_faces;
-        options->output = output_bytes(meshes()[m]);
+        options->output = output_bytes(meshes()[m], decoded().document.json["meshes"][meshes()[m].number]["primitives"],
+                                       parameters_.compression);
         translate_errors([&] { check_room(meshes()[m].surface.mesh, *options); });
       }
       least += least_faces(meshes()[m], options);

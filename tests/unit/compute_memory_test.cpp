@@ -8,11 +8,13 @@
 #include <string>
 
 #include "proto/draco_writer.h"
+#include "proto/gltf/scene_refinement.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"
 #include "server/address_space.h"
 #include "server/heap.h"
 #include "tests/support/charts.h"
+#include "tests/support/gltf_scene.h"
 #include "tests/support/shapes.h"
 
 // `max_compute_bytes` is a promise in both directions: what it lets through needs no more, and it lets through what
@@ -34,14 +36,21 @@ uint64_t data_bytes() {
   return 0;
 }
 
-Outcome refine_within(const std::string& draco, const QueryFields& fields, uint64_t limit, uint64_t memory) {
+void refine_bytes(const std::string& bytes, const Parameters& parameters, const Limits& limits) {
+  if (gltf::is_glb(bytes))
+    (void)gltf::SceneRefinement(bytes, parameters, limits).run();
+  else
+    (void)Refinement(bytes, parameters, limits).run();
+}
+
+Outcome refine_within(const std::string& bytes, const QueryFields& fields, uint64_t limit, uint64_t memory) {
   const pid_t child = fork();
   if (child == 0) {
     server::set_up_heap(1);
     const rlimit data{data_bytes() + memory + slack, RLIM_INFINITY};
     setrlimit(RLIMIT_DATA, &data);
     try {
-      (void)Refinement(draco, parse_query(fields), {.max_compute_bytes = limit}).run();
+      refine_bytes(bytes, parse_query(fields), {.max_compute_bytes = limit});
       _exit(fits);
     } catch (const Problem& problem) {
       _exit(std::string(problem.what()).find("the limit is") != std::string::npos ? refused : runs_out);
@@ -55,10 +64,10 @@ Outcome refine_within(const std::string& draco, const QueryFields& fields, uint6
 }
 
 /// The lowest limit, to an eighth, that lets the request through.
-uint64_t lowest_limit(const std::string& draco, const QueryFields& fields) {
+uint64_t lowest_limit(const std::string& bytes, const QueryFields& fields) {
   constexpr uint64_t plenty = uint64_t{8} << 30;
   uint64_t limit = 32 << 20;
-  while (refine_within(draco, fields, limit, plenty) == refused) limit += limit / 8;
+  while (refine_within(bytes, fields, limit, plenty) == refused) limit += limit / 8;
   return limit;
 }
 
@@ -76,11 +85,43 @@ FormattedMesh with_values(const TriangleMesh& plain, int attributes, uint32_t co
 
 std::string encoded(const FormattedMesh& mesh) { return write_draco_exact(mesh, mesh.format); }
 
+/// A scene of one mesh with positions, or with all that a skinned and textured one has.
+std::string scene_of(const TriangleMesh& mesh, bool skinned) {
+  GltfScene scene;
+  scene.add_mesh(mesh);
+  const size_t count = mesh.positions.size();
+  const auto numbers = [&](size_t components, float factor) {
+    std::vector<float> all;
+    for (size_t i = 0; i < count * components; ++i) all.push_back(std::sin(factor * static_cast<float>(i)));
+    return all;
+  };
+  if (skinned) {
+    auto& attributes = scene.primitive()["attributes"];
+    attributes["NORMAL"] = scene.add_accessor(numbers(3, 0.37F), "VEC3");
+    attributes["TEXCOORD_0"] = scene.add_accessor(numbers(2, 0.21F), "VEC2");
+    attributes["JOINTS_0"] = scene.add_accessor(std::vector<uint8_t>(count * 4, 1), "VEC4");
+    attributes["WEIGHTS_0"] = scene.add_accessor(std::vector<float>(count * 4, 0.25F), "VEC4");
+  }
+  return scene.glb();
+}
+
 struct Case {
   const char* name;
-  std::string draco;
+  std::string bytes;
   QueryFields fields;
 };
+
+std::vector<Case> scene_cases() {
+  const std::string plain = scene_of(torus(16, 16), false);
+  const std::string skinned = scene_of(torus(16, 16), true);
+  const auto compressed = [](const char* name) { return QueryFields{{"levels", "5"}, {"output.compress", name}}; };
+  return {{"plain scene", plain, compressed("same")},
+          {"plain scene, meshopt", plain, compressed("meshopt")},
+          {"plain scene, Draco", plain, compressed("draco")},
+          {"skinned scene", skinned, compressed("same")},
+          {"skinned scene, meshopt", skinned, compressed("meshopt")},
+          {"skinned scene, Draco", skinned, compressed("draco")}};
+}
 
 std::vector<Case> cases() {
   const TriangleMesh plain = torus(16, 16);
@@ -106,14 +147,23 @@ std::vector<Case> cases() {
            {{"levels", "5"}, {"tolerance", "1e-9"}}}};
 }
 
-TEST(ComputeMemory, LimitIsNeitherPassedNorHalfUnused) {
-  if (server::is_sanitized) GTEST_SKIP() << "sanitizers reserve terabytes";
-  for (const Case& one : cases()) {
-    const uint64_t limit = lowest_limit(one.draco, one.fields);
-    EXPECT_EQ(refine_within(one.draco, one.fields, limit, limit), fits) << one.name << ": " << limit;
-    EXPECT_EQ(refine_within(one.draco, one.fields, limit, (limit - limit / 2) - slack), runs_out)
+void expect_kept_and_used(const std::vector<Case>& all) {
+  for (const Case& one : all) {
+    const uint64_t limit = lowest_limit(one.bytes, one.fields);
+    EXPECT_EQ(refine_within(one.bytes, one.fields, limit, limit), fits) << one.name << ": " << limit;
+    EXPECT_EQ(refine_within(one.bytes, one.fields, limit, (limit - limit / 2) - slack), runs_out)
         << one.name << ": " << limit;
   }
+}
+
+TEST(ComputeMemory, LimitIsNeitherPassedNorHalfUnused) {
+  if (server::is_sanitized) GTEST_SKIP() << "sanitizers reserve terabytes";
+  expect_kept_and_used(cases());
+}
+
+TEST(ComputeMemory, LimitOfAScenesMemoryIsNeitherPassedNorHalfUnused) {
+  if (server::is_sanitized) GTEST_SKIP() << "sanitizers reserve terabytes";
+  expect_kept_and_used(scene_cases());
 }
 
 TEST(ComputeMemory, UniformRequestIsRefusedBeforeTheWork) {
