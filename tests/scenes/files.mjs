@@ -9,7 +9,7 @@ export const models = path.join(here, '../../build/deps/scenes/usr/share/assimp/
 export const gltfpack = path.join(here, '../../build/deps/scenes/usr/bin/gltfpack');
 export const profiles = path.join(here, 'node_modules/@webxr-input-profiles/assets/dist/profiles');
 
-const hands = ['generic-hand/left.glb', 'generic-hand/right.glb'];
+export const hands = ['generic-hand/left.glb', 'generic-hand/right.glb'].map((name) => path.join(profiles, name));
 const controllers = [
   'generic-button/none.glb',
   'generic-trigger/none.glb',
@@ -49,7 +49,8 @@ export const animated = [
   path.join(models, 'glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf'),
 ];
 export const scenes = [
-  ...[...hands, ...controllers].map((name) => path.join(profiles, name)),
+  ...hands,
+  ...controllers.map((name) => path.join(profiles, name)),
   ...others.map((name) => path.join(models, name)),
 ];
 

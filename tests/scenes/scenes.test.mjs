@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { ALL_EXTENSIONS, KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import draco3d from 'draco3dgltf';
 import validator from 'gltf-validator';
 import { MeshoptDecoder } from 'meshoptimizer';
@@ -28,6 +28,7 @@ before(async () => {
   folder = mkdtempSync(path.join(tmpdir(), 'scenes-'));
   io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({
     'draco3d.decoder': await draco3d.createDecoderModule(),
+    'draco3d.encoder': await draco3d.createEncoderModule(),
     'meshopt.decoder': MeshoptDecoder,
   });
 });
@@ -85,7 +86,8 @@ function countsOf(document) {
 async function check(input, flags) {
   const output = path.join(folder, 'out.glb');
   const summary = refine(input, output, flags);
-  const known = await issues(input);
+  const known = new Set((await issues(input)).keys());
+  if (input.endsWith('.glb')) for (const code of (await issues((await decoded(input)).plain)).keys()) known.add(code);
   for (const [code, text] of await issues(output)) assert.ok(known.has(code), `${input} ${flags}: ${text}`);
   const { document, plain } = await decoded(output);
   if (flags.includes('draco'))
@@ -126,18 +128,39 @@ for (const [name, materials, images, known] of objects) {
   });
 }
 
+const compressible = ['generic-hand/left.glb', 'oculus-touch-v3/left.glb'].map((name) => path.join(profiles, name));
+const json = (file) => JSON.parse(readFileSync(file).subarray(20, 20 + readFileSync(file).readUInt32LE(12)));
+
 for (const options of [[], ['-c'], ['-cc'], ['-noq']]) {
   test(`what gltfpack ${options.join('')} makes comes back compressed alike`, async () => {
-    for (const name of ['generic-hand/left.glb', 'oculus-touch-v3/left.glb']) {
+    for (const input of compressible) {
       const packed = path.join(folder, 'packed.glb');
-      execFileSync(gltfpack, ['-i', path.join(profiles, name), '-o', packed, ...options], { stdio: 'ignore' });
-      const extensions = (file) =>
-        JSON.parse(readFileSync(file).subarray(20, 20 + readFileSync(file).readUInt32LE(12))).extensionsRequired;
+      execFileSync(gltfpack, ['-i', input, '-o', packed, ...options], { stdio: 'ignore' });
       await check(packed, ['--levels', '1']);
-      assert.deepEqual(extensions(path.join(folder, 'out.glb')), extensions(packed));
+      assert.deepEqual(json(path.join(folder, 'out.glb')).extensionsRequired, json(packed).extensionsRequired);
     }
   });
 }
+
+test('what gltf-transform compresses by Draco comes back so, or as asked for', async () => {
+  const draco = 'KHR_draco_mesh_compression';
+  for (const input of compressible) {
+    const packed = path.join(folder, 'packed.glb');
+    const document = await io.read(input);
+    document.createExtension(KHRDracoMeshCompression).setRequired(true);
+    await io.write(packed, document);
+    assert.ok(json(packed).extensionsRequired.includes(draco));
+    for (const [compress, required] of [
+      ['same', [draco]],
+      ['draco', [draco]],
+      ['meshopt', ['EXT_meshopt_compression']],
+      ['none', undefined],
+    ]) {
+      await check(packed, ['--levels', '1', '--compress', compress]);
+      assert.deepEqual(json(path.join(folder, 'out.glb')).extensionsRequired, required, compress);
+    }
+  }
+});
 
 for (const name of broken) {
   test(`${name} is refused`, () => {
