@@ -9,7 +9,10 @@ void convert_command(const ConvertFlags& flags) {
   check_output(flags.output);
   const Format format = output_format(flags.output);
   const MeshBytes file = read_mesh(flags.input);
-  if (is_scene(format) && is_scene(file.format)) return save_scene(flags.output, file.bytes);
+  if (is_scene(format) && is_scene(file.format)) {
+    print_warnings(file.warnings);
+    return save_scene(flags.output, file.bytes);
+  }
   if (holds_materials(flags.output)) {
     const MaterialRead read = read_with_materials(flags.input, file);
     print_warnings(read.warnings);

@@ -76,13 +76,15 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
   MeshBytes file = read_mesh(input);
   const std::string name = file.name;
   const proto::RefinementHooks hooks{.on_level = {}, .cancelled = {}, .threads = static_cast<int>(threads)};
-  if (is_scene(file.format) && is_scene(output_format(output)))
+  if (is_scene(file.format) && is_scene(output_format(output))) {
+    print_warnings(file.warnings);
     return in_words_of_the_file(name, [&]() -> RefinedFile {
       auto made = flags.server.empty()
                       ? proto::gltf::SceneRefinement(file.bytes, flags.parameters, own_limits).run(hooks)
                       : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
       return {std::move(made.bytes), true, std::move(made.statistics)};
     });
+  }
   proto::gltf::Materials materials;
   const std::string draco = draco_to_refine(input, output, std::move(file), materials);
   return in_words_of_the_file(name, [&]() -> RefinedFile {

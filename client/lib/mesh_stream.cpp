@@ -15,14 +15,22 @@
 namespace papilio::client {
 namespace {
 
-std::string packed(const MeshPlace& place, const MeshBytes& file) {
-  return in_words_of_the_file(file.name, [&] {
-    return proto::gltf::pack_scene(file.bytes, [&](const std::string& uri) {
-      if (place.is_standard())
-        throw FileError(file.name, "names the file " + proto::quote(uri) + "; name the .gltf file instead of -");
-      return read_beside(place.path, uri);
-    });
-  });
+/// Returns a .gltf file as a .glb file, and adds to its warnings.
+std::string packed(const MeshPlace& place, MeshBytes& file) {
+  const auto read = [&](const std::string& uri) {
+    if (place.is_standard())
+      throw FileError(file.name, "names the file " + proto::quote(uri) + "; name the .gltf file instead of -");
+    return read_beside(place.path, uri);
+  };
+  const auto find_image = [&](const std::string& uri) -> std::optional<std::string> {
+    try {
+      return read(uri);
+    } catch (const FileError& error) {
+      file.warnings.push_back(std::string(error.what()) + ". The image keeps its URI");
+      return std::nullopt;
+    }
+  };
+  return in_words_of_the_file(file.name, [&] { return proto::gltf::pack_scene(file.bytes, read, find_image); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "client/mesh_file/mesh_file.h"
 #include "papilio/mesh.h"
@@ -33,10 +34,11 @@ struct MeshBytes {
   std::string name;  ///< for messages
   Format format = Format::drc;
   std::string bytes{};
+  std::vector<std::string> warnings{};  ///< images of a .gltf file that could not be packed
 };
 
 /// Reads a mesh file without a look at its content, but for the files that a .gltf file names: relative URIs in its
-/// folder or below. Throws `FileError`, also where it is empty.
+/// folder or below. Throws `FileError`, also where it is empty or a buffer is not there.
 [[nodiscard]] MeshBytes read_mesh(const MeshPlace& place);
 
 /// A mesh file's triangles and attributes, those of all nodes of a scene. Throws `FileError`.

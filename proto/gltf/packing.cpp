@@ -26,8 +26,9 @@ const char* find_image_type(std::string uri) {
   return nullptr;
 }
 
-/// Returns the media type and the bytes of an image that is a file or in the document; nothing for unknown types.
-std::optional<std::pair<std::string, std::string>> image_of(const std::string& uri, const FileResolver& resolve) {
+/// Returns the media type and the bytes of an image that is a file or in the document; nothing for unknown types and
+/// where there is no file.
+std::optional<std::pair<std::string, std::string>> image_of(const std::string& uri, const ImageFinder& find_image) {
   if (is_data_uri(uri)) {
     auto bytes = decode_data_uri(uri);
     if (!bytes) return std::nullopt;
@@ -36,17 +37,19 @@ std::optional<std::pair<std::string, std::string>> image_of(const std::string& u
   }
   const char* type = find_image_type(uri);
   if (type == nullptr) return std::nullopt;
-  return std::pair(type, resolve(uri));
+  auto bytes = find_image(uri);
+  if (!bytes) return std::nullopt;
+  return std::pair(type, std::move(*bytes));
 }
 
 /// Returns the contents of new views for the images that are none yet.
-std::vector<ViewContent> pack_images(Document& document, const FileResolver& resolve) {
+std::vector<ViewContent> pack_images(Document& document, const ImageFinder& find_image) {
   std::vector<ViewContent> contents;
   const size_t count = array_of(document.json, "images").size();
   for (size_t i = 0; i < count; ++i) {
     Json& image = document.json["images"][i];
     const std::string uri = text_member(image, "uri", place("images", i));
-    auto read = uri.empty() ? std::nullopt : image_of(uri, resolve);
+    auto read = uri.empty() ? std::nullopt : image_of(uri, find_image);
     if (!read) continue;
     ViewContent content;
     content.bytes = std::move(read->second);
@@ -113,12 +116,12 @@ bool has_bytes(const Document& document) {
 
 }  // namespace
 
-std::string pack_scene(std::string_view gltf, const FileResolver& resolve) {
+std::string pack_scene(std::string_view gltf, const FileResolver& resolve, const ImageFinder& find_image) {
   if (is_glb(gltf)) return std::string(gltf);
   Document document = read_document(gltf, resolve);
   document.is_glb = true;  // what it becomes
   require_sound_views(document);
-  BufferPieces pieces = replace_contents(document, pack_images(document, resolve), {});
+  BufferPieces pieces = replace_contents(document, pack_images(document, find_image), {});
   if (!has_bytes(document)) return write_document(document, std::move(pieces), FileKind::glb).document;
   std::vector<SceneBuffer> owners;
   pieces = join_buffers(document, std::move(pieces), owners);

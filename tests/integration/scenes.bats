@@ -48,6 +48,20 @@ two_nodes() {
   [ "$("$papilio" convert fine.gltf both.ply && "$papilio" info --json both.ply | jq .faces)" = 4800 ]
 }
 
+@test "a .gltf file without its images is refined, and says so" {
+  two_nodes
+  jq '.images = [{uri: "lost.png", extras: "kept"}, {uri: "http://127.0.0.1:1/far.png"}]' two.gltf >edited.gltf
+  mkdir out
+  run --separate-stderr "$papilio" refine edited.gltf -o out/fine.gltf --levels 1 --json
+  [ "$status" = 0 ]
+  [[ ${stderr_lines[0]} == 'warning: lost.png: cannot be opened:'*'. The image keeps its URI' ]]
+  [[ ${stderr_lines[1]} == 'warning: edited.gltf: names "http://127.0.0.1:1/far.png", which is not in its folder'* ]]
+  [ "$(jq -c .images out/fine.gltf)" = '[{"uri":"lost.png","extras":"kept"},{"uri":"http://127.0.0.1:1/far.png"}]' ]
+  run --separate-stderr "$papilio" convert edited.gltf out/flat.ply
+  [ "$status" = 0 ]
+  [ -z "$stderr" ]
+}
+
 @test "scenes convert to and from meshes" {
   for kind in drc obj ply off stl; do
     "$papilio" convert in.glb "out.$kind"

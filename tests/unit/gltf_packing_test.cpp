@@ -46,13 +46,20 @@ TEST(GltfPacking, BuffersAndImagesBecomeOneChunk) {
   json["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 1}, {"byteLength", 3}});
   json["images"] = {{{"uri", "photo.JPG"}},
                     {{"uri", encode_data_uri("inside", "data:image/png;base64,")}},
-                    {{"uri", "photo.unknown"}}};
+                    {{"uri", "photo.unknown"}},
+                    {{"uri", "lost.png"}}};
   std::vector<std::string> asked;
-  const std::string glb = pack_scene(json.dump(), [&](const std::string& uri) {
+  const auto buffer = [&](const std::string& uri) {
     asked.push_back(uri);
-    return uri == "photo.JPG" ? std::string("outside") : scene.binary;
-  });
-  EXPECT_EQ(asked, (std::vector<std::string>{"a%20b.bin", "photo.JPG"}));
+    return scene.binary;
+  };
+  const auto image = [&](const std::string& uri) -> std::optional<std::string> {
+    asked.push_back(uri);
+    if (uri == "lost.png") return std::nullopt;
+    return "outside";
+  };
+  const std::string glb = pack_scene(json.dump(), buffer, image);
+  EXPECT_EQ(asked, (std::vector<std::string>{"a%20b.bin", "photo.JPG", "lost.png"}));
   const Json packed = test::json_of_glb(glb);
   ASSERT_EQ(packed["buffers"].size(), 1U);
   EXPECT_EQ(packed["buffers"][0]["extras"], "kept");
@@ -62,16 +69,18 @@ TEST(GltfPacking, BuffersAndImagesBecomeOneChunk) {
   EXPECT_EQ(packed["images"][0]["mimeType"], "image/jpeg");
   EXPECT_EQ(test::view_of_glb(glb, packed["images"][1]["bufferView"]), "inside");
   EXPECT_EQ(packed["images"][2]["uri"], "photo.unknown");
+  EXPECT_EQ(packed["images"][3].dump(), R"({"uri":"lost.png"})");
   EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
 }
 
 TEST(GltfPacking, AGlbFileIsPackedAlready) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
-  EXPECT_EQ(pack_scene(scene.glb(), no_file), scene.glb());
+  EXPECT_EQ(pack_scene(scene.glb(), no_file, no_file), scene.glb());
   const UnpackedScene unpacked = unpack_scene(scene.glb(), "x.bin");
   EXPECT_EQ(unpacked.buffers.at(0), (std::pair<std::string, std::string>{"x.bin", scene.binary}));
-  EXPECT_EQ(pack_scene(unpacked.document, [&](const std::string&) { return scene.binary; }), scene.glb());
+  const auto binary = [&](const std::string&) { return scene.binary; };
+  EXPECT_EQ(pack_scene(unpacked.document, binary, no_file), scene.glb());
 }
 
 TEST(GltfFlattening, EveryNodeHasItsTriangles) {
