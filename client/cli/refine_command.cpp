@@ -23,10 +23,12 @@ void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output
     out << proto::statistics_json(statistics);
     return;
   }
-  std::cerr << shown(output) << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, "
-            << made.bytes.size() << (made.is_scene ? " bytes of glTF, " : " bytes of Draco, ") << statistics.level
-            << (statistics.level == 1 ? " level" : " levels") << "; decode " << statistics.times.decode
-            << " ms, refine " << statistics.times.refine << " ms, encode " << statistics.times.encode << " ms\n";
+  std::cerr << shown(output) << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, ";
+  if (made.is_scene || output_format(output) == Format::drc)  // else the file has another size
+    std::cerr << made.bytes.size() << (made.is_scene ? " bytes of glTF, " : " bytes of Draco, ");
+  std::cerr << statistics.level << (statistics.level == 1 ? " level" : " levels") << "; decode "
+            << statistics.times.decode << " ms, refine " << statistics.times.refine << " ms, encode "
+            << statistics.times.encode << " ms\n";
   if (const std::string found = proto::defects_text(statistics.found); !found.empty())
     std::cerr << proto::escape_controls(flags.input.name()) << ": mended or worked round " << found << '\n';
   if (!statistics.unreached.empty()) std::cerr << "warning: " << statistics.unreached << '\n';
