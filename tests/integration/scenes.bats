@@ -8,6 +8,7 @@ scene='Content-Type: model/gltf-binary'
 
 setup_file() { start_server; }
 teardown_file() { stop_server; }
+teardown() { [[ -z ${stub_pid:-} ]] || kill "$stub_pid"; }
 setup() {
   cd "$BATS_TEST_TMPDIR" || return
   "$papilio" convert "$coarse" in.glb
@@ -272,6 +273,31 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   [ "$status" = 204 ]
   request "$url/v1/meshes/$id/refined"
   expect_problem 404 mesh_not_found
+}
+
+@test "the server fetches nothing that a scene names" {
+  python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >port 3>&- &
+  stub_pid=$!
+  eventually test -s port
+  far=http://127.0.0.1:$(cat port)/far
+  two_nodes
+  jq --arg far "$far" '.images = [{uri: $far}] | .textures = [{source: 0}] |
+    .materials = [{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}] | .meshes[0].primitives[0].material = 0' two.gltf >image.gltf
+  "$papilio" convert image.gltf image.glb
+  id=$(curl -sS -H "$scene" --data-binary @image.glb "$url/v1/meshes" | jq -r .id)
+  request -H 'Accept: application/json' "$url/v1/meshes/$id"
+  [ "$(field images)" = 1 ]
+  request "$url/v1/meshes/$id/refined?levels=1"
+  [ "$status" = 200 ]
+  grep -aqF "\"uri\":\"$far\"" "$body"
+  request -X DELETE "$url/v1/meshes/$id"
+  request -H "$scene" --data-binary @image.glb "$url/v1/refine?levels=1&output.compress=none"
+  [ "$status" = 200 ]
+  jq --arg far "$far" '.buffers[0].uri = $far' two.gltf >buffer.gltf
+  request -H "$scene" --data-binary @buffer.gltf "$url/v1/refine?levels=1"
+  expect_problem 422 mesh_unsupported
+  request "$far"
+  [ "$(header Count)" = 0 ]
 }
 
 @test "what is no scene, or names files, is refused by its name" {
