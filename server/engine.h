@@ -78,6 +78,8 @@ class Engine {
   /// The same of a stored scene.
   [[nodiscard]] std::unique_ptr<proto::gltf::SceneRefinement> scene_refinement_of(const std::string& id,
                                                                                   const proto::Parameters& parameters);
+  /// The bytes of a stored mesh or scene; never null. Throws `Problem` mesh_not_found.
+  [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
   /// A stored mesh or scene that has been refined takes more memory than before.
   void count_again(const std::string& id);
   [[nodiscard]] std::string metrics_text();
@@ -95,8 +97,6 @@ class Engine {
   /// A stored mesh or scene, decoded; `Shared` is its kind.
   template <class Shared>
   [[nodiscard]] std::shared_ptr<const Shared> decoded(const std::string& id);
-  /// Never null. Throws `Problem` mesh_not_found.
-  [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
 
   const EngineOptions options_;
   Admission admission_;

@@ -195,17 +195,35 @@ bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
   }
 }
 
-/// The refinement of a stored mesh or scene, ready to run.
-RunRefinement run_of_stored(Engine& engine, const std::string& id, const Parameters& parameters) {
+/// Whether a stored mesh is answered as a scene, or a scene as a mesh.
+bool changes_kind(Engine& engine, const std::string& id, const std::string& type) {
+  return type == (engine.is_scene(id) ? draco_type : scene_type);
+}
+
+/// The refinement of a stored mesh or scene, ready to run. `type`: of the answer.
+RunRefinement run_of_stored(Engine& engine, const std::string& id, const Parameters& parameters,
+                            const std::string& type) {
+  const bool changes = changes_kind(engine, id, type);
+  if (engine.is_scene(id) && changes)
+    return run_of(engine, std::make_shared<Refinement>(draco_of_scene(*engine.stored_bytes(id), engine.limits()),
+                                                       parameters, engine.limits()));
   if (engine.is_scene(id)) return run_of(engine, std::shared_ptr(engine.scene_refinement_of(id, parameters)));
-  return run_of(engine, std::shared_ptr(engine.mesh_refinement_of(id, parameters)));
+  RunRefinement run = run_of(engine, std::shared_ptr(engine.mesh_refinement_of(id, parameters)));
+  if (!changes) return run;
+  return [run = std::move(run)](proto::RefinementHooks hooks, Admission::Slot& slot) {
+    proto::EncodedLevel made = run(std::move(hooks), slot);
+    made.bytes = scene_of_draco(made.bytes);
+    return made;
+  };
 }
 
 ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
-                                 const Parameters& parameters, const std::string& key) {
+                                 const Parameters& parameters, const std::string& type) {
+  // The bytes of a kind are the same whatever their type is called.
+  const std::string key = entity_tag(id, parameters, changes_kind(engine, id, type) ? type : "");
   const auto make = [&](const std::function<bool()>& abandoned) {
     const auto slot = engine.enter(request, engine.work_of_stored(id, parameters.options), abandoned);
-    const RunRefinement run = run_of_stored(engine, id, parameters);
+    const RunRefinement run = run_of_stored(engine, id, parameters, type);
     auto made = std::make_shared<const proto::EncodedLevel>(run({.on_level = {}, .cancelled = abandoned}, *slot));
     engine.count_again(id);
     return made;
@@ -220,16 +238,15 @@ ResultCache::Answer find_or_make(Engine& engine, const Request& request, const s
 
 Response refined_mesh(Engine& engine, Request& request) {
   const std::string id = mesh_id(request);
-  (void)negotiate_posted(request, false);
+  (void)negotiate_refined(request, false);
   const Parameters parameters = read_parameters(request);
-  const std::string key = entity_tag(id, parameters, "");  // the bytes are the same whatever their type is called
-  if (!is_stored(engine, id, key)) throw no_such_mesh();
-  const std::string type = negotiate_stored(request, engine.is_scene(id));
+  if (!is_stored(engine, id, entity_tag(id, parameters, ""))) throw no_such_mesh();
+  const std::string type = negotiate_refined(request, engine.is_scene(id));
   if (type == multipart_type) {
     auto slot =
         engine.enter(request, engine.work_of_stored(id, parameters.options), [&] { return request.client_gone(); });
     return level_stream(engine, request, std::move(slot), engine.is_scene(id) ? scene_type : draco_type,
-                        run_of_stored(engine, id, parameters));
+                        run_of_stored(engine, id, parameters, type));
   }
   const bool cacheable = request.method() != "POST";
   const std::string tag = entity_tag(id, parameters, type);
@@ -241,7 +258,7 @@ Response refined_mesh(Engine& engine, Request& request) {
     headers.emplace_back("Vary", "Accept");
     return not_modified(headers);
   }
-  const ResultCache::Answer answer = find_or_make(engine, request, id, parameters, key);
+  const ResultCache::Answer answer = find_or_make(engine, request, id, parameters, type);
   proto::Statistics statistics = answer.result->statistics;
   if (answer.source == ResultCache::Source::kept) statistics.times = {};  // no time was spent on this request
   Response response = refined_response(statistics, type);

@@ -2,10 +2,7 @@
 
 #include <memory>
 
-#include "proto/draco_reader.h"
-#include "proto/draco_writer.h"
 #include "proto/gltf/container.h"
-#include "proto/gltf/flattening.h"
 #include "proto/gltf/scene_refinement.h"
 #include "proto/parameters.h"
 #include "proto/problem.h"
@@ -68,16 +65,6 @@ Response unstored(Response response, std::string body) {
   return response;
 }
 
-/// The mesh of a scene of one as Draco.
-std::string draco_of_scene(const std::string& glb, const proto::Limits& limits) {
-  const auto mesh = proto::gltf::find_only_mesh(glb, limits);
-  if (!mesh)
-    throw Problem(Code::not_acceptable,
-                  "The scene has several meshes, or shows one several times, which Draco cannot hold. Accept "
-                  "model/gltf-binary.");
-  return proto::write_draco_exact(*mesh, mesh->format);
-}
-
 Response refined_scene(Engine& engine, Request& request, Order order, const std::string& type) {
   const auto gone = [&] { return request.client_gone(); };
   auto slot = engine.enter(request, engine.work_of_scene(order.mesh, order.parameters.options), gone);
@@ -89,21 +76,14 @@ Response refined_scene(Engine& engine, Request& request, Order order, const std:
   return unstored(refined_response(made.statistics, type), std::move(made.bytes));
 }
 
-/// The bytes of a refined mesh in the type that the client accepts.
-std::string as_type(std::string draco, const std::string& type) {
-  if (type != scene_type) return draco;
-  const proto::Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
-  return proto::gltf::scene_of_mesh(proto::read_draco(draco, no_limits));
-}
-
 }  // namespace
 
 Response refine_route(Engine& engine, Request& request) {
-  (void)negotiate_posted(request, false);
+  (void)negotiate_refined(request, false);
   engine.admission().refuse_when_full(request.client());
   Order order = read_order(request);
   const bool is_scene = request.content_type() == scene_type || proto::gltf::is_glb(order.mesh);
-  const std::string type = negotiate_posted(request, is_scene);
+  const std::string type = negotiate_refined(request, is_scene);
   if (is_scene && type != draco_type) return refined_scene(engine, request, std::move(order), type);
   const auto gone = [&] { return request.client_gone(); };
   auto slot = engine.enter(request,
@@ -115,7 +95,8 @@ Response refine_route(Engine& engine, Request& request) {
   if (type == multipart_type)
     return level_stream(engine, request, std::move(slot), draco_type, run_of(engine, refinement));
   proto::EncodedLevel made = engine.run(*refinement, {.cancelled = gone}, *slot);
-  return unstored(refined_response(made.statistics, type), as_type(std::move(made.bytes), type));
+  if (type == scene_type) made.bytes = scene_of_draco(made.bytes);
+  return unstored(refined_response(made.statistics, type), std::move(made.bytes));
 }
 
 }  // namespace papilio::server

@@ -19,13 +19,14 @@ inline constexpr const char* scene_type = "model/gltf-binary";
 inline constexpr const char* multipart_type = "multipart/mixed";
 inline constexpr const char* json_type = "application/json";
 
-/// Which form of the answer for a stored mesh the client likes best: draco_type, bytes_type or multipart_type;
-/// scene_type, bytes_type or multipart_type for a scene. Throws `Problem` not_acceptable.
-[[nodiscard]] std::string negotiate_stored(const Request& request, bool is_scene);
+/// Which form of a refined mesh or scene the client likes best: draco_type, scene_type, bytes_type or multipart_type.
+/// What it was is preferred. Throws `Problem` not_acceptable.
+[[nodiscard]] std::string negotiate_refined(const Request& request, bool is_scene);
 
-/// The same where the mesh came in the request, and may be a scene: draco_type, bytes_type, multipart_type or
-/// scene_type. What it came as is preferred.
-[[nodiscard]] std::string negotiate_posted(const Request& request, bool is_scene);
+/// The mesh of a scene of one as Draco, to the bit. Throws `Problem`, not_acceptable for other scenes.
+[[nodiscard]] std::string draco_of_scene(const std::string& glb, const proto::Limits& limits);
+/// A Draco mesh of our own as a .glb scene of one.
+[[nodiscard]] std::string scene_of_draco(const std::string& draco);
 
 /// The statistics of a mesh as headers. The caller adds the mesh, and what caches may do with it.
 [[nodiscard]] Response refined_response(const proto::Statistics& made, const std::string& type);

@@ -275,6 +275,44 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   expect_problem 404 mesh_not_found
 }
 
+@test "stored scenes and meshes are answered in the kind that Accept says" {
+  id=$(curl -sS -H "$scene" --data-binary @in.glb "$url/v1/meshes" | jq -r .id)
+  request "$url/v1/meshes/$id/refined?levels=1"
+  tag=$(header ETag)
+  for _ in made kept; do
+    request -H 'Accept: application/x-draco' "$url/v1/meshes/$id/refined?levels=1"
+    [ "$(header Content-Type)" = application/x-draco ]
+    [ "$(header Vary)" = Accept ]
+    [ "$(header ETag)" != "$tag" ]
+    [ "$(decoded_faces "$body")" = 2400 ]
+  done
+  cp "$body" stored.drc
+  request -H "$scene" -H 'Accept: application/x-draco' --data-binary @in.glb "$url/v1/refine?levels=1"
+  cmp "$body" stored.drc
+  tag=$(curl -sS -o again -D - -H 'Accept: application/x-draco' "$url/v1/meshes/$id/refined?levels=1" | tr -d '\r' |
+    sed -n 's/^ETag: //p')
+  request -H 'Accept: application/x-draco' -H "If-None-Match: $tag" "$url/v1/meshes/$id/refined?levels=1"
+  [ "$status" = 304 ]
+  request -X DELETE "$url/v1/meshes/$id"
+
+  two_nodes
+  "$papilio" convert two.gltf two.glb
+  id=$(curl -sS -H "$scene" --data-binary @two.glb "$url/v1/meshes" | jq -r .id)
+  request -H 'Accept: application/x-draco' "$url/v1/meshes/$id/refined?levels=1"
+  expect_problem 406 not_acceptable
+  [[ $(field detail) == 'The scene has several meshes'* ]]
+  request -X DELETE "$url/v1/meshes/$id"
+
+  upload
+  request -H 'Accept: model/gltf-binary' "$url/v1/meshes/$(coarse_id)/refined?levels=1"
+  [ "$(header Content-Type)" = model/gltf-binary ]
+  cp "$body" stored.glb
+  [ "$("$papilio" info --json stored.glb | jq .faces)" = 2400 ]
+  request -H "$draco" -H 'Accept: model/gltf-binary' --data-binary @"$coarse" "$url/v1/refine?levels=1"
+  cmp "$body" stored.glb
+  request -X DELETE "$url/v1/meshes/$(coarse_id)"
+}
+
 @test "the server fetches nothing that a scene names" {
   python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >port 3>&- &
   stub_pid=$!
