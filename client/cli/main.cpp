@@ -71,8 +71,8 @@ void add_refine(CLI::App& app) {
   add_from(*command, flags->input);
   add_format(
       *command, "--to", flags->output.format,
-      "Format of a folder's results and of standard output (default drc, for scenes of a folder their own), or of "
-      "NAME.refined.EXT (default the input's)");
+      "Format of a folder's results and of standard output (default drc; scenes stay scenes), or of NAME.refined.EXT "
+      "(default the input's)");
   command->add_option("--server", flags->server, "Refine there instead of here: http://host:port or https://");
   command
       ->add_option("--ca", flags->remote.ca_file,

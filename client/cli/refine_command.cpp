@@ -52,6 +52,11 @@ MeshPlace output_of(const RefineFlags& flags) {
   return output;
 }
 
+/// Whether a scene stays one. On standard output it does unless another format is named.
+bool stays_scene(const MeshBytes& file, const MeshPlace& output) {
+  return is_scene(file.format) && ((output.is_standard() && !output.format) || is_scene(output_format(output)));
+}
+
 /// Returns a mesh file as a Draco stream. `materials` becomes those that its faces name, if the output can hold any.
 std::string draco_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
                             proto::gltf::Materials& materials) {
@@ -78,7 +83,7 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
   MeshBytes file = read_mesh(input);
   const std::string name = file.name;
   const proto::RefinementHooks hooks{.on_level = {}, .cancelled = {}, .threads = static_cast<int>(threads)};
-  if (is_scene(file.format) && is_scene(output_format(output))) {
+  if (stays_scene(file, output)) {
     print_warnings(file.warnings);
     return in_words_of_the_file(name, [&]() -> RefinedFile {
       auto made = flags.server.empty()

@@ -14,9 +14,9 @@ struct RefinedFile {
 };
 
 /// Refines one mesh or scene here, with so many threads, or at the server: both go the same way from the same bytes, so
-/// the result is the same. A scene stays one if `output` is a scene; else it is refined as a single mesh, which keeps
-/// the materials of a scene or an OBJ file if `output` can hold them. What of those is missing is said on standard
-/// error. Throws what the work throws, and `FileError` where the mesh is at fault.
+/// the result is the same. A scene stays one if `output` is a scene, or standard output of no format; else it is
+/// refined as a single mesh, which keeps the materials of a scene or an OBJ file if `output` can hold them. What of
+/// those is missing is said on standard error. Throws what the work throws, and `FileError` where the mesh is at fault.
 [[nodiscard]] RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags,
                                       unsigned threads);
 /// Writes what was refined. Throws `FileError`.

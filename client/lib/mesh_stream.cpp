@@ -92,7 +92,7 @@ void save_draco(const MeshPlace& place, std::string_view draco, const proto::glt
 }
 
 void save_scene(const MeshPlace& place, const std::string& glb) {
-  if (output_format(place) == Format::glb) return save_bytes(place, glb);
+  if (place.is_standard() || output_format(place) == Format::glb) return save_bytes(place, glb);
   const auto files = proto::gltf::unpack_scene(glb, place.path.stem().string() + ".bin");
   for (const auto& [name, bytes] : files.buffers) save_bytes({.path = place.path.parent_path() / name}, bytes);
   save_bytes(place, files.document);

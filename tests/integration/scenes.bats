@@ -167,6 +167,12 @@ json_of() {
   [ ! -e plain.mtl ]
 }
 
+@test "a scene on standard input stays a scene on standard output" {
+  "$papilio" refine in.glb -o fine.glb --levels 1
+  "$papilio" refine - -o - --levels 1 <in.glb 2>messages | cmp - fine.glb
+  "$papilio" refine in.glb -o - --levels 1 --to drc 2>messages | head -c 5 | grep -qx DRACO
+}
+
 @test "a folder's scenes stay scenes" {
   mkdir models
   cp in.glb models/a.glb
