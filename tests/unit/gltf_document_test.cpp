@@ -102,6 +102,15 @@ TEST(GltfDocument, JsonIsBounded) {
   EXPECT_TRUE(refused(text_document(many + "}")));
 }
 
+TEST(GltfDocument, BuffersAreCounted) {
+  std::string buffers = R"({"byteLength":0,"uri":"data:;base64,"})";
+  for (int i = 1; i < 256; ++i) buffers += R"(,{"byteLength":0,"uri":"data:;base64,"})";
+  EXPECT_NO_THROW((void)read_document(text_document(",\"buffers\":[" + buffers + "]")));
+  const Problem problem = refusal_of(text_document(",\"buffers\":[{}," + buffers + "]"));
+  EXPECT_EQ(problem.code(), Code::mesh_too_large);
+  EXPECT_NE(std::string(problem.what()).find("256"), std::string::npos) << problem.what();
+}
+
 TEST(GltfDocument, OtherVersionsAndNewerCompressionAreRefusedByName) {
   EXPECT_EQ(refusal_of(R"({"asset":{"version":"1.0"}})").code(), Code::mesh_unsupported);
   const Problem newer = refusal_of(text_document(R"(,"extensionsRequired":["KHR_meshopt_compression"])"));

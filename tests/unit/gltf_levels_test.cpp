@@ -121,6 +121,43 @@ TEST(GltfInstances, ShareAMeshUnlessTheyAreSplit) {
   EXPECT_EQ(apart.statistics.faces, faces_of(apart.bytes, 0) + faces_of(apart.bytes, 1) + 192U);
 }
 
+/// A scene whose second node shows its mesh by EXT_mesh_gpu_instancing; at a hundredth of the first one's scale, but
+/// for the last instance.
+GltfScene scene_of_gpu_instances(float last_scale) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  scene.add_mesh(test::icosahedron());
+  scene.json["nodes"][0]["scale"] = {10, 10, 10};
+  scene.json["nodes"][1]["scale"] = {0.1, 0.1, 0.1};
+  const size_t moves = scene.add_accessor(std::vector<float>{0, 0, 0, 20, 0, 0}, "VEC3");
+  const size_t scales = scene.add_accessor(std::vector<float>{1, 1, 1, last_scale, last_scale, last_scale}, "VEC3");
+  scene.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", moves},
+                                                                                   {"SCALE", scales}};
+  return scene;
+}
+
+TEST(GltfInstances, OfTheGpuAreSeenWhereTheyAre) {
+  const QueryFields fields{{"tolerance", "0.001"}};
+  const std::string same = refined(scene_of_gpu_instances(100).glb(), fields).bytes;
+  EXPECT_GT(faces_of(same, 0), 1000U);
+  EXPECT_EQ(faces_of(same, 1), faces_of(same, 0));
+  EXPECT_EQ(faces_of(refined(scene_of_gpu_instances(1).glb(), fields).bytes, 1), 20U);
+}
+
+TEST(GltfInstances, OfTheGpuAreCounted) {
+  GltfScene scene = scene_of_gpu_instances(1);
+  for (size_t a = scene.json["accessors"].size() - 2; a < scene.json["accessors"].size(); ++a) {
+    scene.json["accessors"][a].erase("bufferView");  // zeros, of which bytes bound nothing
+    scene.json["accessors"][a]["count"] = 1'000'001;
+  }
+  try {
+    (void)refined(scene.glb(), {});
+    FAIL() << "was not refused";
+  } catch (const Problem& problem) {
+    EXPECT_EQ(problem.code(), Code::mesh_too_large) << problem.what();
+  }
+}
+
 TEST(GltfInstances, OfAMeshThatIsNoSceneAreRefused) {
   const std::string draco = write_draco_exact(test::icosahedron());
   EXPECT_THROW(Refinement(draco, parse_query({{"split_instances", "true"}}), {}), Problem);
