@@ -63,10 +63,10 @@ std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, co
 std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, uint32_t id) {
   const ElementFormat& format = stream.elements.format;
   const auto* type = std::ranges::find(stored_types, format.type, &std::pair<ComponentType, ValueType>::first);
-  Attribute attribute;
-  attribute.components = format.components;
-  return {std::move(attribute),
-          {.kind = kind_of(stream.semantic), .type = type->second, .normalized = format.normalized, .id = id}};
+  std::pair<Attribute, AttributeFormat> made;
+  made.first.components = format.components;
+  made.second = {.kind = kind_of(stream.semantic), .type = type->second, .normalized = format.normalized, .id = id};
+  return made;
 }
 
 /// Returns the vertices and triangles of a primitive as the core takes them, and their format.

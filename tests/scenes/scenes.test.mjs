@@ -83,6 +83,18 @@ function countsOf(document) {
   };
 }
 
+const json = (file) => JSON.parse(readFileSync(file).subarray(20, 20 + readFileSync(file).readUInt32LE(12)));
+
+/** Bytes of the binary chunk of a .glb file that no view holds, beyond what aligns views. */
+function deadBytes(file) {
+  const { buffers = [], bufferViews = [] } = json(file);
+  const dead = new Uint8Array(buffers[0]?.byteLength ?? 0).fill(1);
+  for (const view of bufferViews)
+    for (const { buffer, byteOffset = 0, byteLength } of [view, view.extensions?.EXT_meshopt_compression ?? view])
+      if (buffer === 0) dead.fill(0, byteOffset, byteOffset + byteLength);
+  return Math.max(0, dead.reduce((sum, byte) => sum + byte, 0) - 8 * bufferViews.length);
+}
+
 async function check(input, flags) {
   const output = path.join(folder, 'out.glb');
   const summary = refine(input, output, flags);
@@ -93,6 +105,7 @@ async function check(input, flags) {
   if (flags.includes('draco'))
     for (const [code, text] of await issues(plain)) assert.ok(known.has(code), `${input} ${flags}: ${text}`);
   assert.deepEqual(countsOf(document), countsOf(await io.read(input)), input);
+  assert.ok(deadBytes(output) <= (input.endsWith('.glb') ? deadBytes(input) : 0), `${input} ${flags}: dead bytes`);
   return { document, summary };
 }
 
@@ -129,7 +142,6 @@ for (const [name, materials, images, known] of objects) {
 }
 
 const compressible = ['generic-hand/left.glb', 'oculus-touch-v3/left.glb'].map((name) => path.join(profiles, name));
-const json = (file) => JSON.parse(readFileSync(file).subarray(20, 20 + readFileSync(file).readUInt32LE(12)));
 
 for (const options of [[], ['-c'], ['-cc'], ['-noq']]) {
   test(`what gltfpack ${options.join('')} makes comes back compressed alike`, async () => {
