@@ -29,32 +29,39 @@ double most_resident() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// What `work` adds in a child process.
-double memory_of(const std::function<void()>& prepare_and_work) {
+/// What `work` returns in a child process.
+double in_a_process(const std::function<double()>& work) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("no process");
   if (child == 0) {
-    const double before = most_resident();
-    prepare_and_work();
-    const double added = most_resident() - before;
-    const bool sent = ::write(ends[1], &added, sizeof(added)) == static_cast<ssize_t>(sizeof(added));
+    const double found = work();
+    const bool sent = ::write(ends[1], &found, sizeof(found)) == static_cast<ssize_t>(sizeof(found));
     std::_Exit(sent ? 0 : 1);
   }
   ::close(ends[1]);
-  double added = 0;
-  const bool received = ::read(ends[0], &added, sizeof(added)) == static_cast<ssize_t>(sizeof(added));
+  double found = 0;
+  const bool received = ::read(ends[0], &found, sizeof(found)) == static_cast<ssize_t>(sizeof(found));
   ::close(ends[0]);
   ::waitpid(child, nullptr, 0);
   if (!received) throw std::runtime_error("the process that was measured has failed");
-  return added;
+  return found;
 }
 
-/// What a scene with images takes, and the sum of its parts.
-ReportRow scene_row() {
+/// What work adds to the memory of a child process.
+double memory_of(const std::function<void()>& prepare_and_work) {
+  return in_a_process([&] {
+    const double before = most_resident();
+    prepare_and_work();
+    return most_resident() - before;
+  });
+}
+
+/// What a scene with images of so many bytes takes, and the sum of its parts.
+ReportRow scene_row(const std::string& name, size_t bytes_of_image) {
   constexpr double mebibyte = 1 << 20;
-  const std::string glb = textured_scene(10 * image_bytes);
+  const std::string glb = textured_scene(bytes_of_image);
   const proto::Parameters parameters = proto::parse_query({{"levels", "3"}});
   const double ours = memory_of([&] {
     const std::string own = glb;
@@ -64,10 +71,9 @@ ReportRow scene_row() {
     const auto mesh = proto::gltf::decode_scene(glb, {}).scene.meshes[0].surface.mesh;
     if (refine(mesh, {.levels = 3, .edges = false}).mesh.topology.face_count() == 0) std::abort();
   });
-  // Last: what is spared of it would be used again.
-  const auto written = static_cast<double>(proto::gltf::SceneRefinement(glb, parameters, {}).run().bytes.size());
-  return {"memory/scene with 40 MB of images/3", ours,
-          static_cast<double>(glb.size()) / mebibyte + written / mebibyte + of_mesh, "MiB"};
+  const double written = in_a_process(
+      [&] { return static_cast<double>(proto::gltf::SceneRefinement(glb, parameters, {}).run().bytes.size()); });
+  return {name, ours, static_cast<double>(glb.size()) / mebibyte + written / mebibyte + of_mesh, "MiB"};
 }
 
 std::vector<ReportRow> print() {
@@ -92,9 +98,11 @@ std::vector<ReportRow> print() {
     rows.push_back({"memory/" + std::string(name) + "/" + std::to_string(levels), ours, peer, "MiB"});
     table.add({rows.back().name, fixed(ours, 1), fixed(peer, 1), fixed(ours / peer, 2)});
   }
-  rows.push_back(scene_row());
-  table.add({rows.back().name, fixed(rows.back().ours, 1), fixed(rows.back().peer, 1),
-             fixed(rows.back().ours / rows.back().peer, 2)});
+  for (ReportRow& row : std::vector{scene_row("memory/scene without images/3", 0),
+                                    scene_row("memory/scene with 40 MB of images/3", 10 * image_bytes)}) {
+    table.add({row.name, fixed(row.ours, 1), fixed(row.peer, 1), fixed(row.ours / row.peer, 2)});
+    rows.push_back(std::move(row));
+  }
   table.print();
   return rows;
 }
