@@ -6,8 +6,8 @@ import path from 'node:path';
 const here = new URL('.', import.meta.url).pathname;
 export const papilio = path.join(process.env.PAPILIO_BUILD ?? path.join(here, '../../build/release'), 'papilio');
 export const models = path.join(here, '../../build/deps/scenes/usr/share/assimp/models/glTF2');
-export const gltfpack = path.join(here, '../../build/deps/scenes/usr/bin/gltfpack');
-export const profiles = path.join(here, 'node_modules/@webxr-input-profiles/assets/dist/profiles');
+const gltfpack = path.join(here, '../../build/deps/scenes/usr/bin/gltfpack');
+const profiles = path.join(here, 'node_modules/@webxr-input-profiles/assets/dist/profiles');
 
 export const hands = ['generic-hand/left.glb', 'generic-hand/right.glb'].map((name) => path.join(profiles, name));
 const controllers = [
@@ -53,6 +53,14 @@ export const scenes = [
   ...controllers.map((name) => path.join(profiles, name)),
   ...others.map((name) => path.join(models, name)),
 ];
+
+/** Scenes that others compress, and how gltfpack does: quantised, by meshopt in two ways, and as floats. */
+export const compressible = ['generic-hand/left.glb', 'oculus-touch-v3/left.glb'].map((name) =>
+  path.join(profiles, name),
+);
+export const packings = [[], ['-c'], ['-cc'], ['-noq']];
+export const pack = (input, output, options) =>
+  execFileSync(gltfpack, ['-i', input, '-o', output, ...options], { stdio: 'ignore' });
 
 /** Refines a scene by the command line; returns the statistics. */
 export function refine(input, output, flags) {

@@ -9,7 +9,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { launch, root } from '../web/browser.mjs';
-import { animated, hands, nameOf, papilio, refine, scenes } from './files.mjs';
+import { animated, compressible, hands, nameOf, pack, packings, papilio, refine, scenes } from './files.mjs';
 
 const types = {
   '.html': 'text/html',
@@ -99,22 +99,31 @@ const take = (input) => execFileSync(papilio, ['convert', input, path.join(folde
 /** Puts in.glb, refined, beside it as out.glb. */
 const make = (flags) => refine(path.join(folder, 'in.glb'), path.join(folder, 'out.glb'), flags);
 
-for (const input of scenes) {
-  test(`${nameOf(input)} looks alike once it is refined`, async () => {
-    take(input);
-    const coarse = await draw('in.glb', 0, null);
-    const drawn = async (flags) => {
-      make(flags);
-      return draw('out.glb', 0, coarse.frame);
-    };
-    for (const compress of ['same', 'draco']) {
-      const flags = ['--levels', '1', '--shape', 'mechanical', '--compress', compress];
-      assertSame(coarse, await drawn(flags), compress);
-    }
-    for (const compress of ['none', 'draco', 'meshopt'])
-      assertSame(coarse, await drawn(['--levels', '0', '--compress', compress]), `coarse, ${compress}`);
-  });
+/** Refines a scene, and writes it anew without refining it: each looks like the scene. */
+async function assertLooksAlike(input) {
+  take(input);
+  const coarse = await draw('in.glb', 0, null);
+  const drawn = async (flags) => {
+    make(flags);
+    return draw('out.glb', 0, coarse.frame);
+  };
+  for (const compress of ['same', 'draco']) {
+    const flags = ['--levels', '1', '--shape', 'mechanical', '--compress', compress];
+    assertSame(coarse, await drawn(flags), compress);
+  }
+  for (const compress of ['none', 'draco', 'meshopt'])
+    assertSame(coarse, await drawn(['--levels', '0', '--compress', compress]), `coarse, ${compress}`);
 }
+
+for (const input of scenes) test(`${nameOf(input)} looks alike once it is refined`, () => assertLooksAlike(input));
+
+for (const options of packings)
+  test(`what gltfpack ${options.join('')} makes looks alike once it is refined`, async () => {
+    for (const input of compressible) {
+      pack(input, path.join(folder, 'packed.glb'), options);
+      await assertLooksAlike(path.join(folder, 'packed.glb'));
+    }
+  });
 
 /** Refines a scene, and compares it at three times of its animation. */
 async function assertMovesAlike(input) {
