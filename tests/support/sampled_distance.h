@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "client/lib/surface_distance.h"
+#include "papilio/mesh.h"
+
+namespace papilio::test {
+
+/// Two-sided distance of two surfaces: of each figure the larger direction, in percent of the original's diagonal.
+struct SampledDistance {
+  double rms = 0;
+  double largest = 0;
+};
+
+/// Points spread over the triangles, each for an equal share of the area. Deterministic: strata along the order of the
+/// triangles, Martin Roberts' R2 sequence (2018) inside them. None where there is no area.
+[[nodiscard]] std::vector<Vec3d> sample_by_area(std::span<const TriangleCorners> triangles, size_t count);
+
+/// Surface with its samples, from which others are measured. It shares only the distance to one triangle with the core.
+class SampledSurface {
+ public:
+  static constexpr size_t default_samples = 60'000;
+
+  /// The mesh must have an area and finite positions.
+  explicit SampledSurface(const TriangleMesh& original, size_t samples = default_samples);
+
+  /// Measures from the samples of each surface to the other. `other` must have triangles.
+  [[nodiscard]] SampledDistance distance_to(const TriangleMesh& other) const;
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+
+ private:
+  std::vector<TriangleCorners> triangles_;
+  client::SurfaceDistance tree_;
+  std::vector<Vec3d> samples_;
+  double diagonal_;
+};
+
+}  // namespace papilio::test
