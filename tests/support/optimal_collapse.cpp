@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/disjoint_sets.h"
 #include "papilio/mesh.h"
 #include "tests/support/quadric.h"
 
@@ -29,32 +30,53 @@ bool is_later(const Collapse& a, const Collapse& b) {
   return a.kept != b.kept ? a.kept > b.kept : a.removed > b.removed;
 }
 
+/// A vertex for each fan of faces: a surface that is not a manifold falls into sheets that are.
+std::vector<Triangle> cut_into_sheets(const Topology& t) {
+  DisjointSets fans(t.half_edge_count());
+  for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
+    if (t.twin[h] == none) continue;
+    fans.join(h, Topology::next(t.twin[h]));
+    fans.join(Topology::next(h), t.twin[h]);
+  }
+  std::vector<uint32_t> vertex(t.half_edge_count());
+  std::vector<Triangle> faces(t.face_count());
+  uint32_t count = 0;
+  for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
+    vertex[h] = fans.find(h) == h ? count++ : vertex[fans.find(h)];
+    faces[h / 3][h % 3] = vertex[h];
+  }
+  return faces;
+}
+
 class Simplifier {
  public:
   explicit Simplifier(const Mesh& mesh)
-      : faces_of_(mesh.positions.size()),
-        quadrics_(mesh.positions.size()),
-        ages_(mesh.positions.size()),
-        face_count_(mesh.topology.face_count()) {
+      : faces_(cut_into_sheets(mesh.topology)), face_count_(mesh.topology.face_count()) {
     const Topology& t = mesh.topology;
-    for (const Vec3f p : mesh.positions) places_.push_back(to_double(p));
+    for (uint32_t h = 0; h < t.half_edge_count(); ++h)
+      if (corner(h) == places_.size()) places_.push_back(to_double(mesh.positions[t.origin[h]]));
+    faces_of_.resize(places_.size());
+    quadrics_.resize(places_.size());
+    ages_.resize(places_.size());
     for (uint32_t f = 0; f < face_count_; ++f) {
-      faces_.push_back({t.origin[3 * f], t.origin[3 * f + 1], t.origin[3 * f + 2]});
       for (const uint32_t v : faces_[f]) faces_of_[v].push_back(f);
       add_quadrics(t, f);
     }
-    for (const uint32_t h : t.half_edge) propose(t.origin[h], t.tip(h));
+    for (uint32_t h = 0; h < t.half_edge_count(); ++h)
+      if (h < t.twin[h]) propose(corner(h), corner(Topology::next(h)));  // `none` is above all
   }
 
-  void run(size_t faces) {
+  /// Returns whether so few faces are left.
+  [[nodiscard]] bool reaches(size_t faces) {
     while (face_count_ > faces && !queue_.empty()) {
       const Collapse next = queue_.top();
       queue_.pop();
       if (next.age == ages_[next.kept] + ages_[next.removed] && is_allowed(next)) apply(next);
     }
-    if (face_count_ > faces)
-      throw std::runtime_error("no further edge can be collapsed at " + std::to_string(face_count_) + " faces");
+    return face_count_ <= faces;
   }
+
+  [[nodiscard]] size_t face_count() const { return face_count_; }
 
   [[nodiscard]] TriangleMesh result() const {
     TriangleMesh out;
@@ -70,6 +92,9 @@ class Simplifier {
   }
 
  private:
+  /// Vertex that the half-edge of a mesh not yet collapsed leaves.
+  [[nodiscard]] uint32_t corner(uint32_t h) const { return faces_[h / 3][h % 3]; }
+
   void add_quadrics(const Topology& t, uint32_t face) {
     const auto [a, b, c] = faces_[face];
     const Vec3d twice_area = cross(places_[b] - places_[a], places_[c] - places_[a]);
@@ -79,12 +104,12 @@ class Simplifier {
     for (const uint32_t v : faces_[face]) quadrics_[v] = quadrics_[v] + Quadric(normal, places_[a], size / 2);
     for (uint32_t h = 3 * face; h < 3 * face + 3; ++h) {
       if (t.twin[h] != none) continue;
-      const Vec3d edge = places_[t.tip(h)] - places_[t.origin[h]];
+      const uint32_t from = corner(h), to = corner(Topology::next(h));
+      const Vec3d edge = places_[to] - places_[from];
       const double squared = dot(edge, edge);
       if (squared == 0) continue;
-      const Quadric wall((1 / std::sqrt(squared)) * cross(edge, normal), places_[t.origin[h]],
-                         boundary_weight * squared);
-      for (const uint32_t v : {t.origin[h], t.tip(h)}) quadrics_[v] = quadrics_[v] + wall;
+      const Quadric wall((1 / std::sqrt(squared)) * cross(edge, normal), places_[from], boundary_weight * squared);
+      for (const uint32_t v : {from, to}) quadrics_[v] = quadrics_[v] + wall;
     }
   }
 
@@ -169,8 +194,8 @@ class Simplifier {
     for (const uint32_t v : neighbours(c.kept)) propose(c.kept, v);
   }
 
-  std::vector<Vec3d> places_;
   std::vector<Triangle> faces_;  ///< a removed one has all corners equal
+  std::vector<Vec3d> places_;
   std::vector<std::vector<uint32_t>> faces_of_;
   std::vector<Quadric> quadrics_;
   std::vector<uint32_t> ages_;  ///< how often the vertex has changed
@@ -180,13 +205,21 @@ class Simplifier {
 
 }  // namespace
 
+std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces) {
+  Simplifier simplifier(build_mesh(mesh));
+  std::vector<TriangleMesh> results;
+  for (const size_t count : faces) {
+    if (!simplifier.reaches(count)) break;
+    results.push_back(simplifier.result());
+  }
+  return results;
+}
+
 TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces) {
-  const Mesh welded = build_mesh(mesh);
-  if (!welded.topology.pinched.empty() ||
-      std::ranges::find(welded.topology.kind, EdgeKind::shared) != welded.topology.kind.end())
-    throw std::runtime_error("the surface is not manifold");
-  Simplifier simplifier(welded);
-  simplifier.run(faces);
+  Simplifier simplifier(build_mesh(mesh));
+  if (!simplifier.reaches(faces))
+    throw std::runtime_error("no further edge can be collapsed at " + std::to_string(simplifier.face_count()) +
+                             " faces");
   return simplifier.result();
 }
 

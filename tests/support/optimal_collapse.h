@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include "papilio/mesh.h"
 
@@ -8,9 +10,13 @@ namespace papilio::test {
 
 /// At most `faces` triangles by quadric edge collapse with optimal placement (Garland and Heckbert, "Surface
 /// Simplification Using Quadric Error Metrics", 1997): planes weighted by area, boundaries held by perpendicular
-/// planes, the new vertex where the quadric is least. Points of equal position are one. Collapses that change the
-/// topology or turn a face over are refused. Throws `std::runtime_error` if the mesh is not a manifold or the count
-/// cannot be reached.
+/// planes, the new vertex where the quadric is least. Points of equal position are one. Where the surface is not a
+/// manifold it is cut into manifold sheets, whose borders move separately. Collapses that change the topology or turn a
+/// face over are refused. Throws `std::runtime_error` if the count cannot be reached.
 [[nodiscard]] TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces);
+
+/// Results of `collapse_optimally` for several counts, in one sequence of collapses. `faces` must descend. Counts that
+/// cannot be reached are left out at the end.
+[[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces);
 
 }  // namespace papilio::test

@@ -97,11 +97,31 @@ TEST(OptimalCollapse, IsCloserThanHalfEdgeCollapse) {
   }
 }
 
-TEST(OptimalCollapse, NonManifoldIsRefused) {
-  TriangleMesh wing;
-  wing.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-  wing.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
-  EXPECT_THROW((void)collapse_optimally(wing, 2), std::runtime_error);
+TEST(OptimalCollapse, SeveralSizesEqualSingleRuns) {
+  const TriangleMesh mesh = torus(40, 20);
+  const std::vector<size_t> sizes = {1000, 400, 399, 60};
+  const std::vector<TriangleMesh> results = collapse_to_sizes(mesh, sizes);
+  ASSERT_EQ(results.size(), sizes.size());
+  for (size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(results[i], collapse_optimally(mesh, sizes[i])) << sizes[i];
+}
+
+TEST(OptimalCollapse, SizesOutOfReachAreLeftOut) {
+  EXPECT_EQ(collapse_to_sizes(fine_sphere(), std::vector<size_t>{100, 4, 2}).size(), 2U);
+}
+
+TEST(OptimalCollapse, NonManifoldIsCutIntoSheets) {
+  // Three squares that share an edge of five segments.
+  TriangleMesh wings = grid(5, 5);
+  for (const Vec3f side : {Vec3f{0, 0, 1}, Vec3f{-1, 0, 0}}) {
+    const TriangleMesh flat = grid(5, 5);
+    const auto first = static_cast<uint32_t>(wings.positions.size());
+    for (const Vec3f p : flat.positions) wings.positions.push_back(p.x * side + Vec3f{0, p.y, 0});
+    for (const auto& [a, b, c] : flat.triangles) wings.triangles.push_back({first + a, first + b, first + c});
+  }
+  ASSERT_GT(count_edges(build_mesh(wings).triangles()).irregular, 0U);
+  const TriangleMesh result = collapse_optimally(wings, 6);
+  EXPECT_EQ(result.triangles.size(), 6U);
+  EXPECT_LT(client::compare(wings, result, {.samples = 2000}).hausdorff, 1e-6);
 }
 
 }  // namespace
