@@ -4,6 +4,7 @@
 #include <queue>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/disjoint_sets.h"
@@ -50,18 +51,17 @@ std::vector<Triangle> cut_into_sheets(const Topology& t) {
 
 class Simplifier {
  public:
-  explicit Simplifier(const Mesh& mesh)
-      : faces_(cut_into_sheets(mesh.topology)), face_count_(mesh.topology.face_count()) {
+  Simplifier(const Mesh& mesh, Quadrics quadrics)
+      : quadrics_are_(quadrics), faces_(cut_into_sheets(mesh.topology)), face_count_(mesh.topology.face_count()) {
     const Topology& t = mesh.topology;
     for (uint32_t h = 0; h < t.half_edge_count(); ++h)
       if (corner(h) == places_.size()) places_.push_back(to_double(mesh.positions[t.origin[h]]));
     faces_of_.resize(places_.size());
     quadrics_.resize(places_.size());
     ages_.resize(places_.size());
-    for (uint32_t f = 0; f < face_count_; ++f) {
+    for (uint32_t f = 0; f < face_count_; ++f)
       for (const uint32_t v : faces_[f]) faces_of_[v].push_back(f);
-      add_quadrics(t, f);
-    }
+    for (uint32_t v = 0; v < places_.size(); ++v) quadrics_[v] = quadric_of(v);
     for (uint32_t h = 0; h < t.half_edge_count(); ++h)
       if (h < t.twin[h]) propose(corner(h), corner(Topology::next(h)));  // `none` is above all
   }
@@ -95,22 +95,32 @@ class Simplifier {
   /// Vertex that the half-edge of a mesh not yet collapsed leaves.
   [[nodiscard]] uint32_t corner(uint32_t h) const { return faces_[h / 3][h % 3]; }
 
-  void add_quadrics(const Topology& t, uint32_t face) {
-    const auto [a, b, c] = faces_[face];
-    const Vec3d twice_area = cross(places_[b] - places_[a], places_[c] - places_[a]);
-    const double size = length(twice_area);
-    if (size == 0) return;
-    const Vec3d normal = (1 / size) * twice_area;
-    for (const uint32_t v : faces_[face]) quadrics_[v] = quadrics_[v] + Quadric(normal, places_[a], size / 2);
-    for (uint32_t h = 3 * face; h < 3 * face + 3; ++h) {
-      if (t.twin[h] != none) continue;
-      const uint32_t from = corner(h), to = corner(Topology::next(h));
-      const Vec3d edge = places_[to] - places_[from];
-      const double squared = dot(edge, edge);
-      if (squared == 0) continue;
-      const Quadric wall((1 / std::sqrt(squared)) * cross(edge, normal), places_[from], boundary_weight * squared);
-      for (const uint32_t v : {from, to}) quadrics_[v] = quadrics_[v] + wall;
+  /// Quadric of the vertex's faces and boundaries as they are.
+  [[nodiscard]] Quadric quadric_of(uint32_t v) const {
+    Quadric sum;
+    for (const uint32_t f : faces_of_[v]) {
+      const auto [a, b, c] = faces_[f];
+      const Vec3d twice_area = cross(places_[b] - places_[a], places_[c] - places_[a]);
+      const double size = length(twice_area);
+      if (size == 0) continue;
+      const Vec3d normal = (1 / size) * twice_area;
+      sum = sum + Quadric(normal, places_[a], size / 2);
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+        if ((from == v || to == v) && is_boundary(from, to)) sum = sum + wall(from, to, normal);
     }
+    return sum;
+  }
+
+  [[nodiscard]] Quadric wall(uint32_t from, uint32_t to, Vec3d normal) const {
+    const Vec3d edge = places_[to] - places_[from];
+    const double squared = dot(edge, edge);
+    if (squared == 0) return {};
+    return {(1 / std::sqrt(squared)) * cross(edge, normal), places_[from], boundary_weight * squared};
+  }
+
+  [[nodiscard]] bool is_boundary(uint32_t a, uint32_t b) const { return count_faces(a, b) == 1; }
+  [[nodiscard]] size_t count_faces(uint32_t a, uint32_t b) const {
+    return static_cast<size_t>(std::ranges::count_if(faces_of_[a], [&](uint32_t f) { return has(f, b); }));
   }
 
   void propose(uint32_t a, uint32_t b) {
@@ -152,7 +162,7 @@ class Simplifier {
     const std::vector<uint32_t> around_a = neighbours(a), around_b = neighbours(b);
     std::vector<uint32_t> common;
     std::ranges::set_intersection(around_a, around_b, std::back_inserter(common));
-    const auto shared = static_cast<size_t>(std::ranges::count_if(faces_of_[a], [&](uint32_t f) { return has(f, b); }));
+    const size_t shared = count_faces(a, b);
     const bool both_on_boundary = around_a.size() > faces_of_[a].size() && around_b.size() > faces_of_[b].size();
     return common.size() == shared && !(shared == 2 && both_on_boundary) &&
            around_a.size() + around_b.size() > 2 * (shared + 1);
@@ -188,12 +198,30 @@ class Simplifier {
     }
     faces_of_[c.removed].clear();
     places_[c.kept] = c.place;
-    quadrics_[c.kept] = quadrics_[c.kept] + quadrics_[c.removed];
-    ++ages_[c.kept];
     ++ages_[c.removed];
+    if (quadrics_are_ == Quadrics::memoryless) return renew_around(c.kept);
+    ++ages_[c.kept];
+    quadrics_[c.kept] = quadrics_[c.kept] + quadrics_[c.removed];
     for (const uint32_t v : neighbours(c.kept)) propose(c.kept, v);
   }
 
+  /// Computes the quadrics of a vertex and its neighbours anew and proposes all their edges.
+  void renew_around(uint32_t centre) {
+    std::vector<uint32_t> changed = neighbours(centre);
+    changed.push_back(centre);
+    for (const uint32_t v : changed) {
+      quadrics_[v] = quadric_of(v);
+      ++ages_[v];
+    }
+    std::vector<std::pair<uint32_t, uint32_t>> edges;
+    for (const uint32_t v : changed)
+      for (const uint32_t other : neighbours(v)) edges.push_back(std::minmax(v, other));
+    std::ranges::sort(edges);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const auto& [a, b] : edges) propose(a, b);
+  }
+
+  Quadrics quadrics_are_;
   std::vector<Triangle> faces_;  ///< a removed one has all corners equal
   std::vector<Vec3d> places_;
   std::vector<std::vector<uint32_t>> faces_of_;
@@ -205,8 +233,9 @@ class Simplifier {
 
 }  // namespace
 
-std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces) {
-  Simplifier simplifier(build_mesh(mesh));
+std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
+                                            Quadrics quadrics) {
+  Simplifier simplifier(build_mesh(mesh), quadrics);
   std::vector<TriangleMesh> results;
   for (const size_t count : faces) {
     if (!simplifier.reaches(count)) break;
@@ -215,8 +244,8 @@ std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<
   return results;
 }
 
-TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces) {
-  Simplifier simplifier(build_mesh(mesh));
+TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces, Quadrics quadrics) {
+  Simplifier simplifier(build_mesh(mesh), quadrics);
   if (!simplifier.reaches(faces))
     throw std::runtime_error("no further edge can be collapsed at " + std::to_string(simplifier.face_count()) +
                              " faces");

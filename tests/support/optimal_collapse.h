@@ -8,15 +8,25 @@
 
 namespace papilio::test {
 
+/// Surface from which the quadric of an edge is made.
+enum class Quadrics {
+  accumulated,  ///< the planes of the original at the vertices that have become one (Garland and Heckbert)
+  /// the planes of the faces left so far (Lindstrom and Turk, "Evaluation of Memoryless Simplification", 1999): slower
+  /// and nearer
+  memoryless,
+};
+
 /// At most `faces` triangles by quadric edge collapse with optimal placement (Garland and Heckbert, "Surface
 /// Simplification Using Quadric Error Metrics", 1997): planes weighted by area, boundaries held by perpendicular
 /// planes, the new vertex where the quadric is least. Points of equal position are one. Where the surface is not a
 /// manifold it is cut into manifold sheets, whose borders move separately. Collapses that change the topology or turn a
 /// face over are refused. Throws `std::runtime_error` if the count cannot be reached.
-[[nodiscard]] TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces);
+[[nodiscard]] TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces,
+                                              Quadrics quadrics = Quadrics::accumulated);
 
 /// Results of `collapse_optimally` for several counts, in one sequence of collapses. `faces` must descend. Counts that
 /// cannot be reached are left out at the end.
-[[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces);
+[[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
+                                                          Quadrics quadrics = Quadrics::accumulated);
 
 }  // namespace papilio::test

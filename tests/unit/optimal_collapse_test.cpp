@@ -100,13 +100,28 @@ TEST(OptimalCollapse, IsCloserThanHalfEdgeCollapse) {
 TEST(OptimalCollapse, SeveralSizesEqualSingleRuns) {
   const TriangleMesh mesh = torus(40, 20);
   const std::vector<size_t> sizes = {1000, 400, 399, 60};
-  const std::vector<TriangleMesh> results = collapse_to_sizes(mesh, sizes);
-  ASSERT_EQ(results.size(), sizes.size());
-  for (size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(results[i], collapse_optimally(mesh, sizes[i])) << sizes[i];
+  for (const Quadrics quadrics : {Quadrics::accumulated, Quadrics::memoryless}) {
+    const std::vector<TriangleMesh> results = collapse_to_sizes(mesh, sizes, quadrics);
+    ASSERT_EQ(results.size(), sizes.size());
+    for (size_t i = 0; i < sizes.size(); ++i)
+      EXPECT_EQ(results[i], collapse_optimally(mesh, sizes[i], quadrics)) << sizes[i];
+  }
 }
 
 TEST(OptimalCollapse, SizesOutOfReachAreLeftOut) {
   EXPECT_EQ(collapse_to_sizes(fine_sphere(), std::vector<size_t>{100, 4, 2}).size(), 2U);
+}
+
+TEST(OptimalCollapse, MemorylessIsNearer) {
+  const TriangleMesh mesh = torus(120, 60);
+  EXPECT_LT(rms(mesh, collapse_optimally(mesh, 600, Quadrics::memoryless)),
+            0.9 * rms(mesh, collapse_optimally(mesh, 600, Quadrics::accumulated)));
+}
+
+TEST(OptimalCollapse, MemorylessKeepsTheOutline) {
+  const TriangleMesh square = grid(12, 12);
+  const TriangleMesh result = collapse_optimally(square, 2, Quadrics::memoryless);
+  EXPECT_LT(client::compare(square, result, {.samples = 2000}).hausdorff, 1e-6);
 }
 
 TEST(OptimalCollapse, NonManifoldIsCutIntoSheets) {
