@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "client/mesh_file/mesh_file.h"
 #include "papilio/refine.h"
 #include "tests/support/invariants.h"
+#include "tests/support/real_mesh.h"
 
 // Every mesh of libcgal-demo's data folder, whatever is wrong with it: it is refined without a crack, or refused with
 // the reason. Prints a table.
@@ -19,16 +19,6 @@ namespace {
 
 using namespace test;
 namespace fs = std::filesystem;
-
-std::vector<fs::path> all_meshes() {
-  const char* folder = std::getenv("PAPILIO_MESHES");
-  if (folder == nullptr) throw std::runtime_error("PAPILIO_MESHES is not set; run ./dev test");
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(fs::path(folder) / "cgal"))
-    if (entry.is_regular_file()) paths.push_back(entry.path());
-  std::ranges::sort(paths);
-  return paths;
-}
 
 /// What cannot be read as triangles is refused with a reason.
 std::optional<Mesh> load(const fs::path& path, BuildReport& report) {
@@ -64,7 +54,7 @@ TEST(EveryRealMesh, IsRefinedWithoutACrackOrRefusedWithTheReason) {
   std::printf("%-32s %7s %7s %6s %7s %7s %7s %7s %7s %8s %8s %8s\n", "", "V", "F", "chi", "rim", "shared", "turned",
               "pinched", "dropped", "uniform", "red-gr.", "in-place");
   uint32_t refined = 0;
-  for (const fs::path& path : all_meshes()) {
+  for (const fs::path& path : cgal_mesh_files()) {
     SCOPED_TRACE(path.filename());
     BuildReport found;
     const std::optional<Mesh> coarse = load(path, found);
