@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -12,8 +13,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/bench/report.h"
 
-// papilio-bench [NAME] [--json FILE]: the report NAME, or the rows whose names contain NAME; Google Benchmark does the
-// timing, in random turns.
+// papilio-bench [NAME] [--json FILE] [--only MODEL]...: the report NAME, or the rows whose names contain NAME; Google
+// Benchmark does the timing, in random turns. --only chooses models of the report detail.
 
 namespace papilio::bench {
 namespace {
@@ -129,11 +130,32 @@ int run_pairs(const std::string& filter, const std::string& json_file) {
   return write_json(rows, json_file);
 }
 
-int run(const std::string& name, const std::string& json_file) {
+struct Arguments {
+  std::string name, json_file;
+  std::vector<std::string> only;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments found;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--json" && i + 1 < argc)
+      found.json_file = argv[++i];
+    else if (argument == "--only" && i + 1 < argc)
+      found.only.emplace_back(argv[++i]);
+    else
+      found.name = argument;
+  }
+  return found;
+}
+
+int run(const Arguments& arguments) {
+  const auto& [name, json_file, only] = arguments;
   add_table1();
   add_quality();
   add_memory();
   add_wasm();
+  add_detail(only);
   const auto report = std::ranges::find(reports(), name, &Report::name);
   if (report != reports().end()) return run_report(*report, json_file);
   add_uniform();
@@ -164,19 +186,15 @@ double seconds(const std::function<void()>& work) {
 
 int main(int argc, char** argv) {
   papilio::server::set_up_heap(1);  // both sides on the heap that the server has
-  std::string filter;
-  std::string json_file;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument == "--json" && i + 1 < argc)
-      json_file = argv[++i];
-    else
-      filter = argument;
-  }
   std::vector<std::string> library_arguments{argv[0], "--benchmark_enable_random_interleaving=true"};
   std::vector<char*> pointers;
   for (std::string& argument : library_arguments) pointers.push_back(argument.data());
   int count = static_cast<int>(pointers.size());
   benchmark::Initialize(&count, pointers.data());
-  return papilio::bench::run(filter, json_file);
+  try {
+    return papilio::bench::run(papilio::bench::parse(argc, argv));
+  } catch (const std::exception& error) {
+    std::cerr << "papilio-bench: " << error.what() << '\n';
+    return 1;
+  }
 }

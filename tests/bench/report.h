@@ -27,5 +27,7 @@ void add_table1();
 void add_quality();
 void add_memory();
 void add_wasm();
+/// `only`: names of models; all if empty.
+void add_detail(const std::vector<std::string>& only);
 
 }  // namespace papilio::bench
