@@ -45,6 +45,7 @@ Code code_of(Fault fault) {
     case Fault::index_out_of_range:
     case Fault::not_finite:
     case Fault::no_faces:
+    case Fault::bad_surface:
       return Code::mesh_unusable;
     case Fault::bad_option:
       return Code::bad_parameter;

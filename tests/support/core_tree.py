@@ -20,6 +20,7 @@ BELOW["split"] = [*BELOW["mesh"], "mesh"]
 BELOW["criteria"] = [*BELOW["rules"], "rules"]
 BELOW["hierarchy"] = [*BELOW["criteria"], "split", "criteria"]
 BELOW["simplify"] = [*BELOW["mesh"], "mesh", "criteria"]
+BELOW["detail"] = [*BELOW["mesh"], "mesh", "rules", "split"]
 BELOW["schemes"] = [*BELOW["hierarchy"], "hierarchy", "simplify"]
 MOST_LINES = 400
 

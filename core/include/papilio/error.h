@@ -12,6 +12,7 @@ enum class Fault {
   not_finite,          ///< a coordinate is NaN or infinite
   no_faces,            ///< nothing is left once degenerate and repeated faces are dropped
   bad_option,          ///< an option outside its documented range
+  bad_surface,         ///< the surface is not of the kind that the operation needs
   result_too_large,    ///< a level would pass the limit on faces
   cancelled,           ///< the caller asked to stop
   out_of_memory,       ///< an allocation failed

@@ -1,0 +1,111 @@
+#include "detail/base_lift.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "detail/detail_level.h"
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+/// For each of `points`, the number of the nearest of `among`: sorted along x, so that few are looked at.
+std::vector<uint32_t> nearest_points(const Buffer<Vec3f>& points, const Buffer<Vec3f>& among) {
+  std::vector<uint32_t> order(among.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](uint32_t i) { return std::pair(among[i].x, i); });
+  std::vector<uint32_t> found;
+  for (const Vec3f p : points) {
+    double best = std::numeric_limits<double>::infinity();
+    uint32_t nearest = 0;
+    const auto look_at = [&](uint32_t i) {  // false once all others are farther
+      const Vec3d d = to_double(among[i]) - to_double(p);
+      if (d.x * d.x > best) return false;
+      if (dot(d, d) < best) best = dot(d, d), nearest = i;
+      return true;
+    };
+    const auto middle = std::ranges::lower_bound(order, p.x, {}, [&](uint32_t i) { return among[i].x; });
+    for (auto i = middle; i != order.end() && look_at(*i);) ++i;
+    for (auto i = middle; i != order.begin() && look_at(*(i - 1));) --i;
+    found.push_back(nearest);
+  }
+  return found;
+}
+
+/// A face of the sequence, and which of its corners the first one of the base's face is.
+struct FaceMatch {
+  uint32_t face, turn;
+};
+
+std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>& number, const BaseMesh& base) {
+  std::map<Triangle, FaceMatch> by_corners;
+  for (uint32_t f = 0; f < base.face.size(); ++f) {
+    const Triangle& t = base.triangles.triangles[f];
+    for (uint32_t i = 0; i < 3; ++i) by_corners[{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}] = {base.face[f], i};
+  }
+  std::vector<FaceMatch> matches;
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); h += 3) {
+    const uint32_t* v = &mesh.topology.origin[h];
+    const auto found = by_corners.find({number[v[0]], number[v[1]], number[v[2]]});
+    if (found == by_corners.end() || mesh.topology.face_count() != base.face.size())
+      throw Error(Fault::bad_surface, "The coded base is not the one given: its positions are too coarse.");
+    matches.push_back(found->second);
+  }
+  return matches;
+}
+
+using CornerWeights = std::vector<std::array<Vec3d, 3>>;  ///< of each face's corners, in the base's face above it
+
+CornerWeights split_weights(const CornerWeights& weights) {
+  CornerWeights below;
+  below.reserve(4 * weights.size());
+  for (const auto& [a, b, c] : weights) {
+    const Vec3d ab = 0.5 * (a + b);
+    const Vec3d bc = 0.5 * (b + c);
+    const Vec3d ca = 0.5 * (c + a);
+    below.insert(below.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+  }
+  return below;
+}
+
+}  // namespace
+
+LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
+                     const OriginalSurface& original, int levels, const std::function<void()>& poll) {
+  LiftedBase lifted;
+  lifted.mesh = build_mesh(decoded);
+  const std::vector<uint32_t> number = nearest_points(lifted.mesh.positions, base.triangles.positions);
+  const std::vector<FaceMatch> matches = match_faces(lifted.mesh, number, base);
+  for (const uint32_t n : number) lifted.vertex.push_back(base.vertex[n]);
+
+  DetailLevel level(lifted.mesh.topology);
+  CornerWeights weights(matches.size(), {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}});
+  std::vector<SurfacePlace> places;
+  for (int l = 0; l < levels; ++l) {
+    const Topology& t = level.topology();
+    places.clear();
+    for (const uint32_t h : t.half_edge) {
+      const auto& corner = weights[h / 3];
+      const Vec3d middle = 0.5 * (corner[h % 3] + corner[(h + 1) % 3]);
+      const FaceMatch& match = matches[(h / 3) >> (2 * l)];
+      const std::array<double, 3> in_base{middle.x, middle.y, middle.z};
+      std::array<double, 3> turned{};
+      for (uint32_t i = 0; i < 3; ++i) turned[(i + match.turn) % 3] = in_base[i];
+      places.push_back({match.face, {turned[0], turned[1], turned[2]}});
+    }
+    sequence.lift(places, base, poll);
+    auto& out = lifted.places.emplace_back();
+    out.reserve(places.size());
+    for (const SurfacePlace& place : places) out.push_back({place.face, to_float(original.point(place))});
+    if (l + 1 == levels) break;
+    weights = split_weights(weights);
+    level = level.next();
+  }
+  return lifted;
+}
+
+}  // namespace papilio

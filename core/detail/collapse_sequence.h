@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "detail/surface_place.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Coarse mesh whose vertices are some of the original's.
+struct BaseMesh {
+  TriangleMesh triangles;
+  std::vector<uint32_t> vertex;  ///< [V] number in the original
+  std::vector<uint32_t> face;    ///< [F] number in the sequence, whose corners are in the same order
+  size_t collapses = 0;          ///< of the sequence that led to it
+};
+
+/// Simplification of a closed manifold by collapses of edges onto one of their ends, which remembers how the surfaces
+/// correspond: each collapse unfolds the faces round the removed vertex into the plane, where they cover the same
+/// polygon before and after. A place on the base is lifted to the original through these polygons, collapse by
+/// collapse: a bijection [Lee et al., "MAPS", 1998; Liu et al., "Neural Subdivision", 2020].
+///
+/// Collapses are chosen by quadrics weighted by area [Garland, Heckbert 1997] and by the shape of the faces that they
+/// make. Those that change the topology, turn a face over or have no valid unfolding are refused.
+class CollapseSequence {
+ public:
+  /// `original` must be closed and manifold, with edges. `weight` [V] scales quadrics and shapes at a vertex; empty: 1.
+  explicit CollapseSequence(const Mesh& original, const std::vector<float>& weight = {});
+  ~CollapseSequence();
+  CollapseSequence(const CollapseSequence&) = delete;
+  CollapseSequence& operator=(const CollapseSequence&) = delete;
+
+  /// Collapses until at most `faces` are left or nothing can be collapsed. `poll` is called every few thousand
+  /// collapses and may throw to stop. O(log V) a collapse.
+  void collapse_to(uint32_t faces, const std::function<void()>& poll = {});
+  [[nodiscard]] BaseMesh base() const;
+
+  /// Moves places on a base, as numbers in the sequence, to the original. O(log(V)) a place.
+  void lift(std::vector<SurfacePlace>& places, const BaseMesh& base, const std::function<void()>& poll = {}) const;
+
+ private:
+  class Collapser;
+  std::unique_ptr<Collapser> collapser_;
+};
+
+}  // namespace papilio

@@ -1,0 +1,65 @@
+#include "detail/detail_level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "rules/uniform_butterfly.h"
+#include "split/split_in_four.h"
+
+namespace papilio {
+
+DetailLevel::DetailLevel(Topology base) : topology_(std::move(base)), features_(find_features(topology_)) {}
+
+DetailLevel DetailLevel::next() const {
+  DetailLevel made;
+  made.topology_ = split_in_four(topology_);
+  made.features_ = features_;
+  descend(made.features_, topology_.vertex_count);
+  made.number_ = number_ + 1;
+  made.vertices_before_ = topology_.vertex_count;
+  return made;
+}
+
+void DetailLevel::predict(Buffer<Vec3f>& positions) const {
+  positions.resize_for_overwrite(size_t{topology_.vertex_count} + topology_.edge_count());
+  uniform_butterfly(topology_, features_, positions.data(), positions.data() + topology_.vertex_count);
+}
+
+ResidualContext DetailLevel::context(uint32_t e, std::span<const int32_t> residual, std::span<const uint8_t> is_free,
+                                     std::span<const int32_t> at_vertex, const Vec3f* positions, float step) const {
+  const Topology& t = topology_;
+  const uint32_t h = t.half_edge[e];
+  const auto is_recent = [&](uint32_t v) { return number_ > 0 && v >= vertices_before_; };
+  ResidualContext c;
+  c.level = number_ + 1;
+  c.is_inner = is_recent(t.origin[h]) && is_recent(t.tip(h));
+  uint32_t magnitudes = 0;
+  uint32_t weights = 0;
+  const auto add_parent = [&](uint32_t v, uint32_t weight) {
+    if (!is_recent(v)) return;
+    magnitudes += weight * static_cast<uint32_t>(std::abs(at_vertex[v]));
+    weights += weight;
+  };
+  add_parent(t.origin[h], 2);
+  add_parent(t.tip(h), 2);
+  size_t i = 0;
+  for (const uint32_t side : {h, t.twin[h]}) {
+    for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
+      if (other < e) {
+        ++c.known;
+        c.neighbours[i] = residual[other];
+        c.free_neighbours += is_free[other];
+      }
+      ++i;
+    }
+    add_parent(t.apex(side), 1);
+  }
+  c.parents = weights == 0 ? 0 : 8 * magnitudes / weights;
+  const Vec3f middle = 0.5F * (positions[t.origin[h]] + positions[t.tip(h)]);
+  const float turn = 8 * length(positions[t.vertex_count + e] - middle) / step;
+  c.turn = turn < 1e6F ? static_cast<uint32_t>(turn) : 1000000U;
+  return c;
+}
+
+}  // namespace papilio

@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "detail/base_lift.h"
+#include "detail/closed_surface.h"
+#include "detail/collapse_sequence.h"
+#include "detail/error_weights.h"
+#include "detail/original_surface.h"
+#include "detail/placement.h"
+#include "detail/residual_fit.h"
+#include "detail/surface_distance.h"
+#include "papilio/detail.h"
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+/// Sizes of bases that are tried differ by this factor.
+constexpr double size_ratio = 1.5;
+constexpr uint32_t least_base_faces = 40;
+/// Faces of the first base, times the wanted distance. Most of those tried need about so many.
+constexpr double faces_at_distance = 0.06;
+/// Faces of the last level that is tried first, times the wanted distance.
+constexpr double least_last_faces = 7;
+/// The last level is fine enough once exact residuals leave this share of the wanted distance.
+constexpr double share_without_steps = 0.55;
+/// Step, in wanted distances: to look how fine a level is, and where the search of the step begins.
+constexpr double fine_step = 1, first_step = 4;
+constexpr int step_trials = 3, step_trials_at_last = 4;
+/// A distance in this range, of the wanted one, needs no other step.
+constexpr double least_share = 0.96;
+constexpr int turns_of_trial = 2, turns_at_last = 5;  // a level
+constexpr double rate_weight = 2;
+constexpr int weighting_passes = 2;
+constexpr uint32_t samples_of_trial = 8'000, samples_at_last = 60'000;
+
+void check(const DetailOptions& options) {
+  if (!(options.rms >= 1e-6 && options.rms <= 0.1))
+    throw Error(Fault::bad_option, "The distance must be 1e-6 to 0.1 of the diagonal.", "rms");
+}
+
+/// A base of one size with its levels.
+struct Trial {
+  CodedBase coded;
+  LiftedBase lifted;
+  int levels = 0;
+  double floor = 0;  ///< distance with fine steps
+  double step = 0;   ///< found
+  double rms = 0;    ///< with that step
+  uint64_t bytes = 0;
+  bool is_reached = false;
+};
+
+class DetailEncoder {
+ public:
+  DetailEncoder(const TriangleMesh& triangles, const DetailOptions& options, const BaseCoder& code_base)
+      : options_(options),
+        code_base_(code_base),
+        original_(closed(triangles)),
+        wanted_(options.rms * original_.diagonal()),
+        first_step_(first_step * wanted_) {}
+
+  EncodedDetail run() {
+    size_t at = collapse();
+    // Downhill over the sizes: one neighbour after the other, as long as the files get smaller.
+    for (const int direction : {1, -1})
+      while (is_size(at, direction) && is_better(trial(at + static_cast<size_t>(direction)), trial(at)))
+        at += static_cast<size_t>(direction);
+    progress(0.8);
+    return finish(trial(at));
+  }
+
+ private:
+  static Mesh closed(const TriangleMesh& triangles) {
+    Mesh mesh = build_mesh(triangles);
+    require_closed(mesh);
+    return mesh;
+  }
+  void poll() const {
+    if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Encoding was cancelled.");
+  }
+  [[nodiscard]] std::function<void()> poller() const {
+    return [this] { poll(); };
+  }
+  void progress(double share) const {
+    if (options_.on_progress) options_.on_progress(share);
+  }
+
+  /// Simplifies the original to bases of all sizes, the largest first. The original counts more where a first attempt
+  /// is far from it. Returns the number of the size to begin with.
+  size_t collapse() {
+    const uint32_t faces = original_.mesh().topology.face_count();
+    std::vector<uint32_t> sizes;
+    for (double size = faces / 8.0; size >= least_base_faces; size /= size_ratio)
+      sizes.push_back(static_cast<uint32_t>(size));
+    if (sizes.empty()) sizes.push_back(std::min(least_base_faces, faces));
+    size_t start = 0;
+    while (start + 1 < sizes.size() && sizes[start + 1] >= faces_at_distance / options_.rms) ++start;
+
+    std::vector<float> weights;
+    for (int pass = 0;; ++pass) {
+      sequence_ = std::make_unique<CollapseSequence>(original_.mesh(), weights);
+      bases_.clear();
+      for (const uint32_t size : sizes) {
+        sequence_->collapse_to(size, poller());
+        bases_.push_back(sequence_->base());
+        if (pass < weighting_passes && bases_.size() == start + 1) break;
+      }
+      progress(0.1 * (pass + 1));
+      if (pass == weighting_passes) return start;
+      weigh_errors(original_, surface_of(start), weights);
+    }
+  }
+
+  [[nodiscard]] TriangleMesh surface_of(size_t size) {
+    Trial trial = start_trial(size);
+    return fit(trial, first_step * wanted_, 0).surface(static_cast<size_t>(trial.levels));
+  }
+
+  [[nodiscard]] bool is_size(size_t at, int direction) const { return direction > 0 ? at + 1 < bases_.size() : at > 0; }
+  static bool is_better(const Trial& a, const Trial& b) {
+    if (a.is_reached != b.is_reached) return a.is_reached;
+    return a.is_reached ? a.bytes < b.bytes : a.rms < b.rms;
+  }
+
+  Trial& trial(size_t size) {
+    const auto [found, is_new] = trials_.try_emplace(size);
+    if (!is_new) return found->second;
+    Trial& trial = found->second = start_trial(size);
+    find_step(trial, turns_of_trial, samples_of_trial, step_trials);
+    first_step_ = trial.step;
+    return trial;
+  }
+
+  /// Codes the base and finds how many levels it needs.
+  [[nodiscard]] Trial start_trial(size_t size) {
+    poll();
+    const BaseMesh& base = bases_[size];
+    Trial trial;
+    trial.coded = code_base_(base.triangles);
+    const int most = most_levels(base.face.size());
+    trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, most, poller());
+    trial.levels = 1;
+    while (trial.levels < most && (base.face.size() << (2 * trial.levels)) * options_.rms < least_last_faces)
+      ++trial.levels;
+    for (;; ++trial.levels) {
+      trial.floor = distance(fit(trial, fine_step * wanted_, 0), samples_of_trial).rms;
+      if (trial.levels == most || trial.floor <= share_without_steps * wanted_) return trial;
+    }
+  }
+
+  [[nodiscard]] int most_levels(size_t base_faces) const {
+    const uint64_t original = original_.mesh().topology.face_count();
+    const uint64_t most = std::min(options_.face_limit, std::max<uint64_t>(16 * original, 20'000));
+    int levels = 0;
+    while (levels < most_detail_levels && (uint64_t{base_faces} << (2 * (levels + 1))) <= most) ++levels;
+    return std::max(levels, 1);
+  }
+
+  [[nodiscard]] ResidualFit fit(const Trial& trial, double step, int turns_a_level) const {
+    const StepSchedule steps{.last = static_cast<float>(step)};
+    ResidualFit fit(original_, trial.lifted.mesh.positions,
+                    place_on_original(original_, trial.lifted, trial.levels, steps, poller()), poller());
+    fit.improve(turns_a_level * trial.levels, rate_weight);
+    return fit;
+  }
+
+  [[nodiscard]] SurfaceDistance distance(const ResidualFit& fit, uint32_t samples) const {
+    return surface_distance(original_.tree(), SurfaceTree(fit.surface(fit.level_count())), samples);
+  }
+
+  /// Finds the step that leaves the wanted distance. The error's square is taken for the sum of the floor's and of one
+  /// in proportion to the step's.
+  std::optional<ResidualFit> find_step(Trial& trial, int turns_a_level, uint32_t samples, int step_count) {
+    if (trial.step == 0) trial.step = first_step_;
+    std::optional<ResidualFit> best;
+    double step = trial.step;
+    for (int i = 0; i < step_count; ++i) {
+      ResidualFit made = fit(trial, step, turns_a_level);
+      const double rms = distance(made, samples).rms;
+      const bool is_reached = rms <= wanted_;
+      if (!best || is_reached || !trial.is_reached) {
+        const bool is_worse = best && is_reached && trial.is_reached && step < trial.step;
+        if (!is_worse) {
+          trial.step = step;
+          trial.rms = rms;
+          trial.is_reached = is_reached;
+          best.emplace(std::move(made));
+        }
+      }
+      if (is_reached && rms >= least_share * wanted_) break;
+      const double floor = std::min(trial.floor, 0.9 * wanted_);
+      const double of_step = std::max(rms * rms - floor * floor, 0.01 * rms * rms);
+      step *= std::clamp(0.99 * std::sqrt((wanted_ * wanted_ - floor * floor) / of_step), 0.3, 3.0);
+    }
+    trial.bytes = trial.coded.bytes;
+    for (const auto& stream : best->code()) trial.bytes += stream.size();
+    return best;
+  }
+
+  EncodedDetail finish(Trial& trial) {
+    const std::optional<ResidualFit> made = find_step(trial, turns_at_last, samples_at_last, step_trials_at_last);
+    EncodedDetail encoded;
+    encoded.base = trial.coded.triangles;
+    encoded.bytes = trial.bytes;
+    auto streams = made->code();
+    for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({made->step(l), std::move(streams[l])});
+    for (size_t l = 0; l <= encoded.levels.size(); ++l) {
+      poll();
+      const SurfaceTree surface(made->surface(l));
+      const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last);
+      encoded.reach.push_back({d.rms / original_.diagonal(), d.largest / original_.diagonal()});
+      if (l == encoded.levels.size()) encoded.folds = count_folds(surface);
+      progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));
+    }
+    return encoded;
+  }
+
+  /// Faces turned against the original where their centres lie: against its face there and its smooth normal.
+  [[nodiscard]] uint32_t count_folds(const SurfaceTree& surface) const {
+    uint32_t folds = 0;
+    for (uint32_t f = 0; f < surface.surface().triangles.size(); ++f) {
+      const auto [a, b, c] = surface.corners(f);
+      const Nearest near = original_.tree().nearest((1 / 3.0) * (a + b + c));
+      const Vec3d normal = surface.unit_normal(f);
+      if (dot(normal, original_.tree().unit_normal(near.face)) <= 0 &&
+          dot(normal, original_.normal(near.face, near.point)) <= 0)
+        ++folds;
+    }
+    return folds;
+  }
+
+  const DetailOptions& options_;
+  const BaseCoder& code_base_;
+  OriginalSurface original_;
+  double wanted_;      ///< in the mesh's unit
+  double first_step_;  ///< to try
+  std::unique_ptr<CollapseSequence> sequence_;
+  std::vector<BaseMesh> bases_;
+  std::map<size_t, Trial> trials_;
+};
+
+}  // namespace
+
+EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options, const BaseCoder& code_base) {
+  check(options);
+  return DetailEncoder(original, options, code_base).run();
+}
+
+}  // namespace papilio

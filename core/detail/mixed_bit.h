@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+// Probabilities of bits by logistic mixing of adaptive models, in integers [Mahoney, "Adaptive Weighing of Context
+// Models for Lossless Data Compression", 2005].
+
+namespace papilio {
+
+/// ln(p / (1 - p)) in units of 1/256, for a 16-bit share p.
+[[nodiscard]] int32_t stretch(uint32_t probability);
+/// Inverse of `stretch`, clamped to 1..65535.
+[[nodiscard]] uint32_t squash(int32_t stretched);
+
+/// Probability of a bit that is one, learned from the bits seen.
+class BitModel {
+ public:
+  [[nodiscard]] uint32_t probability() const { return probability_; }
+  void update(bool bit);
+
+ private:
+  uint16_t probability_ = 1U << 15;
+  uint16_t seen_ = 0;
+};
+
+/// Mixes the predictions of `inputs` models by weights of one of several sets, which learn from the bits coded.
+template <size_t inputs>
+class BitMixer {
+ public:
+  explicit BitMixer(size_t sets) : weights_(sets) {
+    for (auto& set : weights_) set.fill(static_cast<int32_t>((1 << 16) * 14 / (10 * inputs)));
+  }
+
+  /// Probability that the next bit is one; valid until update().
+  [[nodiscard]] uint32_t mix(const std::array<BitModel*, inputs>& models, size_t set) {
+    models_ = models;
+    set_ = set;
+    int64_t sum = 0;
+    for (size_t i = 0; i < inputs; ++i) {
+      stretched_[i] = stretch(models[i]->probability());
+      sum += int64_t{stretched_[i]} * weights_[set][i];
+    }
+    mixed_ = squash(static_cast<int32_t>(sum >> 16));
+    return mixed_;
+  }
+
+  void update(bool bit) {
+    const int32_t error = (bit ? 65535 : 0) - static_cast<int32_t>(mixed_);
+    for (size_t i = 0; i < inputs; ++i) {
+      int32_t& weight = weights_[set_][i];
+      weight = std::clamp(weight + ((stretched_[i] * error + (1 << (learning_shift - 1))) >> learning_shift),
+                          -largest_weight, largest_weight);
+      models_[i]->update(bit);
+    }
+  }
+
+ private:
+  static constexpr int learning_shift = 14;
+  static constexpr int32_t largest_weight = 1 << 24;
+
+  std::vector<std::array<int32_t, inputs>> weights_;  // in units of 1/65536
+  std::array<BitModel*, inputs> models_{};
+  std::array<int32_t, inputs> stretched_{};
+  size_t set_ = 0;
+  uint32_t mixed_ = 0;
+};
+
+}  // namespace papilio

@@ -1,0 +1,44 @@
+#include "detail/original_surface.h"
+
+#include <algorithm>
+#include <array>
+
+namespace papilio {
+namespace {
+
+std::array<Vec3d, 3> corners(const Mesh& mesh, uint32_t face) {
+  const uint32_t* v = &mesh.topology.origin[size_t{3} * face];
+  return {to_double(mesh.positions[v[0]]), to_double(mesh.positions[v[1]]), to_double(mesh.positions[v[2]])};
+}
+
+}  // namespace
+
+OriginalSurface::OriginalSurface(Mesh mesh)
+    : mesh_(std::move(mesh)),
+      tree_(mesh_.triangles()),
+      normals_(vertex_normals(mesh_)),
+      face_at_(mesh_.positions.size()),
+      diagonal_(bounding_box(mesh_.positions).diagonal()) {
+  for (uint32_t h = 0; h < mesh_.topology.half_edge_count(); ++h) face_at_[mesh_.topology.origin[h]] = h / 3;
+}
+
+Vec3d OriginalSurface::point(const SurfacePlace& place) const {
+  const auto [a, b, c] = corners(mesh_, place.face);
+  return place.weights.x * a + place.weights.y * b + place.weights.z * c;
+}
+
+Vec3d OriginalSurface::normal(uint32_t face, Vec3d point) const {
+  const auto [a, b, c] = corners(mesh_, face);
+  const uint32_t* v = &mesh_.topology.origin[size_t{3} * face];
+  const Vec3d across = cross(b - a, c - a);
+  const double squared = dot(across, across);
+  if (!(squared > 0)) return to_double(normals_[v[0]]);
+  const double wa = std::clamp(dot(across, cross(b - point, c - point)) / squared, 0.0, 1.0);
+  const double wb = std::clamp(dot(across, cross(c - point, a - point)) / squared, 0.0, 1 - wa);
+  const Vec3d sum =
+      wa * to_double(normals_[v[0]]) + wb * to_double(normals_[v[1]]) + (1 - wa - wb) * to_double(normals_[v[2]]);
+  const double size = length(sum);
+  return size > 0 ? (1 / size) * sum : Vec3d{};
+}
+
+}  // namespace papilio

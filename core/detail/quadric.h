@@ -1,0 +1,45 @@
+#pragma once
+
+#include "papilio/vec3.h"
+
+namespace papilio {
+
+/// Weighted sum of squared distances to planes, as a function of a point [Garland, Heckbert 1997].
+class Quadric {
+ public:
+  Quadric() = default;
+  /// Squared distance to the plane through `point` with the unit `normal`, times `weight`.
+  Quadric(Vec3d normal, Vec3d point, double weight) {
+    const double offset = -dot(normal, point);
+    xx_ = weight * normal.x * normal.x;
+    xy_ = weight * normal.x * normal.y;
+    xz_ = weight * normal.x * normal.z;
+    yy_ = weight * normal.y * normal.y;
+    yz_ = weight * normal.y * normal.z;
+    zz_ = weight * normal.z * normal.z;
+    linear_ = (weight * offset) * normal;
+    constant_ = weight * offset * offset;
+  }
+
+  Quadric& operator+=(const Quadric& b) {
+    xx_ += b.xx_, xy_ += b.xy_, xz_ += b.xz_, yy_ += b.yy_, yz_ += b.yz_, zz_ += b.zz_;
+    linear_ += b.linear_;
+    constant_ += b.constant_;
+    return *this;
+  }
+
+  /// Value at p; never negative.
+  [[nodiscard]] double at(Vec3d p) const {
+    const Vec3d product{xx_ * p.x + xy_ * p.y + xz_ * p.z, xy_ * p.x + yy_ * p.y + yz_ * p.z,
+                        xz_ * p.x + yz_ * p.y + zz_ * p.z};
+    const double value = dot(p, product) + 2 * dot(linear_, p) + constant_;
+    return value > 0 ? value : 0;
+  }
+
+ private:
+  double xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;
+  Vec3d linear_{};
+  double constant_ = 0;
+};
+
+}  // namespace papilio

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "detail/detail_level.h"
+#include "detail/residual_models.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Residuals of one level in steps. Most new vertices move along their normals alone; some have two tangential parts.
+struct Residuals {
+  float step = 0;
+  Buffer<int32_t> along_normal;                             ///< [E]
+  std::map<uint32_t, std::array<int32_t, 2>> tangential{};  ///< by edge: along the edge, and across it
+
+  friend bool operator==(const Residuals&, const Residuals&) = default;
+};
+
+/// Moves the predicted new vertices of a level by their residuals. `positions` [V + E]; `normals` [E]. The same bits
+/// everywhere.
+void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
+              Buffer<Vec3f>& positions);
+/// How far it moves the new vertex of edge e.
+[[nodiscard]] Vec3f displacement(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
+                                 const Buffer<Vec3f>& positions, uint32_t e);
+
+/// Codes residuals. `at_vertex` [V] are those of the vertices along their normals, 0 on the base; `positions` [V + E]
+/// hold the predictions. `models` learn, and go on to the next level.
+[[nodiscard]] std::vector<uint8_t> encode_residuals(const DetailLevel& level, const Residuals& residuals,
+                                                    std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
+                                                    ResidualModels& models);
+/// Decodes what encode_residuals() made. Other bytes give other residuals within `largest_residual`.
+[[nodiscard]] Residuals decode_residuals(const DetailLevel& level, std::span<const uint8_t> bytes, float step,
+                                         std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
+                                         ResidualModels& models);
+
+}  // namespace papilio

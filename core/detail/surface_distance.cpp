@@ -1,0 +1,51 @@
+#include "detail/surface_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace papilio {
+namespace {
+
+/// Calls visit(point) for samples of a surface. Within a triangle they follow the plastic number's sequence, folded
+/// into it [Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018].
+template <class Visit>
+void for_each_sample(const SurfaceTree& surface, uint32_t samples, const Visit& visit) {
+  const auto faces = static_cast<uint32_t>(surface.surface().triangles.size());
+  const auto area = [&](const TriangleCorners& c) { return length(cross(c.b - c.a, c.c - c.a)); };
+  double total = 0;
+  for (uint32_t f = 0; f < faces; ++f) total += area(surface.corners(f));
+  double sum = 0;
+  uint32_t taken = 0;
+  for (uint32_t f = 0; f < faces; ++f) {
+    const TriangleCorners c = surface.corners(f);
+    sum += area(c);
+    for (; taken < samples && sum * samples > (taken + 0.5) * total; ++taken) {
+      double u = std::fmod(0.5 + taken * 0.7548776662466927, 1.0);
+      double v = std::fmod(0.5 + taken * 0.5698402909980532, 1.0);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      visit(c.a + u * (c.b - c.a) + v * (c.c - c.a));
+    }
+  }
+}
+
+void measure(const SurfaceTree& from, const SurfaceTree& to, uint32_t samples, SurfaceDistance& found) {
+  double sum = 0, largest = 0;
+  for_each_sample(from, samples, [&](Vec3d point) {
+    const double squared = to.nearest(point).squared_distance;
+    sum += squared;
+    largest = std::max(largest, squared);
+  });
+  found.rms = std::max(found.rms, std::sqrt(sum / samples));
+  found.largest = std::max(found.largest, std::sqrt(largest));
+}
+
+}  // namespace
+
+SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uint32_t samples) {
+  SurfaceDistance found;
+  measure(a, b, samples, found);
+  measure(b, a, samples, found);
+  return found;
+}
+
+}  // namespace papilio

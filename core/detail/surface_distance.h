@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detail/surface_tree.h"
+
+namespace papilio {
+
+/// Distances between two surfaces, from samples of each.
+struct SurfaceDistance {
+  double rms = 0;      ///< root mean square, the larger of the two directions
+  double largest = 0;  ///< of both directions
+};
+
+/// Measures from `samples` points of each surface, spread evenly by area. Deterministic. O(samples log F).
+[[nodiscard]] SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uint32_t samples);
+
+}  // namespace papilio

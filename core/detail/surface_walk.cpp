@@ -1,0 +1,46 @@
+#include "detail/surface_walk.h"
+
+#include <array>
+#include <cmath>
+
+namespace papilio {
+namespace {
+
+constexpr uint32_t most_steps = 1000;
+/// A face whose normal has a smaller cosine with the line turns away.
+constexpr double least_cosine = 0.1;
+
+}  // namespace
+
+std::optional<LineHit> walk_to_line(const Mesh& surface, uint32_t start_face, Vec3d point, Vec3d direction) {
+  const Topology& t = surface.topology;
+  uint32_t face = start_face;
+  uint32_t from = none;  // the half-edge of this face that was crossed
+  for (uint32_t step = 0; step < most_steps; ++step) {
+    std::array<Vec3d, 3> corner;
+    for (uint32_t i = 0; i < 3; ++i) corner[i] = to_double(surface.positions[t.origin[size_t{3} * face + i]]) - point;
+    const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double along = dot(normal, direction);
+    if (!(along > least_cosine * length(normal))) return std::nullopt;
+    // The side beyond which the line lies, the farthest in the picture.
+    double least = 0;
+    uint32_t out = none;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const Vec3d& a = corner[i];
+      const Vec3d& b = corner[(i + 1) % 3];
+      const double side = dot(direction, cross(a, b));
+      if (side >= 0 || 3 * face + i == from) continue;
+      const Vec3d edge = b - a;
+      const double flat = dot(edge, direction);
+      const double size = std::sqrt(dot(edge, edge) - flat * flat);
+      if (side < least * size) least = side / size, out = 3 * face + i;
+    }
+    if (out == none) return LineHit{face, dot(normal, corner[0]) / along};
+    from = t.twin[out];
+    if (from == none) return std::nullopt;
+    face = Topology::face(from);
+  }
+  return std::nullopt;
+}
+
+}  // namespace papilio

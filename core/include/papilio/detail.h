@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "papilio/mesh.h"
+
+// Detail: a fine original as a coarse base and one residual for each new vertex of its subdivision. Each level predicts
+// its new vertices by the Modified Butterfly scheme from decoded positions and moves them by their residuals.
+// Sources: Khodakovsky, Schröder, Sweldens, "Progressive Geometry Compression", 2000; Guskov, Vidimče, Sweldens,
+// Schröder, "Normal Meshes", 2000.
+
+namespace papilio {
+
+/// Most levels of detail.
+inline constexpr int most_detail_levels = 10;
+
+/// Residuals of one level.
+struct DetailStream {
+  float step = 0;              ///< quantization step, in the mesh's unit; > 0
+  std::vector<uint8_t> bytes;  ///< entropy-coded residuals, in the order of the edges that are split
+};
+
+/// What a decoder of the levels up to one has, compared with the original.
+struct DetailReach {
+  double rms = 0;      ///< root mean square distance, the larger of both directions; share of the original's diagonal
+  double largest = 0;  ///< largest distance of either direction; share of the original's diagonal
+};
+
+/// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams.
+/// `base` must be closed and manifold. Any bytes are decoded to some mesh. The same bits on every processor. Throws
+/// `Error`: bad_option (no step, too many levels), not_finite, result_too_large beyond `face_limit`, cancelled, and
+/// what build_mesh() throws. O(result).
+[[nodiscard]] TriangleMesh decode_detail(const TriangleMesh& base, std::span<const DetailStream> levels,
+                                         uint64_t face_limit = face_count_limit,
+                                         const std::function<bool()>& cancelled = {});
+
+/// Base as its decoder has it.
+struct CodedBase {
+  TriangleMesh triangles;
+  uint64_t bytes = 0;  ///< of its code
+};
+/// Codes and decodes a base: for the encoder, which needs what decoders will have. Vertices and faces may change their
+/// order, positions move by less than half the distance between any two.
+using BaseCoder = std::function<CodedBase(const TriangleMesh&)>;
+
+struct DetailOptions {
+  double rms = 1e-4;  ///< wanted RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
+  uint64_t face_limit = 8'000'000;            ///< faces of the last level
+  std::function<bool()> cancelled{};          ///< asked between steps; true stops with `Fault::cancelled`
+  std::function<void(double)> on_progress{};  ///< share done, 0..1
+};
+
+struct EncodedDetail {
+  TriangleMesh base;  ///< as decoded; decode_detail() takes it as it is
+  std::vector<DetailStream> levels;
+  std::vector<DetailReach> reach;  ///< [levels + 1] of the base alone, with the first level, and so on
+  uint32_t folds = 0;              ///< faces of the last level turned against the original where they lie
+  uint64_t bytes = 0;              ///< of base and streams
+};
+
+/// Encodes an original, which must be closed, manifold and without attributes. The number of base faces, of levels and
+/// the steps are those, of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached
+/// they come nearest to it (`reach`). Throws `Error`: bad_option, bad_surface (open, pinched or not manifold),
+/// cancelled, out_of_memory, and what build_mesh() throws.
+[[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
+                                          const BaseCoder& code_base);
+
+}  // namespace papilio

@@ -1,0 +1,251 @@
+#include "papilio/detail.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/detail/base_lift.h"
+#include "core/detail/collapse_sequence.h"
+#include "core/detail/placement.h"
+#include "papilio/error.h"
+#include "papilio/refine.h"
+#include "server/sha256.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/sampled_distance.h"
+#include "tests/support/shapes.h"
+
+namespace papilio {
+namespace {
+
+/// Leaves the base as it is, at the price of nine bytes a vertex.
+CodedBase keep_base(const TriangleMesh& base) { return {base, 9 * base.positions.size()}; }
+
+Fault fault_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.fault();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return Fault::cancelled;
+}
+
+TriangleMesh bumpy_sphere(int levels) {
+  Options options;
+  options.levels = levels;
+  options.tension = Tension::off;
+  TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
+  for (Vec3f& p : mesh.positions) {
+    const Vec3f n = (1 / length(p)) * p;
+    p = (1 + 0.1F * std::sin(5 * n.x) * std::sin(4 * n.y + 1) * std::sin(3 * n.z + 2)) * n;
+  }
+  return mesh;
+}
+
+void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, double wanted) {
+  ASSERT_EQ(encoded.reach.size(), encoded.levels.size() + 1);
+  EXPECT_LE(encoded.reach.back().rms, wanted);
+  const test::SampledSurface surface(original, 40'000);
+  for (size_t levels = 0; levels < encoded.reach.size(); ++levels) {
+    const TriangleMesh decoded = decode_detail(encoded.base, std::span(encoded.levels).first(levels));
+    EXPECT_EQ(decoded.triangles.size(), encoded.base.triangles.size() << (2 * levels));
+    const test::SampledDistance distance = surface.distance_to(decoded);
+    EXPECT_NEAR(distance.rms / 100, encoded.reach[levels].rms, 0.05 * encoded.reach[levels].rms) << levels;
+    EXPECT_NEAR(distance.largest / 100, encoded.reach[levels].largest, 0.5 * encoded.reach[levels].largest) << levels;
+  }
+}
+
+TEST(Detail, OfASmoothSurfaceReachesTheDistanceThatItStates) {
+  for (const TriangleMesh& original : {bumpy_sphere(4), test::torus(60, 30)}) {
+    DetailOptions options;
+    options.rms = 1e-3;
+    const EncodedDetail encoded = encode_detail(original, options, keep_base);
+    expect_reach(original, encoded, options.rms);
+    EXPECT_EQ(encoded.folds, 0U);
+    uint64_t bytes = 9 * encoded.base.positions.size();
+    for (const DetailStream& level : encoded.levels) bytes += level.bytes.size();
+    EXPECT_EQ(bytes, encoded.bytes);
+    EXPECT_LT(bytes, original.positions.size()) << "less than a byte a vertex";
+  }
+}
+
+TEST(Detail, OfARealMeshReachesTheDistanceThatItStates) {
+  const TriangleMesh original = build_mesh(test::real_mesh("cgal/elephant.off")).triangles();
+  DetailOptions options;
+  options.rms = 3e-3;
+  expect_reach(original, encode_detail(original, options, keep_base), options.rms);
+}
+
+TEST(Detail, OfSharpEdgesReachesTheDistanceThatItStates) {
+  const TriangleMesh original = test::box({16, 16, 16}, {1, 2, 3});
+  DetailOptions options;
+  options.rms = 2e-3;
+  expect_reach(original, encode_detail(original, options, keep_base), options.rms);
+}
+
+TEST(Detail, KeepsTopology) {
+  const TriangleMesh original = test::join(bumpy_sphere(4), test::torus(60, 30), 4);
+  DetailOptions options;
+  options.rms = 2e-3;
+  const EncodedDetail encoded = encode_detail(original, options, keep_base);
+  const Mesh decoded = build_mesh(decode_detail(encoded.base, encoded.levels));
+  EXPECT_EQ(decoded.topology.euler_characteristic(), 2);
+  EXPECT_TRUE(std::ranges::all_of(decoded.topology.kind, [](EdgeKind kind) { return kind == EdgeKind::smooth; }));
+}
+
+TEST(Detail, IsDeterministic) {
+  const TriangleMesh original = bumpy_sphere(4);
+  DetailOptions options;
+  options.rms = 2e-3;
+  const EncodedDetail one = encode_detail(original, options, keep_base);
+  const EncodedDetail two = encode_detail(original, options, keep_base);
+  ASSERT_EQ(one.levels.size(), two.levels.size());
+  for (size_t l = 0; l < one.levels.size(); ++l) EXPECT_EQ(one.levels[l].bytes, two.levels[l].bytes);
+  EXPECT_EQ(decode_detail(one.base, one.levels), decode_detail(two.base, two.levels));
+}
+
+/// A vertex is at the same place however many levels follow.
+TEST(Detail, VerticesStayWhereTheyAre) {
+  const TriangleMesh original = bumpy_sphere(4);
+  DetailOptions options;
+  options.rms = 1e-3;
+  const EncodedDetail encoded = encode_detail(original, options, keep_base);
+  const TriangleMesh all = decode_detail(encoded.base, encoded.levels);
+  for (size_t levels = 0; levels < encoded.levels.size(); ++levels) {
+    const TriangleMesh some = decode_detail(encoded.base, std::span(encoded.levels).first(levels));
+    for (size_t v = 0; v < some.positions.size(); ++v) ASSERT_EQ(some.positions[v], all.positions[v]);
+  }
+}
+
+/// The butterfly reproduces smooth surfaces to a higher order than flat faces do: residuals of a finely sampled sphere
+/// and torus shrink level by level, by 4 at least, the factor of midpoints.
+TEST(Detail, ResidualsOfSmoothSurfacesShrink) {
+  for (const TriangleMesh& triangles : {bumpy_sphere(6), test::torus(300, 150)}) {
+    const OriginalSurface original(build_mesh(triangles));
+    CollapseSequence sequence(original.mesh());
+    sequence.collapse_to(400);
+    const BaseMesh base = sequence.base();
+    const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, 3, {});
+    const PlacedLevels placed = place_on_original(original, lifted, 3, {.last = 1e-6F, .ratio = 1}, {});
+    double before = 0;
+    for (const Residuals& residuals : placed.residuals) {
+      double sum = 0;
+      for (const int32_t k : residuals.along_normal) sum += std::abs(k);
+      const double mean = sum / static_cast<double>(residuals.along_normal.size());
+      if (before > 0) {
+        EXPECT_GT(before / mean, 4);
+      }
+      before = mean;
+    }
+  }
+}
+
+TEST(Detail, AnyStreamsDecodeOrAreRefused) {
+  std::mt19937 random(7);
+  const TriangleMesh base = test::icosahedron();
+  for (int round = 0; round < 200; ++round) {
+    std::vector<DetailStream> levels(random() % 4);
+    for (DetailStream& level : levels) {
+      level.step = std::ldexp(1.0F, static_cast<int>(random() % 60) - 30);
+      level.bytes.resize(random() % 300);
+      for (uint8_t& byte : level.bytes) byte = static_cast<uint8_t>(random());
+    }
+    try {
+      const TriangleMesh decoded = decode_detail(base, levels);
+      EXPECT_EQ(decoded.triangles.size(), base.triangles.size() << (2 * levels.size()));
+      for (const Vec3f p : decoded.positions) ASSERT_LE(std::abs(p.x), coordinate_limit);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::not_finite);
+    }
+  }
+}
+
+TEST(Detail, WithoutResidualsIsTheButterfly) {
+  const TriangleMesh base = test::torus(8, 6);
+  const std::vector<DetailStream> levels(2, {.step = 1, .bytes = {255, 255, 255, 255, 255, 255, 255, 255}});
+  Options options;
+  options.tension = Tension::off;
+  const TriangleMesh smooth = refine(build_mesh(base), options).mesh.triangles();
+  std::vector<DetailStream> still = levels;
+  for (DetailStream& level : still) level.step = std::numeric_limits<float>::min();
+  const TriangleMesh decoded = decode_detail(base, still);
+  ASSERT_EQ(decoded.positions.size(), smooth.positions.size());
+  for (size_t v = 0; v < smooth.positions.size(); ++v)
+    EXPECT_LT(length(to_double(decoded.positions[v]) - to_double(smooth.positions[v])), 1e-6);
+  EXPECT_EQ(decoded.triangles, smooth.triangles);
+}
+
+/// Decoders of every processor must give these bits.
+TEST(Detail, DecodesToTheRecordedBits) {
+  std::vector<DetailStream> levels(3);
+  std::mt19937 random(11);
+  for (DetailStream& level : levels) {
+    level.step = 0.001F;
+    level.bytes.resize(2000);
+    for (uint8_t& byte : level.bytes) byte = static_cast<uint8_t>(random());
+  }
+  const TriangleMesh decoded = decode_detail(test::icosahedron(), levels);
+  EXPECT_EQ(server::sha256({reinterpret_cast<const char*>(decoded.positions.data()), 12 * decoded.positions.size()}),
+            "057533a8e38f0e39e63a105ffc55102d4f3a78ce1288f489805524f34729ce0b");
+}
+
+TEST(Detail, SaysWhatItCannotTake) {
+  const DetailOptions options;
+  const TriangleMesh sphere = bumpy_sphere(2);
+  EXPECT_EQ(fault_of([&] { (void)encode_detail(test::grid(4, 4), options, keep_base); }), Fault::bad_surface);
+  EXPECT_EQ(fault_of([&] { (void)encode_detail({}, options, keep_base); }), Fault::no_faces);
+  for (const double rms : {0.0, -1.0, 0.2, std::nan("")}) {
+    DetailOptions wrong;
+    wrong.rms = rms;
+    EXPECT_EQ(fault_of([&] { (void)encode_detail(sphere, wrong, keep_base); }), Fault::bad_option);
+  }
+  const DetailStream level{.step = 1, .bytes = {}};
+  EXPECT_EQ(fault_of([&] { (void)decode_detail(test::grid(4, 4), {}); }), Fault::bad_surface);
+  EXPECT_EQ(fault_of([&] { (void)decode_detail(sphere, std::vector(11, level)); }), Fault::bad_option);
+  EXPECT_EQ(fault_of([&] { (void)decode_detail(sphere, std::vector(2, level), 15 * sphere.triangles.size()); }),
+            Fault::result_too_large);
+  for (const float step : {0.0F, -1.0F, std::nanf(""), INFINITY})
+    EXPECT_EQ(fault_of([&] { (void)decode_detail(sphere, std::vector<DetailStream>{{.step = step, .bytes = {}}}); }),
+              Fault::bad_option);
+}
+
+TEST(Detail, StopsWhenItIsCancelled) {
+  const TriangleMesh sphere = bumpy_sphere(4);
+  for (int calls = 0; calls < 60; calls += 11) {
+    int left = calls;
+    DetailOptions options;
+    options.rms = 1e-3;
+    options.cancelled = [&] { return left-- == 0; };
+    EXPECT_EQ(fault_of([&] { (void)encode_detail(sphere, options, keep_base); }), Fault::cancelled) << calls;
+  }
+  const std::vector<DetailStream> levels(1, {.step = 1, .bytes = {}});
+  EXPECT_EQ(fault_of([&] { (void)decode_detail(sphere, levels, face_count_limit, [] { return true; }); }),
+            Fault::cancelled);
+}
+
+TEST(Detail, TakesTheSmallestSurfaces) {
+  for (const TriangleMesh& original : {test::tetrahedron(), test::octahedron(), test::cube(), test::bipyramid(40)}) {
+    DetailOptions options;
+    options.rms = 0.01;
+    const EncodedDetail encoded = encode_detail(original, options, keep_base);
+    EXPECT_FALSE(decode_detail(encoded.base, encoded.levels).triangles.empty());
+  }
+}
+
+TEST(Detail, ProgressAscendsToOne) {
+  double last = 0;
+  DetailOptions options;
+  options.rms = 2e-3;
+  options.on_progress = [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+  };
+  (void)encode_detail(bumpy_sphere(4), options, keep_base);
+  EXPECT_DOUBLE_EQ(last, 1);
+}
+
+}  // namespace
+}  // namespace papilio
