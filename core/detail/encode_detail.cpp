@@ -35,7 +35,9 @@ constexpr int step_trials = 3, step_trials_at_last = 4;
 constexpr double least_share = 0.96;
 constexpr int turns_of_trial = 2, turns_at_last = 5;  // a level
 constexpr double rate_weight = 2;
-constexpr int weighting_passes = 2;
+/// The first base has so many faces that exact residuals leave at most so many wanted distances.
+constexpr double largest_start_floor = 1.5;
+constexpr int weighting_passes = 3;
 constexpr uint32_t samples_of_trial = 8'000, samples_at_last = 60'000;
 
 void check(const DetailOptions& options) {
@@ -65,9 +67,9 @@ class DetailEncoder {
         first_step_(first_step * wanted_) {}
 
   EncodedDetail run() {
-    size_t at = collapse();
+    size_t at = find_weights();
     // Downhill over the sizes: one neighbour after the other, as long as the files get smaller.
-    for (const int direction : {1, -1})
+    for (const int direction : {-1, 1})
       while (is_size(at, direction) && is_better(trial(at + static_cast<size_t>(direction)), trial(at)))
         at += static_cast<size_t>(direction);
     progress(0.8);
@@ -90,9 +92,9 @@ class DetailEncoder {
     if (options_.on_progress) options_.on_progress(share);
   }
 
-  /// Simplifies the original to bases of all sizes, the largest first. The original counts more where a first attempt
-  /// is far from it. Returns the number of the size to begin with.
-  size_t collapse() {
+  /// Simplifies the original to bases of all sizes, the largest first. Vertices have more weight where first attempts
+  /// are far from the original. Returns the number of the size to begin with.
+  size_t find_weights() {
     const uint32_t faces = original_.mesh().topology.face_count();
     std::vector<uint32_t> sizes;
     for (double size = faces / 8.0; size >= least_base_faces; size /= size_ratio)
@@ -101,24 +103,33 @@ class DetailEncoder {
     size_t start = 0;
     while (start + 1 < sizes.size() && sizes[start + 1] >= faces_at_distance / options_.rms) ++start;
 
-    std::vector<float> weights;
-    for (int pass = 0;; ++pass) {
-      sequence_ = std::make_unique<CollapseSequence>(original_.mesh(), weights);
-      bases_.clear();
-      for (const uint32_t size : sizes) {
-        sequence_->collapse_to(size, poller());
-        bases_.push_back(sequence_->base());
-        if (pass < weighting_passes && bases_.size() == start + 1) break;
-      }
-      progress(0.1 * (pass + 1));
-      if (pass == weighting_passes) return start;
-      weigh_errors(original_, surface_of(start), weights);
+    collapse(sizes, start + 1, {});
+    Trial trial = start_trial(start);
+    while (start > 0 && trial.floor > largest_start_floor * wanted_) trial = start_trial(--start);
+
+    std::vector<float> weights, best_weights;
+    double best_floor = trial.floor;
+    for (int pass = 1; pass <= weighting_passes; ++pass) {
+      progress(0.3 * pass / weighting_passes);
+      weigh_errors(original_, fit(trial, fine_step * wanted_, 0).surface(static_cast<size_t>(trial.levels)), weights);
+      collapse(sizes, start + 1, weights);
+      trial = start_trial(start);
+      if (trial.floor > best_floor) continue;
+      best_floor = trial.floor;
+      best_weights = weights;
     }
+    collapse(sizes, sizes.size(), best_weights);
+    return start;
   }
 
-  [[nodiscard]] TriangleMesh surface_of(size_t size) {
-    Trial trial = start_trial(size);
-    return fit(trial, first_step * wanted_, 0).surface(static_cast<size_t>(trial.levels));
+  /// Simplifies to the first `count` sizes.
+  void collapse(const std::vector<uint32_t>& sizes, size_t count, const std::vector<float>& weights) {
+    sequence_ = std::make_unique<CollapseSequence>(original_.mesh(), weights);
+    bases_.clear();
+    for (size_t i = 0; i < count; ++i) {
+      sequence_->collapse_to(sizes[i], poller());
+      bases_.push_back(sequence_->base());
+    }
   }
 
   [[nodiscard]] bool is_size(size_t at, int direction) const { return direction > 0 ? at + 1 < bases_.size() : at > 0; }
