@@ -1,5 +1,6 @@
 #include "proto/gltf/container.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
@@ -32,14 +33,15 @@ void append_little_endian(std::string& bytes, uint64_t number) {
 
 uint64_t padded(uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
-void require_header(std::string_view bytes) {
+void require_header(std::string_view bytes, Cut cut) {
   if (!is_glb(bytes)) refuse_glb("The bytes do not begin with glTF.");
   if (bytes.size() < header_bytes + chunk_header_bytes)
     refuse_glb("The .glb file has " + std::to_string(bytes.size()) + " bytes; at least 20 are required.");
   if (const uint32_t version = little_endian(bytes, 4); version != glb_version)
     throw Problem(Code::mesh_unsupported, "The .glb file has version " + std::to_string(version) +
                                               "; only version 2 is supported. Export it as glTF 2.0.");
-  if (const uint32_t length = little_endian(bytes, 8); length != bytes.size())
+  if (const uint32_t length = little_endian(bytes, 8);
+      length != bytes.size() && (cut == Cut::refused || length < bytes.size()))
     refuse_glb("The .glb header declares " + std::to_string(length) + " bytes, and there are " +
                std::to_string(bytes.size()) + ".");
 }
@@ -50,16 +52,17 @@ void append_padding(std::string& out, uint64_t bytes, char pad) { out.append(pad
 
 bool is_glb(std::string_view bytes) { return bytes.starts_with(glb_magic); }
 
-Container read_glb(std::string_view bytes) {
-  require_header(bytes);
+Container read_glb(std::string_view bytes, Cut cut) {
+  require_header(bytes, cut);
   Container found;
   bool has_json = false;
   for (size_t at = header_bytes; at < bytes.size();) {
     if (bytes.size() - at < chunk_header_bytes)
       refuse_glb("The .glb file ends inside the header of a chunk, at byte " + std::to_string(at) + ".");
-    const uint64_t length = little_endian(bytes, at);
+    uint64_t length = little_endian(bytes, at);
     const uint32_t type = little_endian(bytes, at + 4);
     at += chunk_header_bytes;
+    if (cut == Cut::in_binary_chunk && type == binary_chunk) length = std::min<uint64_t>(length, bytes.size() - at);
     if (length > bytes.size() - at)
       refuse_glb("A chunk at byte " + std::to_string(at) + " declares " + std::to_string(length) + " bytes, and " +
                  std::to_string(bytes.size() - at) + " are left.");

@@ -28,12 +28,16 @@ struct Container {
   std::vector<ExtraChunk> extra;
 };
 
+/// Whether a reader takes a .glb file of which the end is missing.
+enum class Cut { refused, in_binary_chunk };
+
 /// Returns whether the bytes begin like a .glb file.
 [[nodiscard]] bool is_glb(std::string_view bytes);
 
 /// Splits a .glb file of version 2 into its chunks. Every length must agree with the bytes that are there. Source: glTF
-/// 2.0, section 4.4. Throws `Problem`: mesh_not_gltf (damaged, truncated), mesh_unsupported (another version).
-[[nodiscard]] Container read_glb(std::string_view bytes);
+/// 2.0, section 4.4. With `Cut::in_binary_chunk` the file may end inside its binary chunk, whose view is then shorter.
+/// Throws `Problem`: mesh_not_gltf (damaged, truncated), mesh_unsupported (another version).
+[[nodiscard]] Container read_glb(std::string_view bytes, Cut cut = Cut::refused);
 
 /// Writes a .glb file: its JSON padded with spaces, the binary chunk padded with zeros. `binary`: pieces of the chunk,
 /// each released once it is copied; nothing for a file without the chunk. Throws `Problem` result_too_large beyond 4

@@ -1,5 +1,6 @@
 #include "proto/gltf/document.h"
 
+#include <algorithm>
 #include <array>
 
 #include "proto/draco_header.h"
@@ -57,12 +58,15 @@ SceneBuffer owned_buffer(BufferPlace kind, std::string bytes, uint64_t length, c
 }
 
 SceneBuffer read_buffer(const Json& buffer, size_t number, const std::optional<std::string_view>& chunk,
-                        const Resolver& resolve) {
+                        const Resolver& resolve, Cut cut) {
   const std::string where = place("buffers", number);
   const uint64_t length = whole_number(buffer, "byteLength", where);
   const std::string uri = text_member(buffer, "uri", where);
   if (uri.empty()) {
-    if (number == 0 && chunk) return {BufferPlace::binary_chunk, first_bytes(*chunk, length, where)};
+    if (number == 0 && chunk) {
+      const uint64_t needed = cut == Cut::refused ? length : std::min<uint64_t>(length, chunk->size());
+      return {BufferPlace::binary_chunk, first_bytes(*chunk, needed, where)};
+    }
     if (!is_fallback(buffer, where)) refuse_document(where, "has neither a uri nor a binary chunk");
     return {BufferPlace::fallback, std::string_view()};
   }
@@ -75,21 +79,12 @@ SceneBuffer read_buffer(const Json& buffer, size_t number, const std::optional<s
   return owned_buffer(BufferPlace::external, resolve(uri), length, where);
 }
 
-}  // namespace
-
-bool looks_like_gltf(std::string_view bytes) {
-  if (is_glb(bytes)) return true;
-  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
-  const size_t first = bytes.find_first_not_of(blanks);
-  return first != std::string_view::npos && bytes[first] == '{';
-}
-
-Document read_document(std::string_view bytes, const Resolver& resolve) {
+Document read(std::string_view bytes, const Resolver& resolve, Cut cut) {
   Document document;
   std::optional<std::string_view> chunk;
   document.is_glb = is_glb(bytes);
   if (document.is_glb) {
-    Container container = read_glb(bytes);
+    Container container = read_glb(bytes, cut);
     document.json = parse_document(container.json);
     document.extra = std::move(container.extra);
     chunk = container.binary;
@@ -102,8 +97,25 @@ Document read_document(std::string_view bytes, const Resolver& resolve) {
   require_extensions(document.json);
   const Json& buffers = array_of(document.json, "buffers");
   require_within(buffers.size(), most_buffers, "buffers", "Export the scene with one buffer.");
-  for (size_t i = 0; i < buffers.size(); ++i) document.buffers.push_back(read_buffer(buffers[i], i, chunk, resolve));
+  for (size_t i = 0; i < buffers.size(); ++i)
+    document.buffers.push_back(read_buffer(buffers[i], i, chunk, resolve, cut));
   return document;
+}
+
+}  // namespace
+
+bool looks_like_gltf(std::string_view bytes) {
+  if (is_glb(bytes)) return true;
+  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+  const size_t first = bytes.find_first_not_of(blanks);
+  return first != std::string_view::npos && bytes[first] == '{';
+}
+
+Document read_document(std::string_view bytes, const Resolver& resolve) { return read(bytes, resolve, Cut::refused); }
+
+Document read_cut_document(std::string_view glb) {
+  if (!is_glb(glb)) throw Problem(Code::mesh_not_gltf, "The bytes are no .glb file. Provide one.");
+  return read(glb, {}, Cut::in_binary_chunk);
 }
 
 }  // namespace papilio::proto::gltf

@@ -24,7 +24,7 @@ class SceneBuffer {
   SceneBuffer(BufferPlace place, std::string_view borrowed) : place_(place), borrowed_(borrowed) {}
   SceneBuffer(BufferPlace place, std::string owned) : place_(place), owned_(std::move(owned)) {}
   [[nodiscard]] BufferPlace place() const { return place_; }
-  /// Returns exactly as many bytes as the document declares; none for `fallback`.
+  /// Returns exactly as many bytes as the document declares (`read_cut_document`: at most); none for `fallback`.
   [[nodiscard]] std::string_view bytes() const { return owned_.empty() ? borrowed_ : std::string_view(owned_); }
 
  private:
@@ -51,5 +51,9 @@ struct Document {  // NOLINT(bugprone-exception-escape): moving JSON cannot thro
 /// fetched: external buffers are refused. Throws `Problem`: mesh_not_gltf, mesh_unsupported (another version, a
 /// required extension whose geometry cannot be read, external buffers).
 [[nodiscard]] Document read_document(std::string_view bytes, const Resolver& resolve = {});
+
+/// Reads a .glb file that may end inside its binary chunk: the first buffer then has fewer bytes than the document
+/// declares. Throws `Problem` as `read_document`.
+[[nodiscard]] Document read_cut_document(std::string_view glb);
 
 }  // namespace papilio::proto::gltf

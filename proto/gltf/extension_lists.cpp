@@ -51,6 +51,8 @@ void list_extensions(Json& document) {
     put_listed(document, "extensionsUsed", name, is_used);
     put_listed(document, "extensionsRequired", name, is_used);
   }
+  if (uses_extension(document, detail_extension)) return;
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) put_listed(document, list, detail_extension, false);
 }
 
 }  // namespace papilio::proto::gltf

@@ -5,7 +5,7 @@
 namespace papilio::proto::gltf {
 
 /// Makes extensionsUsed and extensionsRequired name the extensions of geometry that the document uses, and no other of
-/// them: Draco, meshopt, quantization. Other names stay.
+/// them: Draco, meshopt. The residuals of packed models are not named any more where there are none. Other names stay.
 void list_extensions(Json& document);
 
 }  // namespace papilio::proto::gltf

@@ -52,6 +52,7 @@ class GeometryWriter {
         write_plain(json, set, primitive, meshopt, attributes[primitive.set], targets[primitive.set]);
       }
       json.erase("mode");
+      erase_extension(json, detail_extension);  // residuals of the old triangles
     }
   }
 
@@ -98,7 +99,7 @@ class GeometryWriter {
     put_indices(json, index_elements(primitive.triangles, set.count), meshopt);
     json["attributes"] = attributes;
     if (!targets.is_null()) json["targets"] = targets;
-    erase_draco(json);
+    erase_extension(json, draco_extension);
   }
 
   void put_indices(Json& json, Elements indices, bool meshopt) {
@@ -122,9 +123,9 @@ class GeometryWriter {
                                            {"attributes", std::move(ids)}};
   }
 
-  static void erase_draco(Json& json) {
+  static void erase_extension(Json& json, const char* name) {
     if (!json.contains("extensions")) return;
-    json["extensions"].erase(draco_extension);
+    json["extensions"].erase(name);
     if (json["extensions"].empty()) json.erase("extensions");
   }
 

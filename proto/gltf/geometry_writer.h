@@ -25,8 +25,9 @@ struct GeometryEncoding {
 
 /// Puts new triangles in place of those of their primitives. Accessors and views keep their places: new contents take
 /// those of the old ones, or of none, where others need the old ones. Primitives become indexed lists of triangles.
-/// What the old geometry alone held is removed from the buffers; everything else survives. Returns the bytes of the
-/// buffers, which borrow from `document`. Throws `Problem`.
+/// What the old geometry alone held is removed from the buffers, and so are the residuals of a packed model
+/// (PAPILIO_detail); everything else survives. Returns the bytes of the buffers, which borrow from `document`. Throws
+/// `Problem`.
 [[nodiscard]] BufferPieces write_geometry(Document& document, std::vector<NewGeometry> meshes,
                                           const GeometryEncoding& encoding);
 

@@ -66,11 +66,11 @@ Counts count_released_views(const Json& document, const std::vector<bool>& acces
   Counts counts(array_of(document, "bufferViews").size());
   for (size_t i = 0; i < accessors.size(); ++i)
     if (accessors[i]) count_views(counts, document["accessors"][i]);
-  for (const PrimitivePlace& at : replaced)
-    count_member(counts,
-                 member_or_null(member_or_null(document["meshes"][at.mesh]["primitives"][at.primitive], "extensions"),
-                                draco_extension),
-                 "bufferView");
+  for (const PrimitivePlace& at : replaced) {
+    const Json& extensions = member_or_null(document["meshes"][at.mesh]["primitives"][at.primitive], "extensions");
+    count_member(counts, member_or_null(extensions, draco_extension), "bufferView");
+    count_views(counts, member_or_null(extensions, detail_extension));
+  }
   return counts;
 }
 

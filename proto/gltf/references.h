@@ -17,7 +17,7 @@ struct PrimitivePlace {
 /// What only replaced primitives refer to.
 struct Released {
   std::vector<bool> accessors;
-  std::vector<bool> views;               ///< of released accessors and of replaced Draco streams alone
+  std::vector<bool> views;               ///< of released accessors, replaced Draco streams and their residuals alone
   std::vector<bool> views_of_accessors;  ///< needed by dense accessors alone, released or not
 };
 
