@@ -1,0 +1,79 @@
+#include "proto/detail/base_coder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "proto/draco_reader.h"
+#include "proto/draco_writer.h"
+#include "proto/problem.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
+constexpr double least_range = 1e-30;  // below, steps per unit overflow in Draco
+
+double longest_side(const Box& box) {
+  const Vec3d size = to_double(box.max) - to_double(box.min);
+  return std::max({size.x, size.y, size.z});
+}
+
+double shortest_edge(const Mesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+    shortest = std::min(shortest, length(to_double(mesh.positions[mesh.topology.tip(h)]) -
+                                         to_double(mesh.positions[mesh.topology.origin[h]])));
+  return shortest;
+}
+
+/// Whether a decoded base has the vertices and faces of the original one, no two in one place.
+bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
+  if (decoded.positions.size() != base.topology.vertex_count) return false;
+  if (decoded.triangles.size() != base.topology.face_count()) return false;
+  BuildReport found;
+  (void)build_mesh(decoded, &found);
+  return found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
+}
+
+}  // namespace
+
+QuantizationBox tight_box(const Box& box) {
+  const double range = longest_side(box);
+  if (!(range >= least_range))
+    throw Problem(Code::mesh_unusable, "The extent of the mesh is below 1e-30. Scale it up.");
+  return {box.min, std::nextafter(static_cast<float>(range), std::numeric_limits<float>::infinity())};
+}
+
+double tight_grid_distance(const Box& box, int position_bits) {
+  return 0.5 * std::sqrt(3.0) * longest_side(box) / ((1 << position_bits) - 1);
+}
+
+CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
+  const Mesh mesh = build_mesh(base);
+  const Box box = bounding_box(mesh.positions);
+  const QuantizationBox grid = tight_box(box);
+  const double most_move = std::min(most_move_, 0.5 * shortest_edge(mesh));
+  int bits = fewest_position_bits;
+  while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
+  for (;; ++bits) {
+    std::string stream = write_draco(mesh, grid, {.position_bits = bits, .speed = 0});
+    TriangleMesh decoded = read_draco(stream, no_limits);
+    const bool is_sound = keeps_surface(mesh, decoded);
+    if (!is_sound && bits < most_position_bits) continue;
+    if (!is_sound)
+      throw Problem(Code::mesh_unusable, "Vertices of the base are too close to each other for a grid of " +
+                                             std::to_string(most_position_bits) + " bits. Remove slivers.");
+    streams_.push_back(std::move(stream));
+    return {std::move(decoded), streams_.back().size()};
+  }
+}
+
+const std::string& DracoBaseCoder::stream_of(const TriangleMesh& decoded) const {
+  for (const std::string& stream : streams_)
+    if (static_cast<const TriangleMesh&>(read_draco(stream, no_limits)) == decoded) return stream;
+  throw std::logic_error("stream_of: this base was not coded here");
+}
+
+}  // namespace papilio::proto::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "papilio/detail.h"
+
+namespace papilio::proto::detail {
+
+/// Version of the extension PAPILIO_detail.
+inline constexpr uint64_t detail_version = 1;
+
+/// A level of a packed model.
+struct PackedLevel {
+  DetailStream stream;
+  DetailReach reach;      ///< of all levels up to this one
+  uint64_t vertices = 0;  ///< new vertices: edges of the level below
+  uint64_t faces = 0;     ///< faces of the model at this level
+};
+
+/// A packed model as its reader has it.
+struct PackedModel {
+  TriangleMesh base;
+  uint64_t base_bytes = 0;  ///< of its Draco stream
+  DetailReach base_reach;
+  std::vector<PackedLevel> levels;  ///< those that were read, coarse first
+  size_t declared_levels = 0;       ///< those that the file declares
+
+  [[nodiscard]] std::vector<DetailStream> streams() const;
+};
+
+}  // namespace papilio::proto::detail

@@ -1,0 +1,236 @@
+#include "proto/detail/packed_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "proto/draco_reader.h"
+#include "proto/error_translation.h"
+#include "proto/gltf/document.h"
+#include "proto/gltf/extensions.h"
+#include "proto/gltf/views.h"
+#include "proto/problem.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+using gltf::Json;
+using gltf::refuse_document;
+
+const std::string primitive_place = "meshes[0].primitives[0]";
+const std::string detail_place = primitive_place + ".extensions." + gltf::detail_extension;
+
+[[noreturn]] void refuse_scene(const std::string& what) {
+  throw Problem(Code::mesh_unsupported,
+                "The packed model has " + what + ". Leave packed models as papilio pack writes them.");
+}
+
+/// Returns the only element of an array.
+const Json& only(const Json& array, const char* what) {
+  if (!array.is_array() || array.size() != 1) refuse_scene("other than one " + std::string(what));
+  return array[0];
+}
+
+double number_member(const Json& of, const char* key, const std::string& where) {
+  const Json* value = gltf::find_member(of, key, where);
+  if (value == nullptr) refuse_document(where, "has no " + std::string(key));
+  const double number = value->is_number() ? value->get<double>() : std::nan("");
+  if (!std::isfinite(number)) refuse_document(where + "." + key, "must be a finite number");
+  return number;
+}
+
+double distance_member(const Json& of, const char* key, const std::string& where) {
+  const double number = number_member(of, key, where);
+  if (number < 0) refuse_document(where + "." + key, "must not be negative");
+  return number;
+}
+
+float step_member(const Json& of, const std::string& where) {
+  const double number = number_member(of, "step", where);
+  const auto step = static_cast<float>(number);
+  if (!(number > 0) || !std::isfinite(step) || static_cast<double>(step) != number)
+    refuse_document(where + ".step", "must be a 32-bit float above 0");
+  return step;
+}
+
+DetailReach reach_member(const Json& of, const std::string& where) {
+  return {distance_member(of, "rms", where), distance_member(of, "largest", where)};
+}
+
+/// Reader of one file.
+class PackedReader {
+ public:
+  PackedReader(std::string_view glb, const ReadOptions& options)
+      : options_(options), document_(options.may_be_cut ? gltf::read_cut_document(glb) : gltf::read_document(glb)) {
+    if (!document_.is_glb) throw Problem(Code::mesh_unsupported, "A packed model is a .glb file. Convert it to one.");
+    find_primitive();
+  }
+
+  PackedModel read() {
+    const Json& extension = *gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place);
+    require_version(extension);
+    PackedModel model;
+    model.base_reach = reach_member(extension, detail_place);
+    const Json& levels = levels_of(extension);
+    model.declared_levels = levels.size();
+    const uint64_t faces = declared_faces();
+    require_room(faces, std::min(options_.levels, levels.size()));
+    read_base(faces, model);
+    read_levels(levels, model);
+    return model;
+  }
+
+ private:
+  void find_primitive() {
+    const Json& meshes = gltf::array_of(document_.json, "meshes");
+    if (meshes.size() == 1 && meshes[0].is_object() && meshes[0].contains("primitives"))
+      primitive_ = &only(meshes[0]["primitives"], "primitive");
+    if (primitive_ == nullptr || gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place) == nullptr)
+      throw Problem(Code::mesh_unsupported, "The scene is no packed model: it has other than one mesh, or no " +
+                                                std::string(gltf::detail_extension) + ". Make one with papilio pack.");
+    const Json& node = only(gltf::array_of(document_.json, "nodes"), "node");
+    for (const char* key : {"matrix", "translation", "rotation", "scale", "skin", "extensions"})
+      if (gltf::find_member(node, key, "nodes[0]") != nullptr) refuse_scene("a node with " + std::string(key));
+    if (document_.buffers.size() != 1 || document_.buffers[0].place() != gltf::BufferPlace::binary_chunk)
+      refuse_scene("other than one buffer, the binary chunk");
+    for (const char* key : {"targets", "mode"})
+      if (primitive_->contains(key)) refuse_scene("a primitive with " + std::string(key));
+  }
+
+  static void require_version(const Json& extension) {
+    const uint64_t version = gltf::whole_number(extension, "version", detail_place);
+    if (version != detail_version)
+      throw Problem(Code::mesh_unsupported,
+                    std::string(gltf::detail_extension) + " has version " + std::to_string(version) + "; version " +
+                        std::to_string(detail_version) + " is supported. Update papilio, or pack the model again.");
+  }
+
+  static const Json& levels_of(const Json& extension) {
+    const Json* levels = gltf::find_member(extension, "levels", detail_place);
+    if (levels == nullptr || !levels->is_array()) refuse_document(detail_place, "has no array of levels");
+    if (levels->size() > most_detail_levels)
+      refuse_document(detail_place, "has " + std::to_string(levels->size()) + " levels; at most " +
+                                        std::to_string(most_detail_levels) + " are allowed");
+    return *levels;
+  }
+
+  /// Returns the faces that the accessor of the indices declares.
+  [[nodiscard]] uint64_t declared_faces() const {
+    const uint64_t corners = declared_count(gltf::index_member(*primitive_, "indices", primitive_place));
+    if (corners % 6 != 0) refuse_document(primitive_place, "has other than an even number of triangles");
+    return corners / 3;
+  }
+
+  [[nodiscard]] uint64_t declared_count(std::optional<uint32_t> accessor) const {
+    if (!accessor) refuse_document(primitive_place, "lacks an accessor of positions or indices");
+    const Json& json = gltf::element_of(document_.json, "accessors", *accessor, primitive_place);
+    return gltf::whole_number(json, "count", gltf::place("accessors", *accessor));
+  }
+
+  void require_room(uint64_t faces, size_t levels) const {
+    const Limits& limits = options_.limits;
+    if (faces > limits.max_input_faces)
+      throw Problem(Code::mesh_too_large, "The base has " + std::to_string(faces) + " faces; the limit is " +
+                                              std::to_string(limits.max_input_faces) + ".");
+    if (faces > limits.max_output_faces >> (2 * levels))
+      throw Problem(Code::result_too_large, "The base of " + std::to_string(faces) + " faces has more than " +
+                                                std::to_string(limits.max_output_faces) + " at level " +
+                                                std::to_string(levels) + ", the limit. Request fewer levels.");
+  }
+
+  /// Returns the bytes of a view, which begins at or after the end of the view before; nothing if the file was cut
+  /// before its end.
+  std::optional<std::string_view> bytes_of(const Json& of, const std::string& where) {
+    const auto number = gltf::index_member(of, "bufferView", where);
+    if (!number) return std::string_view();
+    const gltf::ViewRange range = gltf::view_range(document_, *number, where);
+    const std::string view = gltf::place("bufferViews", *number);
+    for (const char* key : {"byteStride", "extensions"})
+      if (gltf::element_of(document_.json, "bufferViews", *number, where).contains(key))
+        refuse_document(view, "holds a stream and has " + std::string(key));
+    if (range.offset < end_)
+      refuse_document(view, "begins at byte " + std::to_string(range.offset) + ", before the end of " + before_ +
+                                " at byte " + std::to_string(end_));
+    end_ = range.offset + range.length;
+    before_ = view;
+    const std::string_view bytes = document_.buffers[0].bytes();
+    if (end_ > bytes.size()) return std::nullopt;
+    return bytes.substr(range.offset, range.length);
+  }
+
+  void read_base(uint64_t faces, PackedModel& model) {
+    const Json* attributes = gltf::find_member(*primitive_, "attributes", primitive_place);
+    const Json* draco = gltf::find_extension(*primitive_, gltf::draco_extension, primitive_place);
+    if (attributes == nullptr || draco == nullptr || !attributes->is_object())
+      refuse_document(primitive_place, "has no base compressed by " + std::string(gltf::draco_extension));
+    if (attributes->size() != 1) refuse_scene("other attributes than POSITION");
+    const uint64_t vertices = declared_count(gltf::index_member(*attributes, "POSITION", primitive_place));
+    const std::optional<std::string_view> stream = bytes_of(*draco, primitive_place);
+    if (!stream)
+      throw Problem(Code::mesh_not_gltf,
+                    "The file is cut inside its base, so no level can be read. Provide more of it.");
+    FormattedMesh base = read_draco(*stream, options_.limits);
+    if (base.positions.size() != vertices || base.triangles.size() != faces)
+      refuse_document(primitive_place, "declares other counts than its Draco stream has");
+    if (!base.attributes.empty()) refuse_scene("other attributes than POSITION");
+    require_closed(base);
+    model.base_bytes = stream->size();
+    model.base = std::move(base);
+  }
+
+  static void require_closed(const TriangleMesh& base) {
+    BuildReport found;
+    translate_errors([&] { (void)build_mesh(base, &found); });
+    const uint32_t changed =
+        found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+    const uint32_t open = found.boundary_edges + found.non_manifold_edges + found.misoriented_edges;
+    if (changed + open + found.pinched_vertices > 0)
+      throw Problem(Code::mesh_unusable, "The base is not a closed manifold surface. Pack the original again.");
+  }
+
+  void read_levels(const Json& levels, PackedModel& model) {
+    uint64_t faces = model.base.triangles.size();
+    uint64_t edges = faces / 2 * 3;
+    for (size_t l = 0; l < levels.size(); ++l, edges *= 4) {
+      const std::string where = detail_place + ".levels[" + std::to_string(l) + "]";
+      PackedLevel level{.stream = {step_member(levels[l], where), {}},
+                        .reach = reach_member(levels[l], where),
+                        .vertices = gltf::whole_number(levels[l], "vertices", where),
+                        .faces = faces *= 4};
+      if (level.vertices != edges)
+        refuse_document(where + ".vertices",
+                        "is " + std::to_string(level.vertices) + ", and the base gives " + std::to_string(edges));
+      const std::optional<std::string_view> bytes = bytes_of(levels[l], where);
+      if (!bytes || l != model.levels.size() || l >= options_.levels) continue;
+      level.stream.bytes.assign(bytes->begin(), bytes->end());
+      model.levels.push_back(std::move(level));
+    }
+  }
+
+  const ReadOptions& options_;
+  gltf::Document document_;
+  const Json* primitive_ = nullptr;
+  uint64_t end_ = 0;                         ///< of the last view, in the binary chunk
+  std::string before_ = "the binary chunk";  ///< name of the last view
+};
+
+}  // namespace
+
+bool is_packed(std::string_view glb) {
+  try {
+    const Json json = gltf::parse_document(gltf::read_glb(glb, gltf::Cut::in_binary_chunk).json);
+    const Json& meshes = gltf::array_of(json, "meshes");
+    return std::ranges::any_of(meshes, [](const Json& mesh) {
+      const Json* primitives = gltf::find_member(mesh, "primitives", "a mesh");
+      return primitives != nullptr && std::ranges::any_of(*primitives, [](const Json& primitive) {
+               return gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr;
+             });
+    });
+  } catch (const Problem&) {
+    return false;
+  }
+}
+
+PackedModel read_packed(std::string_view glb, const ReadOptions& options) { return PackedReader(glb, options).read(); }
+
+}  // namespace papilio::proto::detail

@@ -1,0 +1,116 @@
+#include "proto/detail/packed_writer.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "proto/detail/packed_model.h"
+#include "proto/gltf/accessor.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/extensions.h"
+#include "proto/gltf/json.h"
+#include "proto/text.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+using gltf::ComponentType;
+using gltf::Json;
+
+/// Smallest index that restarts primitives where indices have 16 bits.
+constexpr size_t restart_index_16 = 65535;
+
+/// Returns a distance rounded up to four significant digits.
+double rounded_up(double value) {
+  if (!(value >= 0) || !std::isfinite(value)) throw std::invalid_argument("write_packed: a distance is not finite");
+  constexpr double next = 1.0001;  // at most to the next of four digits
+  for (double raised = value;; raised *= next)
+    if (const double rounded = parse_number(format_rounded(raised)).value(); rounded >= value) return rounded;
+}
+
+Json box_corner(Vec3f p) { return {p.x, p.y, p.z}; }
+
+/// A scene of one mesh, and its binary chunk.
+struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
+  Json json;
+  std::string binary;
+
+  /// Appends a view; returns its number.
+  size_t add_view(std::string_view bytes) {
+    Json& views = json["bufferViews"];
+    views.push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}});
+    binary += bytes;
+    return views.size() - 1;
+  }
+  Json& primitive() { return json["meshes"][0]["primitives"][0]; }
+  [[nodiscard]] std::string write() && {
+    json["buffers"][0]["byteLength"] = binary.size();
+    std::vector<gltf::Piece> pieces;
+    pieces.push_back({{}, std::move(binary)});
+    return gltf::write_glb(json.dump(), std::move(pieces), {});
+  }
+};
+
+Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
+  const Box box = bounding_box(mesh.positions);
+  const auto index = mesh.positions.size() <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+  Scene scene;
+  scene.json = {{"asset", {{"version", "2.0"}, {"generator", "papilio"}}},
+                {"extensionsUsed", {gltf::draco_extension}},
+                {"extensionsRequired", {gltf::draco_extension}},
+                {"scene", 0},
+                {"scenes", Json::array({{{"nodes", {0}}}})},
+                {"nodes", Json::array({{{"mesh", 0}}})},
+                {"meshes", Json::array({{{"primitives", Json::array({Json::object()})}}})},
+                {"accessors", Json::array()},
+                {"bufferViews", Json::array()},
+                {"buffers", Json::array({Json::object()})}};
+  scene.json["accessors"].push_back({{"componentType", static_cast<uint32_t>(ComponentType::float32)},
+                                     {"count", mesh.positions.size()},
+                                     {"type", "VEC3"},
+                                     {"min", box_corner(box.min)},
+                                     {"max", box_corner(box.max)}});
+  scene.json["accessors"].push_back(
+      {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
+  Json extension{{"bufferView", scene.add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
+  scene.primitive() = {{"attributes", {{"POSITION", 0}}},
+                       {"indices", 1},
+                       {"extensions", {{gltf::draco_extension, std::move(extension)}}}};
+  return scene;
+}
+
+void put_reach(Json& json, const DetailReach& reach) {
+  json["rms"] = rounded_up(reach.rms);
+  json["largest"] = rounded_up(reach.largest);
+}
+
+}  // namespace
+
+std::string write_packed(const EncodedDetail& detail, std::string_view base_stream) {
+  if (detail.reach.size() != detail.levels.size() + 1 || detail.levels.size() > most_detail_levels)
+    throw std::invalid_argument("write_packed: levels and distances disagree");
+  Scene scene = scene_of(detail.base, base_stream);
+  scene.json["extensionsUsed"].push_back(gltf::detail_extension);
+  Json extension{{"version", detail_version}};
+  put_reach(extension, detail.reach[0]);
+  extension["levels"] = Json::array();
+  uint64_t edges = detail.base.triangles.size() * 3 / 2;  // of a closed surface
+  for (size_t l = 0; l < detail.levels.size(); ++l, edges *= 4) {
+    const DetailStream& stream = detail.levels[l];
+    if (!(stream.step > 0) || !std::isfinite(stream.step)) throw std::invalid_argument("write_packed: no step");
+    Json level = Json::object();
+    const std::string_view bytes(reinterpret_cast<const char*>(stream.bytes.data()), stream.bytes.size());
+    if (!bytes.empty()) level["bufferView"] = scene.add_view(bytes);  // a view has at least one byte
+    level["step"] = stream.step;
+    level["vertices"] = edges;
+    put_reach(level, detail.reach[l + 1]);
+    extension["levels"].push_back(std::move(level));
+  }
+  scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
+  return std::move(scene).write();
+}
+
+std::string write_plain(const TriangleMesh& decoded, std::string_view stream) {
+  return scene_of(decoded, stream).write();
+}
+
+}  // namespace papilio::proto::detail
