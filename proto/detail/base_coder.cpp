@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "papilio/error.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/problem.h"
@@ -33,7 +34,12 @@ bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
   if (decoded.positions.size() != base.topology.vertex_count) return false;
   if (decoded.triangles.size() != base.topology.face_count()) return false;
   BuildReport found;
-  (void)build_mesh(decoded, &found);
+  try {
+    (void)build_mesh(decoded, &found);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::no_faces) throw;
+    return false;
+  }
   return found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
 }
 

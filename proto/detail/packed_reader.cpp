@@ -47,9 +47,8 @@ double distance_member(const Json& of, const char* key, const std::string& where
 
 float step_member(const Json& of, const std::string& where) {
   const double number = number_member(of, "step", where);
-  const auto step = static_cast<float>(number);
-  if (!(number > 0) || !std::isfinite(step) || static_cast<double>(step) != number)
-    refuse_document(where + ".step", "must be a 32-bit float above 0");
+  const auto step = static_cast<float>(number);  // the nearest
+  if (!(step > 0) || !std::isfinite(step)) refuse_document(where + ".step", "must be above 0 in the range of a float");
   return step;
 }
 

@@ -1,6 +1,9 @@
 #include "proto/detail/packed_writer.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "proto/detail/packed_model.h"
@@ -27,7 +30,15 @@ double rounded_up(double value) {
     if (const double rounded = parse_number(format_rounded(raised)).value(); rounded >= value) return rounded;
 }
 
-Json box_corner(Vec3f p) { return {p.x, p.y, p.z}; }
+/// Returns the number with the fewest digits whose nearest float is this one.
+double shortest(float value) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  const std::optional<double> found = parse_number({text.data(), error == std::errc() ? end : text.data()});
+  return found && static_cast<float>(*found) == value ? *found : static_cast<double>(value);
+}
+
+Json box_corner(Vec3f p) { return {shortest(p.x), shortest(p.y), shortest(p.z)}; }
 
 /// A scene of one mesh, and its binary chunk.
 struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
@@ -37,7 +48,10 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   /// Appends a view; returns its number.
   size_t add_view(std::string_view bytes) {
     Json& views = json["bufferViews"];
-    views.push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}});
+    Json view{{"buffer", 0}};
+    if (!binary.empty()) view["byteOffset"] = binary.size();
+    view["byteLength"] = bytes.size();
+    views.push_back(std::move(view));
     binary += bytes;
     return views.size() - 1;
   }
@@ -100,7 +114,7 @@ std::string write_packed(const EncodedDetail& detail, std::string_view base_stre
     Json level = Json::object();
     const std::string_view bytes(reinterpret_cast<const char*>(stream.bytes.data()), stream.bytes.size());
     if (!bytes.empty()) level["bufferView"] = scene.add_view(bytes);  // a view has at least one byte
-    level["step"] = stream.step;
+    level["step"] = shortest(stream.step);
     level["vertices"] = edges;
     put_reach(level, detail.reach[l + 1]);
     extension["levels"].push_back(std::move(level));

@@ -1,0 +1,47 @@
+#include <nlohmann/json.hpp>
+
+#include "proto/detail/pack.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_reach(Json& json, const DetailReach& reach) {
+  json["rms"] = reach.rms;
+  json["largest"] = reach.largest;
+}
+
+Json json_of(const PackedModel& model) {
+  Json base{{"vertices", model.base.positions.size()}, {"faces", model.base.triangles.size()}};
+  base["bytes"] = model.base_bytes;
+  add_reach(base, model.base_reach);
+  Json levels = Json::array();
+  for (const PackedLevel& level : model.levels) {
+    Json& json = levels.emplace_back();
+    json = {{"new_vertices", level.vertices}, {"faces", level.faces}, {"bytes", level.stream.bytes.size()}};
+    json["step"] = level.stream.step;
+    add_reach(json, level.reach);
+  }
+  return {{"version", detail_version}, {"base", std::move(base)}, {"levels", std::move(levels)}};
+}
+
+}  // namespace
+
+std::string describe(const PackedModel& model) { return json_of(model).dump(); }
+
+std::string pack_report(const Packed& packed) {
+  Json out{{"format", packed.model ? "packed" : "draco"}};
+  if (!packed.reason.empty()) out["reason"] = packed.reason;
+  out["bytes"] = packed.glb.size();
+  out["wanted_rms"] = packed.wanted_rms;
+  if (packed.model) {
+    out["folds"] = packed.folds;
+    out.update(json_of(*packed.model));
+  }
+  out["plain"] = {{"bytes", packed.plain_bytes}, {"position_bits", packed.plain_bits}, {"rms", packed.plain_rms}};
+  out["ratio"] = static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size());
+  return out.dump(2);
+}
+
+}  // namespace papilio::proto::detail

@@ -1,0 +1,63 @@
+#include "proto/detail/plain_draco.h"
+
+#include <cmath>
+
+#include "proto/detail/base_coder.h"
+#include "proto/detail/packed_writer.h"
+#include "proto/draco_reader.h"
+#include "proto/draco_writer.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+/// Rounding of positions to a grid, as Draco's but in double precision.
+class GridMoves {
+ public:
+  GridMoves(const QuantizationBox& box, int bits)
+      : origin_(to_double(box.origin)), step_(static_cast<double>(box.range) / ((1 << bits) - 1)) {}
+  [[nodiscard]] Vec3d operator()(Vec3d p) const {
+    const Vec3d at = p - origin_;
+    return Vec3d{rounded(at.x), rounded(at.y), rounded(at.z)} - at;
+  }
+
+ private:
+  [[nodiscard]] double rounded(double x) const { return std::floor(x / step_ + 0.5) * step_; }
+  Vec3d origin_;
+  double step_;
+};
+
+}  // namespace
+
+double grid_rms(const Mesh& mesh, int position_bits) {
+  const Box box = bounding_box(mesh.positions);
+  const GridMoves move(tight_box(box), position_bits);
+  double sum = 0;
+  double doubled_area = 0;
+  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+    const auto corner = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * f + i]]); };
+    const Vec3d a = corner(0), b = corner(1), c = corner(2);
+    const Vec3d normal = cross(b - a, c - a);
+    const double size = length(normal);
+    if (!(size > 0)) continue;
+    const double x = dot(move(a), normal) / size, y = dot(move(b), normal) / size, z = dot(move(c), normal) / size;
+    sum += size * (x * x + y * y + z * z + x * y + y * z + z * x) / 6;  // mean square of a linear function
+    doubled_area += size;
+  }
+  return doubled_area > 0 ? std::sqrt(sum / doubled_area) / box.diagonal() : 0;
+}
+
+PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll) {
+  PlainDraco plain{.position_bits = fewest_position_bits};
+  plain.rms = grid_rms(mesh, plain.position_bits);
+  while (plain.rms > rms && plain.position_bits < most_position_bits) {
+    if (poll) poll();
+    plain.rms = grid_rms(mesh, ++plain.position_bits);
+  }
+  const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
+  const std::string stream = write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0}, {}, poll);
+  constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
+  plain.glb = write_plain(read_draco(stream, no_limits), stream);
+  return plain;
+}
+
+}  // namespace papilio::proto::detail

@@ -1,0 +1,270 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "proto/detail/pack.h"
+#include "proto/detail/packed_reader.h"
+#include "proto/draco_writer.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/flattening.h"
+#include "proto/problem.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/packed_model.h"
+#include "tests/support/shapes.h"
+
+namespace papilio::proto::detail {
+namespace {
+
+using test::packed_fixture;
+using test::PackedFixture;
+using Json = test::GltfScene::Json;
+
+/// Writes the model again with a changed document.
+std::string changed(const std::string& glb, const std::function<void(Json&)>& change) {
+  Json json = test::json_of_glb(glb);
+  change(json);
+  std::vector<gltf::Piece> pieces;
+  pieces.push_back({{}, test::binary_of_glb(glb)});
+  return gltf::write_glb(json.dump(), std::move(pieces), {});
+}
+
+Json& extension_in(Json& json) { return json["meshes"][0]["primitives"][0]["extensions"]["PAPILIO_detail"]; }
+
+/// Writes the model again with another extension PAPILIO_detail.
+std::string with(const std::string& glb, const std::function<void(Json&)>& change) {
+  return changed(glb, [&](Json& json) { change(extension_in(json)); });
+}
+
+/// Returns the code with which a file is refused, and "read" for one that is read.
+std::string refusal(const std::string& glb, const ReadOptions& options = {}) {
+  try {
+    (void)read_packed(glb, options);
+    return "read";
+  } catch (const Problem& problem) {
+    EXPECT_GT(std::string(problem.what()).size(), 20U);
+    return std::string(problem_kind(problem.code()).name);
+  }
+}
+
+/// First byte of the binary chunk's content.
+size_t binary_begin(const std::string& glb) { return glb.size() - test::binary_of_glb(glb).size(); }
+
+TEST(PackedModel, BaseAndStreamsComeBackToTheBit) {
+  const PackedFixture made = packed_fixture(test::torus(12, 8), 3);
+  const PackedModel model = read_packed(made.glb);
+  EXPECT_EQ(model.base, made.detail.base);
+  EXPECT_EQ(model.base_bytes, made.base_stream.size());
+  EXPECT_EQ(model.declared_levels, 3U);
+  ASSERT_EQ(model.levels.size(), 3U);
+  uint64_t edges = 3 * 12 * 8;
+  uint64_t faces = 2 * 12 * 8;
+  for (size_t l = 0; l < 3; ++l, edges *= 4) {
+    EXPECT_EQ(model.levels[l].stream.step, made.detail.levels[l].step);
+    EXPECT_EQ(model.levels[l].stream.bytes, made.detail.levels[l].bytes);
+    EXPECT_EQ(model.levels[l].vertices, edges);
+    EXPECT_EQ(model.levels[l].faces, faces *= 4);
+  }
+}
+
+TEST(PackedModel, DistancesAreRoundedUpToFourDigits) {
+  PackedFixture made = packed_fixture(test::octahedron(), 1);
+  for (const double distance : {0.0, 1e-9, 0.00123456, 0.1234, 0.99999, 3.3333e-5}) {
+    made.detail.reach[1].rms = distance;
+    const double read = read_packed(write_packed(made.detail, made.base_stream)).levels[0].reach.rms;
+    EXPECT_GE(read, distance);
+    EXPECT_LE(read, distance * 1.001);
+  }
+}
+
+TEST(PackedModel, AnyStepComesBackToTheBit) {
+  PackedFixture made = packed_fixture(test::octahedron(), 1);
+  for (const float step : {1e-38F, 1e-45F, 9.99e17F, 0.1F, 1.0F / 3, 16777217.0F, 5e-7F}) {
+    made.detail.levels[0].step = step;
+    EXPECT_EQ(read_packed(write_packed(made.detail, made.base_stream)).levels[0].stream.step, step);
+  }
+}
+
+TEST(PackedModel, AnyViewerReadsTheBase) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2);
+  const FormattedMesh seen = gltf::flatten_scene(made.glb, {});
+  EXPECT_EQ(seen.positions.size(), made.detail.base.positions.size());
+  EXPECT_EQ(seen.triangles, made.detail.base.triangles);
+  const Json json = test::json_of_glb(made.glb);
+  EXPECT_EQ(json["extensionsUsed"], (Json{"KHR_draco_mesh_compression", "PAPILIO_detail"}));
+  EXPECT_EQ(json["extensionsRequired"], (Json{"KHR_draco_mesh_compression"}));
+}
+
+TEST(PackedModel, StreamsFollowTheBaseLevelByLevel) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2, 31);
+  std::string expected = made.base_stream;
+  for (const DetailStream& stream : made.detail.levels) expected.append(stream.bytes.begin(), stream.bytes.end());
+  EXPECT_EQ(test::binary_of_glb(made.glb).substr(0, expected.size()), expected);
+}
+
+TEST(PackedModel, AnEmptyStreamHasNoView) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2, 0);
+  EXPECT_EQ(test::json_of_glb(made.glb)["bufferViews"].size(), 1U);
+  EXPECT_TRUE(read_packed(made.glb).levels[1].stream.bytes.empty());
+}
+
+TEST(PackedModel, NoLevelsAndTheMostLevelsAreRead) {
+  EXPECT_EQ(read_packed(packed_fixture(test::tetrahedron(), 0).glb).levels.size(), 0U);
+  EXPECT_EQ(read_packed(packed_fixture(test::tetrahedron(), most_detail_levels).glb).levels.size(), 10U);
+}
+
+TEST(PackedModel, LevelsBeyondTheRequestAreNotRead) {
+  const PackedModel model = read_packed(packed_fixture(test::icosahedron(), 4).glb, {.levels = 2});
+  EXPECT_EQ(model.levels.size(), 2U);
+  EXPECT_EQ(model.declared_levels, 4U);
+}
+
+TEST(PackedModel, ATruncatedFileIsRefusedUnlessAllowed) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 3);
+  for (size_t size = 0; size < made.glb.size(); ++size) EXPECT_NE(refusal(made.glb.substr(0, size)), "read") << size;
+}
+
+TEST(PackedModel, APrefixGivesItsWholeLevels) {
+  constexpr size_t bytes_per_level = 40;
+  const PackedFixture made = packed_fixture(test::icosahedron(), 3, bytes_per_level);
+  const size_t base_end = binary_begin(made.glb) + made.base_stream.size();
+  for (size_t size = 0; size <= made.glb.size(); ++size) {
+    const std::string prefix = made.glb.substr(0, size);
+    if (size < base_end) {
+      EXPECT_EQ(refusal(prefix, {.may_be_cut = true}), "mesh_not_gltf") << size;
+      continue;
+    }
+    const PackedModel model = read_packed(prefix, {.may_be_cut = true});
+    ASSERT_EQ(model.levels.size(), std::min<size_t>(3, (size - base_end) / bytes_per_level)) << size;
+    EXPECT_EQ(model.base, made.detail.base);
+    for (size_t l = 0; l < model.levels.size(); ++l)
+      EXPECT_EQ(model.levels[l].stream.bytes, made.detail.levels[l].bytes);
+  }
+}
+
+TEST(PackedModel, BytesBeyondTheFileAreRefusedEvenIfItMayBeCut) {
+  EXPECT_EQ(refusal(packed_fixture(test::icosahedron(), 1).glb + "more", {.may_be_cut = true}), "mesh_not_gltf");
+}
+
+TEST(PackedModel, AnotherVersionIsRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
+  for (const int version : {0, 2, 1000}) {
+    const std::string other = with(glb, [&](Json& json) { json["version"] = version; });
+    EXPECT_EQ(refusal(other), "mesh_unsupported");
+  }
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["version"] = "1"; })), "mesh_not_gltf");
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json.erase("version"); })), "mesh_not_gltf");
+}
+
+TEST(PackedModel, AStepThatIsNoPositiveFloatIsRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
+  for (const Json& step :
+       {Json(0), Json(-1), Json(1e39), Json(1.1e18), Json(1e-50), Json("1"), Json(nullptr), Json::array()})
+    EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][1]["step"] = step; })), "mesh_not_gltf") << step;
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"][0].erase("step"); })), "mesh_not_gltf");
+}
+
+TEST(PackedModel, ADistanceThatIsNoDistanceIsRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
+  for (const char* key : {"rms", "largest"})
+    for (const Json& distance : {Json(-1e-9), Json("0"), Json(nullptr)}) {
+      EXPECT_EQ(refusal(with(glb, [&](Json& json) { json[key] = distance; })), "mesh_not_gltf");
+      EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][0][key] = distance; })), "mesh_not_gltf");
+    }
+}
+
+TEST(PackedModel, AWrongViewIsRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
+  for (const int view : {0, 1, 3, 1000})  // of the base, of level 1, missing
+    EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][1]["bufferView"] = view; })), "mesh_not_gltf") << view;
+  EXPECT_EQ(refusal(with(
+                glb, [](Json& json) { std::swap(json["levels"][0]["bufferView"], json["levels"][1]["bufferView"]); })),
+            "mesh_not_gltf");
+  for (const char* key : {"byteLength", "byteOffset"})
+    EXPECT_EQ(refusal(changed(glb, [&](Json& json) { json["bufferViews"][2][key] = 100000; })), "mesh_not_gltf");
+  EXPECT_EQ(refusal(changed(glb, [](Json& json) { json["bufferViews"][2]["byteOffset"] = 0; })), "mesh_not_gltf");
+  EXPECT_EQ(refusal(changed(glb, [](Json& json) { json["bufferViews"][1]["byteStride"] = 4; })), "mesh_not_gltf");
+}
+
+TEST(PackedModel, TooManyLevelsAreRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), most_detail_levels).glb;
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"].push_back(json["levels"][9]); })), "mesh_not_gltf");
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"] = 3; })), "mesh_not_gltf");
+}
+
+TEST(PackedModel, CountsThatTheBaseDoesNotGiveAreRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"][1]["vertices"] = 121; })), "mesh_not_gltf");
+  for (const size_t accessor : {0, 1})
+    EXPECT_EQ(refusal(changed(glb, [&](Json& json) { json["accessors"][accessor]["count"] = 66; })), "mesh_not_gltf");
+}
+
+TEST(PackedModel, FacesBeyondTheLimitAreRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 4).glb;  // 20 faces, 5120 at level 4
+  const Limits limits{.max_output_faces = 5119};
+  EXPECT_EQ(refusal(glb, {.limits = limits}), "result_too_large");
+  EXPECT_EQ(refusal(glb, {.limits = limits, .levels = 3}), "read");
+  EXPECT_EQ(refusal(glb, {.limits = {.max_output_faces = 5120}}), "read");
+  EXPECT_EQ(refusal(glb, {.limits = {.max_input_faces = 19}}), "mesh_too_large");
+}
+
+TEST(PackedModel, TheLimitHoldsBeforeTheBaseIsDecoded) {
+  const std::string glb = packed_fixture(test::icosahedron(), 4).glb;
+  const std::string large = changed(glb, [](Json& json) { json["accessors"][1]["count"] = 6'000'000; });
+  EXPECT_EQ(refusal(large), "result_too_large");
+}
+
+TEST(PackedModel, AnOpenOrPinchedBaseIsRefused) {
+  for (const TriangleMesh& base : {test::grid(4, 4), test::fan(6, false)}) {
+    PackedFixture made = packed_fixture(test::icosahedron(), 1);
+    const Mesh mesh = build_mesh(base);
+    made.base_stream = write_draco(mesh, tight_box(bounding_box(mesh.positions)), {.speed = 0});
+    made.detail.base = base;
+    EXPECT_NE(refusal(write_packed(made.detail, made.base_stream)), "read");
+  }
+}
+
+TEST(PackedModel, ExtensionsMayHaveAnyOrder) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2);
+  const std::string other = changed(made.glb, [](Json& json) {
+    Json& extensions = json["meshes"][0]["primitives"][0]["extensions"];
+    const Json draco = extensions["KHR_draco_mesh_compression"];
+    extensions.erase("KHR_draco_mesh_compression");
+    extensions["VENDOR_unknown"] = {{"kept", true}};
+    extensions["KHR_draco_mesh_compression"] = draco;
+    std::swap(json["extensionsUsed"][0], json["extensionsUsed"][1]);
+    extension_in(json)["extras"] = "kept";
+  });
+  EXPECT_EQ(read_packed(other).base, made.detail.base);
+}
+
+TEST(PackedModel, ScenesThatTheFormatDoesNotAllowAreRefused) {
+  const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
+  const auto expect = [&](const std::function<void(Json&)>& change) {
+    EXPECT_EQ(refusal(changed(glb, change)), "mesh_unsupported");
+  };
+  expect([](Json& json) { json["nodes"][0]["translation"] = {1, 0, 0}; });
+  expect([](Json& json) { json["nodes"].push_back({{"mesh", 0}}); });
+  expect([](Json& json) { json["meshes"].push_back(json["meshes"][0]); });
+  expect([](Json& json) { json["meshes"][0]["primitives"].push_back(json["meshes"][0]["primitives"][0]); });
+  expect([](Json& json) { json["meshes"][0]["primitives"][0]["mode"] = 5; });
+  expect([](Json& json) { json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0; });
+  expect([](Json& json) { json["meshes"][0]["primitives"][0]["extensions"].erase("PAPILIO_detail"); });
+}
+
+TEST(PackedModel, OnlyFilesWithTheExtensionArePacked) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 1);
+  EXPECT_TRUE(is_packed(made.glb));
+  EXPECT_FALSE(is_packed(write_plain(made.detail.base, made.base_stream)));
+  for (const char* bytes : {"", "glTF", "DRACO", "{\"asset\":{}}"}) EXPECT_FALSE(is_packed(bytes));
+}
+
+TEST(PackedModel, TheDescriptionHasCountsAndDistances) {
+  const auto json = nlohmann::json::parse(describe(read_packed(packed_fixture(test::icosahedron(), 2).glb)));
+  EXPECT_EQ(json["base"]["faces"], 20);
+  EXPECT_EQ(json["levels"][1]["new_vertices"], 120);
+  EXPECT_EQ(json["levels"][1]["faces"], 320);
+  EXPECT_EQ(json["levels"][0]["bytes"], 40);
+}
+
+}  // namespace
+}  // namespace papilio::proto::detail
