@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,6 +46,22 @@ struct CompareFlags {
 };
 void compare_command(const CompareFlags& flags);
 
+struct PackFlags {
+  MeshPlace input, output;  ///< the output is a .glb file
+  double rms = 1e-4;        ///< wanted RMS distance, a share of the diagonal
+  bool json = false;
+};
+/// Packs a fine mesh into a coarse base and levels of residuals.
+void pack_command(const PackFlags& flags);
+
+struct UnpackFlags {
+  MeshPlace input, output;
+  std::optional<int> levels{};  ///< at most; nothing: all
+  bool may_be_cut = false;      ///< whether the file may end inside a level
+};
+/// Decodes a packed model.
+void unpack_command(const UnpackFlags& flags);
+
 struct HealthFlags {
   std::string server = "http://127.0.0.1:8080";
   RemoteOptions remote;
@@ -59,6 +76,9 @@ void check_output(const MeshPlace& output);
 
 /// Prints warnings to standard error, a line each: the first ten and how many more there are.
 void print_warnings(const std::vector<std::string>& warnings);
+
+/// Warns if a file is a packed model, of which a command uses the base alone.
+void warn_of_detail(const MeshBytes& file);
 
 /// A mistake in how the program was called: exit status 2.
 struct UsageError : std::runtime_error {

@@ -9,8 +9,13 @@ namespace papilio::client {
 void compare_command(const CompareFlags& flags) {
   if (flags.a.is_standard() && flags.b.is_standard())
     throw UsageError("Standard input is one mesh. Name a file for the other.");
-  const proto::FormattedMesh a = triangles_of(read_mesh(flags.a));
-  const proto::FormattedMesh b = triangles_of(read_mesh(flags.b));
+  const auto read = [](const MeshPlace& place) {
+    const MeshBytes file = read_mesh(place);
+    warn_of_detail(file);
+    return triangles_of(file);
+  };
+  const proto::FormattedMesh a = read(flags.a);
+  const proto::FormattedMesh b = read(flags.b);
   const Comparison found = compare(a, b, flags.options, {flags.a.name(), flags.b.name()});
   const nlohmann::ordered_json document{
       {"hausdorff", found.hausdorff},     {"rms", found.rms},

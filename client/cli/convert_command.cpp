@@ -13,6 +13,7 @@ void convert_command(const ConvertFlags& flags) {
     print_warnings(file.warnings);
     return save_scene(flags.output, file.bytes);
   }
+  warn_of_detail(file);
   if (holds_materials(flags.output)) {
     const MaterialRead read = read_with_materials(flags.input, file);
     print_warnings(read.warnings);

@@ -4,6 +4,8 @@
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
 #include "papilio/refine.h"
+#include "proto/detail/pack.h"
+#include "proto/detail/packed_reader.h"
 #include "proto/findings.h"
 #include "proto/gltf/scene_description.h"
 #include "proto/refinement.h"
@@ -14,10 +16,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Describes the levels of a packed model, or what is wrong with them.
+ordered_json describe_detail(const MeshBytes& file) {
+  try {
+    return ordered_json::parse(proto::detail::describe(proto::detail::read_packed(file.bytes, {.limits = own_limits})));
+  } catch (const proto::Problem& problem) {
+    return {{"fault", problem.what()}};
+  }
+}
+
 ordered_json describe_scene_file(const MeshBytes& file) {
   ordered_json description{{"file", file.name}, {"bytes", file.bytes.size()}};
   description.update(ordered_json::parse(
       in_words_of_the_file(file.name, [&] { return proto::gltf::describe_scene(file.bytes, own_limits); })));
+  if (proto::detail::is_packed(file.bytes)) description["detail"] = describe_detail(file);
   return description;
 }
 

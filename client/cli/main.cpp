@@ -6,6 +6,7 @@
 
 #include "client/cli/commands.h"
 #include "client/cli/flag_names.h"
+#include "papilio/detail.h"
 #include "proto/name_suggestion.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -131,6 +132,39 @@ void add_compare(CLI::App& app) {
   command->callback([flags] { compare_command(*flags); });
 }
 
+void add_pack(CLI::App& app) {
+  auto flags = std::make_shared<PackFlags>();
+  CLI::App* command =
+      app.add_subcommand("pack", "Pack a fine mesh: a coarse .glb file with its detail, level by level");
+  command->add_option("input", flags->input.path, mesh_file)->required();
+  command->add_option("-o,--output", flags->output.path, ".glb file, or - for standard output")->required();
+  add_from(*command, flags->input);
+  constexpr double least = 1e-6, most = 0.1;
+  command
+      ->add_option("--rms", flags->rms,
+                   "RMS distance to the original that is wanted, a share of the bounding box's diagonal")
+      ->check(CLI::Range(least, most))
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "Report as JSON; on standard error where the model goes to standard output");
+  command->callback([flags] { pack_command(*flags); });
+}
+
+void add_unpack(CLI::App& app) {
+  auto flags = std::make_shared<UnpackFlags>();
+  CLI::App* command = app.add_subcommand("unpack", "Decode the fine mesh of a packed model");
+  command->add_option("input", flags->input.path, "Packed .glb file, or - for standard input")->required();
+  command
+      ->add_option("-o,--output", flags->output.path,
+                   "Mesh file whose extension names its format, or - for standard output")
+      ->required();
+  add_from(*command, flags->input);
+  add_format(*command, "--to", flags->output.format, "Format of standard output; default drc");
+  command->add_option("--levels", flags->levels, "Levels of detail at most; default all")
+      ->check(CLI::Range(0, most_detail_levels));
+  command->add_flag("--truncated", flags->may_be_cut, "Read a file that is cut inside a level: its whole levels");
+  command->callback([flags] { unpack_command(*flags); });
+}
+
 void add_health(CLI::App& app) {
   auto flags = std::make_shared<HealthFlags>();
   CLI::App* command = app.add_subcommand("health", "Ask a server whether it is alive: exit status 0 or 1");
@@ -204,6 +238,8 @@ int run(int argc, char** argv) {
   add_info(app);
   add_convert(app);
   add_compare(app);
+  add_pack(app);
+  add_unpack(app);
   add_health(app);
   add_parameters_command(app);
   try {

@@ -81,6 +81,7 @@ void refine_file(const RefineFlags& flags) {
 
 RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags, unsigned threads) {
   MeshBytes file = read_mesh(input);
+  warn_of_detail(file);
   const std::string name = file.name;
   const proto::RefinementHooks hooks{.on_level = {}, .cancelled = {}, .threads = static_cast<int>(threads)};
   if (stays_scene(file, output)) {

@@ -1,0 +1,92 @@
+#include <iostream>
+
+#include "client/cli/commands.h"
+#include "client/cli/interruption.h"
+#include "client/cli/progress.h"
+#include "client/lib/file_words.h"
+#include "proto/detail/pack.h"
+#include "proto/gltf/document.h"
+#include "proto/text.h"
+
+namespace papilio::client {
+namespace {
+
+using proto::format_rounded;
+using proto::detail::Packed;
+
+/// Says what a packed model does not hold.
+void warn_of_losses(const MeshBytes& file, const TriangleMesh& triangles) {
+  std::vector<std::string> warnings;
+  if (!triangles.attributes.empty())
+    warnings.push_back(file.name + ": texture coordinates, normals and other attributes are left out.");
+  if (is_scene(file.format)) {
+    const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
+    for (const char* part : {"materials", "skins", "animations"})
+      if (json.contains(part)) warnings.push_back(file.name + ": the scene's " + part + " are left out.");
+  }
+  print_warnings(warnings);
+}
+
+std::string reach_text(const DetailReach& reach) {
+  return "RMS " + format_rounded(100 * reach.rms) + " %, largest " + format_rounded(100 * reach.largest) + " %";
+}
+
+void print_packed(std::ostream& out, const Packed& packed) {
+  const proto::detail::PackedModel& model = *packed.model;
+  uint64_t bytes = model.base_bytes;
+  out << "base      " << model.base.triangles.size() << " faces, " << bytes
+      << " bytes: " << reach_text(model.base_reach) << '\n';
+  for (size_t l = 0; l < model.levels.size(); ++l) {
+    const auto& level = model.levels[l];
+    bytes += level.stream.bytes.size();
+    out << "level " << l + 1 << (l < 9 ? "   " : "  ") << level.faces << " faces, " << level.stream.bytes.size()
+        << " bytes: " << reach_text(level.reach) << '\n';
+  }
+  out << "container " << packed.glb.size() - bytes << " bytes\n"
+      << "distances are shares of the diagonal; " << packed.folds << " folded faces\n";
+}
+
+void print_report(std::ostream& out, const PackFlags& flags, const Packed& packed) {
+  if (flags.json) {
+    out << proto::detail::pack_report(packed) << '\n';
+    return;
+  }
+  if (packed.model) print_packed(out, packed);
+  out << packed.glb.size() << " bytes; plain Draco at the same distance (" << packed.plain_bits << " bits, RMS "
+      << format_rounded(100 * packed.plain_rms) << " %): " << packed.plain_bytes << " bytes, "
+      << format_rounded(static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size()))
+      << " times as many\n";
+}
+
+void warn_of_result(const Packed& packed) {
+  if (!packed.model) return print_warnings({"The file is plain Draco without levels. " + packed.reason});
+  const auto& levels = packed.model->levels;
+  const double reached = (levels.empty() ? packed.model->base_reach : levels.back().reach).rms;
+  if (reached > packed.wanted_rms)
+    print_warnings({"The RMS distance reached is " + format_rounded(reached) + ", not " +
+                    format_rounded(packed.wanted_rms) + "."});
+}
+
+}  // namespace
+
+void pack_command(const PackFlags& flags) {
+  MeshPlace output = flags.output;
+  if (output.is_standard() && !output.format) output.format = Format::glb;
+  check_output(output);
+  if (output_format(output) != Format::glb) throw UsageError("A packed model is a .glb file. Name one with -o.");
+  const MeshBytes file = read_mesh(flags.input);
+  const proto::FormattedMesh original = triangles_of(file);
+  warn_of_losses(file, original);
+  const Interruption interruption;
+  const Packed packed = in_words_of_the_file(file.name, [&] {
+    ShareProgress progress;
+    return proto::detail::pack(original, {.rms = flags.rms,
+                                          .cancelled = [] { return Interruption::is_asked(); },
+                                          .on_progress = [&](double share) { progress.show(share); }});
+  });
+  save_bytes(output, packed.glb);
+  print_report(output.is_standard() ? std::cerr : std::cout, flags, packed);
+  warn_of_result(packed);
+}
+
+}  // namespace papilio::client

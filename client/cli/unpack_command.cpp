@@ -1,0 +1,53 @@
+#include <iostream>
+
+#include "client/cli/commands.h"
+#include "client/cli/interruption.h"
+#include "client/lib/file_words.h"
+#include "proto/detail/packed_reader.h"
+#include "proto/draco_writer.h"
+#include "proto/text.h"
+
+namespace papilio::client {
+namespace {
+
+using proto::detail::PackedModel;
+
+void save_triangles(const MeshPlace& output, const proto::FormattedMesh& mesh) {
+  if (output_format(output) == Format::drc) return save_bytes(output, proto::write_draco_exact(mesh));
+  save_mesh(output, {.mesh = mesh});
+}
+
+void report(const UnpackFlags& flags, const PackedModel& model, const TriangleMesh& mesh) {
+  const DetailReach reach = model.levels.empty() ? model.base_reach : model.levels.back().reach;
+  std::ostream& out = flags.output.is_standard() ? std::cerr : std::cout;
+  out << proto::escape_controls(flags.output.path.string()) << ": " << mesh.positions.size() << " vertices, "
+      << mesh.triangles.size() << " faces, " << model.levels.size() << " of " << model.declared_levels
+      << " levels; distance to the original: RMS " << proto::format_rounded(100 * reach.rms)
+      << " % of the diagonal, largest " << proto::format_rounded(100 * reach.largest) << " %\n";
+}
+
+}  // namespace
+
+void unpack_command(const UnpackFlags& flags) {
+  check_output(flags.output);
+  const MeshBytes file = read_mesh(flags.input);
+  const auto levels = static_cast<size_t>(flags.levels.value_or(most_detail_levels));
+  const Interruption interruption;
+  PackedModel model;
+  proto::FormattedMesh mesh;
+  in_words_of_the_file(file.name, [&] {
+    model = proto::detail::read_packed(file.bytes,
+                                       {.limits = own_limits, .levels = levels, .may_be_cut = flags.may_be_cut});
+    static_cast<TriangleMesh&>(mesh) =
+        decode_detail(model.base, model.streams(), face_count_limit, [] { return Interruption::is_asked(); });
+  });
+  if (flags.levels && levels > model.declared_levels)
+    print_warnings({file.name + " has " + std::to_string(model.declared_levels) + " levels."});
+  else if (model.levels.size() < std::min(levels, model.declared_levels))
+    print_warnings({file.name + " is cut: " + std::to_string(model.levels.size()) + " of " +
+                    std::to_string(model.declared_levels) + " levels are whole."});
+  save_triangles(flags.output, mesh);
+  report(flags, model, mesh);
+}
+
+}  // namespace papilio::client
