@@ -12,6 +12,7 @@
 #include "tests/support/charts.h"
 #include "tests/support/draco_tools.h"
 #include "tests/support/gltf_scene.h"
+#include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
 
 // fuzz_seeds FOLDER: writes what each target starts from into FOLDER/TARGET, and FOLDER/words, a dictionary.
@@ -140,6 +141,15 @@ void add_scenes(Seeds& seeds) {
   }
 }
 
+/// Packed models whose residuals are random, with the byte that chooses how they are read.
+void add_packed_models(Seeds& seeds) {
+  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron()})
+    for (const char choice : {'\x20', '\x21', '\x33'}) {
+      const std::string glb = test::packed_fixture(shape, 3).glb;
+      seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
+    }
+}
+
 void add_parameters(Seeds& seeds) {
   std::vector<std::string> words{"true",
                                  "false",
@@ -159,7 +169,10 @@ void add_parameters(Seeds& seeds) {
                                  "TRIANGLES",
                                  "OCTAHEDRAL",
                                  "normalized",
-                                 "TEXCOORD_0"};
+                                 "TEXCOORD_0",
+                                 "PAPILIO_detail",
+                                 "vertices",
+                                 "largest"};
   for (const proto::ParameterInfo& info : proto::parameter_table()) {
     const std::string name(info.name);
     std::string value = proto::describe_default(info);
@@ -219,6 +232,7 @@ int main(int argc, char** argv) {
     papilio::fuzz::add_meshes(seeds);
     papilio::fuzz::add_mesh_files(seeds);
     papilio::fuzz::add_scenes(seeds);
+    papilio::fuzz::add_packed_models(seeds);
     papilio::fuzz::add_parameters(seeds);
     papilio::fuzz::add_messages(seeds);
     papilio::fuzz::add_noise(seeds);

@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "papilio/detail.h"
+#include "proto/detail/packed_reader.h"
+#include "proto/gltf/container.h"
+#include "tests/fuzz/fuzz.h"
+
+// A document and its binary chunk, apart by a zero, as a packed model: what is read has whole levels, and decodes to
+// the faces that it declares. The first byte: whether the file may be cut, and how many levels are read.
+
+using namespace papilio;
+
+namespace {
+
+constexpr proto::Limits limits{.max_input_faces = 2000, .max_input_vertices = 2000, .max_output_faces = 20'000};
+
+std::string glb_of(std::string_view text) {
+  const auto [json, binary] = fuzz::cut(text, '\0');
+  std::vector<proto::gltf::Piece> pieces;
+  pieces.push_back({binary});
+  return proto::gltf::write_glb(json, std::move(pieces), {});
+}
+
+void read_and_decode(uint8_t choice, std::string_view text) {
+  std::string glb = glb_of(text);
+  const bool may_be_cut = (choice & 1U) != 0;
+  if (may_be_cut && (choice & 2U) != 0) glb.resize(glb.size() - glb.size() / 8);
+  const size_t levels = choice >> 4U;
+  const proto::detail::PackedModel model =
+      proto::detail::read_packed(glb, {.limits = limits, .levels = levels, .may_be_cut = may_be_cut});
+  fuzz::require(proto::detail::is_packed(glb), "what is read is packed");
+  fuzz::require(model.levels.size() <= levels && model.levels.size() <= model.declared_levels, "no level is invented");
+  fuzz::require(may_be_cut || model.levels.size() == std::min(levels, model.declared_levels), "no level is lost");
+  const TriangleMesh fine = decode_detail(model.base, model.streams(), limits.max_output_faces);
+  const uint64_t faces = model.levels.empty() ? model.base.triangles.size() : model.levels.back().faces;
+  fuzz::require(fine.triangles.size() == faces, "the faces are those declared");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size == 0) return 0;
+  (void)fuzz::unless_refused([&] { read_and_decode(data[0], fuzz::text_of(data + 1, size - 1)); });
+  return 0;
+}
