@@ -22,7 +22,7 @@ const std::string detail_place = primitive_place + ".extensions." + gltf::detail
 
 [[noreturn]] void refuse_scene(const std::string& what) {
   throw Problem(Code::mesh_unsupported,
-                "The packed model has " + what + ". Leave packed models as papilio pack writes them.");
+                "The scene has " + what + ", so it is no packed model. Make one with papilio pack.");
 }
 
 /// Returns the only element of an array.
@@ -81,12 +81,13 @@ class PackedReader {
 
  private:
   void find_primitive() {
-    const Json& meshes = gltf::array_of(document_.json, "meshes");
-    if (meshes.size() == 1 && meshes[0].is_object() && meshes[0].contains("primitives"))
-      primitive_ = &only(meshes[0]["primitives"], "primitive");
-    if (primitive_ == nullptr || gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place) == nullptr)
-      throw Problem(Code::mesh_unsupported, "The scene is no packed model: it has other than one mesh, or no " +
-                                                std::string(gltf::detail_extension) + ". Make one with papilio pack.");
+    const Json& mesh = only(gltf::array_of(document_.json, "meshes"), "mesh");
+    const Json* primitives = gltf::find_member(mesh, "primitives", "meshes[0]");
+    if (primitives == nullptr) refuse_document("meshes[0]", "has no primitives");
+    primitive_ = &only(*primitives, "primitive");
+    if (gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place) == nullptr)
+      throw Problem(Code::mesh_unsupported, "The scene has no " + std::string(gltf::detail_extension) +
+                                                ", so it is no packed model. Make one with papilio pack.");
     const Json& node = only(gltf::array_of(document_.json, "nodes"), "node");
     for (const char* key : {"matrix", "translation", "rotation", "scale", "skin", "extensions"})
       if (gltf::find_member(node, key, "nodes[0]") != nullptr) refuse_scene("a node with " + std::string(key));
