@@ -1,3 +1,4 @@
+#include <cmath>
 #include <iostream>
 
 #include "client/cli/commands.h"
@@ -70,6 +71,7 @@ void warn_of_result(const Packed& packed) {
 }  // namespace
 
 void pack_command(const PackFlags& flags) {
+  if (std::isnan(flags.rms)) throw UsageError("--rms must be a number from 1e-6 to 0.1.");
   MeshPlace output = flags.output;
   if (output.is_standard() && !output.format) output.format = Format::glb;
   check_output(output);

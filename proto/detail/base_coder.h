@@ -9,7 +9,7 @@
 namespace papilio::proto::detail {
 
 /// Bits of a coordinate on the grids of bases and plain Draco files.
-inline constexpr int fewest_position_bits = 8, most_position_bits = 20;
+inline constexpr int fewest_position_bits = 6, most_position_bits = 20;
 
 /// Returns the cube at the lowest corner of a bounding box, as wide as its longest side. Nothing is padded: a base,
 /// unlike a mesh to refine, has no vertex outside its box. Throws `Problem` mesh_unusable for a mesh smaller than

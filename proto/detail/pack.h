@@ -21,7 +21,7 @@ struct PackOptions {
 struct Packed {
   std::string glb{};
   std::optional<PackedModel> model{};  ///< as read back; nothing: `glb` is plain Draco
-  std::string reason{};              ///< why it is plain
+  std::string reason{};                ///< why it is plain
   double wanted_rms = 0;
   uint32_t folds = 0;        ///< faces of the last level turned against the original
   uint64_t plain_bytes = 0;  ///< of the plain .glb file at the same distance

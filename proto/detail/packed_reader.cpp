@@ -48,7 +48,7 @@ double distance_member(const Json& of, const char* key, const std::string& where
 float step_member(const Json& of, const std::string& where) {
   const double number = number_member(of, "step", where);
   const auto step = static_cast<float>(number);  // the nearest
-  if (!(step > 0) || !std::isfinite(step)) refuse_document(where + ".step", "must be above 0 in the range of a float");
+  if (!(step > 0 && step <= coordinate_limit)) refuse_document(where + ".step", "must be above 0, and at most 1e18");
   return step;
 }
 

@@ -110,7 +110,7 @@ std::string write_packed(const EncodedDetail& detail, std::string_view base_stre
   uint64_t edges = detail.base.triangles.size() * 3 / 2;  // of a closed surface
   for (size_t l = 0; l < detail.levels.size(); ++l, edges *= 4) {
     const DetailStream& stream = detail.levels[l];
-    if (!(stream.step > 0) || !std::isfinite(stream.step)) throw std::invalid_argument("write_packed: no step");
+    if (!(stream.step > 0 && stream.step <= coordinate_limit)) throw std::invalid_argument("write_packed: no step");
     Json level = Json::object();
     const std::string_view bytes(reinterpret_cast<const char*>(stream.bytes.data()), stream.bytes.size());
     if (!bytes.empty()) level["bufferView"] = scene.add_view(bytes);  // a view has at least one byte

@@ -19,7 +19,7 @@ struct PlainDraco {
 /// normals. Second orders are left out.
 [[nodiscard]] double grid_rms(const Mesh& mesh, int position_bits);
 
-/// Writes the mesh as Draco at speed 0 with the fewest bits, from 8 to 20, whose `grid_rms` is at most `rms`; with 20
+/// Writes the mesh as Draco at speed 0 with the fewest bits, from 6 to 20, whose `grid_rms` is at most `rms`; with 20
 /// where none is. Attributes are left out. Calls `poll`, unless empty; it may throw to stop. Throws `Problem`.
 [[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll = {});
 
