@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
-import { launch, root } from '../web/browser.mjs';
+import { launch, meshes, root } from '../web/browser.mjs';
 import { animated, compressible, hands, nameOf, pack, packings, papilio, refine, scenes } from './files.mjs';
 
 const types = {
@@ -182,4 +182,12 @@ test('pictures of different scenes do not agree', async () => {
   const controller = await draw('in.glb', 0, null);
   assert.throws(() => assertAgree(hand, controller, 'a hand and a controller'));
   assert.throws(() => assertSame(hand, controller, 'a hand and a controller'));
+});
+
+test('a packed model shows its base', async () => {
+  const packed = path.join(folder, 'packed.glb');
+  execFileSync(papilio, ['pack', path.join(meshes, 'bunny.obj'), '-o', packed, '--rms', '0.001']);
+  execFileSync(papilio, ['unpack', packed, '-o', path.join(folder, 'base.glb'), '--levels', '0']);
+  const base = await draw('base.glb', 0, null);
+  assertAgree(base, await draw('packed.glb', 0, base.frame), 'packed.glb');
 });

@@ -1,0 +1,169 @@
+#!/usr/bin/env bats
+# Packed models: pack and unpack, what the other commands make of them, and files that are none.
+
+bats_require_minimum_version 1.5.0
+load helpers
+
+fine=$PAPILIO_MESHES/bunny.obj
+
+setup_file() {
+  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.001 --json >"$BATS_FILE_TMPDIR/report.json"
+}
+setup() {
+  cd "$BATS_TEST_TMPDIR" || return
+  cp "$BATS_FILE_TMPDIR/model.glb" "$BATS_FILE_TMPDIR/report.json" .
+}
+
+# distance A B KEY: a distance between two surfaces as a share of the first one's diagonal.
+distance() { "$papilio" compare --json "$1" "$2" | jq ".$3 / .diagonal"; }
+# is_within A B: A is at most B.
+is_within() { jq -ne "$1 <= $2" >/dev/null || { echo "$1 > $2"; return 1; }; }
+report() { jq -r "$1" report.json; }
+
+@test "what is unpacked has the distance to the original that was stated, at every level" {
+  [ "$(report .format)" = packed ]
+  is_within "$(report '.levels[-1].rms')" 0.001
+  levels=$(report '.levels | length')
+  for ((level = 0; level <= levels; ++level)); do
+    "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
+    stated=$(report "([.base] + .levels)[$level]")
+    # The report is measured by samples, as this is.
+    is_within "$(distance "$fine" "level$level.ply" rms)" "1.1 * $(jq .rms <<<"$stated")"
+    is_within "$(distance "$fine" "level$level.ply" hausdorff)" "1.3 * $(jq .largest <<<"$stated")"
+    [ "$("$papilio" info --json "level$level.ply" | jq -c '[.faces, .closed, .euler_characteristic]')" = \
+      "[$(jq .faces <<<"$stated"),true,$("$papilio" info --json "$fine" | jq .euler_characteristic)]" ]
+  done
+}
+
+@test "a packed model is smaller than plain Draco at the same distance" {
+  [ "$(report .bytes)" = "$(stat -c %s model.glb)" ]
+  is_within "$(report .bytes)" "$(report .plain.bytes)"
+}
+
+@test "a model is unpacked to every kind of file, the same surface in each" {
+  "$papilio" unpack model.glb -o out.obj
+  for kind in drc ply off stl glb gltf; do
+    "$papilio" unpack model.glb -o "out.$kind"
+    is_within "$(distance out.obj "out.$kind" hausdorff)" 1e-12
+  done
+  "$papilio" unpack - -o - --to obj <model.glb | cmp - out.obj
+}
+
+@test "packing is deterministic, from each kind of file" {
+  "$papilio" pack - -o - --rms 0.001 <"$fine" | cmp - model.glb
+  for kind in drc ply stl; do
+    "$papilio" convert "$fine" "in.$kind"
+    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.01 --json | jq -e '.folds >= 0' >/dev/null
+    "$papilio" unpack "$kind.glb" -o out.off
+    is_within "$(distance "in.$kind" out.off rms)" 0.011
+  done
+}
+
+@test "the report on a terminal's lines has base, levels, distances and the ratio" {
+  run --separate-stderr "$papilio" pack "$fine" -o again.glb --rms 0.005
+  [ "$status" = 0 ]
+  [ "$stderr" = "" ]
+  [[ $output == *"base "*" faces, "*" bytes: RMS "*" %, largest "*"level 1 "*"plain Draco at the same distance"*"times as many"* ]]
+}
+
+@test "a packed model is described" {
+  "$papilio" info --json model.glb >info.json
+  [ "$(jq -c '.detail.levels' info.json)" = "$(report '.levels' | jq -c .)" ]
+  [ "$(jq .faces info.json)" = "$(report .base.faces)" ]
+  [[ $("$papilio" info model.glb) == *"detail.levels.0.rms"* ]]
+}
+
+@test "a prefix is a coarser model, if that is allowed" {
+  size=$(stat -c %s model.glb)
+  last=$(report '.levels[-1].bytes')
+  head -c $((size - last / 2)) model.glb >cut.glb
+  run "$papilio" unpack cut.glb -o out.obj
+  [ "$status" = 1 ]
+  [[ $output == *"header declares $size bytes"* ]]
+  [ ! -e out.obj ]
+  run --separate-stderr "$papilio" unpack cut.glb -o out.obj --truncated
+  [ "$status" = 0 ]
+  [[ $stderr == *"levels are whole"* ]]
+  "$papilio" unpack model.glb -o coarser.obj --levels $(($(report '.levels | length') - 1))
+  cmp out.obj coarser.obj
+}
+
+@test "refine and convert use the base, say so, and remove the residuals" {
+  run --separate-stderr "$papilio" refine model.glb -o refined.glb --levels 1
+  [ "$status" = 0 ]
+  [[ $stderr == *"packed model"*"papilio unpack"* ]]
+  [ "$("$papilio" info --json refined.glb | jq -c '[.faces, .detail]')" = "[$((4 * $(report .base.faces))),null]" ]
+  run --separate-stderr "$papilio" convert model.glb base.obj
+  [[ $stderr == *"papilio unpack"* ]]
+  [ "$("$papilio" info --json base.obj | jq .faces)" = "$(report .base.faces)" ]
+  run --separate-stderr "$papilio" convert model.glb copy.glb
+  [ "$stderr" = "" ]
+  cmp model.glb copy.glb
+  "$papilio" convert model.glb apart.gltf
+  "$papilio" unpack apart.gltf -o a.obj
+  "$papilio" unpack model.glb -o b.obj
+  cmp a.obj b.obj
+}
+
+@test "the server removes the residuals of a base that it refines" {
+  start_server
+  request -H 'Content-Type: model/gltf-binary' --data-binary @model.glb "$url/v1/refine?levels=1"
+  [ "$status" = 200 ]
+  cp "$body" refined.glb
+  stop_server
+  [ "$("$papilio" info --json refined.glb | jq .detail)" = null ]
+  ! grep -q PAPILIO_detail refined.glb
+}
+
+@test "an open surface becomes plain Draco, and it is said" {
+  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 1' 'f 1 2 3' 'f 1 3 4' >open.obj
+  run --separate-stderr "$papilio" pack open.obj -o open.glb --json
+  [ "$status" = 0 ]
+  [[ $stderr == *"plain Draco"* ]]
+  [ "$(jq -r .format <<<"$output")" = draco ]
+  [ "$("$papilio" info --json open.glb | jq -c '[.faces, .compression, .detail]')" = '[2,"draco",null]' ]
+  is_within "$(distance open.obj open.glb rms)" 0.0001
+  run "$papilio" unpack open.glb -o out.obj
+  [ "$status" = 1 ]
+  [[ $output == *"no packed model"* ]]
+}
+
+@test "what a packed model does not hold is said" {
+  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 0 0 1' 'vt 0 0' 'f 1/1 3/1 2/1' 'f 1/1 2/1 4/1' 'f 2/1 3/1 4/1' \
+    'f 3/1 1/1 4/1' >textured.obj
+  run --separate-stderr "$papilio" pack textured.obj -o textured.glb
+  [ "$status" = 0 ]
+  [[ $stderr == *"texture coordinates, normals and other attributes are left out"* ]]
+}
+
+@test "a signal ends packing without a file" {
+  "$papilio" pack "$PAPILIO_MESHES/elephant20k.drc" -o large.glb >out.txt 2>&1 &
+  pid=$!
+  sleep 0.7
+  kill -TERM "$pid"
+  status=0
+  wait "$pid" || status=$?
+  [ "$status" = 1 ]
+  [[ $(cat out.txt) == *cancelled* ]]
+  [ "$(find . -name '*large.glb*')" = "" ]
+}
+
+@test "mistakes in the call are told from bad files" {
+  run "$papilio" pack "$fine" -o out.obj
+  [ "$status" = 2 ]
+  [[ $output == *".glb"* ]]
+  for rms in 0 1 -0.1 nan; do
+    run "$papilio" pack "$fine" -o out.glb --rms="$rms"
+    [ "$status" = 2 ]
+  done
+  run "$papilio" unpack model.glb -o out.obj --levels 11
+  [ "$status" = 2 ]
+  run --separate-stderr "$papilio" unpack model.glb -o out.obj --levels 10
+  [ "$status" = 0 ]
+  [[ $stderr == *"has $(report '.levels | length') levels"* ]]
+  sed 's/"version":1,/"version":7,/' model.glb >newer.glb
+  run "$papilio" unpack newer.glb -o out.obj
+  [ "$status" = 1 ]
+  [[ $output == *"PAPILIO_detail has version 7"* ]]
+  [[ $("$papilio" info newer.glb) == *"detail.fault"*"version 7"* ]]
+}
