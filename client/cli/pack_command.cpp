@@ -61,8 +61,7 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
 
 void warn_of_result(const Packed& packed) {
   if (!packed.model) return print_warnings({"The file is plain Draco without levels. " + packed.reason});
-  const auto& levels = packed.model->levels;
-  const double reached = (levels.empty() ? packed.model->base_reach : levels.back().reach).rms;
+  const double reached = reach_of(*packed.model).rms;
   if (reached > packed.wanted_rms)
     print_warnings({"The RMS distance reached is " + format_rounded(reached) + ", not " +
                     format_rounded(packed.wanted_rms) + "."});

@@ -18,7 +18,7 @@ void save_triangles(const MeshPlace& output, const proto::FormattedMesh& mesh) {
 }
 
 void report(const UnpackFlags& flags, const PackedModel& model, const TriangleMesh& mesh) {
-  const DetailReach reach = model.levels.empty() ? model.base_reach : model.levels.back().reach;
+  const DetailReach reach = reach_of(model);
   std::ostream& out = flags.output.is_standard() ? std::cerr : std::cout;
   out << proto::escape_controls(flags.output.path.string()) << ": " << mesh.positions.size() << " vertices, "
       << mesh.triangles.size() << " faces, " << model.levels.size() << " of " << model.declared_levels

@@ -69,8 +69,8 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
     const bool is_sound = keeps_surface(mesh, decoded);
     if (!is_sound && bits < most_position_bits) continue;
     if (!is_sound)
-      throw Problem(Code::mesh_unusable, "Vertices of the base are too close to each other for a grid of " +
-                                             std::to_string(most_position_bits) + " bits. Remove slivers.");
+      throw Error(Fault::bad_surface, "Vertices of the base are too close to each other for a grid of " +
+                                          std::to_string(most_position_bits) + " bits. Remove slivers.");
     streams_.push_back(std::move(stream));
     return {std::move(decoded), streams_.back().size()};
   }

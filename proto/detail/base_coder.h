@@ -25,8 +25,8 @@ class DracoBaseCoder {
  public:
   explicit DracoBaseCoder(double most_move) : most_move_(most_move) {}
 
-  /// Codes a base, decodes it as `read_packed` does, and keeps its stream. Throws `Problem`, and `Error` like
-  /// `build_mesh`.
+  /// Codes a base, decodes it as `read_packed` does, and keeps its stream. Throws `Problem`, `Error` like `build_mesh`,
+  /// and bad_surface where the finest grid welds vertices.
   [[nodiscard]] CodedBase code(const TriangleMesh& base);
 
   /// Returns the stream that decodes to this base, which `code` returned. Throws `std::logic_error` for another.

@@ -7,6 +7,7 @@
 #include "proto/detail/packed_reader.h"
 #include "proto/detail/packed_writer.h"
 #include "proto/error_translation.h"
+#include "proto/text.h"
 
 namespace papilio::proto::detail {
 namespace {
@@ -29,10 +30,18 @@ class Packer {
       if (error.fault() != Fault::bad_surface) throw;
       packed_.reason = error.what();
     }
-    const double reached = packed_.model ? packed_.model->levels.empty() ? packed_.model->base_reach.rms
-                                                                         : packed_.model->levels.back().reach.rms
-                                         : 0;
-    compare_with(write_plain_draco(mesh_, std::max(options_.rms, reached), [this] { poll(); }));
+    const double reached = packed_.model ? reach_of(*packed_.model).rms : 0;
+    PlainDraco plain = plain_at(std::max(options_.rms, reached));
+    if (packed_.model && packed_.glb.size() < plain.glb.size()) {
+      note(plain);
+      return std::move(packed_);
+    }
+    if (packed_.model) packed_.reason = reason_for(plain);
+    if (reached > options_.rms) plain = plain_at(options_.rms);
+    note(plain);
+    packed_.model.reset();
+    packed_.folds = 0;
+    packed_.glb = std::move(plain.glb);
     return std::move(packed_);
   }
 
@@ -55,17 +64,20 @@ class Packer {
     packed_.model = read_packed(packed_.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
   }
 
-  void compare_with(PlainDraco plain) {
+  [[nodiscard]] PlainDraco plain_at(double rms) const {
+    return write_plain_draco(mesh_, rms, [this] { poll(); });
+  }
+
+  void note(const PlainDraco& plain) {
     packed_.plain_bytes = plain.glb.size();
     packed_.plain_bits = plain.position_bits;
     packed_.plain_rms = plain.rms;
-    if (packed_.model && packed_.glb.size() < plain.glb.size()) return;
-    if (packed_.model)
-      packed_.reason = "Plain Draco takes " + std::to_string(plain.glb.size()) + " bytes, and the packed model " +
-                       std::to_string(packed_.glb.size()) + ".";
-    packed_.model.reset();
-    packed_.folds = 0;
-    packed_.glb = std::move(plain.glb);
+  }
+
+  [[nodiscard]] std::string reason_for(const PlainDraco& plain) const {
+    return "At an RMS distance of " + format_rounded(std::max(options_.rms, reach_of(*packed_.model).rms)) +
+           " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) + " bytes, and a packed model " +
+           std::to_string(packed_.glb.size()) + ".";
   }
 
   const PackOptions& options_;

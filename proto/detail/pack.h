@@ -29,9 +29,9 @@ struct Packed {
   double plain_rms = 0;      ///< its distance, by `grid_rms`
 };
 
-/// Packs the surface of an original; its attributes are left out. Where plain Draco at the distance that was reached
-/// takes no more bytes, and where the surface is not closed and manifold, the result is a plain .glb file. Throws
-/// `Problem`.
+/// Packs the surface of an original; its attributes are left out. The result is a plain .glb file at the wanted
+/// distance where plain Draco, at the distance that was reached, takes no more bytes than the packed model, and where
+/// the surface is not closed and manifold. Throws `Problem`.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);
 
 /// Returns JSON that describes a packed model: its base and levels with counts, bytes and distances.

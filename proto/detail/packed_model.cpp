@@ -8,4 +8,8 @@ std::vector<DetailStream> PackedModel::streams() const {
   return out;
 }
 
+DetailReach reach_of(const PackedModel& model) {
+  return model.levels.empty() ? model.base_reach : model.levels.back().reach;
+}
+
 }  // namespace papilio::proto::detail

@@ -29,4 +29,7 @@ struct PackedModel {
   [[nodiscard]] std::vector<DetailStream> streams() const;
 };
 
+/// Returns the distance of a model with all levels that were read.
+[[nodiscard]] DetailReach reach_of(const PackedModel& model);
+
 }  // namespace papilio::proto::detail

@@ -7,7 +7,7 @@ load helpers
 fine=$PAPILIO_MESHES/bunny.obj
 
 setup_file() {
-  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.001 --json >"$BATS_FILE_TMPDIR/report.json"
+  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.0007 --json >"$BATS_FILE_TMPDIR/report.json"
 }
 setup() {
   cd "$BATS_TEST_TMPDIR" || return
@@ -22,7 +22,7 @@ report() { jq -r "$1" report.json; }
 
 @test "what is unpacked has the distance to the original that was stated, at every level" {
   [ "$(report .format)" = packed ]
-  is_within "$(report '.levels[-1].rms')" 0.001
+  is_within "$(report '.levels[-1].rms')" 0.0007
   levels=$(report '.levels | length')
   for ((level = 0; level <= levels; ++level)); do
     "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
@@ -50,17 +50,17 @@ report() { jq -r "$1" report.json; }
 }
 
 @test "packing is deterministic, from each kind of file" {
-  "$papilio" pack - -o - --rms 0.001 <"$fine" | cmp - model.glb
+  "$papilio" pack - -o - --rms 0.0007 <"$fine" | cmp - model.glb
   for kind in drc ply stl; do
     "$papilio" convert "$fine" "in.$kind"
-    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.01 --json | jq -e '.folds >= 0' >/dev/null
+    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.0007 --json | jq -e '.folds >= 0' >/dev/null
     "$papilio" unpack "$kind.glb" -o out.off
-    is_within "$(distance "in.$kind" out.off rms)" 0.011
+    is_within "$(distance "in.$kind" out.off rms)" 0.00077
   done
 }
 
 @test "the report on a terminal's lines has base, levels, distances and the ratio" {
-  run --separate-stderr "$papilio" pack "$fine" -o again.glb --rms 0.005
+  run --separate-stderr "$papilio" pack "$fine" -o again.glb --rms 0.0007
   [ "$status" = 0 ]
   [ "$stderr" = "" ]
   [[ $output == *"base "*" faces, "*" bytes: RMS "*" %, largest "*"level 1 "*"plain Draco at the same distance"*"times as many"* ]]

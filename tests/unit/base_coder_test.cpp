@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "client/lib/compare.h"
+#include "papilio/error.h"
 #include "proto/detail/base_coder.h"
 #include "proto/detail/plain_draco.h"
 #include "proto/draco_reader.h"
 #include "proto/gltf/flattening.h"
-#include "proto/problem.h"
 #include "tests/support/shapes.h"
 
 namespace papilio::proto::detail {
@@ -49,7 +49,7 @@ TEST(BaseCoder, VerticesCloseToEachOtherStayApart) {
 TEST(BaseCoder, VerticesTooCloseForAnyGridAreRefused) {
   TriangleMesh base = test::octahedron();
   base.positions[0] = {1e9F, 0, 0};
-  EXPECT_THROW((void)DracoBaseCoder(1).code(base), Problem);
+  EXPECT_THROW((void)DracoBaseCoder(1).code(base), Error);
 }
 
 TEST(BaseCoder, TheGridIsTight) {
