@@ -38,7 +38,7 @@ TEST(PackedScene, ACopiedSceneKeepsItsResiduals) {
   EXPECT_EQ(read_packed(test::refined(glb, {{"levels", "0"}}).bytes).levels.size(), 2U);
   const gltf::UnpackedScene files = gltf::unpack_scene(glb, "a.bin");
   const std::string back =
-      gltf::pack_scene(files.document, [&](const std::string&) { return files.buffers.at(0).second; });
+      gltf::pack_scene(files.document, [&](const std::string&) { return files.buffers.at(0).second; }, {});
   const PackedModel model = read_packed(back);
   ASSERT_EQ(model.levels.size(), 2U);
   EXPECT_EQ(model.levels[1].stream.bytes, read_packed(glb).levels[1].stream.bytes);
