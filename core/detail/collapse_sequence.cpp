@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <queue>
+#include <utility>
 
 #include "detail/quadric.h"
 #include "detail/unfolding.h"
@@ -35,8 +36,8 @@ bool is_later(const Candidate& a, const Candidate& b) {
 
 class CollapseSequence::Collapser {
  public:
-  Collapser(const Mesh& original, const std::vector<float>& weight)
-      : weight_(weight),
+  Collapser(const Mesh& original, std::vector<float> weight)
+      : weight_(std::move(weight)),
         out_(original.positions.size(), none),
         quadric_(original.positions.size()),
         age_(original.positions.size()),
@@ -242,8 +243,8 @@ class CollapseSequence::Collapser {
   std::vector<uint32_t> spokes_, ring_;  // of the vertex at hand
 };
 
-CollapseSequence::CollapseSequence(const Mesh& original, const std::vector<float>& weight)
-    : collapser_(std::make_unique<Collapser>(original, weight)) {}
+CollapseSequence::CollapseSequence(const Mesh& original, std::vector<float> weight)
+    : collapser_(std::make_unique<Collapser>(original, std::move(weight))) {}
 CollapseSequence::~CollapseSequence() = default;
 
 void CollapseSequence::collapse_to(uint32_t faces, const std::function<void()>& poll) {

@@ -29,7 +29,7 @@ struct BaseMesh {
 class CollapseSequence {
  public:
   /// `original` must be closed and manifold, with edges. `weight` [V] scales quadrics and shapes at a vertex; empty: 1.
-  explicit CollapseSequence(const Mesh& original, const std::vector<float>& weight = {});
+  explicit CollapseSequence(const Mesh& original, std::vector<float> weight = {});
   ~CollapseSequence();
   CollapseSequence(const CollapseSequence&) = delete;
   CollapseSequence& operator=(const CollapseSequence&) = delete;

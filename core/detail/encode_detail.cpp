@@ -97,8 +97,11 @@ class DetailEncoder {
   size_t find_weights() {
     const uint32_t faces = original_.mesh().topology.face_count();
     std::vector<uint32_t> sizes;
-    for (double size = faces / 8.0; size >= least_base_faces; size /= size_ratio)
+    double size = faces / 8.0;
+    while (size >= least_base_faces) {
       sizes.push_back(static_cast<uint32_t>(size));
+      size /= size_ratio;
+    }
     if (sizes.empty()) sizes.push_back(std::min(least_base_faces, faces));
     size_t start = 0;
     while (start + 1 < sizes.size() && sizes[start + 1] >= faces_at_distance / options_.rms) ++start;

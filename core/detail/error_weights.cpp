@@ -23,6 +23,7 @@ void weigh_errors(const OriginalSurface& original, TriangleMesh surface, std::ve
     mean += squared.back() / static_cast<double>(positions.size());
   }
   std::vector<float> factor;
+  factor.reserve(squared.size());
   for (const double d : squared)
     factor.push_back(static_cast<float>(std::clamp(mean > 0 ? std::sqrt(d / mean) : 1, 1.0, largest_weight)));
   const Topology& t = original.mesh().topology;

@@ -1,6 +1,7 @@
 #include "detail/mixed_bit.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace papilio {
 namespace {
@@ -24,10 +25,10 @@ struct Tables {
   std::array<uint32_t, most_seen + 1> rate{};
 
   Tables() {
-    for (int32_t x = -stretch_limit; x <= stretch_limit; ++x) {
-      const double share = 65536 / (1 + exponential(-x / 256.0));
-      squash[static_cast<size_t>(x + stretch_limit)] =
-          static_cast<uint16_t>(std::clamp(static_cast<int32_t>(share + 0.5), 1, 65535));
+    for (size_t i = 0; i < squash.size(); ++i) {
+      const double x = static_cast<double>(i) - stretch_limit;
+      const double share = 65536 / (1 + exponential(-x / 256));
+      squash[i] = static_cast<uint16_t>(std::clamp(std::lround(share), 1L, 65535L));
     }
     size_t at = 0;
     for (size_t p = 0; p < stretch.size(); ++p) {
@@ -45,7 +46,8 @@ const Tables tables;
 int32_t stretch(uint32_t probability) { return tables.stretch[probability >> stretch_shift]; }
 
 uint32_t squash(int32_t stretched) {
-  return tables.squash[static_cast<size_t>(std::clamp(stretched, -stretch_limit, stretch_limit) + stretch_limit)];
+  const int32_t index = std::clamp(stretched, -stretch_limit, stretch_limit) + stretch_limit;
+  return tables.squash[static_cast<size_t>(index)];
 }
 
 void BitModel::update(bool bit) {
