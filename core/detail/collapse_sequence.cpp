@@ -16,7 +16,7 @@ namespace {
 
 /// A face's normal may not turn to a smaller cosine in one collapse.
 constexpr double least_cosine = 0.2;
-/// Cost of thin faces beside that of the quadrics. Of 1e-4 to 3e-3 it makes the smallest files on four models.
+/// Cost of thin faces beside that of the quadrics. Of 0 to 3e-3 it makes the smallest files on four models, to 7 %.
 constexpr double thinness_cost = 3e-4;
 constexpr size_t most_valence = 20;
 constexpr uint32_t collapses_between_polls = 4096;

@@ -179,7 +179,6 @@ PlacedLevels place_on_original(const OriginalSurface& original, const LiftedBase
   for (int l = 0; l < levels; ++l) {
     if (poll) poll();
     placed.residuals.push_back(placement.place(level, steps.of(l, levels)));
-    placed.free_vertices += static_cast<uint32_t>(placed.residuals.back().tangential.size());
     DetailLevel next = level.next();
     placed.levels.push_back(std::move(level));
     level = std::move(next);

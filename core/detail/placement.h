@@ -16,7 +16,6 @@ struct PlacedLevels {
   std::vector<DetailLevel> levels;   ///< those that are split
   std::vector<Residuals> residuals;  ///< of each
   Topology last;                     ///< of the last level
-  uint32_t free_vertices = 0;        ///< residuals with tangential parts
 };
 
 /// Steps of the levels: that of the last one, and how much smaller each coarser one's is.

@@ -11,7 +11,7 @@
 namespace papilio {
 namespace {
 
-/// Share of its area that a vertex moves, squared: measured on regular meshes.
+/// Sum of the squared influence of a vertex on the surface, as a share of its area.
 constexpr double squared_influence = 0.55;
 /// Error that a bit saves at a high rate, of a step's square: a bit halves the step, whose error is its square over 12.
 constexpr double error_of_bit = 0.1155;
