@@ -35,7 +35,7 @@ std::string reach_text(const DetailReach& reach) {
 void print_packed(std::ostream& out, const Packed& packed) {
   const proto::detail::PackedModel& model = *packed.model;
   uint64_t bytes = model.base_bytes;
-  out << "base      " << model.base.triangles.size() << " faces, " << bytes
+  out << "base      " << model.base.triangles.triangles.size() << " faces, " << bytes
       << " bytes: " << reach_text(model.base_reach) << '\n';
   for (size_t l = 0; l < model.levels.size(); ++l) {
     const auto& level = model.levels[l];

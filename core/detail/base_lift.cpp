@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "detail/detail_level.h"
+#include "mesh/crease.h"
+#include "mesh/curve.h"
 #include "papilio/error.h"
 
 namespace papilio {
@@ -58,6 +60,21 @@ std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>
   return matches;
 }
 
+/// Marks the creases and corners of the sequence's base.
+void mark_curves(Topology& topology, const std::vector<uint32_t>& number, const std::vector<FaceMatch>& matches,
+                 const BaseMesh& base) {
+  std::vector<uint32_t> place_of(base.face.empty() ? 0 : base.face.back() + 1, none);  // in the base, by face
+  for (uint32_t f = 0; f < base.face.size(); ++f) place_of[base.face[f]] = f;
+  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
+    const FaceMatch& match = matches[h / 3];
+    if (base.is_crease[place_of[match.face]][(h + match.turn) % 3]) topology.kind[topology.edge[h]] = EdgeKind::crease;
+  }
+  topology.darts = find_darts(topology);
+  const VertexDegrees curves(topology, [&](uint32_t e) { return topology.kind[e] != EdgeKind::smooth; });
+  for (uint32_t v = 0; v < number.size(); ++v)
+    if (curves.degree[v] == 2 && base.is_corner[number[v]]) topology.shape.corners.push_back(v);
+}
+
 using CornerWeights = std::vector<std::array<Vec3d, 3>>;  ///< of each face's corners, in the base's face above it
 
 CornerWeights split_weights(const CornerWeights& weights) {
@@ -80,6 +97,7 @@ LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, con
   lifted.mesh = build_mesh(decoded);
   const std::vector<uint32_t> number = nearest_points(lifted.mesh.positions, base.triangles.positions);
   const std::vector<FaceMatch> matches = match_faces(lifted.mesh, number, base);
+  mark_curves(lifted.mesh.topology, number, matches, base);
   for (const uint32_t n : number) lifted.vertex.push_back(base.vertex[n]);
 
   DetailLevel level(lifted.mesh.topology);

@@ -18,7 +18,7 @@ struct OriginalPlace {
 
 /// A base as its decoder has it, with the places on the original that its dyadic points correspond to.
 struct LiftedBase {
-  Mesh mesh;                                       ///< with edges
+  Mesh mesh;                                       ///< with edges, creases and corners
   std::vector<uint32_t> vertex;                    ///< [V] number in the original
   std::vector<std::vector<OriginalPlace>> places;  ///< by level, of its new vertices [E]
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "detail/quadric.h"
+#include "detail/sharp_curves.h"
 #include "detail/unfolding.h"
 
 namespace papilio {
@@ -39,6 +40,7 @@ class CollapseSequence::Collapser {
   Collapser(const Mesh& original, std::vector<float> weight)
       : weight_(std::move(weight)),
         out_(original.positions.size(), none),
+        role_(curve_roles(original.topology)),
         quadric_(original.positions.size()),
         age_(original.positions.size()),
         is_alive_(original.topology.face_count(), true),
@@ -47,8 +49,12 @@ class CollapseSequence::Collapser {
     for (const Vec3f p : original.positions) place_.push_back(to_double(p));
     origin_.assign(t.origin.begin(), t.origin.end());
     twin_.assign(t.twin.begin(), t.twin.end());
-    for (uint32_t h = 0; h < origin_.size(); ++h) out_[origin_[h]] = h;
+    is_curve_.reserve(origin_.size());
+    for (uint32_t h = 0; h < origin_.size(); ++h) is_curve_.push_back(t.is_curve(h));
+    for (uint32_t h = 0; h < origin_.size(); ++h)
+      if (out_[origin_[h]] == none || twin_[h] == none) out_[origin_[h]] = h;
     for (uint32_t f = 0; f < faces_; ++f) add_quadrics(f);
+    for (const uint32_t h : t.half_edge) add_curve_quadrics(h);
     for (uint32_t v = 0; v < place_.size(); ++v) propose(v);
   }
 
@@ -74,12 +80,15 @@ class CollapseSequence::Collapser {
         if (number[v] == none) {
           number[v] = static_cast<uint32_t>(made.vertex.size());
           made.vertex.push_back(v);
+          made.is_corner.push_back(role_[v] == CurveRole::corner);
           made.triangles.positions.push_back(to_float(place_[v]));
         }
         triangle[i] = number[v];
       }
       made.triangles.triangles.push_back(triangle);
       made.face.push_back(f);
+      const auto is_crease = [&](uint32_t h) { return is_curve_[h] && twin_[h] != none; };
+      made.is_crease.push_back({is_crease(3 * f), is_crease(3 * f + 1), is_crease(3 * f + 2)});
     }
     return made;
   }
@@ -101,10 +110,28 @@ class CollapseSequence::Collapser {
       quadric_[v[i]] += Quadric((1 / size) * normal, place_[v[i]], size / 6 * weight(v[i]));
   }
 
-  /// The half-edge that leaves the same vertex in the next face, counter-clockwise.
+  /// Distances to the line of a curve's edge, so that the curve keeps its shape.
+  void add_curve_quadrics(uint32_t h) {
+    if (!is_curve_[h]) return;
+    const Vec3d a = place_[origin_[h]];
+    const Vec3d along = place_[tip(h)] - a;
+    const double squared = dot(along, along);
+    if (!(squared > 0)) return;
+    const Vec3d apex = place_[origin_[Topology::previous(h)]] - a;
+    const Vec3d aside = apex - (dot(apex, along) / squared) * along;
+    const double size = length(aside);
+    if (!(size > 0)) return;
+    const Vec3d across = (1 / size) * aside;
+    const Vec3d up = (1 / std::sqrt(squared)) * cross(along, across);
+    for (const uint32_t v : {origin_[h], tip(h)})
+      for (const Vec3d direction : {across, up}) quadric_[v] += Quadric(direction, a, squared / 2 * weight(v));
+  }
+
+  /// The half-edge that leaves the same vertex in the next face, counter-clockwise; none beyond a boundary.
   [[nodiscard]] uint32_t turn(uint32_t h) const { return twin_[Topology::previous(h)]; }
 
-  /// Collects the half-edges that leave the vertex, counter-clockwise, and their tips.
+  /// Collects the half-edges that leave the vertex, counter-clockwise, and its neighbours. At a boundary there is one
+  /// neighbour more than there are faces: a gap, which has no half-edge, follows.
   void collect(uint32_t v) {
     spokes_.clear();
     ring_.clear();
@@ -112,14 +139,31 @@ class CollapseSequence::Collapser {
     do {
       spokes_.push_back(h);
       ring_.push_back(tip(h));
-      h = turn(h);
+      const uint32_t next = turn(h);
+      if (next == none) {
+        ring_.push_back(origin_[Topology::previous(h)]);
+        spokes_.push_back(none);
+        return;
+      }
+      h = next;
     } while (h != out_[v]);
   }
   [[nodiscard]] uint32_t ring(size_t i) const { return ring_[i % ring_.size()]; }
+  [[nodiscard]] uint32_t spoke(size_t i) const { return spokes_[i % spokes_.size()]; }
+  /// Whether the edge to ring(i) is on a curve.
+  [[nodiscard]] bool is_curve_to(size_t i) const {
+    const uint32_t h = spoke(i);
+    return h == none || is_curve_[h];
+  }
+  /// Whether a vertex of this role, whose ring is collected, may move onto ring(i).
+  [[nodiscard]] bool may_move(CurveRole role, size_t i) const {
+    return role == CurveRole::smooth || (role == CurveRole::inner && is_curve_to(i));
+  }
 
   /// Cost of moving the vertex, whose ring is collected, onto ring(target); `refused` from `bound` on and where that
-  /// turns a face over.
+  /// turns a face over. The faces that are left lie between the tips that follow.
   [[nodiscard]] double cost(uint32_t v, size_t target, double bound) const {
+    if (!may_move(role_[v], target)) return refused;
     const Vec3d to = place_[ring(target)];
     const double thinness = thinness_cost * weight(v);
     double sum = quadric_[v].at(to);
@@ -159,67 +203,111 @@ class CollapseSequence::Collapser {
     }
   }
 
-  [[nodiscard]] size_t valence(uint32_t v) const {
-    size_t count = 0;
+  /// Calls visit(neighbour) for the neighbours of a vertex; returns whether it is inside the surface.
+  template <class Visit>
+  bool visit_neighbours(uint32_t v, const Visit& visit) const {
     uint32_t h = out_[v];
     do {
-      ++count;
-      h = turn(h);
+      visit(tip(h));
+      const uint32_t next = turn(h);
+      if (next == none) {
+        visit(origin_[Topology::previous(h)]);
+        return false;
+      }
+      h = next;
     } while (h != out_[v]);
+    return true;
+  }
+  [[nodiscard]] size_t valence(uint32_t v) const {
+    size_t count = 0;
+    visit_neighbours(v, [&](uint32_t) { ++count; });
     return count;
   }
+  /// Whether a vertex may lose a face: inside the surface it keeps three, on a boundary one.
+  [[nodiscard]] bool has_spare_face(uint32_t v) const {
+    size_t count = 0;
+    const bool is_inside = visit_neighbours(v, [&](uint32_t) { ++count; });
+    return count > (is_inside ? 3 : 2);
+  }
 
-  /// Whether the two vertices share no neighbours but the two apexes, and these keep three faces.
+  /// Whether the two vertices share no neighbours but the apexes of their edge, these keep enough faces, and no two
+  /// curves would become one.
   [[nodiscard]] bool keeps_topology(size_t target) const {
     const uint32_t to = ring(target);
+    const size_t before = (target + ring_.size() - 1) % ring_.size();
     if (ring_.size() < 3 || valence(to) + ring_.size() - 4 > most_valence) return false;
-    if (valence(ring(target + 1)) <= 3 || valence(ring(target + ring_.size() - 1)) <= 3) return false;
-    uint32_t h = out_[to];
-    do {
-      for (size_t k = 2; k + 1 < ring_.size(); ++k)
-        if (tip(h) == ring(target + k)) return false;
-      h = turn(h);
-    } while (h != out_[to]);
-    return true;
+    const uint32_t first = spokes_[target];
+    const uint32_t last = spokes_[before];
+    if (first != none && !has_spare_face(ring(target + 1))) return false;
+    if (last != none && !has_spare_face(ring(before))) return false;
+    if (first != none && is_curve_to(target + 1) && is_curve_[Topology::next(first)]) return false;
+    if (last != none && is_curve_to(before) && is_curve_[Topology::next(last)]) return false;
+    bool is_apart = true;
+    visit_neighbours(to, [&](uint32_t w) {
+      for (size_t k = first == none ? 1 : 2; k + (last == none ? 0 : 1) < ring_.size(); ++k)
+        is_apart = is_apart && w != ring(target + k);
+    });
+    return is_apart;
   }
 
   [[nodiscard]] bool unfold(uint32_t v, size_t target) {
     unfolding_.clear();
+    size_t curve_tip = 0;
     for (size_t k = 0; k < ring_.size(); ++k) {
+      if (k > 0 && role_[v] != CurveRole::smooth && is_curve_to(target + k)) curve_tip = k;
       const Vec3d a = place_[ring(target + k)] - place_[v];
+      if (spoke(target + k) == none) {
+        unfolding_.add_gap(length(a));
+        continue;
+      }
       const Vec3d b = place_[ring(target + k + 1)] - place_[v];
-      unfolding_.add(spokes_[(target + k) % ring_.size()], length(a), std::atan2(length(cross(a, b)), dot(a, b)));
+      unfolding_.add(spoke(target + k), length(a), std::atan2(length(cross(a, b)), dot(a, b)));
     }
-    unfolding_.lay_out();
+    unfolding_.lay_out(curve_tip);
     return unfolding_.is_valid();
   }
 
-  void join(uint32_t a, uint32_t b) {
-    twin_[a] = b;
-    twin_[b] = a;
+  /// Makes one edge of the outer sides of two sides of a face that goes; `none` is outside the surface.
+  void join(uint32_t a, uint32_t b, bool is_curve) {
+    if (a != none) twin_[a] = b, is_curve_[a] = is_curve;
+    if (b != none) twin_[b] = a, is_curve_[b] = is_curve;
   }
 
-  /// Moves the vertex onto ring(target); the two faces at the edge between them go.
+  /// Removes a face at the edge that is collapsed: its other two sides become one edge. Returns a half-edge at it.
+  uint32_t remove_face(uint32_t side, uint32_t other_side) {
+    const uint32_t a = twin_[side];
+    const uint32_t b = twin_[other_side];
+    join(a, b, is_curve_[side] || is_curve_[other_side]);
+    is_alive_[side / 3] = false;
+    --faces_;
+    return a != none ? a : b;
+  }
+
+  /// Chooses the half-edge that leaves the origin of h first: on a boundary that without a face on its right.
+  void restart_at(uint32_t h) {
+    const uint32_t start = h;
+    while (twin_[h] != none) {
+      h = Topology::next(twin_[h]);
+      if (h == start) break;
+    }
+    out_[origin_[h]] = h;
+  }
+
+  /// Moves the vertex onto ring(target); the faces at the edge between them go.
   void apply(uint32_t v, size_t target) {
     const size_t before = (target + ring_.size() - 1) % ring_.size();
     const uint32_t to = ring_[target];
-    const uint32_t left = ring(target + 1);
-    const uint32_t right = ring_[before];
     const uint32_t first = spokes_[target];  // v to `to`, the left apex opposite
     const uint32_t last = spokes_[before];   // v to the right apex, `to` opposite
-    for (const uint32_t h : spokes_) origin_[h] = to;
-    const uint32_t left_to = twin_[Topology::next(first)];
-    const uint32_t to_left = twin_[Topology::previous(first)];
-    const uint32_t to_right = twin_[Topology::next(last)];
-    const uint32_t right_to = twin_[last];
-    join(left_to, to_left);
-    join(to_right, right_to);
-    is_alive_[first / 3] = is_alive_[last / 3] = false;
-    faces_ -= 2;
+    for (const uint32_t h : spokes_)
+      if (h != none) origin_[h] = to;
+    for (const uint32_t h : {first != none ? remove_face(Topology::next(first), Topology::previous(first)) : none,
+                             last != none ? remove_face(Topology::next(last), last) : none}) {
+      if (h == none) continue;  // and both ends of the new edge
+      restart_at(h);
+      restart_at(Topology::next(h));
+    }
     out_[v] = none;
-    out_[to] = to_left;
-    out_[left] = left_to;
-    out_[right] = right_to;
     quadric_[to] += quadric_[v];
     const std::vector<uint32_t> changed = ring_;
     for (const uint32_t w : changed) {
@@ -233,6 +321,8 @@ class CollapseSequence::Collapser {
   std::vector<uint32_t> origin_;  // [H]
   std::vector<uint32_t> twin_;    // [H]
   std::vector<uint32_t> out_;     // [V] a half-edge that leaves the vertex; none once it is removed
+  std::vector<bool> is_curve_;    // [H]
+  std::vector<CurveRole> role_;   // [V]
   std::vector<Quadric> quadric_;  // [V]
   std::vector<uint32_t> age_;     // [V] changes round it
   std::vector<bool> is_alive_;    // [F]
@@ -240,7 +330,7 @@ class CollapseSequence::Collapser {
   std::priority_queue<Candidate, std::vector<Candidate>, decltype(&is_later)> queue_{&is_later};
   UnfoldingSequence unfoldings_;
   Unfolding unfolding_;                  // of the collapse at hand
-  std::vector<uint32_t> spokes_, ring_;  // of the vertex at hand
+  std::vector<uint32_t> spokes_, ring_;  // of the vertex at hand; as many
 };
 
 CollapseSequence::CollapseSequence(const Mesh& original, std::vector<float> weight)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,21 +15,26 @@ namespace papilio {
 /// Coarse mesh whose vertices are some of the original's.
 struct BaseMesh {
   TriangleMesh triangles;
-  std::vector<uint32_t> vertex;  ///< [V] number in the original
-  std::vector<uint32_t> face;    ///< [F] number in the sequence, whose corners are in the same order
-  size_t collapses = 0;          ///< of the sequence that led to it
+  std::vector<uint32_t> vertex;                ///< [V] number in the original
+  std::vector<uint32_t> face;                  ///< [F] number in the sequence, whose corners are in the same order
+  std::vector<std::array<bool, 3>> is_crease;  ///< [F] whether the side from each corner to the next is one
+  std::vector<bool> is_corner;                 ///< [V] whether curves end there
+  size_t collapses = 0;                        ///< of the sequence that led to it
 };
 
-/// Simplification of a closed manifold by collapses of edges onto one of their ends, which remembers how the surfaces
+/// Simplification of a manifold by collapses of edges onto one of their ends, which remembers how the surfaces
 /// correspond: each collapse unfolds the faces round the removed vertex into the plane, where they cover the same
 /// polygon before and after. A place on the base is lifted to the original through these polygons, collapse by
 /// collapse: a bijection [Lee et al., "MAPS", 1998; Liu et al., "Neural Subdivision", 2020].
+///
+/// Vertices on boundaries and creases move along them, and corners stay (sharp_curves.h). So curves of the base
+/// correspond to those of the original.
 ///
 /// Collapses are chosen by quadrics weighted by area [Garland, Heckbert 1997] and by the shape of the faces that they
 /// make. Those that change the topology, turn a face over or have no valid unfolding are refused.
 class CollapseSequence {
  public:
-  /// `original` must be closed and manifold, with edges. `weight` [V] scales quadrics and shapes at a vertex; empty: 1.
+  /// `original` must be manifold, with edges. `weight` [V] scales quadrics and shapes at a vertex; empty: 1.
   explicit CollapseSequence(const Mesh& original, std::vector<float> weight = {});
   ~CollapseSequence();
   CollapseSequence(const CollapseSequence&) = delete;

@@ -2,8 +2,9 @@
 #include <memory>
 #include <string>
 
-#include "detail/closed_surface.h"
+#include "detail/base_curves.h"
 #include "detail/detail_level.h"
+#include "detail/manifold_surface.h"
 #include "detail/residual_frames.h"
 #include "detail/residuals.h"
 #include "papilio/detail.h"
@@ -36,10 +37,11 @@ void require_finite(const Buffer<Vec3f>& positions) {
 
 }  // namespace
 
-TriangleMesh decode_detail(const TriangleMesh& base, std::span<const DetailStream> levels, uint64_t face_limit,
+TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
                            const std::function<bool()>& cancelled) {
-  Mesh mesh = build_mesh(base);
-  require_closed(mesh);
+  Mesh mesh = build_mesh(base.triangles);
+  require_manifold(mesh);
+  decode_base_curves(base.curves, mesh.topology);
   check(mesh, levels, face_limit);
   Buffer<Vec3f> positions = std::move(mesh.positions);
   Buffer<int32_t> at_vertex(positions.size());
@@ -47,7 +49,7 @@ TriangleMesh decode_detail(const TriangleMesh& base, std::span<const DetailStrea
   DetailLevel level(std::move(mesh.topology));
   for (const DetailStream& stream : levels) {
     if (cancelled && cancelled()) throw Error(Fault::cancelled, "Decoding was cancelled.");
-    const Buffer<Vec3f> normals = residual_normals(level.topology(), positions.data());
+    const Buffer<Vec3f> normals = residual_normals(level, positions.data());
     level.predict(positions);
     const Residuals residuals = decode_residuals(level, stream.bytes, stream.step, at_vertex, positions, *models);
     displace(level, normals, residuals, positions);

@@ -9,13 +9,21 @@
 
 namespace papilio {
 
-DetailLevel::DetailLevel(Topology base) : topology_(std::move(base)), features_(find_features(topology_)) {}
+DetailLevel::DetailLevel(Topology base) : topology_(std::move(base)), features_(find_features(topology_)) {
+  for (uint32_t e = 0; e < topology_.edge_count(); ++e)
+    if (topology_.kind[e] != EdgeKind::smooth) curve_edges_.push_back(e);
+}
 
 DetailLevel DetailLevel::next() const {
   DetailLevel made;
   made.topology_ = split_in_four(topology_);
   made.features_ = features_;
   descend(made.features_, topology_.vertex_count);
+  made.curve_edges_.reserve(2 * curve_edges_.size());
+  for (const uint32_t e : curve_edges_) {
+    made.curve_edges_.push_back(2 * e);
+    made.curve_edges_.push_back(2 * e + 1);
+  }
   made.number_ = number_ + 1;
   made.vertices_before_ = topology_.vertex_count;
   return made;
@@ -60,6 +68,21 @@ ResidualContext DetailLevel::context(uint32_t e, std::span<const int32_t> residu
   const float turn = 8 * length(positions[t.vertex_count + e] - middle) / step;
   c.turn = turn < 1e6F ? static_cast<uint32_t>(turn) : 1000000U;
   return c;
+}
+
+CurveContext DetailLevel::curve_context(uint32_t c, std::span<const int32_t> residual, std::span<const int32_t> across,
+                                        std::span<const int32_t> at_vertex) const {
+  const uint32_t h = topology_.half_edge[curve_edges_[c]];
+  CurveContext context;
+  context.level = number_ + 1;
+  if (number_ == 0) return context;
+  for (const uint32_t v : {topology_.origin[h], topology_.tip(h)})
+    if (v >= vertices_before_) context.parent = static_cast<uint32_t>(std::abs(at_vertex[v]));
+  if (c % 2 == 0) return context;
+  context.has_sibling = true;
+  context.sibling = residual[curve_edges_[c - 1]];
+  context.sibling_across = across[c - 1];
+  return context;
 }
 
 }  // namespace papilio

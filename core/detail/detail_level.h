@@ -13,28 +13,34 @@ namespace papilio {
 /// A level of the hierarchy whose edges are all split: what decoder and encoder compute alike.
 class DetailLevel {
  public:
-  /// The base; `number` 0.
+  /// The base, perhaps with curves; `number` 0.
   explicit DetailLevel(Topology base);
   /// The next level.
   [[nodiscard]] DetailLevel next() const;
 
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] uint32_t number() const { return number_; }
+  /// Edges on boundaries and creases, in ascending order [C]. Those of the next level come from them, two from each.
+  [[nodiscard]] std::span<const uint32_t> curve_edges() const { return curve_edges_; }
   /// Vertices of the level before; 0 for the base.
   [[nodiscard]] uint32_t vertices_before() const { return vertices_before_; }
 
   /// Predicts the new vertices: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;
 
-  /// What is known of the residual of edge e. `residual` [E] and `is_free` [E] of this level, of which those before e
-  /// are coded; `at_vertex` [V] of the vertices; `positions` [V + E] hold the predictions.
+  /// What is known of the residual of edge e, which is on no curve. `residual` [E] and `is_free` [E] of this level, of
+  /// which those before e are coded; `at_vertex` [V] of the vertices; `positions` [V + E] hold the predictions.
   [[nodiscard]] ResidualContext context(uint32_t e, std::span<const int32_t> residual, std::span<const uint8_t> is_free,
                                         std::span<const int32_t> at_vertex, const Vec3f* positions, float step) const;
+  /// What is known of the residual of the curve's edge of number c. `residual` [E] as above, `across` [C].
+  [[nodiscard]] CurveContext curve_context(uint32_t c, std::span<const int32_t> residual,
+                                           std::span<const int32_t> across, std::span<const int32_t> at_vertex) const;
 
  private:
   DetailLevel() = default;
   Topology topology_;
   Features features_;
+  Buffer<uint32_t> curve_edges_;
   uint32_t number_ = 0, vertices_before_ = 0;
 };
 

@@ -5,13 +5,15 @@
 #include <optional>
 #include <utility>
 
+#include "detail/base_curves.h"
 #include "detail/base_lift.h"
-#include "detail/closed_surface.h"
 #include "detail/collapse_sequence.h"
 #include "detail/error_weights.h"
+#include "detail/manifold_surface.h"
 #include "detail/original_surface.h"
 #include "detail/placement.h"
 #include "detail/residual_fit.h"
+#include "detail/sharp_curves.h"
 #include "detail/surface_distance.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
@@ -39,6 +41,10 @@ constexpr double rate_weight = 2;
 constexpr double largest_start_floor = 1.5;
 constexpr int weighting_passes = 3;
 constexpr uint32_t samples_of_trial = 8'000, samples_at_last = 60'000;
+/// Larger bases that are tried where more samples show that a distance is not reached.
+constexpr int most_last_bases = 3;
+/// Vertices are parted by at most this share of the wanted distance.
+constexpr double parting_share = 0.1;
 
 void check(const DetailOptions& options) {
   if (!(options.rms >= 1e-6 && options.rms <= 0.1))
@@ -48,6 +54,7 @@ void check(const DetailOptions& options) {
 /// A base of one size with its levels.
 struct Trial {
   CodedBase coded;
+  std::vector<uint8_t> curves;  ///< of the base, coded
   LiftedBase lifted;
   int levels = 0;
   double floor = 0;  ///< distance with fine steps
@@ -62,8 +69,8 @@ class DetailEncoder {
   DetailEncoder(const TriangleMesh& triangles, const DetailOptions& options, const BaseCoder& code_base)
       : options_(options),
         code_base_(code_base),
-        original_(closed(triangles)),
-        wanted_(options.rms * original_.diagonal()),
+        wanted_(options.rms * bounding_box(triangles.positions).diagonal()),
+        original_(prepare(triangles)),
         first_step_(first_step * wanted_) {}
 
   EncodedDetail run() {
@@ -73,14 +80,27 @@ class DetailEncoder {
       while (is_size(at, direction) && is_better(trial(at + static_cast<size_t>(direction)), trial(at)))
         at += static_cast<size_t>(direction);
     progress(0.8);
-    return finish(trial(at));
+    const Trial* best = nullptr;
+    std::optional<ResidualFit> best_fit;
+    for (int tried = 0; tried < most_last_bases; ++tried) {
+      Trial& last = trial(at);
+      std::optional<ResidualFit> fit = find_step(last, turns_at_last, samples_at_last, step_trials_at_last);
+      if (best == nullptr || is_better(last, *best)) {
+        best = &last;
+        best_fit.emplace(std::move(*fit));
+      }
+      if (last.is_reached || at == 0) break;
+      --at;
+    }
+    return finish(*best, *best_fit);
   }
 
  private:
-  static Mesh closed(const TriangleMesh& triangles) {
-    Mesh mesh = build_mesh(triangles);
-    require_closed(mesh);
-    return mesh;
+  Mesh prepare(const TriangleMesh& triangles) {
+    ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
+    parted_ = surface.parted;
+    mark_sharp_curves(surface.mesh);
+    return std::move(surface.mesh);
   }
   void poll() const {
     if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Encoding was cancelled.");
@@ -107,6 +127,7 @@ class DetailEncoder {
     while (start + 1 < sizes.size() && sizes[start + 1] >= faces_at_distance / options_.rms) ++start;
 
     collapse(sizes, start + 1, {});
+    start = std::min(start, bases_.size() - 1);
     Trial trial = start_trial(start);
     while (start > 0 && trial.floor > largest_start_floor * wanted_) trial = start_trial(--start);
 
@@ -116,13 +137,13 @@ class DetailEncoder {
       progress(0.3 * pass / weighting_passes);
       weigh_errors(original_, fit(trial, fine_step * wanted_, 0).surface(static_cast<size_t>(trial.levels)), weights);
       collapse(sizes, start + 1, weights);
-      trial = start_trial(start);
+      trial = start_trial(std::min(start, bases_.size() - 1));
       if (trial.floor > best_floor) continue;
       best_floor = trial.floor;
       best_weights = weights;
     }
     collapse(sizes, sizes.size(), best_weights);
-    return start;
+    return std::min(start, bases_.size() - 1);
   }
 
   /// Simplifies to the first `count` sizes.
@@ -131,7 +152,9 @@ class DetailEncoder {
     bases_.clear();
     for (size_t i = 0; i < count; ++i) {
       sequence_->collapse_to(sizes[i], poller());
-      bases_.push_back(sequence_->base());
+      BaseMesh base = sequence_->base();
+      if (!bases_.empty() && bases_.back().face.size() == base.face.size()) break;  // nothing is left to collapse
+      bases_.push_back(std::move(base));
     }
   }
 
@@ -158,6 +181,7 @@ class DetailEncoder {
     trial.coded = code_base_(base.triangles);
     const int most = most_levels(base.face.size());
     trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, most, poller());
+    trial.curves = encode_base_curves(trial.lifted.mesh.topology);
     trial.levels = 1;
     while (trial.levels < most && (base.face.size() << (2 * trial.levels)) * options_.rms < least_last_faces)
       ++trial.levels;
@@ -211,21 +235,21 @@ class DetailEncoder {
       const double of_step = std::max(rms * rms - floor * floor, 0.01 * rms * rms);
       step *= std::clamp(0.99 * std::sqrt((wanted_ * wanted_ - floor * floor) / of_step), 0.3, 3.0);
     }
-    trial.bytes = trial.coded.bytes;
+    trial.bytes = trial.coded.bytes + trial.curves.size();
     for (const auto& stream : best->code()) trial.bytes += stream.size();
     return best;
   }
 
-  EncodedDetail finish(Trial& trial) {
-    const std::optional<ResidualFit> made = find_step(trial, turns_at_last, samples_at_last, step_trials_at_last);
+  [[nodiscard]] EncodedDetail finish(const Trial& trial, const ResidualFit& fit) const {
     EncodedDetail encoded;
-    encoded.base = trial.coded.triangles;
+    encoded.base = {trial.coded.triangles, trial.curves};
     encoded.bytes = trial.bytes;
-    auto streams = made->code();
-    for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({made->step(l), std::move(streams[l])});
+    encoded.parted = parted_;
+    auto streams = fit.code();
+    for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({fit.step(l), std::move(streams[l])});
     for (size_t l = 0; l <= encoded.levels.size(); ++l) {
       poll();
-      const SurfaceTree surface(made->surface(l));
+      const SurfaceTree surface(fit.surface(l));
       const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last);
       encoded.reach.push_back({d.rms / original_.diagonal(), d.largest / original_.diagonal()});
       if (l == encoded.levels.size()) encoded.folds = count_folds(surface);
@@ -250,8 +274,9 @@ class DetailEncoder {
 
   const DetailOptions& options_;
   const BaseCoder& code_base_;
+  double wanted_;        ///< in the mesh's unit
+  uint32_t parted_ = 0;  ///< vertices
   OriginalSurface original_;
-  double wanted_;      ///< in the mesh's unit
   double first_step_;  ///< to try
   std::unique_ptr<CollapseSequence> sequence_;
   std::vector<BaseMesh> bases_;

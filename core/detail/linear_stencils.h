@@ -7,7 +7,7 @@
 
 namespace papilio {
 
-/// The Modified Butterfly scheme of one closed level as a sparse matrix: the new vertex of edge e is the weighted sum
+/// The Modified Butterfly scheme of one level as a sparse matrix: the new vertex of edge e is the weighted sum
 /// of vertices `vertex[first[e]]` to `vertex[first[e + 1] - 1]`.
 struct LinearStencils {
   Buffer<uint32_t> first;  ///< [E + 1]
@@ -17,7 +17,7 @@ struct LinearStencils {
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(first.size() - 1); }
 };
 
-/// Of a closed manifold level with its edges. Weights: rules/stencil.h.
+/// Of a manifold level with its edges and curves. Weights: rules/stencil.h.
 [[nodiscard]] LinearStencils linear_stencils(const Topology& level);
 
 }  // namespace papilio

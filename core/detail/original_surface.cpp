@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
+
+#include "mesh/fan.h"
 
 namespace papilio {
 namespace {
@@ -11,12 +14,36 @@ std::array<Vec3d, 3> corners(const Mesh& mesh, uint32_t face) {
   return {to_double(mesh.positions[v[0]]), to_double(mesh.positions[v[1]]), to_double(mesh.positions[v[2]])};
 }
 
+/// Unit normals of the corners [H], each the sum over the faces of its fan by area.
+Buffer<Vec3f> corner_normals(const Mesh& mesh) {
+  const Topology& t = mesh.topology;
+  Buffer<Vec3f> normals(t.half_edge_count());
+  std::vector<bool> is_done(t.half_edge_count());
+  Fan fan;
+  for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
+    if (is_done[h]) continue;
+    collect_fan(t, h, fan);
+    Vec3d sum;
+    for (const uint32_t spoke : fan.spokes) {
+      const auto [a, b, c] = corners(mesh, spoke / 3);
+      sum += cross(b - a, c - a);
+    }
+    const double size = length(sum);
+    for (const uint32_t spoke : fan.spokes) {
+      normals[spoke] = size > 0 ? to_float((1 / size) * sum) : Vec3f{0, 0, 1};
+      is_done[spoke] = true;
+    }
+  }
+  return normals;
+}
+
 }  // namespace
 
 OriginalSurface::OriginalSurface(Mesh mesh)
     : mesh_(std::move(mesh)),
       tree_(mesh_.triangles()),
-      normals_(vertex_normals(mesh_)),
+      curves_(mesh_),
+      normals_(corner_normals(mesh_)),
       face_at_(mesh_.positions.size()),
       diagonal_(bounding_box(mesh_.positions).diagonal()) {
   for (uint32_t h = 0; h < mesh_.topology.half_edge_count(); ++h) face_at_[mesh_.topology.origin[h]] = h / 3;
@@ -29,14 +56,13 @@ Vec3d OriginalSurface::point(const SurfacePlace& place) const {
 
 Vec3d OriginalSurface::normal(uint32_t face, Vec3d point) const {
   const auto [a, b, c] = corners(mesh_, face);
-  const uint32_t* v = &mesh_.topology.origin[size_t{3} * face];
+  const Vec3f* n = &normals_[size_t{3} * face];
   const Vec3d across = cross(b - a, c - a);
   const double squared = dot(across, across);
-  if (!(squared > 0)) return to_double(normals_[v[0]]);
+  if (!(squared > 0)) return to_double(n[0]);
   const double wa = std::clamp(dot(across, cross(b - point, c - point)) / squared, 0.0, 1.0);
   const double wb = std::clamp(dot(across, cross(c - point, a - point)) / squared, 0.0, 1 - wa);
-  const Vec3d sum =
-      wa * to_double(normals_[v[0]]) + wb * to_double(normals_[v[1]]) + (1 - wa - wb) * to_double(normals_[v[2]]);
+  const Vec3d sum = wa * to_double(n[0]) + wb * to_double(n[1]) + (1 - wa - wb) * to_double(n[2]);
   const double size = length(sum);
   return size > 0 ? (1 / size) * sum : Vec3d{};
 }

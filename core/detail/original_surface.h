@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "detail/original_curves.h"
 #include "detail/surface_place.h"
 #include "detail/surface_tree.h"
 #include "papilio/mesh.h"
@@ -11,14 +12,19 @@ namespace papilio {
 /// The original with what its encoder looks up.
 class OriginalSurface {
  public:
-  /// The mesh must be closed and manifold, with its edges.
+  /// The mesh must be manifold, with its edges, creases and corners.
   explicit OriginalSurface(Mesh mesh);
+  OriginalSurface(const OriginalSurface&) = delete;
+  OriginalSurface& operator=(const OriginalSurface&) = delete;
+  ~OriginalSurface() = default;
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
+  [[nodiscard]] const OriginalCurves& curves() const { return curves_; }
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] Vec3d point(const SurfacePlace& place) const;
-  /// Unit normal, interpolated from those of the vertices; zero where they cancel out.
+  /// Unit normal, interpolated from those of the corners, which are smooth but across creases; zero where they cancel
+  /// out.
   [[nodiscard]] Vec3d normal(uint32_t face, Vec3d point) const;
   /// A face at each vertex.
   [[nodiscard]] uint32_t face_at(uint32_t vertex) const { return face_at_[vertex]; }
@@ -26,7 +32,8 @@ class OriginalSurface {
  private:
   Mesh mesh_;
   SurfaceTree tree_;
-  Buffer<Vec3f> normals_;     // [V]
+  OriginalCurves curves_;
+  Buffer<Vec3f> normals_;     // [H] of the faces from curve to curve round each corner
   Buffer<uint32_t> face_at_;  // [V]
   double diagonal_;
 };

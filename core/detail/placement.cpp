@@ -18,6 +18,7 @@ constexpr double reach = 0.3;
 constexpr double least_area = 0.3;
 /// Rounds of mending faces that are turned over.
 constexpr int mending_rounds = 3;
+constexpr int untangling_passes = 3;
 /// From this level on the middle of an edge lies near its place on the original.
 constexpr uint32_t level_of_small_edges = 2;
 
@@ -25,10 +26,11 @@ class Placement {
  public:
   Placement(const OriginalSurface& original, const LiftedBase& base)
       : original_(original), base_(base), positions_(base.mesh.positions) {
-    for (uint32_t v = 0; v < positions_.size(); ++v) {
-      face_.push_back(original.face_at(base.vertex[v]));
-      normal_.push_back(to_float(original.normal(face_[v], to_double(positions_[v]))));
-    }
+    const Topology& t = base.mesh.topology;
+    for (uint32_t v = 0; v < positions_.size(); ++v) face_.push_back(original.face_at(base.vertex[v]));
+    for (uint32_t e = 0; e < t.edge_count(); ++e)
+      if (t.kind[e] == EdgeKind::crease) face_[t.origin[t.half_edge[e]]] = face_[t.tip(t.half_edge[e])] = none;
+    for (uint32_t v = 0; v < positions_.size(); ++v) normal_.push_back(normal_at(face_[v], to_double(positions_[v])));
     drift_.resize(positions_.size());
   }
 
@@ -36,18 +38,28 @@ class Placement {
   Residuals place(const DetailLevel& level, float step) {
     level_ = &level;
     topology_ = &level.topology();
-    made_ = {.step = step, .along_normal = Buffer<int32_t>(topology_->edge_count())};
-    directions_ = residual_normals(*topology_, positions_.data());
+    made_ = {.step = step,
+             .along_normal = Buffer<int32_t>(topology_->edge_count()),
+             .across = Buffer<int32_t>(level.curve_edges().size())};
+    directions_ = residual_normals(level, positions_.data());
     level.predict(positions_);
     predicted_ = positions_;
     for (auto* array : {&normal_, &drift_}) array->resize(positions_.size());
     face_.resize(positions_.size());
-    for (uint32_t e = 0; e < topology_->edge_count(); ++e) find_target(e);
+    for (uint32_t e = 0; e < topology_->edge_count(); ++e)
+      if (!is_on_curve(e)) find_target(e);
+    for (uint32_t c = 0; c < level.curve_edges().size(); ++c) find_target_on_curve(c);
     for (int round = 0;; ++round) {
       positions_ = predicted_;
       displace(level, directions_, made_, positions_);
-      if (round == mending_rounds || !mend_folds(round)) return std::move(made_);
+      if (!find_turned(round > 0)) break;
+      if (round == mending_rounds) {
+        untangle();
+        break;
+      }
+      mend_folds(round);
     }
+    return std::move(made_);
   }
 
  private:
@@ -66,6 +78,11 @@ class Placement {
     return {a, b, length(pb - pa), 0.5 * (pa + pb),
             to_double(lifted(e).point) + 0.5 * (to_double(drift_[a]) + to_double(drift_[b]))};
   }
+  [[nodiscard]] bool is_on_curve(uint32_t e) const { return topology_->kind[e] != EdgeKind::smooth; }
+  /// Zero at creases (no face), where there are two.
+  [[nodiscard]] Vec3f normal_at(uint32_t face, Vec3d point) const {
+    return face == none ? Vec3f{} : to_float(original_.normal(face, point));
+  }
   [[nodiscard]] const OriginalPlace& lifted(uint32_t e) const { return base_.places[level_->number()][e]; }
   [[nodiscard]] uint32_t vertex(uint32_t e) const { return topology_->vertex_count + e; }
 
@@ -76,6 +93,7 @@ class Placement {
     std::optional<LineHit> best;
     double least = reach * edge.length;
     for (const uint32_t start : {lifted(e).face, face_[edge.a], face_[edge.b]}) {
+      if (start == none) continue;
       const auto hit = walk_to_line(original_.mesh(), start, point, direction);
       if (!hit) continue;
       const double off = length(point + hit->offset * direction - edge.expected);
@@ -87,8 +105,23 @@ class Placement {
       set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
   }
 
-  /// Sets the place of the original nearest to a point, on a sheet with about this normal; else the lifted one.
+  /// The place where the original's curve meets the plane across the edge, through the predicted vertex.
+  void find_target_on_curve(uint32_t c) {
+    const uint32_t e = level_->curve_edges()[c];
+    const Ends edge = ends(e);
+    const Vec3d point = to_double(predicted_[vertex(e)]);
+    const Nearest start = original_.curves().nearest(to_double(lifted(e).point));
+    const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
+    const auto met = original_.curves().meet(start.face, start.point, point, to_double(tangents.along), edge.length);
+    if (!met || length(*met - edge.expected) > reach * edge.length) return set_free_target(e, edge, edge.expected, {});
+    set_target(e, *met, lifted(e).face, false);
+    made_.across[c] = steps(*met - to_double(predicted_[vertex(e)]), tangents.across);
+  }
+
+  /// Sets the place of the original nearest to a point, on a curve if the edge is on one, on a sheet with about this
+  /// normal; else the lifted one.
   void set_free_target(uint32_t e, const Ends& edge, Vec3d near, Vec3d normal) {
+    if (is_on_curve(e)) return set_target(e, original_.curves().nearest(near).point, lifted(e).face, true);
     const Nearest found = original_.tree().nearest(near, edge.length / 2, normal);
     if (found.face != none)
       set_target(e, found.point, found.face, true);
@@ -99,63 +132,176 @@ class Placement {
   void set_target(uint32_t e, Vec3d target, uint32_t face, bool is_free) {
     const uint32_t v = vertex(e);
     const Vec3d move = target - to_double(predicted_[v]);
-    const auto part = [&](Vec3f direction) {
-      const double steps = dot(move, to_double(direction)) / made_.step;
-      return static_cast<int32_t>(std::lround(std::clamp<double>(steps, -largest_residual, largest_residual)));
-    };
-    made_.along_normal[e] = part(directions_[e]);
+    made_.along_normal[e] = steps(move, directions_[e]);
     if (is_free) {
       const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
-      made_.tangential[e] = {part(tangents.along), part(tangents.across)};
+      made_.tangential[e] = {steps(move, tangents.along), steps(move, tangents.across)};
+      if (is_on_curve(e)) made_.across[number_on_curves(e)] = 0;
     }
-    face_[v] = face;
-    normal_[v] = to_float(original_.normal(face, target));
+    face_[v] = topology_->kind[e] == EdgeKind::crease ? none : face;
+    normal_[v] = normal_at(face_[v], target);
     drift_[v] = to_float(target - to_double(lifted(e).point));
   }
 
-  /// Frees the new vertices of faces that are turned over: first to where they are expected, then, with those of the
-  /// whole parent, to the middles of their edges. Returns whether there were any.
-  bool mend_folds(int round) {
-    std::vector<bool> is_bad(topology_->edge_count());
+  [[nodiscard]] size_t number_on_curves(uint32_t e) const {
+    const std::span<const uint32_t> edges = level_->curve_edges();
+    return static_cast<size_t>(std::ranges::lower_bound(edges, e) - edges.begin());
+  }
+  [[nodiscard]] int32_t steps(Vec3d move, Vec3f direction) const {
+    const double steps = dot(move, to_double(direction)) / made_.step;
+    return static_cast<int32_t>(std::lround(std::clamp<double>(steps, -largest_residual, largest_residual)));
+  }
+
+  using Corners = std::array<uint32_t, 3>;  // vertices of a face of the next level
+  struct Children {
+    std::array<Corners, 4> corners;
+    Vec3d parent;  ///< twice the area of the face that is split, along its normal
+  };
+  [[nodiscard]] Children children(uint32_t f) const {
+    const uint32_t* v = &topology_->origin[size_t{3} * f];
+    const uint32_t* e = &topology_->edge[size_t{3} * f];
+    const Corners m{vertex(e[0]), vertex(e[1]), vertex(e[2])};
+    return {{Corners{v[0], m[0], m[2]}, Corners{m[0], v[1], m[1]}, Corners{m[2], m[1], v[2]}, m},
+            area_normal({v[0], v[1], v[2]})};
+  }
+
+  /// Finds the edges of faces that are turned over; of the `whole` parent, or of the child alone. Returns whether there
+  /// are any.
+  bool find_turned(bool whole) {
+    is_bad_.assign(topology_->edge_count(), false);
     bool found = false;
     for (uint32_t f = 0; f < topology_->face_count(); ++f) {
-      const uint32_t* v = &topology_->origin[size_t{3} * f];
       const uint32_t* e = &topology_->edge[size_t{3} * f];
-      const std::array<uint32_t, 3> m{vertex(e[0]), vertex(e[1]), vertex(e[2])};
-      const double least = least_area / 4 * length(area_normal({v[0], v[1], v[2]}));
-      for (const std::array<uint32_t, 3>& child :
-           {std::array{v[0], m[0], m[2]}, std::array{m[0], v[1], m[1]}, std::array{m[2], m[1], v[2]}, m}) {
-        if (!is_turned(child, least)) continue;
+      const Children of_face = children(f);
+      for (const Corners& child : of_face.corners) {
+        if (surplus(child, of_face.parent) > 0) continue;
         found = true;
         for (uint32_t i = 0; i < 3; ++i)
-          if (round > 0 || std::ranges::find(child, m[i]) != child.end()) is_bad[e[i]] = true;
+          if (whole || std::ranges::find(child, vertex(e[i])) != child.end()) is_bad_[e[i]] = true;
       }
     }
-    for (uint32_t e = 0; e < topology_->edge_count() && found; ++e) {
-      if (!is_bad[e]) continue;
+    return found;
+  }
+
+  /// Frees the new vertices of faces that are turned over: first to where they are expected, then to the middles of
+  /// their edges.
+  void mend_folds(int round) {
+    for (uint32_t e = 0; e < topology_->edge_count(); ++e) {
+      if (!is_bad_[e]) continue;
       const Ends edge = ends(e);
       if (round > 0 && level_->number() >= level_of_small_edges)
         set_free_target(e, edge, edge.middle, to_double(directions_[e]));
       else
         set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
     }
-    return found;
   }
 
-  [[nodiscard]] Vec3d area_normal(const std::array<uint32_t, 3>& v) const {
+  /// Moves the new vertices of faces that are still turned over between their neighbours, one after the other, as far
+  /// as that turns the faces back. Of all roundings to steps the best is taken.
+  void untangle() {
+    for (int pass = 0; pass < untangling_passes; ++pass) {
+      for (uint32_t e = 0; e < topology_->edge_count(); ++e)
+        if (is_bad_[e]) untangle(e);
+      if (!find_turned(false)) return;
+    }
+  }
+
+  void untangle(uint32_t e) {
+    const uint32_t v = vertex(e);
+    Vec3d middle;
+    double count = 0;
+    for_each_child_at(e, [&](const Corners& child, Vec3d) {
+      for (const uint32_t w : child)
+        if (w != v) middle += to_double(positions_[w]), ++count;
+    });
+    middle = (1 / count) * middle;
+    Placed best = placed(e);
+    double most = surplus_at(e);
+    for (const double share : {1.0, 0.5}) {
+      set_free_target(e, ends(e), share * middle + (1 - share) * to_double(best.position), to_double(directions_[e]));
+      const Placed rounded = placed(e);
+      const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
+      for (int i = 0; i < 9; ++i) {
+        const std::array<int32_t, 2> off{i % 3 - 1, is_on_curve(e) ? 0 : i / 3 - 1};
+        for (size_t k = 0; k < 2; ++k) made_.tangential[e][k] = rounded.tangential->at(k) + off[k];
+        const auto& parts = made_.tangential[e];
+        positions_[v] = predicted_[v] + made_.step * (static_cast<float>(made_.along_normal[e]) * directions_[e] +
+                                                      static_cast<float>(parts[0]) * tangents.along +
+                                                      static_cast<float>(parts[1]) * tangents.across);
+        if (const double sum = surplus_at(e); sum > most) most = sum, best = placed(e);
+      }
+    }
+    put_back(e, best);
+  }
+
+  /// Where a new vertex is, and by which residual.
+  struct Placed {
+    Vec3f position, normal, drift;
+    uint32_t face;
+    int32_t along_normal, across;
+    std::optional<std::array<int32_t, 2>> tangential;
+  };
+  [[nodiscard]] Placed placed(uint32_t e) const {
+    const uint32_t v = vertex(e);
+    const auto found = made_.tangential.find(e);
+    return {positions_[v],
+            normal_[v],
+            drift_[v],
+            face_[v],
+            made_.along_normal[e],
+            is_on_curve(e) ? made_.across[number_on_curves(e)] : 0,
+            found == made_.tangential.end() ? std::nullopt : std::optional(found->second)};
+  }
+  void put_back(uint32_t e, const Placed& place) {
+    const uint32_t v = vertex(e);
+    positions_[v] = place.position;
+    normal_[v] = place.normal;
+    drift_[v] = place.drift;
+    face_[v] = place.face;
+    made_.along_normal[e] = place.along_normal;
+    if (is_on_curve(e)) made_.across[number_on_curves(e)] = place.across;
+    if (place.tangential)
+      made_.tangential[e] = *place.tangential;
+    else
+      made_.tangential.erase(e);
+  }
+
+  /// Calls visit(corners, parent's normal) for the faces of the next level at the new vertex of an edge.
+  template <class Visit>
+  void for_each_child_at(uint32_t e, const Visit& visit) const {
+    const uint32_t h = topology_->half_edge[e];
+    for (const uint32_t side : {h, topology_->twin[h]}) {
+      if (side == none) continue;
+      const Children of_face = children(Topology::face(side));
+      for (const Corners& child : of_face.corners)
+        if (std::ranges::find(child, vertex(e)) != child.end()) visit(child, of_face.parent);
+    }
+  }
+  /// Sum over the faces that are turned over at the new vertex of an edge; 0: there are none.
+  [[nodiscard]] double surplus_at(uint32_t e) const {
+    double sum = 0;
+    for_each_child_at(e, [&](const Corners& child, Vec3d parent) { sum += std::min(surplus(child, parent), 0.0); });
+    return sum;
+  }
+
+  [[nodiscard]] Vec3d area_normal(const Corners& v) const {
     const Vec3d a = to_double(positions_[v[0]]);
     return cross(to_double(positions_[v[1]]) - a, to_double(positions_[v[2]]) - a);
   }
-  [[nodiscard]] bool is_turned(const std::array<uint32_t, 3>& face, double least) const {
-    const Vec3d normal = to_double(normal_[face[0]]) + to_double(normal_[face[1]]) + to_double(normal_[face[2]]);
-    return !(dot(area_normal(face), normal) > least * length(normal));
+  /// Area of a face above the least that it may have, as seen along the original's normals, or where all three vertices
+  /// are on creases, along the parent's; not positive: it is turned over.
+  [[nodiscard]] double surplus(const Corners& face, Vec3d parent) const {
+    Vec3d normal = to_double(normal_[face[0]]) + to_double(normal_[face[1]]) + to_double(normal_[face[2]]);
+    if (length(normal) == 0) normal = parent;
+    const double size = length(normal);
+    return size > 0 ? dot(area_normal(face), (1 / size) * normal) - least_area / 4 * length(parent) : 0;
   }
 
   const OriginalSurface& original_;
   const LiftedBase& base_;
   Buffer<Vec3f> positions_;
-  std::vector<uint32_t> face_;  // [V] of the original, at the vertex's place
-  Buffer<Vec3f> normal_;        // [V] of the original there
+  std::vector<uint32_t> face_;  // [V] of the original, at the vertex's place; none on creases
+  Buffer<Vec3f> normal_;        // [V] of the original there; zero on creases
   Buffer<Vec3f> drift_;         // [V] from the lifted place to the chosen one
 
   const DetailLevel* level_ = nullptr;  // at hand
@@ -163,6 +309,7 @@ class Placement {
   Residuals made_;
   Buffer<Vec3f> directions_;  // [E]
   Buffer<Vec3f> predicted_;   // [V + E]
+  std::vector<bool> is_bad_;  // [E] whether a face at the new vertex is turned over
 };
 
 }  // namespace

@@ -18,11 +18,36 @@ constexpr double error_of_bit = 0.1155;
 /// How far the original is looked for, in steps, where its distance is not known.
 constexpr float steps_to_look = 8;
 
+/// The other edges of an edge's faces; on a boundary those of its one face twice.
 std::array<uint32_t, 4> neighbours_of(const Topology& t, uint32_t e) {
   const uint32_t h = t.half_edge[e];
-  const uint32_t twin = t.twin[h];
+  const uint32_t twin = t.twin[h] != none ? t.twin[h] : h;
   return {t.edge[Topology::next(h)], t.edge[Topology::previous(h)], t.edge[Topology::next(twin)],
           t.edge[Topology::previous(twin)]};
+}
+
+/// The change of a residual that is worth most, and what it is worth.
+struct Change {
+  int32_t steps = 0;
+  double gain = 0;
+};
+
+/// `gradient` of half the squared error against the residual's direction, `area` that it moves; `bits(residual)`.
+template <class Bits>
+Change best_change(int32_t now, double gradient, double area, double step, double bit_cost, const Bits& bits) {
+  const double curvature = squared_influence * area;
+  const float bits_now = bits(now);
+  Change best;
+  const auto consider = [&](int32_t delta) {
+    if (delta == 0 || std::abs(now + delta) > largest_residual) return;
+    const double move = delta * step;
+    const double gain = 2 * move * gradient - curvature * move * move - bit_cost * (bits(now + delta) - bits_now);
+    if (gain > best.gain) best = {delta, gain};
+  };
+  const double wanted = curvature > 0 ? gradient / (curvature * step) : 0;
+  const auto nearest = static_cast<int32_t>(std::lround(std::clamp(wanted, -1e6, 1e6)));
+  for (const int32_t delta : {1, -1, -now, nearest, nearest > 0 ? nearest - 1 : nearest + 1}) consider(delta);
+  return best;
 }
 
 }  // namespace
@@ -36,13 +61,16 @@ ResidualFit::ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, Pl
       base_vertices_(static_cast<uint32_t>(positions_.size())) {
   for (size_t l = 0; l < placed.levels.size(); ++l)
     levels_.push_back({std::move(placed.levels[l]), std::move(placed.residuals[l])});
+  is_on_curve_.resize(last_.vertex_count);
+  for (uint32_t h = 0; h < last_.half_edge_count(); ++h)
+    if (last_.is_curve(h)) is_on_curve_[last_.origin[h]] = is_on_curve_[last_.tip(h)] = true;
   forward();
 }
 
 void ResidualFit::forward() {
   positions_.resize(base_vertices_);
   for (Level& level : levels_) {
-    level.normals = residual_normals(level.level.topology(), positions_.data());
+    level.normals = residual_normals(level.level, positions_.data());
     level.level.predict(positions_);
     displace(level.level, level.normals, level.residuals, positions_);
   }
@@ -54,6 +82,7 @@ void ResidualFit::improve(int turns, double rate_weight) {
     if (level.stencils.first.empty()) level.stencils = linear_stencils(level.level.topology());
     level.gradient.resize(edges);
     level.area.resize(edges);
+    level.gradient_across.resize(level.level.curve_edges().size());
   }
   distance_.assign(positions_.size(), -1);
   face_.assign(positions_.size(), none);
@@ -65,7 +94,9 @@ void ResidualFit::improve(int turns, double rate_weight) {
     const double step = levels_.back().residuals.step;
     const double bit_cost = rate_weight * error_of_bit * step * step * area / static_cast<double>(area_.size());
     push_down();
-    improve(levels_[static_cast<size_t>(turn) % levels_.size()], bit_cost);
+    Level& level = levels_[static_cast<size_t>(turn) % levels_.size()];
+    improve(level, bit_cost);
+    improve_across(level, bit_cost);
     forward();
   }
 }
@@ -83,19 +114,31 @@ void ResidualFit::find_forces() {
       force_[v[i]] += normal;
     }
   }
-  const SurfaceTree& tree = original_.tree();
   for (uint32_t v = 0; v < count; ++v) {
-    const Vec3d normal = to_double(std::exchange(force_[v], Vec3f{}));
+    const Vec3d normal = to_double(force_[v]);
     const double size = length(normal);
-    if (!(size > 0)) continue;
-    const Nearest near = nearest(v, (1 / size) * normal);
-    if (near.face == none) continue;
-    const Vec3d point = to_double(positions_[v]);
-    const Vec3d across = tree.unit_normal(near.face);
-    force_[v] = to_float((area_[v] * dot(near.point - point, across)) * across);
-    distance_[v] = static_cast<float>(std::sqrt(near.squared_distance));
-    face_[v] = near.face;
+    force_[v] = is_on_curve_[v] ? force_to_curve(v) : size > 0 ? force_to_surface(v, (1 / size) * normal) : Vec3f{};
   }
+}
+
+Vec3f ResidualFit::force_to_curve(uint32_t v) const {
+  const Vec3d point = to_double(positions_[v]);
+  return to_float(area_[v] * (original_.curves().nearest(point).point - point));
+}
+
+/// A vertex that no face of about its normal is near is lost: it is pulled to the nearest point of all.
+Vec3f ResidualFit::force_to_surface(uint32_t v, Vec3d normal) {
+  const SurfaceTree& tree = original_.tree();
+  const Vec3d point = to_double(positions_[v]);
+  const Nearest near = nearest(v, normal);
+  if (near.face == none) {
+    distance_[v] = -1;
+    return to_float(area_[v] * (tree.nearest(point).point - point));
+  }
+  const Vec3d across = tree.unit_normal(near.face);
+  distance_[v] = static_cast<float>(std::sqrt(near.squared_distance));
+  face_[v] = near.face;
+  return to_float((area_[v] * dot(near.point - point, across)) * across);
 }
 
 /// The original's point nearest to the vertex, as far as it moves from turn to turn. Where the vertex lies straight
@@ -120,6 +163,11 @@ void ResidualFit::push_down() {
     Level& level = levels_[l];
     const Topology& t = level.level.topology();
     const LinearStencils& stencils = level.stencils;
+    for (size_t c = 0; c < level.gradient_across.size(); ++c) {
+      const uint32_t e = level.level.curve_edges()[c];
+      const Vec3f across = residual_tangents(t, positions_.data(), e, level.normals[e]).across;
+      level.gradient_across[c] = dot(force_[t.vertex_count + e], across);
+    }
     for (uint32_t e = 0; e < t.edge_count(); ++e) {
       const uint32_t v = t.vertex_count + e;
       const Vec3f force = force_[v];
@@ -146,31 +194,39 @@ void ResidualFit::improve(Level& level, double bit_cost) {
   }
   rates.finish();
 
-  Buffer<float> gain(edges);
-  Buffer<int32_t> change(edges);
-  const double step = level.residuals.step;
-  for (uint32_t e = 0; e < edges; ++e) {
-    const double gradient = level.gradient[e];
-    const double curvature = squared_influence * level.area[e];
-    const int32_t now = residual[e];
-    const float bits = rates.bits(around[e], now);
-    const auto consider = [&](int32_t delta) {
-      if (delta == 0 || std::abs(now + delta) > largest_residual) return;
-      const double move = delta * step;
-      const double value =
-          2 * move * gradient - curvature * move * move - bit_cost * (rates.bits(around[e], now + delta) - bits);
-      if (value > gain[e]) gain[e] = static_cast<float>(value), change[e] = delta;
-    };
-    const double wanted = curvature > 0 ? gradient / (curvature * step) : 0;
-    const auto best = static_cast<int32_t>(std::lround(std::clamp(wanted, -1e6, 1e6)));
-    for (const int32_t delta : {1, -1, -now, best, best > 0 ? best - 1 : best + 1}) consider(delta);
-  }
+  std::vector<Change> change(edges);
+  for (uint32_t e = 0; e < edges; ++e)
+    change[e] = best_change(residual[e], level.gradient[e], level.area[e], level.residuals.step, bit_cost,
+                            [&](int32_t value) { return rates.bits(around[e], value); });
   // The best of each neighbourhood alone: changes beside each other would overshoot.
   for (uint32_t e = 0; e < edges; ++e) {
-    if (change[e] == 0) continue;
-    if (std::ranges::all_of(neighbours_of(t, e),
-                            [&](uint32_t n) { return gain[n] < gain[e] || (gain[n] == gain[e] && n >= e); }))
-      residual[e] += change[e];
+    if (change[e].steps == 0) continue;
+    if (std::ranges::all_of(neighbours_of(t, e), [&](uint32_t n) {
+          return change[n].gain < change[e].gain || (change[n].gain == change[e].gain && n >= e);
+        }))
+      residual[e] += change[e].steps;
+  }
+}
+
+/// Changes the parts across curves, at most every other one, as the halves of an edge lie beside each other.
+void ResidualFit::improve_across(Level& level, double bit_cost) {
+  Buffer<int32_t>& across = level.residuals.across;
+  RateTable rates;
+  for (const int32_t part : across) rates.count(0, part);
+  rates.finish();
+  const auto change_of = [&](size_t c) {
+    const uint32_t e = level.level.curve_edges()[c];
+    if (level.residuals.tangential.contains(e)) return Change{};
+    return best_change(across[c], level.gradient_across[c], level.area[e], level.residuals.step, bit_cost,
+                       [&](int32_t value) { return rates.bits(0, value); });
+  };
+  for (size_t c = 0; c < across.size(); c += 2) {
+    const Change one = change_of(c);
+    const Change two = c + 1 < across.size() ? change_of(c + 1) : Change{};
+    if (one.gain >= two.gain)
+      across[c] += one.steps;
+    else
+      across[c + 1] += two.steps;
   }
 }
 

@@ -34,25 +34,30 @@ class ResidualFit {
     DetailLevel level;
     Residuals residuals;
     LinearStencils stencils{};
-    Buffer<Vec3f> normals{};   // [E]
-    Buffer<float> gradient{};  // [E] of half the squared error, against the normal
-    Buffer<float> area{};      // [E] that a vertex moves
+    Buffer<Vec3f> normals{};          // [E]
+    Buffer<float> gradient{};         // [E] of half the squared error, against the normal
+    Buffer<float> gradient_across{};  // [C] against the direction across the edges on curves
+    Buffer<float> area{};             // [E] that a vertex moves
   };
   void forward();
   void find_forces();
   [[nodiscard]] Nearest nearest(uint32_t v, Vec3d normal) const;
   void push_down();
   void improve(Level& level, double bit_cost);
+  void improve_across(Level& level, double bit_cost);
+  [[nodiscard]] Vec3f force_to_surface(uint32_t v, Vec3d normal);
+  [[nodiscard]] Vec3f force_to_curve(uint32_t v) const;
 
   const OriginalSurface& original_;
   std::function<void()> poll_;
   std::vector<Level> levels_;
   Topology last_;
-  Buffer<Vec3f> positions_;  // [V] of the last level
-  Buffer<Vec3f> force_;      // [V] area times the way to the original
-  Buffer<float> area_;       // [V]
-  Buffer<float> distance_;   // [V] to the original when last looked; negative: not known
-  Buffer<uint32_t> face_;    // [V] of the original, nearest then
+  std::vector<bool> is_on_curve_;  // [V]
+  Buffer<Vec3f> positions_;        // [V] of the last level
+  Buffer<Vec3f> force_;            // [V] area times the way to the original
+  Buffer<float> area_;             // [V]
+  Buffer<float> distance_;         // [V] to the original when last looked; negative: not known
+  Buffer<uint32_t> face_;          // [V] of the original, nearest then
   uint32_t base_vertices_;
 };
 

@@ -25,6 +25,14 @@ struct ResidualContext {
   uint32_t turn = 0;                    ///< distance of the prediction from the middle of the edge, in eighths of steps
 };
 
+/// What is known of the residual of an edge on a curve.
+struct CurveContext {
+  uint32_t level = 0;                       ///< 1 is the first below the base
+  uint32_t parent = 0;                      ///< magnitude at the end that the level before made
+  bool has_sibling = false;                 ///< whether the other half of the edge that was split is coded
+  int32_t sibling = 0, sibling_across = 0;  ///< its parts
+};
+
 /// Adaptive models of residuals, alike in encoder and decoder. Each function codes through `code(bit, probability)`,
 /// which codes the bit and returns it, or reads it, whatever `bit` is; and returns what was coded or read.
 class ResidualModels {
@@ -50,6 +58,23 @@ class ResidualModels {
     return is_negative ? -value : value;
   }
 
+  /// Whether the residual of an edge on a curve has a part along it.
+  template <class Code>
+  bool code_curve_freedom(const CurveContext& context, bool is_free, const Code& code) {
+    return code_by(curve_freedom_[std::min(context.level, most_levels - 1)], is_free, code);
+  }
+  /// Its part along the normal.
+  template <class Code>
+  int32_t code_curve_normal(const CurveContext& context, int32_t part, const Code& code) {
+    return code_curve_part(curve_at(context, context.sibling, context.parent), context.sibling, part, code);
+  }
+  /// Its part across the edge, once that along the `normal` is coded.
+  template <class Code>
+  int32_t code_curve_across(const CurveContext& context, int32_t normal, int32_t part, const Code& code) {
+    const auto magnitude = static_cast<uint32_t>(std::abs(normal));
+    return code_curve_part(curve_rows / 2 + curve_at(context, context.sibling_across, magnitude),
+                           context.sibling_across, part, code);
+  }
   /// A tangential part.
   template <class Code>
   int32_t code_tangential(int32_t part, const Code& code) {
@@ -61,10 +86,12 @@ class ResidualModels {
 
  private:
   static constexpr uint32_t unary_limit = 14;
+  static constexpr uint32_t curve_classes = 5;
   static constexpr size_t inputs = 6, sign_inputs = 3;
   static constexpr uint32_t most_levels = 12;
   static constexpr uint32_t most_width = 20;
   static constexpr uint32_t even = 1U << 15;
+  static constexpr uint32_t curve_rows = 2 * most_levels * (curve_classes + 1) * curve_classes;
   using Models = std::vector<BitModel>;
   using Widths = std::array<BitModel, most_width>;
 
@@ -103,6 +130,23 @@ class ResidualModels {
     return coded;
   }
 
+  /// Row of the models of a part, by its sibling's and another magnitude.
+  static uint32_t curve_at(const CurveContext& c, int32_t sibling, uint32_t other) {
+    const uint32_t near = c.has_sibling ? 1 + class_of(static_cast<uint32_t>(std::abs(sibling)), curve_classes - 1) : 0;
+    return (std::min(c.level, most_levels - 1) * (curve_classes + 1) + near) * curve_classes +
+           class_of(other, curve_classes - 1);
+  }
+  template <class Code>
+  int32_t code_curve_part(uint32_t row, int32_t sibling, int32_t part, const Code& code) {
+    const auto magnitude = static_cast<uint32_t>(std::abs(part));
+    uint32_t coded = 0;
+    while (coded < unary_limit && code_by(curve_[row * unary_limit + coded], magnitude > coded, code)) ++coded;
+    if (coded == 0) return 0;
+    if (coded == unary_limit) coded += code_number(curve_widths_, magnitude - std::min(magnitude, unary_limit), code);
+    const bool is_negative = code_by(curve_signs_[sibling > 0 ? 1 : sibling < 0 ? 2 : 0], part < 0, code);
+    const auto value = static_cast<int32_t>(std::min(coded, static_cast<uint32_t>(largest_residual)));
+    return is_negative ? -value : value;
+  }
   /// A number of up to `most_width` bits: Exp-Golomb, its width by adaptive models.
   template <class Code>
   static uint32_t code_number(Widths& widths, uint32_t number, const Code& code) {
@@ -126,6 +170,8 @@ class ResidualModels {
   BitMixer<sign_inputs> sign_mixer_{1};
   Models freedom_{Models(5 * most_levels)};
   Widths widths_{}, tangential_widths_{};
+  Models curve_{Models(size_t{curve_rows} * unary_limit)}, curve_signs_{Models(3)}, curve_freedom_{Models(most_levels)};
+  Widths curve_widths_{};
 };
 
 }  // namespace papilio

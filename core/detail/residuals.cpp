@@ -8,45 +8,82 @@ namespace {
 
 /// Goes through the residuals in the order of their edges and codes each: encoder and decoder alike.
 template <class Code>
-void code_residuals(const DetailLevel& level, Residuals& residuals, std::span<const int32_t> at_vertex,
-                    const Buffer<Vec3f>& positions, ResidualModels& models, const Code& code) {
-  Buffer<uint8_t> is_free(residuals.along_normal.size());
-  for (uint32_t e = 0; e < residuals.along_normal.size(); ++e) {
-    const ResidualContext context =
-        level.context(e, residuals.along_normal, is_free, at_vertex, positions.data(), residuals.step);
-    const auto found = residuals.tangential.find(e);
-    is_free[e] = models.code_freedom(context, found != residuals.tangential.end(), code) ? 1 : 0;
-    residuals.along_normal[e] = models.code(context, residuals.along_normal[e], code);
-    if (is_free[e] == 0) continue;
-    auto& parts = residuals.tangential[e];
-    for (int32_t& part : parts) part = models.code_tangential(part, code);
+class ResidualPass {
+ public:
+  ResidualPass(const DetailLevel& level, Residuals& residuals, std::span<const int32_t> at_vertex,
+               const Buffer<Vec3f>& positions, ResidualModels& models, const Code& code)
+      : level_(level),
+        residuals_(residuals),
+        at_vertex_(at_vertex),
+        positions_(positions),
+        models_(models),
+        code_(code),
+        is_free_(residuals.along_normal.size()) {}
+
+  void run() {
+    const std::span<const uint32_t> curve_edges = level_.curve_edges();
+    uint32_t c = 0;
+    for (uint32_t e = 0; e < is_free_.size(); ++e) {
+      if (c < curve_edges.size() && curve_edges[c] == e)
+        code_curve_edge(e, c++);
+      else
+        code_edge(e);
+    }
   }
-}
+
+ private:
+  [[nodiscard]] bool has_tangential(uint32_t e) const { return residuals_.tangential.contains(e); }
+
+  void code_edge(uint32_t e) {
+    const ResidualContext context =
+        level_.context(e, residuals_.along_normal, is_free_, at_vertex_, positions_.data(), residuals_.step);
+    is_free_[e] = models_.code_freedom(context, has_tangential(e), code_) ? 1 : 0;
+    residuals_.along_normal[e] = models_.code(context, residuals_.along_normal[e], code_);
+    if (is_free_[e] != 0) code_tangential(e);
+  }
+
+  void code_curve_edge(uint32_t e, uint32_t c) {
+    const CurveContext context = level_.curve_context(c, residuals_.along_normal, residuals_.across, at_vertex_);
+    is_free_[e] = models_.code_curve_freedom(context, has_tangential(e), code_) ? 1 : 0;
+    int32_t& normal = residuals_.along_normal[e];
+    normal = models_.code_curve_normal(context, normal, code_);
+    if (is_free_[e] != 0)
+      code_tangential(e);
+    else
+      residuals_.across[c] = models_.code_curve_across(context, normal, residuals_.across[c], code_);
+  }
+
+  void code_tangential(uint32_t e) {
+    for (int32_t& part : residuals_.tangential[e]) part = models_.code_tangential(part, code_);
+  }
+
+  const DetailLevel& level_;
+  Residuals& residuals_;
+  std::span<const int32_t> at_vertex_;
+  const Buffer<Vec3f>& positions_;
+  ResidualModels& models_;
+  const Code& code_;
+  Buffer<uint8_t> is_free_;  // [E]
+};
 
 }  // namespace
 
-Vec3f displacement(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
-                   const Buffer<Vec3f>& positions, uint32_t e) {
-  Vec3f move = (static_cast<float>(residuals.along_normal[e]) * residuals.step) * normals[e];
-  const auto found = residuals.tangential.find(e);
-  if (found == residuals.tangential.end()) return move;
-  const Tangents tangents = residual_tangents(level.topology(), positions.data(), e, normals[e]);
-  move += (static_cast<float>(found->second[0]) * residuals.step) * tangents.along;
-  move += (static_cast<float>(found->second[1]) * residuals.step) * tangents.across;
-  return move;
-}
-
 void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
               Buffer<Vec3f>& positions) {
-  const uint32_t vertices = level.topology().vertex_count;
-  auto next = residuals.tangential.begin();
-  for (uint32_t e = 0; e < level.topology().edge_count(); ++e) {
-    if (next == residuals.tangential.end() || next->first != e) {
-      positions[vertices + e] += (static_cast<float>(residuals.along_normal[e]) * residuals.step) * normals[e];
-      continue;
-    }
-    positions[vertices + e] += displacement(level, normals, residuals, positions, e);
-    ++next;
+  const Topology& mesh = level.topology();
+  const float step = residuals.step;
+  for (uint32_t e = 0; e < mesh.edge_count(); ++e)
+    positions[mesh.vertex_count + e] += (static_cast<float>(residuals.along_normal[e]) * step) * normals[e];
+  for (size_t c = 0; c < residuals.across.size(); ++c) {
+    if (residuals.across[c] == 0) continue;
+    const uint32_t e = level.curve_edges()[c];
+    const Tangents tangents = residual_tangents(mesh, positions.data(), e, normals[e]);
+    positions[mesh.vertex_count + e] += (static_cast<float>(residuals.across[c]) * step) * tangents.across;
+  }
+  for (const auto& [e, parts] : residuals.tangential) {
+    const Tangents tangents = residual_tangents(mesh, positions.data(), e, normals[e]);
+    positions[mesh.vertex_count + e] += (static_cast<float>(parts[0]) * step) * tangents.along;
+    positions[mesh.vertex_count + e] += (static_cast<float>(parts[1]) * step) * tangents.across;
   }
 }
 
@@ -55,19 +92,22 @@ std::vector<uint8_t> encode_residuals(const DetailLevel& level, const Residuals&
                                       ResidualModels& models) {
   BinaryEncoder encoder;
   Residuals copy = residuals;
-  code_residuals(level, copy, at_vertex, positions, models, [&](bool bit, uint32_t probability) {
+  const auto code = [&](bool bit, uint32_t probability) {
     encoder.code(bit, probability);
     return bit;
-  });
+  };
+  ResidualPass(level, copy, at_vertex, positions, models, code).run();
   return encoder.finish();
 }
 
 Residuals decode_residuals(const DetailLevel& level, std::span<const uint8_t> bytes, float step,
                            std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions, ResidualModels& models) {
   BinaryDecoder decoder(bytes);
-  Residuals residuals{.step = step, .along_normal = Buffer<int32_t>(level.topology().edge_count())};
-  code_residuals(level, residuals, at_vertex, positions, models,
-                 [&](bool, uint32_t probability) { return decoder.code(probability); });
+  Residuals residuals{.step = step,
+                      .along_normal = Buffer<int32_t>(level.topology().edge_count()),
+                      .across = Buffer<int32_t>(level.curve_edges().size())};
+  const auto code = [&](bool, uint32_t probability) { return decoder.code(probability); };
+  ResidualPass(level, residuals, at_vertex, positions, models, code).run();
   return residuals;
 }
 

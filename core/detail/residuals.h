@@ -12,10 +12,12 @@
 
 namespace papilio {
 
-/// Residuals of one level in steps. Most new vertices move along their normals alone; some have two tangential parts.
+/// Residuals of one level in steps. Most new vertices move along their normals alone, those on curves also across their
+/// edges. Free ones have two tangential parts in place of that.
 struct Residuals {
   float step = 0;
   Buffer<int32_t> along_normal;                             ///< [E]
+  Buffer<int32_t> across{};                                 ///< [C] of the edges on curves
   std::map<uint32_t, std::array<int32_t, 2>> tangential{};  ///< by edge: along the edge, and across it
 
   friend bool operator==(const Residuals&, const Residuals&) = default;
@@ -25,9 +27,6 @@ struct Residuals {
 /// everywhere.
 void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
               Buffer<Vec3f>& positions);
-/// How far it moves the new vertex of edge e.
-[[nodiscard]] Vec3f displacement(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
-                                 const Buffer<Vec3f>& positions, uint32_t e);
 
 /// Codes residuals. `at_vertex` [V] are those of the vertices along their normals, 0 on the base; `positions` [V + E]
 /// hold the predictions. `models` learn, and go on to the next level.

@@ -36,8 +36,8 @@ std::optional<LineHit> walk_to_line(const Mesh& surface, uint32_t start_face, Ve
       if (side < least * size) least = side / size, out = 3 * face + i;
     }
     if (out == none) return LineHit{face, dot(normal, corner[0]) / along};
+    if (t.is_curve(out)) return std::nullopt;
     from = t.twin[out];
-    if (from == none) return std::nullopt;
     face = Topology::face(from);
   }
   return std::nullopt;

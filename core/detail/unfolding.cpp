@@ -44,17 +44,21 @@ void Unfolding::add(uint32_t half_edge, double length, double angle) {
   faces_.push_back({half_edge, length, angle, 0, 0});
 }
 
-void Unfolding::lay_out() {
-  double longest = 0, turn = 0;
-  for (const Face& face : faces_) {
-    longest = std::max(longest, face.length);
-    turn += face.angle;
+void Unfolding::lay_out(size_t curve_tip) {
+  double longest = 0;
+  std::array<double, 2> turn{};  // before and after the second tip of the curve
+  for (size_t i = 0; i < faces_.size(); ++i) {
+    longest = std::max(longest, faces_[i].length);
+    turn[i < curve_tip ? 0 : 1] += faces_[i].angle;
   }
+  const double whole = curve_tip == 0 ? 2 * std::numbers::pi : std::numbers::pi;
   double angle = 0;
-  for (Face& face : faces_) {
+  for (size_t i = 0; i < faces_.size(); ++i) {
+    Face& face = faces_[i];
+    if (i == curve_tip && i > 0) angle = std::numbers::pi;
     face.x = face.length / longest * std::cos(angle);
-    face.y = face.length / longest * std::sin(angle);
-    angle += face.angle * 2 * std::numbers::pi / turn;
+    face.y = face.length / longest * (i == curve_tip ? 0 : std::sin(angle));
+    angle += face.angle * whole / turn[i < curve_tip ? 0 : 1];
   }
 }
 
@@ -63,7 +67,7 @@ bool Unfolding::is_valid() const {
   for (size_t i = 0; i < faces_.size(); ++i) {
     const Point b = at(i);
     const Point c = at(i + 1);
-    if (!(cross(b, c) > 0)) return false;
+    if (faces_[i].half_edge != none && !(cross(b, c) > 0)) return false;
     if (i == 0 || i + 1 == faces_.size()) continue;
     const Point side = b - at(0);
     const Point other = c - at(0);
@@ -107,6 +111,7 @@ void UnfoldingSequence::lift(std::vector<SurfacePlace>& places, size_t count, ui
       double best = -std::numeric_limits<double>::infinity();
       for (size_t i = 0; i < spokes.size() && best < 0; ++i) {
         const Spoke& from = spokes[i];
+        if (from.half_edge == none) continue;
         const Spoke& to = spokes[(i + 1) % spokes.size()];
         const Point b{from.x, from.y};
         const Point c{to.x, to.y};

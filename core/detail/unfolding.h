@@ -6,26 +6,31 @@
 #include <vector>
 
 #include "detail/surface_place.h"
+#include "papilio/mesh.h"
 
 namespace papilio {
 
 /// Faces round a vertex, laid out in the plane with the vertex at the origin; and the fan that covers the same polygon
-/// once the vertex has moved onto the first of its neighbours.
+/// once the vertex has moved onto the first of its neighbours. A curve through the vertex is laid out as a straight
+/// line: each side of it has half a turn. Beyond a boundary lies a gap in place of a face.
 class Unfolding {
  public:
   void clear();
   /// Adds a face, counter-clockwise: the half-edge that leaves the vertex in it, its length, and the face's angle
   /// there.
   void add(uint32_t half_edge, double length, double angle);
-  /// Lays the faces out: angles in proportion, lengths as they are.
-  void lay_out();
+  /// Adds the gap beyond a boundary, between the tip of a boundary edge and that of the next one.
+  void add_gap(double length) { add(none, length, 1); }
+  /// Lays the faces out: angles in proportion, lengths as they are. A curve through the vertex goes from the first tip
+  /// to that of this number; 0: there is none.
+  void lay_out(size_t curve_tip = 0);
   /// Whether every face is positively oriented before and after, and clearly so after.
   [[nodiscard]] bool is_valid() const;
 
  private:
   friend class UnfoldingSequence;
   struct Face {
-    uint32_t half_edge;
+    uint32_t half_edge;  ///< none: a gap
     double length, angle;
     double x, y;  ///< of the half-edge's tip
   };

@@ -59,7 +59,7 @@ class Packer {
                                 .on_progress = options_.on_progress};
     const EncodedDetail encoded =
         encode_detail(surface, options, [&](const TriangleMesh& base) { return coder.code(base); });
-    packed_.glb = write_packed(encoded, coder.stream_of(encoded.base));
+    packed_.glb = write_packed(encoded, coder.stream_of(encoded.base.triangles));
     packed_.folds = encoded.folds;
     packed_.model = read_packed(packed_.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
   }

@@ -13,7 +13,7 @@ void add_reach(Json& json, const DetailReach& reach) {
 }
 
 Json json_of(const PackedModel& model) {
-  Json base{{"vertices", model.base.positions.size()}, {"faces", model.base.triangles.size()}};
+  Json base{{"vertices", model.base.triangles.positions.size()}, {"faces", model.base.triangles.triangles.size()}};
   base["bytes"] = model.base_bytes;
   add_reach(base, model.base_reach);
   Json levels = Json::array();

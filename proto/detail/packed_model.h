@@ -20,7 +20,7 @@ struct PackedLevel {
 
 /// A packed model as its reader has it.
 struct PackedModel {
-  TriangleMesh base;
+  DetailBase base;
   uint64_t base_bytes = 0;  ///< of its Draco stream
   DetailReach base_reach;
   std::vector<PackedLevel> levels;  ///< those that were read, coarse first

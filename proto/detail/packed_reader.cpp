@@ -75,6 +75,7 @@ class PackedReader {
     const uint64_t faces = declared_faces();
     require_room(faces, std::min(options_.levels, levels.size()));
     read_base(faces, model);
+    read_curves(extension, model);
     read_levels(levels, model);
     return model;
   }
@@ -117,7 +118,7 @@ class PackedReader {
   /// Returns the faces that the accessor of the indices declares.
   [[nodiscard]] uint64_t declared_faces() const {
     const uint64_t corners = declared_count(gltf::index_member(*primitive_, "indices", primitive_place));
-    if (corners % 6 != 0) refuse_document(primitive_place, "has other than an even number of triangles");
+    if (corners % 3 != 0) refuse_document(primitive_place, "has indices of other than whole triangles");
     return corners / 3;
   }
 
@@ -143,10 +144,13 @@ class PackedReader {
   std::optional<std::string_view> bytes_of(const Json& of, const std::string& where) {
     const auto number = gltf::index_member(of, "bufferView", where);
     if (!number) return std::string_view();
-    const gltf::ViewRange range = gltf::view_range(document_, *number, where);
-    const std::string view = gltf::place("bufferViews", *number);
+    return bytes_of_view(*number, where);
+  }
+  std::optional<std::string_view> bytes_of_view(uint32_t number, const std::string& where) {
+    const gltf::ViewRange range = gltf::view_range(document_, number, where);
+    const std::string view = gltf::place("bufferViews", number);
     for (const char* key : {"byteStride", "extensions"})
-      if (gltf::element_of(document_.json, "bufferViews", *number, where).contains(key))
+      if (gltf::element_of(document_.json, "bufferViews", number, where).contains(key))
         refuse_document(view, "holds a stream and has " + std::string(key));
     if (range.offset < end_)
       refuse_document(view, "begins at byte " + std::to_string(range.offset) + ", before the end of " + before_ +
@@ -173,33 +177,46 @@ class PackedReader {
     if (base.positions.size() != vertices || base.triangles.size() != faces)
       refuse_document(primitive_place, "declares other counts than its Draco stream has");
     if (!base.attributes.empty()) refuse_scene("other attributes than POSITION");
-    require_closed(base);
+    edges_ = edges_of(base);
     model.base_bytes = stream->size();
-    model.base = std::move(base);
+    model.base.triangles = std::move(base);
   }
 
-  static void require_closed(const TriangleMesh& base) {
+  /// Returns the edges of a base. Refuses one that is not manifold.
+  static uint64_t edges_of(const TriangleMesh& base) {
     BuildReport found;
-    translate_errors([&] { (void)build_mesh(base, &found); });
+    const Mesh mesh = translate_errors([&] { return build_mesh(base, &found); });
     const uint32_t changed =
         found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces;
-    const uint32_t open = found.boundary_edges + found.non_manifold_edges + found.misoriented_edges;
-    if (changed + open + found.pinched_vertices > 0)
-      throw Problem(Code::mesh_unusable, "The base is not a closed manifold surface. Pack the original again.");
+    if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
+      throw Problem(Code::mesh_unusable, "The base is not a manifold surface. Pack the original again.");
+    return mesh.topology.edge_count();
+  }
+
+  void read_curves(const Json& extension, PackedModel& model) {
+    const auto number = gltf::index_member(extension, "curves", detail_place);
+    if (!number) return;
+    const std::optional<std::string_view> bytes = bytes_of_view(*number, detail_place);
+    if (!bytes)
+      throw Problem(Code::mesh_not_gltf,
+                    "The file is cut inside the curves of its base, so no level can be read. Provide more of it.");
+    model.base.curves.assign(bytes->begin(), bytes->end());
   }
 
   void read_levels(const Json& levels, PackedModel& model) {
-    uint64_t faces = model.base.triangles.size();
-    uint64_t edges = faces / 2 * 3;
-    for (size_t l = 0; l < levels.size(); ++l, edges *= 4) {
+    uint64_t faces = model.base.triangles.triangles.size();
+    uint64_t edges = edges_;
+    for (size_t l = 0; l < levels.size(); ++l) {
       const std::string where = detail_place + ".levels[" + std::to_string(l) + "]";
       PackedLevel level{.stream = {step_member(levels[l], where), {}},
                         .reach = reach_member(levels[l], where),
                         .vertices = gltf::whole_number(levels[l], "vertices", where),
-                        .faces = faces *= 4};
+                        .faces = 4 * faces};
       if (level.vertices != edges)
         refuse_document(where + ".vertices",
                         "is " + std::to_string(level.vertices) + ", and the base gives " + std::to_string(edges));
+      edges = 2 * edges + 3 * faces;
+      faces *= 4;
       const std::optional<std::string_view> bytes = bytes_of(levels[l], where);
       if (!bytes || l != model.levels.size() || l >= options_.levels) continue;
       level.stream.bytes.assign(bytes->begin(), bytes->end());
@@ -210,6 +227,7 @@ class PackedReader {
   const ReadOptions& options_;
   gltf::Document document_;
   const Json* primitive_ = nullptr;
+  uint64_t edges_ = 0;                       ///< of the base
   uint64_t end_ = 0;                         ///< of the last view, in the binary chunk
   std::string before_ = "the binary chunk";  ///< name of the last view
 };

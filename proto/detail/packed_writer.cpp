@@ -102,22 +102,29 @@ void put_reach(Json& json, const DetailReach& reach) {
 std::string write_packed(const EncodedDetail& detail, std::string_view base_stream) {
   if (detail.reach.size() != detail.levels.size() + 1 || detail.levels.size() > most_detail_levels)
     throw std::invalid_argument("write_packed: levels and distances disagree");
-  Scene scene = scene_of(detail.base, base_stream);
+  const TriangleMesh& base = detail.base.triangles;
+  Scene scene = scene_of(base, base_stream);
   scene.json["extensionsUsed"].push_back(gltf::detail_extension);
   Json extension{{"version", detail_version}};
   put_reach(extension, detail.reach[0]);
+  const auto text_of = [](const std::vector<uint8_t>& bytes) {
+    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  if (!detail.base.curves.empty()) extension["curves"] = scene.add_view(text_of(detail.base.curves));
   extension["levels"] = Json::array();
-  uint64_t edges = detail.base.triangles.size() * 3 / 2;  // of a closed surface
-  for (size_t l = 0; l < detail.levels.size(); ++l, edges *= 4) {
+  uint64_t faces = base.triangles.size();
+  uint64_t edges = build_mesh(base).topology.edge_count();
+  for (size_t l = 0; l < detail.levels.size(); ++l) {
     const DetailStream& stream = detail.levels[l];
     if (!(stream.step > 0 && stream.step <= coordinate_limit)) throw std::invalid_argument("write_packed: no step");
     Json level = Json::object();
-    const std::string_view bytes(reinterpret_cast<const char*>(stream.bytes.data()), stream.bytes.size());
-    if (!bytes.empty()) level["bufferView"] = scene.add_view(bytes);  // a view has at least one byte
+    if (!stream.bytes.empty()) level["bufferView"] = scene.add_view(text_of(stream.bytes));  // of a byte at least
     level["step"] = shortest(stream.step);
     level["vertices"] = edges;
     put_reach(level, detail.reach[l + 1]);
     extension["levels"].push_back(std::move(level));
+    edges = 2 * edges + 3 * faces;
+    faces *= 4;
   }
   scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
   return std::move(scene).write();

@@ -34,7 +34,7 @@ void read_and_decode(uint8_t choice, std::string_view text) {
   fuzz::require(model.levels.size() <= levels && model.levels.size() <= model.declared_levels, "no level is invented");
   fuzz::require(may_be_cut || model.levels.size() == std::min(levels, model.declared_levels), "no level is lost");
   const TriangleMesh fine = decode_detail(model.base, model.streams(), limits.max_output_faces);
-  const uint64_t faces = model.levels.empty() ? model.base.triangles.size() : model.levels.back().faces;
+  const uint64_t faces = model.levels.empty() ? model.base.triangles.triangles.size() : model.levels.back().faces;
   fuzz::require(fine.triangles.size() == faces, "the faces are those declared");
 }
 

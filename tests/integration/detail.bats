@@ -115,7 +115,7 @@ report() { jq -r "$1" report.json; }
   ! grep -q PAPILIO_detail refined.glb
 }
 
-@test "an open surface becomes plain Draco, and it is said" {
+@test "a small open surface becomes plain Draco, and it is said" {
   printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 1' 'f 1 2 3' 'f 1 3 4' >open.obj
   run --separate-stderr "$papilio" pack open.obj -o open.glb --json
   [ "$status" = 0 ]

@@ -20,8 +20,8 @@ inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, siz
   std::mt19937 random(7);
   PackedFixture made;
   proto::detail::DracoBaseCoder coder(1e-3);
-  made.detail.base = coder.code(base).triangles;
-  made.base_stream = coder.stream_of(made.detail.base);
+  made.detail.base = {coder.code(base).triangles};
+  made.base_stream = coder.stream_of(made.detail.base.triangles);
   made.detail.reach.push_back({0.01, 0.0625});
   for (size_t l = 0; l < levels; ++l) {
     DetailStream& stream = made.detail.levels.emplace_back();

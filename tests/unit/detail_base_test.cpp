@@ -7,7 +7,6 @@
 #include "core/detail/base_lift.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/detail_level.h"
-#include "core/detail/linear_stencils.h"
 #include "core/detail/surface_distance.h"
 #include "core/detail/surface_walk.h"
 #include "papilio/refine.h"
@@ -27,33 +26,6 @@ TriangleMesh sphere(int levels) {
   TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
   for (Vec3f& p : mesh.positions) p = (1 / length(p)) * p;
   return mesh;
-}
-
-TEST(LinearStencils, AreTheButterfly) {
-  std::mt19937 random(1);
-  int closed = 0;
-  while (closed < 60) {
-    const Mesh mesh = build_mesh(test::random_manifold(random));
-    const Topology& t = mesh.topology;
-    if (std::ranges::any_of(t.kind, [](EdgeKind kind) { return kind != EdgeKind::smooth; })) continue;
-    ++closed;
-    Options options;
-    options.levels = 1;
-    options.tension = Tension::off;
-    const Mesh refined = refine(mesh, options).mesh;
-    const LinearStencils stencils = linear_stencils(t);
-    ASSERT_EQ(stencils.first.size(), t.edge_count() + 1);
-    for (uint32_t e = 0; e < t.edge_count(); ++e) {
-      Vec3d sum;
-      double weights = 0;
-      for (uint32_t i = stencils.first[e]; i < stencils.first[e + 1]; ++i) {
-        sum += double{stencils.weight[i]} * to_double(mesh.positions[stencils.vertex[i]]);
-        weights += stencils.weight[i];
-      }
-      EXPECT_NEAR(weights, 1, 1e-6);
-      EXPECT_LT(length(sum - to_double(refined.positions[t.vertex_count + e])), 1e-5);
-    }
-  }
 }
 
 TEST(SurfaceTree, FindsTheNearestPoint) {

@@ -87,8 +87,8 @@ TEST(PackedModel, AnyStepComesBackToTheBit) {
 TEST(PackedModel, AnyViewerReadsTheBase) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2);
   const FormattedMesh seen = gltf::flatten_scene(made.glb, {});
-  EXPECT_EQ(seen.positions.size(), made.detail.base.positions.size());
-  EXPECT_EQ(seen.triangles, made.detail.base.triangles);
+  EXPECT_EQ(seen.positions.size(), made.detail.base.triangles.positions.size());
+  EXPECT_EQ(seen.triangles, made.detail.base.triangles.triangles);
   const Json json = test::json_of_glb(made.glb);
   EXPECT_EQ(json["extensionsUsed"], (Json{"KHR_draco_mesh_compression", "PAPILIO_detail"}));
   EXPECT_EQ(json["extensionsRequired"], (Json{"KHR_draco_mesh_compression"}));
@@ -213,12 +213,28 @@ TEST(PackedModel, TheLimitHoldsBeforeTheBaseIsDecoded) {
   EXPECT_EQ(refusal(large), "result_too_large");
 }
 
-TEST(PackedModel, AnOpenOrPinchedBaseIsRefused) {
-  for (const TriangleMesh& base : {test::grid(4, 4), test::fan(6, false)}) {
+TEST(PackedModel, OfAnOpenBaseHasTheEdgesOfEachLevel) {
+  PackedFixture made = packed_fixture(test::grid(3, 2), 3);
+  made.detail.base.curves = {1, 2, 3};
+  const PackedModel model = read_packed(write_packed(made.detail, made.base_stream));
+  EXPECT_EQ(model.base, made.detail.base);
+  const TriangleMesh fine = decode_detail(model.base, model.streams());
+  ASSERT_EQ(model.levels.size(), 3U);
+  uint64_t vertices = model.base.triangles.positions.size();
+  for (const PackedLevel& level : model.levels) vertices += level.vertices;
+  EXPECT_EQ(vertices, fine.positions.size());
+  EXPECT_EQ(model.levels.back().faces, fine.triangles.size());
+}
+
+TEST(PackedModel, ABaseThatIsNotManifoldIsRefused) {
+  const TriangleMesh pinched = test::join(test::fan(6, false), test::fan(6, false, -3), 0);
+  const TriangleMesh three_faces{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 1}, {0, -1, -1}},
+                                 .triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
+  for (const TriangleMesh& base : {pinched, three_faces}) {
     PackedFixture made = packed_fixture(test::icosahedron(), 1);
     const Mesh mesh = build_mesh(base);
     made.base_stream = write_draco(mesh, tight_box(bounding_box(mesh.positions)), {.speed = 0});
-    made.detail.base = base;
+    made.detail.base = {mesh.triangles()};
     EXPECT_NE(refusal(write_packed(made.detail, made.base_stream)), "read");
   }
 }
@@ -254,7 +270,7 @@ TEST(PackedModel, ScenesThatTheFormatDoesNotAllowAreRefused) {
 TEST(PackedModel, OnlyFilesWithTheExtensionArePacked) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 1);
   EXPECT_TRUE(is_packed(made.glb));
-  EXPECT_FALSE(is_packed(write_plain(made.detail.base, made.base_stream)));
+  EXPECT_FALSE(is_packed(write_plain(made.detail.base.triangles, made.base_stream)));
   for (const char* bytes : {"", "glTF", "DRACO", "{\"asset\":{}}"}) EXPECT_FALSE(is_packed(bytes));
 }
 

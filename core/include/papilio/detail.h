@@ -17,6 +17,14 @@ namespace papilio {
 /// Most levels of detail.
 inline constexpr int most_detail_levels = 10;
 
+/// Coarse mesh that levels refine.
+struct DetailBase {
+  TriangleMesh triangles;        ///< manifold; edges with one face are boundaries
+  std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
+
+  friend bool operator==(const DetailBase&, const DetailBase&) = default;
+};
+
 /// Residuals of one level.
 struct DetailStream {
   float step = 0;              ///< quantization step, in the mesh's unit; > 0
@@ -30,10 +38,10 @@ struct DetailReach {
 };
 
 /// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams.
-/// `base` must be closed and manifold. Any bytes are decoded to some mesh. The same bits on every processor. Throws
+/// `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every processor. Throws
 /// `Error`: bad_option (no step, too many levels), not_finite, result_too_large beyond `face_limit`, cancelled, and
 /// what build_mesh() throws. O(result).
-[[nodiscard]] TriangleMesh decode_detail(const TriangleMesh& base, std::span<const DetailStream> levels,
+[[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
 
@@ -54,17 +62,19 @@ struct DetailOptions {
 };
 
 struct EncodedDetail {
-  TriangleMesh base;  ///< as decoded; decode_detail() takes it as it is
+  DetailBase base;  ///< as decoded; decode_detail() takes it as it is
   std::vector<DetailStream> levels;
   std::vector<DetailReach> reach;  ///< [levels + 1] of the base alone, with the first level, and so on
   uint32_t folds = 0;              ///< faces of the last level turned against the original where they lie
-  uint64_t bytes = 0;              ///< of base and streams
+  uint32_t parted = 0;             ///< vertices at which the original touches itself, which were parted
+  uint64_t bytes = 0;              ///< of base, curves and streams
 };
 
-/// Encodes an original, which must be closed, manifold and without attributes. The number of base faces, of levels and
-/// the steps are those, of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached
-/// they come nearest to it (`reach`). Throws `Error`: bad_option, bad_surface (open, pinched or not manifold),
-/// cancelled, out_of_memory, and what build_mesh() throws.
+/// Encodes an original without its attributes. Boundaries and sharp edges that form clean curves become curves of the
+/// base. Where the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of the
+/// wanted distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the fewest
+/// bytes for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`: bad_option,
+/// bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "detail/surface_tree.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Boundaries and creases of an original, as polylines.
+class OriginalCurves {
+ public:
+  /// The mesh must be manifold, with its edges and corners.
+  explicit OriginalCurves(const Mesh& mesh);
+
+  [[nodiscard]] bool empty() const { return segments_.empty(); }
+  /// The nearest point of all curves; `face` is the number of its segment.
+  [[nodiscard]] Nearest nearest(Vec3d point, double reach = std::numeric_limits<double>::infinity()) const;
+  /// Follows the curve from a segment to where it meets the plane through `point` across `direction`; no farther than
+  /// to its ends, or than `reach` from `start`.
+  [[nodiscard]] std::optional<Vec3d> meet(uint32_t segment, Vec3d start, Vec3d point, Vec3d direction,
+                                          double reach) const;
+
+ private:
+  struct Segment {
+    std::array<uint32_t, 2> vertex;
+    std::array<uint32_t, 2> beyond{none, none};  ///< the segment that goes on behind each vertex
+  };
+  [[nodiscard]] Vec3d place(uint32_t vertex) const { return to_double(positions_[vertex]); }
+
+  const Buffer<Vec3f>& positions_;
+  std::vector<Segment> segments_;
+  std::optional<SurfaceTree> tree_;  // of faces without area, one a segment
+};
+
+}  // namespace papilio

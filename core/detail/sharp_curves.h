@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// What a vertex is to the curves of a surface: its boundaries and creases.
+enum class CurveRole : uint8_t {
+  smooth,  ///< inside a smooth part
+  inner,   ///< a curve goes through it
+  corner,  ///< curves end there
+};
+
+/// Makes creases of the sharp edges that form clean curves, and finds their corners (`ShapeMarks::corners`: where a
+/// boundary or crease goes on but turns sharply). Sharp edges that are noise, single ones and jagged rows, stay smooth;
+/// where most are, all do. The mesh must be manifold, with its edges. O(F).
+void mark_sharp_curves(Mesh& mesh);
+
+/// Finds the corners of the curves that the mesh has.
+void mark_corners(Mesh& mesh);
+
+/// Roles of the vertices [V].
+[[nodiscard]] std::vector<CurveRole> curve_roles(const Topology& topology);
+
+}  // namespace papilio
