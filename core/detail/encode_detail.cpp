@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,10 +27,11 @@ constexpr double size_ratio = 1.5;
 constexpr uint32_t least_base_faces = 40;
 /// Faces of the first base, times the wanted distance. Most of those tried need about so many.
 constexpr double faces_at_distance = 0.06;
-/// Faces of the last level that is tried first, times the wanted distance.
-constexpr double least_last_faces = 7;
-/// The last level is fine enough once exact residuals leave this share of the wanted distance.
-constexpr double share_without_steps = 0.55;
+/// Faces of the last level that is tried first, and of that which is tried last, times the wanted distance.
+constexpr double least_last_faces = 7, most_last_faces = 50;
+/// Levels are added until exact residuals leave at most this share of the wanted distance; then as long as that pays,
+/// but none where they leave less than the second share.
+constexpr double largest_floor_of_trial = 0.8, floor_of_enough_levels = 0.4;
 /// Step, in wanted distances: to look how fine a level is, and where the search of the step begins.
 constexpr double fine_step = 1, first_step = 4;
 constexpr int step_trials = 3, step_trials_at_last = 4;
@@ -37,10 +39,12 @@ constexpr int step_trials = 3, step_trials_at_last = 4;
 constexpr double least_share = 0.96;
 constexpr int turns_of_trial = 2, turns_at_last = 5;  // a level
 constexpr double rate_weight = 2;
-/// The first base has so many faces that exact residuals leave at most so many wanted distances.
-constexpr double largest_start_floor = 1.5;
 constexpr int weighting_passes = 3;
-constexpr uint32_t samples_of_trial = 8'000, samples_at_last = 60'000;
+constexpr uint32_t samples_of_trial = 20'000, samples_at_last = 60'000;
+/// No step leaves the wanted distance where exact residuals leave more than this share of it.
+constexpr double largest_floor = 0.9;
+/// Bytes of the residuals go about with this power of 1 / step. A larger distance saves no more than this power of it.
+constexpr double bytes_by_step = 0.8, bytes_by_distance = 1.2;
 /// Larger bases that are tried where more samples show that a distance is not reached.
 constexpr int most_last_bases = 3;
 /// Vertices are parted by at most this share of the wanted distance.
@@ -51,17 +55,36 @@ void check(const DetailOptions& options) {
     throw Error(Fault::bad_option, "The distance must be 1e-6 to 0.1 of the diagonal.", "rms");
 }
 
+/// What a base with its levels comes to.
+struct Outcome {
+  double rms = 0;  ///< distance
+  uint64_t bytes = 0;
+  bool is_reached = false;    ///< whether the distance is the wanted one
+  double expected_bytes = 0;  ///< at the wanted distance; infinite where no step leaves it
+};
+
+/// Of trials.
+bool is_better(const Outcome& a, const Outcome& b) {
+  return a.expected_bytes != b.expected_bytes ? a.expected_bytes < b.expected_bytes : a.rms < b.rms;
+}
+/// Of results.
+bool is_better_result(const Outcome& a, const Outcome& b) {
+  if (a.is_reached != b.is_reached) return a.is_reached;
+  return a.is_reached ? a.bytes < b.bytes : a.rms < b.rms;
+}
+
 /// A base of one size with its levels.
 struct Trial {
   CodedBase coded;
   std::vector<uint8_t> curves;  ///< of the base, coded
   LiftedBase lifted;
-  int levels = 0;
-  double floor = 0;  ///< distance with fine steps
-  double step = 0;   ///< found
-  double rms = 0;    ///< with that step
-  uint64_t bytes = 0;
-  bool is_reached = false;
+  int most_levels = 0;
+  struct Choice {
+    int levels = 0;
+    double floor = 0;  ///< distance with fine steps
+    double step = 0;   ///< found
+    Outcome outcome;   ///< with that step
+  } chosen;
 };
 
 class DetailEncoder {
@@ -75,21 +98,18 @@ class DetailEncoder {
 
   EncodedDetail run() {
     size_t at = find_weights();
-    // Downhill over the sizes: one neighbour after the other, as long as the files get smaller.
-    for (const int direction : {-1, 1})
-      while (is_size(at, direction) && is_better(trial(at + static_cast<size_t>(direction)), trial(at)))
-        at += static_cast<size_t>(direction);
+    for (const int direction : {-1, 1}) at = best_size(at, direction);
     progress(0.8);
     const Trial* best = nullptr;
     std::optional<ResidualFit> best_fit;
     for (int tried = 0; tried < most_last_bases; ++tried) {
       Trial& last = trial(at);
       std::optional<ResidualFit> fit = find_step(last, turns_at_last, samples_at_last, step_trials_at_last);
-      if (best == nullptr || is_better(last, *best)) {
+      if (best == nullptr || is_better_result(last.chosen.outcome, best->chosen.outcome)) {
         best = &last;
         best_fit.emplace(std::move(*fit));
       }
-      if (last.is_reached || at == 0) break;
+      if (last.chosen.outcome.is_reached || at == 0) break;
       --at;
     }
     return finish(*best, *best_fit);
@@ -129,17 +149,21 @@ class DetailEncoder {
     collapse(sizes, start + 1, {});
     start = std::min(start, bases_.size() - 1);
     Trial trial = start_trial(start);
-    while (start > 0 && trial.floor > largest_start_floor * wanted_) trial = start_trial(--start);
+    while (start > 0 && trial.chosen.floor > largest_floor_of_trial * wanted_) trial = start_trial(--start);
 
     std::vector<float> weights, best_weights;
-    double best_floor = trial.floor;
+    choose(trial);
+    first_step_ = trial.chosen.step;
+    Outcome best = trial.chosen.outcome;
     for (int pass = 1; pass <= weighting_passes; ++pass) {
-      progress(0.3 * pass / weighting_passes);
-      weigh_errors(original_, fit(trial, fine_step * wanted_, 0).surface(static_cast<size_t>(trial.levels)), weights);
+      progress(0.4 * pass / weighting_passes);
+      weigh_errors(original_, fit(trial, fine_step * wanted_, 0).surface(static_cast<size_t>(trial.chosen.levels)),
+                   weights);
       collapse(sizes, start + 1, weights);
       trial = start_trial(std::min(start, bases_.size() - 1));
-      if (trial.floor > best_floor) continue;
-      best_floor = trial.floor;
+      choose(trial);
+      if (!is_better(trial.chosen.outcome, best)) continue;
+      best = trial.chosen.outcome;
       best_weights = weights;
     }
     collapse(sizes, sizes.size(), best_weights);
@@ -158,18 +182,23 @@ class DetailEncoder {
     }
   }
 
-  [[nodiscard]] bool is_size(size_t at, int direction) const { return direction > 0 ? at + 1 < bases_.size() : at > 0; }
-  static bool is_better(const Trial& a, const Trial& b) {
-    if (a.is_reached != b.is_reached) return a.is_reached;
-    return a.is_reached ? a.bytes < b.bytes : a.rms < b.rms;
+  /// Goes to larger (-1) or smaller (1) sizes, until two in a row are worse than the best.
+  size_t best_size(size_t at, int direction) {
+    size_t best = at;
+    for (int worse = 0; worse < 2 && (direction > 0 ? at + 1 < bases_.size() : at > 0);) {
+      at += static_cast<size_t>(direction);
+      const bool is_best = is_better(trial(at).chosen.outcome, trial(best).chosen.outcome);
+      worse = is_best ? 0 : worse + 1;
+      if (is_best) best = at;
+    }
+    return best;
   }
-
   Trial& trial(size_t size) {
     const auto [found, is_new] = trials_.try_emplace(size);
     if (!is_new) return found->second;
     Trial& trial = found->second = start_trial(size);
-    find_step(trial, turns_of_trial, samples_of_trial, step_trials);
-    first_step_ = trial.step;
+    choose(trial);
+    first_step_ = trial.chosen.step;
     return trial;
   }
 
@@ -179,15 +208,35 @@ class DetailEncoder {
     const BaseMesh& base = bases_[size];
     Trial trial;
     trial.coded = code_base_(base.triangles);
-    const int most = most_levels(base.face.size());
-    trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, most, poller());
+    trial.most_levels = most_levels(base.face.size());
+    trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, trial.most_levels, poller());
     trial.curves = encode_base_curves(trial.lifted.mesh.topology);
-    trial.levels = 1;
-    while (trial.levels < most && (base.face.size() << (2 * trial.levels)) * options_.rms < least_last_faces)
-      ++trial.levels;
-    for (;; ++trial.levels) {
-      trial.floor = distance(fit(trial, fine_step * wanted_, 0), samples_of_trial).rms;
-      if (trial.levels == most || trial.floor <= share_without_steps * wanted_) return trial;
+    Trial::Choice& chosen = trial.chosen;
+    chosen.levels = 1;
+    while (chosen.levels < trial.most_levels &&
+           static_cast<double>(base.face.size() << (2 * chosen.levels)) * options_.rms < least_last_faces)
+      ++chosen.levels;
+    for (;; ++chosen.levels) {
+      chosen.floor = floor_of(trial);
+      if (chosen.levels == trial.most_levels || chosen.floor <= largest_floor_of_trial * wanted_) return trial;
+    }
+  }
+  [[nodiscard]] double floor_of(const Trial& trial) const {
+    return distance(fit(trial, fine_step * wanted_, 0), samples_of_trial).rms;
+  }
+
+  /// Finds the step, and more levels as long as they are expected to take fewer bytes.
+  void choose(Trial& trial) {
+    find_step(trial, turns_of_trial, samples_of_trial, step_trials);
+    while (trial.chosen.levels < trial.most_levels && trial.chosen.floor > floor_of_enough_levels * wanted_) {
+      const Trial::Choice before = trial.chosen;
+      ++trial.chosen.levels;
+      trial.chosen.floor = floor_of(trial);
+      trial.chosen.outcome = {};
+      find_step(trial, turns_of_trial, samples_of_trial, step_trials);
+      if (is_better(trial.chosen.outcome, before.outcome)) continue;
+      trial.chosen = before;
+      return;
     }
   }
 
@@ -195,15 +244,18 @@ class DetailEncoder {
     const uint64_t original = original_.mesh().topology.face_count();
     const uint64_t most = std::min(options_.face_limit, std::max<uint64_t>(16 * original, 20'000));
     int levels = 0;
-    while (levels < most_detail_levels && (uint64_t{base_faces} << (2 * (levels + 1))) <= most) ++levels;
+    const auto faces = [&](int at) { return uint64_t{base_faces} << (2 * at); };
+    while (levels < most_detail_levels && faces(levels + 1) <= most &&
+           static_cast<double>(faces(levels)) * options_.rms < most_last_faces / 4)
+      ++levels;
     return std::max(levels, 1);
   }
 
   [[nodiscard]] ResidualFit fit(const Trial& trial, double step, int turns_a_level) const {
     const StepSchedule steps{.last = static_cast<float>(step)};
     ResidualFit fit(original_, trial.lifted.mesh.positions,
-                    place_on_original(original_, trial.lifted, trial.levels, steps, poller()), poller());
-    fit.improve(turns_a_level * trial.levels, rate_weight);
+                    place_on_original(original_, trial.lifted, trial.chosen.levels, steps, poller()), poller());
+    fit.improve(turns_a_level * trial.chosen.levels, rate_weight);
     return fit;
   }
 
@@ -211,39 +263,54 @@ class DetailEncoder {
     return surface_distance(original_.tree(), SurfaceTree(fit.surface(fit.level_count())), samples);
   }
 
-  /// Finds the step that leaves the wanted distance. The error's square is taken for the sum of the floor's and of one
-  /// in proportion to the step's.
+  /// Step that should leave the wanted distance, where `step` leaves `rms`: the error's square is taken for the sum of
+  /// the floor's and of one in proportion to the step's.
+  [[nodiscard]] double expected_step(double step, double rms, double floor) const {
+    floor = std::min(floor, largest_floor * wanted_);
+    const double of_step = std::max(rms * rms - floor * floor, 0.01 * rms * rms);
+    return step * std::clamp(0.99 * std::sqrt((wanted_ * wanted_ - floor * floor) / of_step), 0.3, 3.0);
+  }
+
+  /// Bytes of the residuals at the wanted distance, as a share of those that a choice has.
+  [[nodiscard]] double expected_share(const Trial::Choice& choice) const {
+    const double rms = choice.outcome.rms;
+    const double by_step = std::pow(choice.step / expected_step(choice.step, rms, choice.floor), bytes_by_step);
+    return std::max(by_step, std::pow(rms / wanted_, bytes_by_distance));
+  }
+
+  /// Finds the step that leaves the wanted distance.
   std::optional<ResidualFit> find_step(Trial& trial, int turns_a_level, uint32_t samples, int step_count) {
-    if (trial.step == 0) trial.step = first_step_;
+    if (trial.chosen.step == 0) trial.chosen.step = first_step_;
     std::optional<ResidualFit> best;
-    double step = trial.step;
+    double step = trial.chosen.step;
     for (int i = 0; i < step_count; ++i) {
       ResidualFit made = fit(trial, step, turns_a_level);
       const double rms = distance(made, samples).rms;
       const bool is_reached = rms <= wanted_;
-      if (!best || is_reached || !trial.is_reached) {
-        const bool is_worse = best && is_reached && trial.is_reached && step < trial.step;
-        if (!is_worse) {
-          trial.step = step;
-          trial.rms = rms;
-          trial.is_reached = is_reached;
-          best.emplace(std::move(made));
-        }
+      const bool is_coarser_step = is_reached && (!trial.chosen.outcome.is_reached || step >= trial.chosen.step);
+      if (!best || is_coarser_step || (!is_reached && !trial.chosen.outcome.is_reached)) {
+        trial.chosen.step = step;
+        trial.chosen.outcome = {.rms = rms, .is_reached = is_reached};
+        best.emplace(std::move(made));
       }
       if (is_reached && rms >= least_share * wanted_) break;
-      const double floor = std::min(trial.floor, 0.9 * wanted_);
-      const double of_step = std::max(rms * rms - floor * floor, 0.01 * rms * rms);
-      step *= std::clamp(0.99 * std::sqrt((wanted_ * wanted_ - floor * floor) / of_step), 0.3, 3.0);
+      step = expected_step(step, rms, trial.chosen.floor);
     }
-    trial.bytes = trial.coded.bytes + trial.curves.size();
-    for (const auto& stream : best->code()) trial.bytes += stream.size();
+    uint64_t streams = 0;
+    for (const auto& stream : best->code()) streams += stream.size();
+    Outcome& outcome = trial.chosen.outcome;
+    outcome.bytes = trial.coded.bytes + trial.curves.size() + streams;
+    outcome.expected_bytes =
+        trial.chosen.floor < wanted_ || outcome.is_reached
+            ? static_cast<double>(outcome.bytes - streams) + static_cast<double>(streams) * expected_share(trial.chosen)
+            : std::numeric_limits<double>::infinity();
     return best;
   }
 
   [[nodiscard]] EncodedDetail finish(const Trial& trial, const ResidualFit& fit) const {
     EncodedDetail encoded;
     encoded.base = {trial.coded.triangles, trial.curves};
-    encoded.bytes = trial.bytes;
+    encoded.bytes = trial.chosen.outcome.bytes;
     encoded.parted = parted_;
     auto streams = fit.code();
     for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({fit.step(l), std::move(streams[l])});

@@ -11,16 +11,12 @@
 namespace papilio {
 namespace {
 
-/// A line's hit is taken within this share of the edge's length of where the vertex is expected.
-constexpr double reach = 0.3;
+/// A line's hit is taken within so many lengths of the edge of where the vertex is expected.
+constexpr double reach = 2;
 /// A new face is turned over, or nearly, if its area seen along the original's normal is less than this share of a
 /// quarter of its parent's area.
-constexpr double least_area = 0.3;
-/// Rounds of mending faces that are turned over.
-constexpr int mending_rounds = 3;
-constexpr int untangling_passes = 3;
-/// From this level on the middle of an edge lies near its place on the original.
-constexpr uint32_t level_of_small_edges = 2;
+constexpr double least_area = 0.2;
+constexpr int untangling_passes = 6;
 
 class Placement {
  public:
@@ -49,16 +45,10 @@ class Placement {
     for (uint32_t e = 0; e < topology_->edge_count(); ++e)
       if (!is_on_curve(e)) find_target(e);
     for (uint32_t c = 0; c < level.curve_edges().size(); ++c) find_target_on_curve(c);
-    for (int round = 0;; ++round) {
-      positions_ = predicted_;
-      displace(level, directions_, made_, positions_);
-      if (!find_turned(round > 0)) break;
-      if (round == mending_rounds) {
-        untangle();
-        break;
-      }
-      mend_folds(round);
-    }
+    displace(level, directions_, made_, positions_);
+    for (int pass = 0; pass < untangling_passes && find_turned(); ++pass)
+      for (uint32_t e = 0; e < topology_->edge_count(); ++e)
+        if (is_bad_[e]) untangle(e);
     return std::move(made_);
   }
 
@@ -99,8 +89,11 @@ class Placement {
       const double off = length(point + hit->offset * direction - edge.expected);
       if (off < least) least = off, best = hit;
     }
-    if (best)
-      set_target(e, point + best->offset * direction, best->face, false);
+    if (best) return set_target(e, point + best->offset * direction, best->face, false);
+    const Nearest near = original_.tree().nearest(point, edge.length / 2, direction);
+    const Vec3d off = near.point - point;
+    if (near.face != none && length(off - dot(off, direction) * direction) <= made_.step)
+      set_target(e, near.point, near.face, false);
     else
       set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
   }
@@ -165,9 +158,8 @@ class Placement {
             area_normal({v[0], v[1], v[2]})};
   }
 
-  /// Finds the edges of faces that are turned over; of the `whole` parent, or of the child alone. Returns whether there
-  /// are any.
-  bool find_turned(bool whole) {
+  /// Finds the edges at whose new vertices faces are turned over. Returns whether there are any.
+  bool find_turned() {
     is_bad_.assign(topology_->edge_count(), false);
     bool found = false;
     for (uint32_t f = 0; f < topology_->face_count(); ++f) {
@@ -177,35 +169,14 @@ class Placement {
         if (surplus(child, of_face.parent) > 0) continue;
         found = true;
         for (uint32_t i = 0; i < 3; ++i)
-          if (whole || std::ranges::find(child, vertex(e[i])) != child.end()) is_bad_[e[i]] = true;
+          if (std::ranges::find(child, vertex(e[i])) != child.end()) is_bad_[e[i]] = true;
       }
     }
     return found;
   }
 
-  /// Frees the new vertices of faces that are turned over: first to where they are expected, then to the middles of
-  /// their edges.
-  void mend_folds(int round) {
-    for (uint32_t e = 0; e < topology_->edge_count(); ++e) {
-      if (!is_bad_[e]) continue;
-      const Ends edge = ends(e);
-      if (round > 0 && level_->number() >= level_of_small_edges)
-        set_free_target(e, edge, edge.middle, to_double(directions_[e]));
-      else
-        set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
-    }
-  }
-
-  /// Moves the new vertices of faces that are still turned over between their neighbours, one after the other, as far
-  /// as that turns the faces back. Of all roundings to steps the best is taken.
-  void untangle() {
-    for (int pass = 0; pass < untangling_passes; ++pass) {
-      for (uint32_t e = 0; e < topology_->edge_count(); ++e)
-        if (is_bad_[e]) untangle(e);
-      if (!find_turned(false)) return;
-    }
-  }
-
+  /// Moves the new vertex of an edge between its neighbours, as far as that turns faces back. Of all roundings to steps
+  /// the best is taken.
   void untangle(uint32_t e) {
     const uint32_t v = vertex(e);
     Vec3d middle;
@@ -217,8 +188,13 @@ class Placement {
     middle = (1 / count) * middle;
     Placed best = placed(e);
     double most = surplus_at(e);
-    for (const double share : {1.0, 0.5}) {
-      set_free_target(e, ends(e), share * middle + (1 - share) * to_double(best.position), to_double(directions_[e]));
+    const Ends edge = ends(e);
+    const Vec3d start = to_double(best.position);
+    for (int target = 0; target < 3; ++target) {
+      if (target == 0)
+        set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
+      else
+        set_free_target(e, edge, target == 1 ? middle : 0.5 * (middle + start), to_double(directions_[e]));
       const Placed rounded = placed(e);
       const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
       for (int i = 0; i < 9; ++i) {

@@ -27,8 +27,10 @@ struct StepSchedule {
 
 /// Chooses residuals level by level from decoded positions, so that errors do not add up. A new vertex goes where the
 /// line along its normal meets the original, found by walks over the surface from the vertex's neighbours and from the
-/// place that its parameters are lifted to. Where there is no such place near, or faces turn over, it goes to that
-/// place itself, by a residual of three parts. At most as many levels as were lifted.
+/// place that its parameters are lifted to. Where there is no such place near, it goes to that place
+/// itself, by a residual of three parts. Where faces turn over, their new vertices move between their neighbours as far
+/// as that turns them back. On curves a new vertex goes where the original's curve meets the plane across its edge. At
+/// most as many levels as were lifted.
 [[nodiscard]] PlacedLevels place_on_original(const OriginalSurface& original, const LiftedBase& base, int levels,
                                              const StepSchedule& steps, const std::function<void()>& poll);
 
