@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "papilio/detail.h"
+#include "papilio/error.h"
+
+namespace papilio {
+
+/// Throws `Error` unless the levels of a base of so many faces can be decoded within the limit: bad_option,
+/// result_too_large.
+inline void check_levels(uint64_t base_faces, std::span<const DetailStream> levels, uint64_t face_limit) {
+  if (levels.size() > static_cast<size_t>(most_detail_levels))
+    throw Error(Fault::bad_option,
+                "Detail has " + std::to_string(levels.size()) + " levels; at most " +
+                    std::to_string(most_detail_levels) + " are decoded.",
+                "levels");
+  for (const DetailStream& level : levels)
+    if (!(level.step > 0 && level.step <= coordinate_limit))
+      throw Error(Fault::bad_option, "A level of detail has a step that is not above 0.", "step");
+  const uint64_t faces = base_faces << (2 * levels.size());
+  if (faces > std::min(face_limit, face_count_limit))
+    throw Error(Fault::result_too_large, "Detail of " + std::to_string(levels.size()) + " levels has " +
+                                             std::to_string(faces) + " faces, more than the limit of " +
+                                             std::to_string(face_limit) + ". Decode fewer levels.");
+}
+
+}  // namespace papilio

@@ -1,0 +1,49 @@
+#include "detail/level_decoder.h"
+
+#include <cmath>
+
+#include "detail/base_curves.h"
+#include "detail/manifold_surface.h"
+#include "detail/residual_frames.h"
+#include "detail/residuals.h"
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+void require_finite(const Buffer<Vec3f>& positions) {
+  for (const Vec3f p : positions)
+    if (!(std::abs(p.x) <= coordinate_limit && std::abs(p.y) <= coordinate_limit && std::abs(p.z) <= coordinate_limit))
+      throw Error(Fault::not_finite, "Detail moves a vertex beyond the largest coordinate: it is damaged.");
+}
+
+}  // namespace
+
+Mesh mesh_of_base(const DetailBase& base) {
+  Mesh mesh = build_mesh(base.triangles);
+  require_manifold(mesh);
+  decode_base_curves(base.curves, mesh.topology);
+  return mesh;
+}
+
+LevelDecoder::LevelDecoder(Mesh base)
+    : positions_(std::move(base.positions)), at_vertex_(positions_.size()), level_(std::move(base.topology)) {}
+
+const Topology& LevelDecoder::topology() {
+  if (is_split_) level_ = level_.next();
+  is_split_ = false;
+  return level_.topology();
+}
+
+void LevelDecoder::decode(const DetailStream& stream) {
+  (void)topology();  // makes the level to be split
+  const Buffer<Vec3f> normals = residual_normals(level_, positions_.data());
+  level_.predict(positions_);
+  const Residuals residuals = decode_residuals(level_, stream.bytes, stream.step, at_vertex_, positions_, *models_);
+  displace(level_, normals, residuals, positions_);
+  require_finite(positions_);
+  at_vertex_.insert(at_vertex_.end(), residuals.along_normal.begin(), residuals.along_normal.end());
+  is_split_ = true;
+}
+
+}  // namespace papilio
