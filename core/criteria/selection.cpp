@@ -138,6 +138,10 @@ double Selection::flatness_of(int level) const {
   return index < options_.flatness.size() ? options_.flatness[index] : options_.flatness.back();
 }
 
+float Selection::error_of(const Mesh& mesh, const Trial& trial, uint32_t edge, double distance) const {
+  return measure_.grows_with_distance() ? measure_.error(mesh, trial.normals, edge, distance) : infinity;
+}
+
 bool Selection::later_level_is_finer(int level) const {
   if (options_.flatness.empty()) return false;
   for (int later = level + 1; later <= options_.levels; ++later)

@@ -123,6 +123,9 @@ class Selection {
   [[nodiscard]] Buffer<float> errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& wanted,
                                      const Box& box, float threshold, Reaching reaching = Reaching::exact) const;
 
+  /// The error that the edge would have with this deviation; infinity where that is not known (lights).
+  [[nodiscard]] float error_of(const Mesh& mesh, const Trial& trial, uint32_t edge, double distance) const;
+
   /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;
 

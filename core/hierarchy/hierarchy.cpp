@@ -4,12 +4,15 @@
 
 #include "mesh/ranks.h"
 #include "mesh/region.h"
+#include "papilio/detail.h"
 #include "rules/shape_rules.h"
 #include "simd/vec3fa.h"
 #include "split/split_in_four.h"
 
 namespace papilio {
 namespace {
+
+int detail_levels_below(const HierarchyLevel& above) { return std::max(above.detail_levels - 1, 0); }
 
 /// Splits faces in four, leaving the other faces out.
 class LevelMaker {
@@ -34,6 +37,7 @@ class LevelMaker {
         below_.shared.push_back(second_half(in_part(h)));
       }
     carry_features();
+    number_in_whole();
     return {std::move(below_), std::move(part)};
   }
 
@@ -137,6 +141,25 @@ class LevelMaker {
     }
   }
 
+  void number_in_whole() {
+    below_.detail_levels = detail_levels_below(above_);
+    if (below_.detail_levels == 0) return;
+    const WholeNumbers& above = above_.in_whole;
+    const uint32_t edges_above = above_.is_whole ? mesh_.edge_count() : above.edge_count;
+    const uint32_t faces_above = above_.is_whole ? mesh_.face_count() : above.face_count;
+    WholeNumbers& out = below_.in_whole;
+    out.edge_count = 2 * edges_above + 3 * faces_above;
+    out.face_count = 4 * faces_above;
+    out.edge.reserve(below_.mesh.topology.edge_count());
+    for (uint32_t e : edges_.numbers())
+      for (uint32_t half : {0U, 1U}) out.edge.push_back(2 * (above_.is_whole ? e : above.edge[e]) + half);
+    out.parent.reserve(faces_.count());
+    for (uint32_t f : faces_.numbers()) {
+      out.parent.push_back(above_.is_whole ? f : 4 * above.parent[f / 4] + f % 4);
+      for (uint32_t i = 0; i < 3; ++i) out.edge.push_back(2 * edges_above + 3 * out.parent.back() + i);
+    }
+  }
+
   /// Numbers in the part that is held.
   [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
   [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
@@ -171,6 +194,7 @@ uint64_t HierarchyLevel::bytes() const {
                    size(complete, parent, child, red, shared, longest) + size(trial.normals, trial.rooms, trial.made) +
                    size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
+  bytes += size(in_whole.edge, in_whole.parent);
   bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.products.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
@@ -183,6 +207,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   level.shared = shared_half_edges(mesh.topology);
   level.box = bounding_box(mesh.positions);
   level.features = find_features(mesh.topology);
+  if (mesh.detail) level.detail_levels = mesh.detail->level_count();
   level.mesh = std::move(mesh);
   return level;
 }
@@ -236,6 +261,7 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> r
   below.features = level.features;
   descend(below.features, level.mesh.topology.vertex_count);
   below.is_whole = true;
+  below.detail_levels = detail_levels_below(level);
   below.complete.assign(below.mesh.topology.vertex_count, 1);
   for (uint32_t parent : level.shared)
     for (uint32_t half : {first_half(parent), second_half(parent)}) below.shared.push_back(half);

@@ -26,6 +26,13 @@ namespace papilio {
 /// Bytes, at most, of a held face of a level, and of what is computed on it; without attributes.
 inline constexpr uint64_t bytes_per_held_face = 160;
 
+/// Numbers in the whole level of what a level holds of it.
+struct WholeNumbers {
+  Buffer<uint32_t> edge;                    ///< [E]
+  Buffer<uint32_t> parent;                  ///< [F / 4] of the faces above
+  uint32_t edge_count = 0, face_count = 0;  ///< of the whole level
+};
+
 struct HierarchyLevel {
   Mesh mesh;                 ///< faces held; where others of the level are missing, edges are EdgeKind::cut
   bool is_whole = false;     ///< all the level's faces are held, with the numbers of the uniform mesh
@@ -39,6 +46,8 @@ struct HierarchyLevel {
   Trial trial;              ///< what splitting its edges would give, where tried
   Buffer<double> longest;   ///< [V] edges (view_culling.h); empty where no view asked
   Box box{};                ///< of the vertices
+  int detail_levels = 0;    ///< levels from here on whose new vertices the coarse mesh's detail gives
+  WholeNumbers in_whole;    ///< where there are any, and the level is not whole
 
   /// The face above, not of level 0.
   [[nodiscard]] uint32_t parent_of(uint32_t face) const { return parent.empty() ? face / 4 : parent[face / 4]; }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "criteria/view_culling.h"
+#include "hierarchy/detail_levels.h"
 #include "hierarchy/transition.h"
 #include "mesh/attributes.h"
 #include "mesh/displacement.h"
@@ -44,7 +45,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
   const TrialContext context{.features = &level->features, .threads = progress.threads()};
-  level->trial = try_split(level->mesh, options, context);
+  level->trial = try_level(*level, level->mesh, options, context, progress.cancelled());
   level->trial.prepare_errors(level->mesh, options, context);
   levels_.push_back(std::move(level));
 }
@@ -175,7 +176,7 @@ void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
     else if (is_plain && level->is_whole && !held.empty() && held.size() < fours)
       context.asked_of = &held;
   }
-  level->trial = try_split(level->mesh, options_, context);
+  level->trial = try_level(*level, levels_[0]->mesh, options_, context, progress_.cancelled());
   if (is_kept)
     level->trial.keep(level->mesh.topology);
   else
@@ -187,7 +188,7 @@ void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
 
 bool Levels::may_hold_red_alone() const {
   return is_next_last() && levels_.back()->features.are_rings() && !has_displacements(levels_[0]->mesh.attributes) &&
-         has_room_for_whole();
+         levels_.back()->detail_levels <= 1 && has_room_for_whole();
 }
 
 bool Levels::has_room_for_whole() const {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "papilio/detail.h"
+
 namespace papilio {
 namespace {
 
-constexpr uint64_t face_bytes_of_result = 60;  // connectivity and positions, with the room that arrays keep
+constexpr uint64_t face_bytes_of_result = 60;    // connectivity and positions, with the room that arrays keep
+constexpr uint64_t face_bytes_of_decoding = 40;  // of a level of detail
 /// Values are held in arrays that grow, while those of the level before are still there.
 constexpr uint64_t growth = 2;
 
@@ -24,6 +27,7 @@ MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
     : coarse_faces_(coarse.topology.face_count()),
       coarse_points_(coarse.attributes.empty() ? coarse.topology.vertex_count : coarse.attributes.point_count),
       output_(options.output) {
+  if (coarse.detail) detail_levels_ = coarse.detail->level_count();
   for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h) open_ += is_closed(coarse, h) ? 0 : 1;
   for (const Attribute& attribute : coarse.attributes.attributes)
     point_bytes_ += (attribute.is_displacement ? 2 : 1) * growth * attribute.components * sizeof(double);
@@ -40,7 +44,8 @@ uint64_t MemoryPlan::points(uint64_t faces, int level) const {
 }
 
 uint64_t MemoryPlan::made(uint64_t faces, int level, uint64_t face_bytes) const {
-  return faces * (face_bytes + corner_bytes_) + points(faces, level) * point_bytes_;
+  const uint64_t decoding = level <= detail_levels_ ? face_bytes_of_decoding : 0;
+  return faces * (face_bytes + corner_bytes_ + decoding) + points(faces, level) * point_bytes_;
 }
 
 uint64_t MemoryPlan::given(uint64_t faces, int level) const {

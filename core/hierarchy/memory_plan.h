@@ -24,6 +24,7 @@ class MemoryPlan {
   uint64_t open_ = 0;  ///< half-edges of the coarse mesh at whose edge the next face has other points, or none is
   uint64_t point_bytes_ = 0;   ///< of a point's values
   uint64_t corner_bytes_ = 0;  ///< of a face's point numbers
+  int detail_levels_ = 0;      ///< that the coarse mesh's detail gives
   OutputBytes output_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/memory_guard.h"
 #include "criteria/view_culling.h"
+#include "hierarchy/detail_levels.h"
 #include "hierarchy/prepared_state.h"
 #include "hierarchy/transition.h"
 #include "mesh/shape.h"
@@ -28,7 +29,7 @@ PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budg
     smallest_angle_ = papilio::smallest_angle(coarse);
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
-    level->trial = try_split(level->mesh, rules_, {.features = &level->features});
+    level->trial = try_level(*level, level->mesh, rules_, {.features = &level->features});
     level->trial.keep(level->mesh.topology);
     kept_ = {std::move(level)};
     bytes_ = bytes_of(kept_);

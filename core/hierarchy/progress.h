@@ -16,6 +16,8 @@ class Progress {
 
   /// How many may work at once.
   [[nodiscard]] int threads() const { return hooks_.threads; }
+  /// Whether to stop; may be empty.
+  [[nodiscard]] const std::function<bool()>& cancelled() const { return hooks_.cancelled; }
   [[nodiscard]] bool wants_levels() const { return static_cast<bool>(hooks_.on_level); }
   /// A level that is not the last.
   void report(int level, const Mesh& mesh) const {

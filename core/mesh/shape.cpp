@@ -200,6 +200,7 @@ class ShapeFinder {
 }  // namespace
 
 ShapeReport mark_shape(Mesh& mesh, const Options& options) {
+  if (mesh.detail) return {};  // which shapes the surface
   if (options.shape != Shape::plain && options.tension != Tension::off) return ShapeFinder(mesh).run(options);
   if (options.crease_angle < 180) {
     mark_creases(mesh, options.crease_angle);

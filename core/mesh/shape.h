@@ -21,7 +21,7 @@ namespace papilio {
 ///   and more is a crease where one of its regions has two faces or more and 1.5 times the other's width.
 /// Its corners are the vertices on curves where the curve turns by more than 31 degrees, or where other than two curve
 /// edges meet. An edge is flat, too, where the apex of its smaller face lies within `ShapeMarks::flat_distance` of the
-/// larger one's plane: the angles of slivers mean nothing. O(F log F).
+/// larger one's plane: the angles of slivers mean nothing. Nothing is marked of a mesh with detail. O(F log F).
 ShapeReport mark_shape(Mesh& mesh, const Options& options);
 
 }  // namespace papilio

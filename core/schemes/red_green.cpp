@@ -12,6 +12,7 @@
 #include "hierarchy/repair.h"
 #include "hierarchy/surface_check.h"
 #include "hierarchy/transition.h"
+#include "papilio/detail.h"
 
 namespace papilio {
 namespace {
@@ -225,12 +226,16 @@ class RedGreen {
 
   /// Every face that touches one with an edge of large error, or one below which the result may be too far from the
   /// surface, unless its edges may not be split. (Edges of half that error were tried too, and a tenth: results were
-  /// the same.) In a mechanical mesh an edge that stays in a flat may bend a level further, once the faces beside it
-  /// have: there their neighbours are looked into, too.
+  /// the same.) Of a mesh with detail also every face below which a move of its finer levels may be: where the distance
+  /// is bounded these are all. In a mechanical mesh an edge that stays in a flat may bend a level further, once the
+  /// faces beside it have: there their neighbours are looked into, too.
   [[nodiscard]] Buffer<uint32_t> faces_to_look_into() {
     const LevelChoice& choice = choices_.back();
     const Topology& mesh = choice.level->mesh.topology;
     Buffer<uint8_t> touched(mesh.vertex_count, 0);
+    const auto touch = [&](uint32_t f) {
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+    };
     if (bounds_distance()) {
       const size_t k = choices_.size() - 1;
       sums_above_ =
@@ -241,8 +246,12 @@ class RedGreen {
     }
     for (uint32_t f : choice.region.faces) {
       const uint32_t* edge = &mesh.edge[size_t{3} * f];
-      if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_)
-        for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+      if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_) touch(f);
+    }
+    if (choice.level->detail_levels > 1) {
+      if (!bounds_distance()) move_below_ = largest_move_below();
+      for (uint32_t f : choice.region.faces)
+        if (bounds_distance() || (choice.may_divide(f) && may_have_detail_below(f))) touch(f);
     }
     if (mesh.shape.is_mechanical) {
       const Buffer<uint8_t> near = touched;
@@ -260,6 +269,31 @@ class RedGreen {
       return is_touched & may_divide;
     });
     return faces;
+  }
+
+  /// Whether the detail may have a move of large error below a face: how large those of a level are says nothing of the
+  /// next.
+  [[nodiscard]] bool may_have_detail_below(uint32_t face) {
+    const LevelChoice& choice = choices_.back();
+    const HierarchyLevel& level = *choice.level;
+    const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
+    return std::any_of(edge, edge + 3, [&](uint32_t e) {
+      return choice.shown[e] && selection_.error_of(level.mesh, level.trial, e, move_below_) >= threshold_;
+    });
+  }
+
+  /// Returns the largest move of the levels of detail below the deepest level, as far as the limits let them be made.
+  [[nodiscard]] double largest_move_below() const {
+    const Mesh& coarse = choices_[0].level->mesh;
+    double largest = 0;
+    if (!coarse.detail) return largest;
+    const int levels = std::min(options_.levels, coarse.detail->level_count());
+    for (auto l = static_cast<int>(choices_.size()); l < levels; ++l) {
+      const uint64_t faces = uint64_t{coarse.topology.face_count()} << (2 * (l + 1));
+      if (!progress_.has_room(faces, levels_.plan().made(faces, l + 1, 0))) break;
+      largest = std::max(largest, coarse.detail->largest_move(l, progress_.cancelled()));
+    }
+    return largest;
   }
 
   /// Splits further edges until the result is within the tolerance of the uniform surface, as far as budget and limits
@@ -340,6 +374,7 @@ class RedGreen {
   Splits kept_;                       ///< [level] the edges split when a level last changed something
   double distance_ = 0;               ///< bound of that to the uniform surface, where repair() found one
   Buffer<float> sums_above_, moves_;  ///< [F] of the lowest level that was looked into (move_bounds.h)
+  double move_below_ = 0;             ///< the largest of the detail below the deepest level
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

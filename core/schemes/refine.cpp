@@ -26,6 +26,16 @@ Levels levels_of(const PreparedMesh& prepared, const Options& options, const Pro
 Mesh mesh_of(Mesh&& mesh) { return std::move(mesh); }
 Mesh mesh_of(const PreparedMesh& prepared) { return prepared.coarse(); }
 
+/// Throws where the scheme makes vertices that the detail does not have.
+void check_scheme(const Mesh& coarse, const Options& options) {
+  if (coarse.detail && options.scheme == Scheme::in_place && options.levels > 0 && !Selection(options, 1).is_uniform())
+    throw Error(
+        Fault::bad_option,
+        "The in-place scheme does not refine a mesh with detail: it splits faces that the detail does not have. "
+        "Use the red-green scheme.",
+        "scheme");
+}
+
 template <class Coarse>
 Result run_scheme(Coarse&& coarse, const Options& options, const Selection& selection, const Progress& progress) {
   if (selection.is_uniform() && options.levels > 0)
@@ -46,6 +56,7 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
         simplify_hidden(std::move(result.mesh), *selection.camera(), default_hidden_error, [&] { progress.poll(); });
   }
   if (!options.edges) forget_edges(result.mesh.topology);
+  result.mesh.detail.reset();  // which belongs to the coarse mesh
   progress.report_last(result.levels, result.mesh);
   return result;
 }
@@ -53,6 +64,7 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
 }  // namespace
 
 void check_room(const Mesh& coarse, const Options& options) {
+  check_scheme(coarse, options);
   const Hooks nobody;
   const Progress progress(options, nobody);
   const uint64_t faces = coarse.topology.face_count();

@@ -6,6 +6,7 @@
 #include "hierarchy/memory_plan.h"
 #include "mesh/attributes.h"
 #include "mesh/normals.h"
+#include "papilio/detail.h"
 #include "rules/features.h"
 #include "rules/split_displacements.h"
 #include "schemes/uniform_error.h"
@@ -26,6 +27,7 @@ class Uniform {
         is_plain_(options.w == 0 && options.tension == Tension::off) {}
 
   Result run(Mesh coarse) {
+    detail_ = std::exchange(coarse.detail, nullptr);
     mesh_ = std::move(coarse);
     features_ = find_features(mesh_.topology);
     displacements_ = displacements_at_vertices(mesh_);
@@ -49,6 +51,11 @@ class Uniform {
 
   /// Appends the new vertices to the positions.
   void make_vertices() {
+    if (detail_ && level_ <= detail_->level_count()) {
+      const std::span<const Vec3f> made = detail_->new_vertices(level_ - 1, progress_.cancelled());
+      mesh_.positions.insert(mesh_.positions.end(), made.begin(), made.end());
+      return;
+    }
     const Buffer<Vec3f> normals =
         options_.tension == Tension::off ? Buffer<Vec3f>{} : face_normals(mesh_, progress_.threads());
     mesh_.positions.resize_for_overwrite(mesh_.positions.size() + edge_count());
@@ -111,6 +118,7 @@ class Uniform {
   int level_ = 0;                ///< at hand
   Mesh mesh_;                    ///< of the level above, with the vertices of this one once they are there
   Topology parents_;             ///< two levels above; where vertices are plain
+  std::shared_ptr<const Detail> detail_;  ///< of the coarse mesh; may be null
   Features features_;
   Displacements displacements_;  ///< at the vertices of the level above
   Result result_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,7 @@ inline constexpr int most_detail_levels = 10;
 
 /// Coarse mesh that levels refine.
 struct DetailBase {
-  TriangleMesh triangles;        ///< manifold; edges with one face are boundaries
+  TriangleMesh triangles;         ///< manifold; edges with one face are boundaries
   std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
 
   friend bool operator==(const DetailBase&, const DetailBase&) = default;
@@ -44,6 +45,40 @@ struct DetailReach {
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
+
+/// New vertices of the uniform levels of a mesh (`Mesh::attach_detail`). Thread-safe.
+class Detail {
+ public:
+  Detail() = default;
+  Detail(const Detail&) = delete;
+  Detail& operator=(const Detail&) = delete;
+  virtual ~Detail() = default;
+
+  /// Whether the mesh is the base, to the bit, with its numbers of vertices and faces.
+  [[nodiscard]] virtual bool fits(const Mesh& mesh) const = 0;
+  /// The connectivity of the base, with its curves.
+  [[nodiscard]] virtual const Topology& base() const = 0;
+  [[nodiscard]] virtual int level_count() const = 0;
+  /// Returns the positions of the vertices on the edges of the mesh that `level` levels give, 0 <= level <
+  /// level_count(), in the order of its edges. They stay there as long as the detail. Throws `Error`: not_finite,
+  /// cancelled, out_of_memory.
+  [[nodiscard]] virtual std::span<const Vec3f> new_vertices(int level,
+                                                            const std::function<bool()>& cancelled = {}) const = 0;
+  /// Upper bound of the distance from those vertices to their edges. Throws as new_vertices().
+  [[nodiscard]] virtual double largest_move(int level, const std::function<bool()>& cancelled = {}) const = 0;
+  /// Bytes in memory now.
+  [[nodiscard]] virtual uint64_t bytes() const = 0;
+};
+
+/// What decode_detail() takes.
+struct DetailSource {
+  DetailBase base;
+  std::vector<DetailStream> levels;
+};
+
+/// Returns the levels that decode_detail() makes, decoded when they are first asked for. Throws `Error`: bad_option,
+/// bad_surface, result_too_large (beyond `face_count_limit`), and what build_mesh() throws. O(base).
+[[nodiscard]] std::shared_ptr<const Detail> stream_detail(DetailSource source);
 
 /// Base as its decoder has it.
 struct CodedBase {
@@ -71,10 +106,11 @@ struct EncodedDetail {
 };
 
 /// Encodes an original without its attributes. Boundaries and sharp edges that form clean curves become curves of the
-/// base. Where the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of the
-/// wanted distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the fewest
-/// bytes for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`: bad_option,
-/// bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what build_mesh() throws.
+/// base. Where the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of
+/// the wanted distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the
+/// fewest bytes for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`:
+/// bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what
+/// build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -117,11 +118,19 @@ struct PointAttributes {
   [[nodiscard]] bool empty() const { return attributes.empty(); }
 };
 
+class Detail;
+
 /// A mesh: connectivity and one position a vertex, and attributes if it has any.
 struct Mesh {
   Topology topology;
   Buffer<Vec3f> positions;  ///< [V]
   PointAttributes attributes{};
+  /// Gives the new vertices of the first levels that refine() makes, in place of the rules (papilio/detail.h); null
+  /// where the rules give all. Results of refine() have none.
+  std::shared_ptr<const Detail> detail{};
+
+  /// Sets `detail`, and marks the curves of its base. Throws `Error` bad_surface unless the mesh is its base (`Detail::fits`).
+  void attach_detail(std::shared_ptr<const Detail> given);
 
   /// Copies the faces and positions out; with attributes, points in place of vertices. Of a mesh that is not needed any
   /// more positions need no copy.

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "papilio/detail.h"
+
+namespace papilio::test {
+
+/// Residual of an edge's new vertex along the normal, in steps; of a level (the first is 0), the edge's number and its
+/// middle.
+using ResidualOfEdge = std::function<int32_t(int level, uint32_t edge, Vec3f middle)>;
+
+/// Encodes levels with these residuals. The step of a level is a quarter of the one before.
+[[nodiscard]] DetailSource detail_of_residuals(const TriangleMesh& base, int levels, float first_step,
+                                               const ResidualOfEdge& residual);
+
+/// Returns the base with its levels attached.
+[[nodiscard]] Mesh with_detail(const DetailSource& source);
+
+}  // namespace papilio::test
