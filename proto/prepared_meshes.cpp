@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "papilio/detail.h"
+
 namespace papilio::proto {
 
 std::shared_ptr<const PreparedMesh> PreparedMeshes::for_rules_of(const Mesh& coarse, const Options& options) const {
@@ -37,7 +39,7 @@ uint64_t bytes_of(const Mesh& mesh) {
   uint64_t words = t.origin.size() + t.twin.size() + t.edge.size() + t.half_edge.size() + t.pinched.size() +
                    3 * mesh.positions.size() + mesh.attributes.point.size();
   for (const Attribute& attribute : mesh.attributes.attributes) words += 2 * attribute.values.size();
-  return 4 * words + t.kind.size();
+  return 4 * words + t.kind.size() + (mesh.detail ? mesh.detail->bytes() : 0);
 }
 
 }  // namespace papilio::proto

@@ -29,7 +29,7 @@ class PreparedMeshes {
   mutable std::vector<Prepared> recent_;  ///< most recently used first
 };
 
-/// Returns the bytes that a mesh takes in memory.
+/// Returns the bytes that a mesh takes in memory, with its detail.
 [[nodiscard]] uint64_t bytes_of(const Mesh& mesh);
 
 }  // namespace papilio::proto

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "proto/detail/find_packed.h"
 #include "proto/encoding_memory.h"
 #include "proto/error_translation.h"
 #include "proto/findings.h"
@@ -105,6 +106,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   output_ = output_for(parameters, box);
   grid_error_ = box.diagonal() > 0 ? grid_distance(box, output_.position_bits) / box.diagonal() : 0;
   options_.tolerance = std::max(tolerance_ - grid_error_, most_for_grid * tolerance_);
+  detail::end_with_detail(options_, coarse().mesh);
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
   encoding_ = coarse().attributes;
@@ -116,10 +118,10 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   translate_errors([&] { check_room(coarse().mesh, options_); });
 }
 
-Refinement::Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits)
+Refinement::Refinement(std::string_view bytes, const Parameters& parameters, const Limits& limits)
     : Refinement(parameters, limits) {
   Stopwatch watch;
-  decoded_ = decode_mesh(draco, limits);
+  decoded_ = decode_mesh(bytes, limits);
   set_options(parameters, limits);
   times_.decode = watch.lap();
 }

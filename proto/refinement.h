@@ -15,8 +15,8 @@
 #include "proto/parameters.h"
 #include "proto/shared_mesh.h"
 
-// The pipeline from a Draco mesh to a refined Draco mesh. Server and client share it, so local and remote results are
-// byte-identical.
+// The pipeline from a Draco mesh, or a packed model, to a refined Draco mesh. Server and client share it, so local and
+// remote results are byte-identical.
 
 namespace papilio::proto {
 
@@ -59,8 +59,8 @@ struct RefinementHooks {
 /// One refinement. The constructor decodes and checks, `run` refines.
 class Refinement {
  public:
-  /// Throws `Problem`, also if the result is certain to exceed a limit.
-  Refinement(std::string_view draco, const Parameters& parameters, const Limits& limits);
+  /// Takes what decode_mesh() takes. Throws `Problem`, also if the result is certain to exceed a limit.
+  Refinement(std::string_view bytes, const Parameters& parameters, const Limits& limits);
   /// Refines a cached mesh. Results are byte-identical to those from a stream.
   Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits);
 

@@ -18,14 +18,15 @@ struct DecodedMesh {
   AttributeEncoding attributes;
 };
 
-/// Decodes and checks a mesh. Throws `Problem`.
-[[nodiscard]] DecodedMesh decode_mesh(std::string_view draco, const Limits& limits);
+/// Decodes and checks a mesh: a Draco stream, or a packed model (proto/detail.md), whose levels are attached to its
+/// base. Throws `Problem`.
+[[nodiscard]] DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits);
 
 /// A decoded mesh, shared by refinements, and a cache of their prepared meshes, one for each set of rules. Thread-safe.
 class SharedMesh {
  public:
   /// `byte_budget`: limit of cached bytes, besides the mesh itself and the level of its own edges. Throws `Problem`.
-  SharedMesh(std::string_view draco, const Limits& limits, uint64_t byte_budget);
+  SharedMesh(std::string_view bytes, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
   /// As `PreparedMeshes::for_rules_of`.

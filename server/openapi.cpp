@@ -326,7 +326,11 @@ ordered_json request_body(Input input) {
          {{"type", "object"},
           {"required", {"mesh"}},
           {"properties", {{"mesh", binary()}, {"params", schema_reference("Parameters")}}}}}};
-  return {{"required", true}, {"content", types}};
+  ordered_json body{{"required", true}, {"content", types}};
+  if (input == Input::mesh || input == Input::mesh_or_form)
+    body["description"] =
+        "A Draco mesh, a glTF scene (.glb), or a packed model (.glb), whose first levels are those of its detail";
+  return body;
 }
 
 ordered_json operation(const Endpoint& endpoint) {

@@ -6,6 +6,7 @@
 #include "client/cli/refine_mesh.h"
 #include "client/lib/file_words.h"
 #include "client/lib/read_materials.h"
+#include "proto/detail/find_packed.h"
 #include "proto/findings.h"
 #include "proto/gltf/scene_refinement.h"
 #include "proto/text.h"
@@ -57,9 +58,11 @@ bool stays_scene(const MeshBytes& file, const MeshPlace& output) {
   return is_scene(file.format) && ((output.is_standard() && !output.format) || is_scene(output_format(output)));
 }
 
-/// Returns a mesh file as a Draco stream. `materials` becomes those that its faces name, if the output can hold any.
-std::string draco_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
-                            proto::gltf::Materials& materials) {
+/// Returns a mesh file as a Draco stream, a packed model as it is. `materials` becomes those that its faces name, if
+/// the output can hold any.
+std::string mesh_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
+                           proto::gltf::Materials& materials) {
+  if (is_scene(file.format) && proto::detail::find_packed(file.bytes, own_limits)) return std::move(file.bytes);
   const bool has_materials = file.format == Format::obj || is_scene(file.format);
   if (!has_materials || !holds_materials(output)) return draco_of(std::move(file));
   MaterialRead read = read_with_materials(input, file);
@@ -94,10 +97,10 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
     });
   }
   proto::gltf::Materials materials;
-  const std::string draco = draco_to_refine(input, output, std::move(file), materials);
+  const std::string bytes = mesh_to_refine(input, output, std::move(file), materials);
   return in_words_of_the_file(name, [&]() -> RefinedFile {
-    auto made = flags.server.empty() ? proto::Refinement(draco, flags.parameters, own_limits).run(hooks)
-                                     : Remote(flags.server, flags.remote).refine(draco, flags.parameters);
+    auto made = flags.server.empty() ? proto::Refinement(bytes, flags.parameters, own_limits).run(hooks)
+                                     : Remote(flags.server, flags.remote).refine(bytes, flags.parameters);
     return {std::move(made.bytes), false, std::move(made.statistics), std::move(materials)};
   });
 }

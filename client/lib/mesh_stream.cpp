@@ -6,6 +6,7 @@
 #include "client/lib/material_attribute.h"
 #include "client/lib/read_beside.h"
 #include "client/lib/save_obj.h"
+#include "proto/detail/find_packed.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
@@ -33,6 +34,12 @@ std::string packed(const MeshPlace& place, MeshBytes& file) {
   return in_words_of_the_file(file.name, [&] { return proto::gltf::pack_scene(file.bytes, read, find_image); });
 }
 
+proto::FormattedMesh finest_of(const proto::detail::PackedModel& model) {
+  proto::FormattedMesh mesh;
+  static_cast<TriangleMesh&>(mesh) = decode_detail(model.base, model.streams(), own_limits.max_output_faces);
+  return mesh;
+}
+
 }  // namespace
 
 MeshBytes read_mesh(const MeshPlace& place) {
@@ -46,8 +53,12 @@ MeshBytes read_mesh(const MeshPlace& place) {
 }
 
 proto::FormattedMesh triangles_of(const MeshBytes& file) {
-  if (is_scene(file.format))
-    return in_words_of_the_file(file.name, [&] { return proto::gltf::flatten_scene(file.bytes, own_limits); });
+  if (is_scene(file.format)) {
+    return in_words_of_the_file(file.name, [&] {
+      const auto packed = proto::detail::find_packed(file.bytes, own_limits);
+      return packed ? finest_of(*packed) : proto::gltf::flatten_scene(file.bytes, own_limits);
+    });
+  }
   if (file.format != Format::drc) return parse_triangles(file.name, file.format, file.bytes);
   return in_words_of_the_file(file.name, [&] { return proto::read_draco(file.bytes, own_limits); });
 }

@@ -6,6 +6,7 @@
 #include "client/lib/material_library.h"
 #include "client/lib/read_beside.h"
 #include "client/mesh_file/obj_file.h"
+#include "proto/detail/find_packed.h"
 #include "proto/gltf/flattening.h"
 #include "proto/text.h"
 
@@ -34,6 +35,7 @@ MaterialRead read_obj(const MeshPlace& place, const MeshBytes& file) {
 }
 
 MaterialRead read_scene(const MeshPlace& place, const MeshBytes& file) {
+  if (proto::detail::find_packed(file.bytes, own_limits)) return {.model = {.mesh = triangles_of(file)}};
   MaterialRead read{.model = in_words_of_the_file(
                         file.name, [&] { return proto::gltf::flatten_with_materials(file.bytes, own_limits); })};
   for (proto::gltf::Image& image : read.model.materials.images) {

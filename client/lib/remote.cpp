@@ -170,14 +170,14 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   return statistics;
 }
 
-/// Sends a body of media type `type` to be refined, again and again while the server is busy. Returns its answer of the
-/// same type. Throws `ServerError`.
+/// Sends a body to be refined, again and again while the server is busy. Returns its answer of media type `type`.
+/// Throws `ServerError`.
 httplib::Response ask_to_refine(const std::string& origin, httplib::Client& client, const std::string& prefix,
                                 const char* type, std::string_view body, const proto::Parameters& parameters) {
   httplib::Request request;
   request.method = "POST";
   request.path = prefix + "/v1/refine?" + proto::to_query(parameters);
-  request.headers = {{"Accept", type}, {"Content-Type", type}};
+  request.headers = {{"Accept", type}, {"Content-Type", proto::gltf::is_glb(body) ? scene_type : draco_type}};
   request.body = std::string(body);
   const auto ask = [&] { return exchange(origin, client, request, type, longest_mesh); };
   httplib::Response answer = ask();
@@ -214,9 +214,9 @@ Remote::Remote(const std::string& url, RemoteOptions options) : options_(std::mo
   while (prefix_.ends_with('/')) prefix_.pop_back();
 }
 
-proto::EncodedLevel Remote::refine(std::string_view draco, const proto::Parameters& parameters) const {
+proto::EncodedLevel Remote::refine(std::string_view bytes, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_, options_);
-  httplib::Response answer = ask_to_refine(origin_, client, prefix_, draco_type, draco, parameters);
+  httplib::Response answer = ask_to_refine(origin_, client, prefix_, draco_type, bytes, parameters);
   check_mesh(origin_, answer);
   proto::Statistics statistics = statistics_from(answer.headers);
   statistics.unreached = proto::unreached_text(parameters.options, statistics);

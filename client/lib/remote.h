@@ -44,9 +44,9 @@ class Remote {
   /// not a URL.
   explicit Remote(const std::string& url, RemoteOptions options = {});
 
-  /// Refines a Draco mesh there; the same bytes as `proto::Refinement` makes here. A busy server is
-  /// asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
-  [[nodiscard]] proto::EncodedLevel refine(std::string_view draco, const proto::Parameters& parameters) const;
+  /// Refines a Draco mesh, or a packed model as a mesh, there; the same bytes as `proto::Refinement` makes here. A busy
+  /// server is asked again, up to 30 times, after the pauses that it names. Throws `ServerError`.
+  [[nodiscard]] proto::EncodedLevel refine(std::string_view bytes, const proto::Parameters& parameters) const;
 
   /// Refines a scene there, a .glb file; the same bytes as `proto::gltf::SceneRefinement` makes here. Asks a busy
   /// server again, as `refine`. Throws `ServerError`.

@@ -35,6 +35,9 @@ class ErrorFinder {
   }
 
  private:
+  /// What is left of a deviation of level k where its edge is split: nothing of the last one of detail, which is the
+  /// surface itself.
+  [[nodiscard]] double split_share(size_t k) const { return levels_[k].level->detail_levels == 1 ? 0 : split_leaves; }
   [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
 
   /// Finds the faces of the level's region above which all are divided.
@@ -149,7 +152,7 @@ class ErrorFinder {
           is_split_(choice_.split.data()),
           positions_(choice_.level->mesh.positions.data()),
           made_(choice_.level->trial.made.data()),
-          share_squared_{no_share, no_share, 1, static_cast<float>(split_leaves * split_leaves)},
+          share_squared_{no_share, no_share, 1, static_cast<float>(of.split_share(k) * of.split_share(k))},
           too_near_(choice_.level->box.largest_coordinate()) {
       too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
     }
@@ -202,10 +205,10 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     if (choice.level->trial.bounds.empty()) return;  // add_far did it
     for (uint32_t e : choice.split_edges)
-      if (may_be_largest(k, e, split_leaves) && !is_near(k, e, split_leaves)) add_last_split(k, e);
+      if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k))) add_last_split(k, e);
   }
   void add_last_split(size_t k, uint32_t e) {
-    if (levels_[k].shown[e]) add(k, e, split_leaves);
+    if (levels_[k].shown[e]) add(k, e, split_share(k));
   }
 
   void add_split(size_t k) {
@@ -240,7 +243,8 @@ class ErrorFinder {
         return;
       }
     }
-    if (may_be_largest(k, e, split_leaves) && !is_near(k, e, split_leaves) && choice.shown[e]) add(k, e, split_leaves);
+    if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k)) && choice.shown[e])
+      add(k, e, split_share(k));
   }
 
   /// An edge that is split where errors do not decide, so that what is below it is not judged unless all of a face is
@@ -254,7 +258,7 @@ class ErrorFinder {
     bool is_any_cut = is_cut(mesh.half_edge[e]) || is_cut(mesh.twin[mesh.half_edge[e]]);
     if (mesh.kind[e] == EdgeKind::shared)
       for (uint32_t h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
-    if (is_any_cut && choice.shown[e]) add(k, e, split_leaves);
+    if (is_any_cut && choice.shown[e]) add(k, e, split_share(k));
   }
 
   /// By what is known of the deviation.

@@ -316,6 +316,7 @@ class RedGreen {
       repair.look_again();
     }
     if (has_repaired && repair.is_complete()) distance_ = limit;
+    if (has_detail() && repair.is_complete()) most_distance_ = limit;
     return has_repaired;
   }
 
@@ -335,10 +336,19 @@ class RedGreen {
                     displacements_of(choices_, options_));
   }
 
+  [[nodiscard]] bool has_detail() const { return choices_[0].level->mesh.detail != nullptr; }
+  [[nodiscard]] bool is_uniform() const {
+    const uint64_t coarse = choices_[0].region.faces.size();
+    return count_assembled(choices_) == coarse << (2 * static_cast<uint64_t>(options_.levels));
+  }
+
   /// Upper bound of the distance from the uniform surface.
   [[nodiscard]] double distance() const {
+    if (has_detail() && is_uniform()) return 0;
     if (distance_ > 0) return distance_;
-    return SurfaceCheck(choices_, most_cosine_, options_.levels, 0, progress_.threads()).largest_distance();
+    const double found =
+        SurfaceCheck(choices_, most_cosine_, options_.levels, 0, progress_.threads()).largest_distance();
+    return std::min(found, most_distance_);
   }
 
   void finish(Result& result, Mesh latest) {
@@ -371,8 +381,10 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  Splits kept_;                       ///< [level] the edges split when a level last changed something
-  double distance_ = 0;               ///< bound of that to the uniform surface, where repair() found one
+  Splits kept_;          ///< [level] the edges split when a level last changed something
+  double distance_ = 0;  ///< bound of that to the uniform surface, where repair() found one
+  /// Known bound of the same with detail, whose large moves make others loose.
+  double most_distance_ = std::numeric_limits<double>::infinity();
   Buffer<float> sums_above_, moves_;  ///< [F] of the lowest level that was looked into (move_bounds.h)
   double move_below_ = 0;             ///< the largest of the detail below the deepest level
   bool out_of_budget_ = false;

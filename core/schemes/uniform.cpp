@@ -66,7 +66,7 @@ class Uniform {
   }
 
   void measure_error() {
-    if (!options_.measure_error) return;
+    if (!options_.measure_error || (detail_ && level_ == detail_->level_count())) return;  // the surface itself
     const Vec3f* made = mesh_.positions.data() + mesh_.topology.vertex_count;
     ErrorLeft left(selection_);
     left.add_distance(split_leaves *

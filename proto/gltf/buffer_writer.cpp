@@ -176,16 +176,21 @@ class BufferWriter {
     place_view(view, buffer, std::move(content.bytes));
   }
 
-  /// Lets a view that has lost its content name the bytes of the first new content.
+  /// Lets a view that has lost its content name the bytes of the first new content; without any, of the first view.
   void alias(uint32_t number, const std::vector<ViewContent>& contents) {
     Json& view = json_["bufferViews"][number];
     erase_extension(view, meshopt_extension);
-    view.erase("byteStride");
+    for (const char* key : {"byteStride", "byteOffset"}) view.erase(key);
     const Json* source = contents.empty() ? nullptr : &json_["bufferViews"][contents[0].view];
     if (source != nullptr && source->contains("extensions")) source = find_extension(*source, meshopt_extension, "");
-    if (source == nullptr) source = &json_["bufferViews"][contents.empty() ? 0 : contents[0].view];
+    if (source == nullptr) source = &json_["bufferViews"][contents.empty() ? first_kept_view() : contents[0].view];
     for (const char* key : {"buffer", "byteOffset", "byteLength"})
       if (source->contains(key)) view[key] = (*source)[key];
+  }
+
+  [[nodiscard]] size_t first_kept_view() const {
+    const auto found = std::ranges::find(is_replaced_, false);
+    return found == is_replaced_.end() ? 0 : static_cast<size_t>(found - is_replaced_.begin());
   }
 
   /// Removes buffers of fallback sizes at the end that no view names any more.

@@ -2,7 +2,10 @@
 
 #include <utility>
 
+#include "proto/detail/find_packed.h"
 #include "proto/error_translation.h"
+#include "proto/gltf/extension_lists.h"
+#include "proto/gltf/extensions.h"
 #include "proto/gltf/split_instances.h"
 
 namespace papilio::proto::gltf {
@@ -15,6 +18,15 @@ void add(BuildReport& sum, const BuildReport& more) {
     sum.*member += more.*member;
 }
 
+/// Attaches the levels of a packed model to its base, the only mesh of its scene.
+void attach_detail(std::string_view bytes, const Limits& limits, DecodedScene& decoded) {
+  if (!uses_extension(decoded.document.json, detail_extension)) return;
+  auto model = detail::find_packed(bytes, limits);
+  if (!model) return;
+  detail::attach_levels(decoded.scene.meshes.at(0).surface.mesh, std::move(*model));
+  decoded.is_packed = true;
+}
+
 uint64_t bytes_of(const MeshGeometry& geometry) {
   uint64_t bytes = 0;
   for (const VertexSet& set : geometry.sets) bytes += set.count * bytes_of_vertex(set);
@@ -25,10 +37,14 @@ uint64_t bytes_of(const MeshGeometry& geometry) {
 }  // namespace
 
 DecodedScene decode_scene(std::string_view bytes, const Limits& limits, bool splits_instances) {
-  DecodedScene decoded{.document = read_document(bytes), .scene = {}};
+  DecodedScene decoded;
+  decoded.document = read_document(bytes);
   if (splits_instances) split_instances(decoded.document.json);
   Views views(decoded.document);
-  decoded.scene = translate_errors([&] { return read_meshes(views, limits); });
+  translate_errors([&] {
+    decoded.scene = read_meshes(views, limits);
+    attach_detail(bytes, limits, decoded);
+  });
   return decoded;
 }
 

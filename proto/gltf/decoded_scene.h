@@ -15,14 +15,16 @@ namespace papilio::proto::gltf {
 struct DecodedScene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   Document document;
   SceneMeshes scene;
+  bool is_packed = false;  ///< whether it is a packed model: its only mesh has levels of detail
 
   [[nodiscard]] uint64_t coarse_faces() const;
   [[nodiscard]] uint64_t coarse_vertices() const;
   [[nodiscard]] BuildReport found() const;
 };
 
-/// Reads a .glb file, or a .gltf file with its buffers inside; external buffers are refused. `bytes` must outlive it.
-/// `splits_instances`: gives each node a mesh of its own (split_instances.h). Throws `Problem`.
+/// Reads a .glb file, the levels of a packed model included (proto/detail.md), or a .gltf file with its buffers inside;
+/// external buffers are refused. `bytes` must outlive it. `splits_instances`: gives each node a mesh of its own
+/// (split_instances.h). Throws `Problem`.
 [[nodiscard]] DecodedScene decode_scene(std::string_view bytes, const Limits& limits, bool splits_instances = false);
 
 /// A decoded scene, shared by refinements, and a cache of prepared meshes. Thread-safe.

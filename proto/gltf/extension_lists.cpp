@@ -6,9 +6,8 @@
 #include "proto/gltf/extensions.h"
 
 namespace papilio::proto::gltf {
-namespace {
+namespace {}  // namespace
 
-/// Returns whether the extension is used anywhere in a value, extras left out.
 bool uses_extension(const Json& value, const char* name) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) {
@@ -20,6 +19,8 @@ bool uses_extension(const Json& value, const char* name) {
   }
   return false;
 }
+
+namespace {
 
 bool is_listed(const Json& document, const char* list, const char* name) {
   const Json& names = array_of(document, list);

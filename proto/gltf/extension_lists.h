@@ -8,4 +8,7 @@ namespace papilio::proto::gltf {
 /// them: Draco, meshopt. The residuals of packed models are not named any more where there are none. Other names stay.
 void list_extensions(Json& document);
 
+/// Returns whether the extension is used anywhere in a value, extras left out.
+[[nodiscard]] bool uses_extension(const Json& value, const char* name);
+
 }  // namespace papilio::proto::gltf

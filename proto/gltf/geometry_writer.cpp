@@ -21,6 +21,12 @@ Elements index_elements(const Buffer<Triangle>& triangles, uint64_t vertices) {
   return out;
 }
 
+void erase_extension(Json& json, const char* name) {
+  if (!json.contains("extensions")) return;
+  json["extensions"].erase(name);
+  if (json["extensions"].empty()) json.erase("extensions");
+}
+
 std::vector<PrimitivePlace> places_of(const std::vector<NewGeometry>& meshes) {
   std::vector<PrimitivePlace> places;
   for (const NewGeometry& mesh : meshes)
@@ -123,12 +129,6 @@ class GeometryWriter {
                                            {"attributes", std::move(ids)}};
   }
 
-  static void erase_extension(Json& json, const char* name) {
-    if (!json.contains("extensions")) return;
-    json["extensions"].erase(name);
-    if (json["extensions"].empty()) json.erase("extensions");
-  }
-
   Document& document_;
   const GeometryEncoding& encoding_;
   Slots slots_;
@@ -141,6 +141,15 @@ BufferPieces write_geometry(Document& document, std::vector<NewGeometry> meshes,
   GeometryWriter writer(document, meshes, encoding);
   for (NewGeometry& mesh : meshes) writer.write(std::exchange(mesh, {}));
   return writer.finish();
+}
+
+BufferPieces remove_detail(Document& document) {
+  require_sound_views(document);
+  const std::vector<uint32_t> views = find_detail_views(document.json);
+  for (Json& mesh : document.json["meshes"])
+    for (Json& primitive : mesh["primitives"]) erase_extension(primitive, detail_extension);
+  list_extensions(document.json);
+  return replace_contents(document, {}, views);
 }
 
 }  // namespace papilio::proto::gltf

@@ -31,4 +31,7 @@ struct GeometryEncoding {
 [[nodiscard]] BufferPieces write_geometry(Document& document, std::vector<NewGeometry> meshes,
                                           const GeometryEncoding& encoding);
 
+/// Removes the residuals of packed models alone: their bases stay as they are. Returns and throws as `write_geometry`.
+[[nodiscard]] BufferPieces remove_detail(Document& document);
+
 }  // namespace papilio::proto::gltf

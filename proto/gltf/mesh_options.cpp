@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "papilio/trigonometry.h"
+#include "proto/detail/find_packed.h"
 
 namespace papilio::proto::gltf {
 namespace {
@@ -117,6 +118,7 @@ std::optional<Options> options_of_mesh(const Options& options, double scene_diag
                              });
   const bool keeps_view = options.view && is_shown_once;
   std::optional<Options> own = keeps_view ? options : without_view(options);
+  detail::end_with_detail(*own, placed.mesh);
   if (keeps_view)
     own->view = view_in_mesh(*options.view, placed.maps[0][0]);
   else if (needs.edge_length > 0)

@@ -97,4 +97,18 @@ Released find_released(const Json& document, const std::vector<PrimitivePlace>& 
   return released;
 }
 
+std::vector<uint32_t> find_detail_views(const Json& document) {
+  Counts all(array_of(document, "bufferViews").size());
+  count_views(all, document);
+  Counts of_detail(all.size());
+  for (const Json& mesh : array_of(document, "meshes"))
+    for (const Json& primitive : member_or_null(mesh, "primitives"))
+      count_views(of_detail, member_or_null(member_or_null(primitive, "extensions"), detail_extension));
+  const std::vector<bool> released = wholly_released(of_detail, all);
+  std::vector<uint32_t> views;
+  for (uint32_t v = 0; v < released.size(); ++v)
+    if (released[v]) views.push_back(v);
+  return views;
+}
+
 }  // namespace papilio::proto::gltf

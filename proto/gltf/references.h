@@ -25,4 +25,7 @@ struct Released {
 /// an extension.
 [[nodiscard]] Released find_released(const Json& document, const std::vector<PrimitivePlace>& replaced);
 
+/// Finds the views that only the residuals of packed models refer to (PAPILIO_detail).
+[[nodiscard]] std::vector<uint32_t> find_detail_views(const Json& document);
+
 }  // namespace papilio::proto::gltf

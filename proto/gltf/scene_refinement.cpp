@@ -324,9 +324,13 @@ class SceneRefinement::State {
   std::string write(std::vector<NewGeometry> replaced) {
     const GeometryEncoding encoding{parameters_.compression, parameters_.output, [this] { poll(); }};
     Document document = decoded().document;
-    BufferPieces pieces = replaced.empty() && parameters_.compression == Compression::same
-                              ? unchanged_pieces(document)
-                              : write_geometry(document, std::move(replaced), encoding);
+    BufferPieces pieces;
+    if (!replaced.empty() || parameters_.compression != Compression::same)
+      pieces = write_geometry(document, std::move(replaced), encoding);
+    else if (decoded().is_packed)
+      pieces = remove_detail(document);  // the answer at level 0 is the base
+    else
+      pieces = unchanged_pieces(document);
     poll();
     return write_document(document, std::move(pieces), FileKind::glb).document;
   }

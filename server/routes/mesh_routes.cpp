@@ -205,7 +205,7 @@ RunRefinement run_of_stored(Engine& engine, const std::string& id, const Paramet
                             const std::string& type) {
   const bool changes = changes_kind(engine, id, type);
   if (engine.is_scene(id) && changes)
-    return run_of(engine, std::make_shared<Refinement>(draco_of_scene(*engine.stored_bytes(id), engine.limits()),
+    return run_of(engine, std::make_shared<Refinement>(mesh_of_scene(*engine.stored_bytes(id), engine.limits()),
                                                        parameters, engine.limits()));
   if (engine.is_scene(id)) return run_of(engine, std::shared_ptr(engine.scene_refinement_of(id, parameters)));
   RunRefinement run = run_of(engine, std::shared_ptr(engine.mesh_refinement_of(id, parameters)));

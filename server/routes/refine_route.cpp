@@ -90,7 +90,7 @@ Response refine_route(Engine& engine, Request& request) {
                            is_scene ? engine.work_of_scene(order.mesh, order.parameters.options)
                                     : engine.work_of(order.mesh, order.parameters.options),
                            gone);
-  if (is_scene) order.mesh = draco_of_scene(order.mesh, engine.limits());
+  if (is_scene) order.mesh = mesh_of_scene(order.mesh, engine.limits());
   const auto refinement = std::make_shared<Refinement>(order.mesh, order.parameters, engine.limits());
   if (type == multipart_type)
     return level_stream(engine, request, std::move(slot), draco_type, run_of(engine, refinement));

@@ -1,5 +1,6 @@
 #include "server/routes/refined_answer.h"
 
+#include "proto/detail/find_packed.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
@@ -21,7 +22,8 @@ std::string negotiate_refined(const Request& request, bool is_scene) {
   return *type;
 }
 
-std::string draco_of_scene(const std::string& glb, const proto::Limits& limits) {
+std::string mesh_of_scene(const std::string& glb, const proto::Limits& limits) {
+  if (proto::detail::find_packed(glb, limits)) return glb;
   const auto mesh = proto::gltf::find_only_mesh(glb, limits);
   if (!mesh)
     throw proto::Problem(proto::Code::not_acceptable,

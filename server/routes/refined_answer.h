@@ -23,8 +23,9 @@ inline constexpr const char* json_type = "application/json";
 /// What it was is preferred. Throws `Problem` not_acceptable.
 [[nodiscard]] std::string negotiate_refined(const Request& request, bool is_scene);
 
-/// The mesh of a scene of one as Draco, to the bit. Throws `Problem`, not_acceptable for other scenes.
-[[nodiscard]] std::string draco_of_scene(const std::string& glb, const proto::Limits& limits);
+/// Returns the mesh of a scene of one as `proto::decode_mesh` takes it: a packed model as it is, another as Draco, to
+/// the bit. Throws `Problem`, not_acceptable for other scenes.
+[[nodiscard]] std::string mesh_of_scene(const std::string& glb, const proto::Limits& limits);
 /// A Draco mesh of our own as a .glb scene of one.
 [[nodiscard]] std::string scene_of_draco(const std::string& draco);
 

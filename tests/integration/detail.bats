@@ -88,14 +88,41 @@ report() { jq -r "$1" report.json; }
   cmp out.obj coarser.obj
 }
 
-@test "refine and convert use the base, say so, and remove the residuals" {
-  run --separate-stderr "$papilio" refine model.glb -o refined.glb --levels 1
-  [ "$status" = 0 ]
-  [[ $stderr == *"packed model"*"papilio unpack"* ]]
-  [ "$("$papilio" info --json refined.glb | jq -c '[.faces, .detail]')" = "[$((4 * $(report .base.faces))),null]" ]
-  run --separate-stderr "$papilio" convert model.glb base.obj
-  [[ $stderr == *"papilio unpack"* ]]
-  [ "$("$papilio" info --json base.obj | jq .faces)" = "$(report .base.faces)" ]
+@test "refine takes the levels of a packed model, to every kind of file" {
+  levels=$(report '.levels | length')
+  for ((level = 0; level <= levels; ++level)); do
+    "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
+    run --separate-stderr "$papilio" refine model.glb -o refined.glb --levels "$level" --compress none
+    [ "$status" = 0 ]
+    [[ $stderr != *"warning"* ]]
+    is_within "$(distance "level$level.ply" refined.glb hausdorff)" 1e-12
+    [ "$("$papilio" info --json refined.glb | jq .detail)" = null ]
+    ! grep -q PAPILIO_detail refined.glb
+  done
+  for kind in obj ply drc; do
+    "$papilio" refine model.glb -o "refined.$kind" --levels "$levels" --output.position_bits 16
+    [ "$("$papilio" info --json "refined.$kind" | jq .faces)" = "$(report '.levels[-1].faces')" ]
+    is_within "$(distance "level$levels.ply" "refined.$kind" hausdorff)" 2e-5
+  done
+}
+
+@test "a tolerance holds against the finest level of a packed model" {
+  "$papilio" unpack model.glb -o fine.ply
+  for tolerance in 0.01 0.002; do
+    "$papilio" refine model.glb -o refined.glb --tolerance $tolerance --compress none
+    is_within "$(distance fine.ply refined.glb hausdorff)" $tolerance
+    is_within "$("$papilio" info --json refined.glb | jq .faces)" "$(report '.levels[-1].faces') - 1"
+  done
+}
+
+@test "convert and compare use the finest level of a packed model" {
+  "$papilio" unpack model.glb -o fine.ply
+  for kind in obj ply; do
+    run --separate-stderr "$papilio" convert model.glb "converted.$kind"
+    [ "$stderr" = "" ]
+    is_within "$(distance fine.ply "converted.$kind" hausdorff)" 1e-12
+  done
+  is_within "$(distance model.glb fine.ply hausdorff)" 1e-12
   run --separate-stderr "$papilio" convert model.glb copy.glb
   [ "$stderr" = "" ]
   cmp model.glb copy.glb
@@ -105,14 +132,42 @@ report() { jq -r "$1" report.json; }
   cmp a.obj b.obj
 }
 
-@test "the server removes the residuals of a base that it refines" {
+@test "of a packed model of another version the base is used, and it is said" {
+  sed 's/"version":1,/"version":7,/' model.glb >newer.glb
+  run --separate-stderr "$papilio" refine newer.glb -o refined.glb --levels 1
+  [ "$status" = 0 ]
+  [[ $stderr == *"Only its base is used"* ]]
+  [ "$("$papilio" info --json refined.glb | jq .faces)" = "$((4 * $(report .base.faces)))" ]
+}
+
+@test "the server refines packed models as the command line does, sent and stored" {
+  levels=$(report '.levels | length')
   start_server
-  request -H 'Content-Type: model/gltf-binary' --data-binary @model.glb "$url/v1/refine?levels=1"
+  for query in "levels=$levels&output.compress=none" 'tolerance=0.002' 'levels=3&view.error_pixels=1'; do
+    request -H 'Content-Type: model/gltf-binary' --data-binary @model.glb "$url/v1/refine?$query"
+    [ "$status" = 200 ]
+    cp "$body" "sent.glb"
+    ! grep -q PAPILIO_detail sent.glb
+    request -H 'Content-Type: model/gltf-binary' --data-binary @model.glb "$url/v1/meshes"
+    id=$(sha256sum <model.glb | cut -d' ' -f1)
+    for _ in 1 2; do
+      request "$url/v1/meshes/$id/refined?$query"
+      [ "$status" = 200 ]
+      cmp "$body" sent.glb
+    done
+  done
+  "$papilio" refine model.glb -o local.glb --levels "$levels" --compress none
+  "$papilio" refine model.glb -o remote.glb --levels "$levels" --compress none --server "$url"
+  cmp local.glb remote.glb
+  "$papilio" refine model.glb -o local.obj --levels "$levels"
+  "$papilio" refine model.glb -o remote.obj --levels "$levels" --server "$url"
+  cmp local.obj remote.obj
+  request -H 'Accept: application/x-draco' "$url/v1/meshes/$id/refined?levels=$levels"
   [ "$status" = 200 ]
-  cp "$body" refined.glb
+  cp "$body" stored.drc
   stop_server
-  [ "$("$papilio" info --json refined.glb | jq .detail)" = null ]
-  ! grep -q PAPILIO_detail refined.glb
+  "$papilio" refine model.glb -o local.drc --levels "$levels"
+  cmp local.drc stored.drc
 }
 
 @test "a small open surface becomes plain Draco, and it is said" {

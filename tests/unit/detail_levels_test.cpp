@@ -87,13 +87,23 @@ TEST(DetailLevels, UniformLevelsAreThoseOfTheDecoder) {
       }
 }
 
-TEST(DetailLevels, AZeroToleranceOfErrorsGivesTheDecodersLevels) {
+TEST(DetailLevels, ATinyToleranceGivesTheDecodersLevelsWithoutError) {
   const DetailSource source = rough_detail();
   Options options;
   options.levels = levels_of_detail;
   options.tolerance = 1e-9;
-  const Mesh mesh = refine(test::with_detail(source), options).mesh;
-  EXPECT_EQ(sorted_faces(mesh.triangles()), sorted_faces(decoded(source, levels_of_detail)));
+  const Result result = refine(test::with_detail(source), options);
+  EXPECT_EQ(sorted_faces(result.mesh.triangles()), sorted_faces(decoded(source)));
+  EXPECT_EQ(result.error, 0);
+}
+
+TEST(DetailLevels, TheErrorLeftIsWithinTheTolerance) {
+  for (const double tolerance : {0.02, 0.004, 0.0008, 0.0001}) {
+    Options options;
+    options.levels = levels_of_detail;
+    options.tolerance = tolerance;
+    EXPECT_LE(refine(test::with_detail(rough_detail()), options).error, tolerance);
+  }
 }
 
 TEST(DetailLevels, FurtherLevelsSubdivideTheFinestDecodedOne) {

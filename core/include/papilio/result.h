@@ -34,7 +34,8 @@ struct Result {
   StopReason stop_reason = StopReason::levels;
   /// The largest deviation left: the distance by which the surface would still move at an edge that was not split, as a
   /// share of the coarse mesh's diagonal. Where there is a view, of what it shows. For edges of the last level, which
-  /// are not tried, a quarter of the deviation at the edges they come from: what a smooth surface does. In the
+  /// are not tried, a quarter of the deviation at the edges they come from: what a smooth surface does; nothing where
+  /// that level is the last one of the mesh's detail. In the
   /// red-green scheme with a tolerance or budget, and neither view nor flatness, it is also no less than the distance
   /// between the result and the uniform one of the same levels, from both sides. 0 without `Options::measure_error`.
   double error = 0;
