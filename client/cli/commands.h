@@ -47,8 +47,11 @@ struct CompareFlags {
 void compare_command(const CompareFlags& flags);
 
 struct PackFlags {
-  MeshPlace input, output;  ///< the output is a .glb file
-  double rms = 1e-4;        ///< wanted RMS distance, a share of the diagonal
+  MeshPlace input, output;          ///< the output is a .glb file
+  std::optional<double> rms{};      ///< wanted RMS distance, a share of the diagonal
+  std::optional<double> largest{};  ///< largest distance allowed, a share of the diagonal
+  std::optional<int64_t> bytes{};  ///< most bytes of the file; at most one of these three is given
+  int jobs = 1;                     ///< most encodings at once
   bool json = false;
 };
 /// Packs a fine mesh into a coarse base and levels of residuals.
@@ -77,7 +80,7 @@ void check_output(const MeshPlace& output);
 /// Prints warnings to standard error, a line each: the first ten and how many more there are.
 void print_warnings(const std::vector<std::string>& warnings);
 
-/// Warns if a file is a packed model, of which a command uses the base alone.
+/// Warns if a scene has levels of detail but is no packed model: then commands use its base alone.
 void warn_of_detail(const MeshBytes& file);
 
 /// A mistake in how the program was called: exit status 2.

@@ -142,8 +142,18 @@ void add_pack(CLI::App& app) {
   constexpr double least = 1e-6, most = 0.1;
   command
       ->add_option("--rms", flags->rms,
-                   "RMS distance to the original that is wanted, a share of the bounding box's diagonal")
-      ->check(CLI::Range(least, most))
+                   "RMS distance to the original that is wanted, a share of the bounding box's diagonal; default 1e-4")
+      ->check(CLI::Range(least, most));
+  command
+      ->add_option("--max", flags->largest,
+                   "In place of --rms: largest distance that is allowed, in either direction, a share of the diagonal")
+      ->check(CLI::Range(least, 1.0));
+  command->add_option("--bytes", flags->bytes, "In place of --rms: most bytes of the file")
+      ->check(CLI::Range(int64_t{1}, int64_t{1} << 40));
+  command
+      ->add_option("--jobs", flags->jobs,
+                   "Threads that encode at once for --max and --bytes, which take up to seven encodings, two at a time")
+      ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_flag("--json", flags->json, "Report as JSON; on standard error where the model goes to standard output");
   command->callback([flags] { pack_command(*flags); });

@@ -52,17 +52,30 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
     out << proto::detail::pack_report(packed) << '\n';
     return;
   }
-  if (packed.model) print_packed(out, packed);
-  out << packed.glb.size() << " bytes; plain Draco at the same distance (" << packed.plain_bits << " bits, RMS "
-      << format_rounded(100 * packed.plain_rms) << " %): " << packed.plain_bytes << " bytes, "
-      << format_rounded(static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size()))
-      << " times as many\n";
+  const std::string grid =
+      std::to_string(packed.plain_bits) + " bits, RMS " + format_rounded(100 * packed.plain_rms) + " %";
+  if (!packed.model) {
+    out << packed.glb.size() << " bytes of plain Draco (" << grid << ")\n";
+    return;
+  }
+  print_packed(out, packed);
+  const std::string ratio =
+      format_rounded(static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size()));
+  out << packed.glb.size() << " bytes; plain Draco at the same distance (" << grid << "): " << packed.plain_bytes
+      << " bytes, " << (ratio == "1" ? "as many" : ratio + " times as many") << '\n';
+}
+
+void check_goals(const PackFlags& flags) {
+  if (int{flags.rms.has_value()} + int{flags.largest.has_value()} + int{flags.bytes.has_value()} > 1)
+    throw UsageError("--rms, --max and --bytes are goals in place of each other. Give one.");
+  if (flags.rms && std::isnan(*flags.rms)) throw UsageError("--rms must be a number from 1e-6 to 0.1.");
+  if (flags.largest && std::isnan(*flags.largest)) throw UsageError("--max must be a number from 1e-6 to 1.");
 }
 
 void warn_of_result(const Packed& packed) {
   if (!packed.model) return print_warnings({"The file is plain Draco without levels. " + packed.reason});
   const double reached = reach_of(*packed.model).rms;
-  if (reached > packed.wanted_rms)
+  if (packed.wanted_rms > 0 && reached > packed.wanted_rms)
     print_warnings({"The RMS distance reached is " + format_rounded(reached) + ", not " +
                     format_rounded(packed.wanted_rms) + "."});
 }
@@ -70,7 +83,7 @@ void warn_of_result(const Packed& packed) {
 }  // namespace
 
 void pack_command(const PackFlags& flags) {
-  if (std::isnan(flags.rms)) throw UsageError("--rms must be a number from 1e-6 to 0.1.");
+  check_goals(flags);
   MeshPlace output = flags.output;
   if (output.is_standard() && !output.format) output.format = Format::glb;
   check_output(output);
@@ -81,7 +94,10 @@ void pack_command(const PackFlags& flags) {
   const Interruption interruption;
   const Packed packed = in_words_of_the_file(file.name, [&] {
     ShareProgress progress;
-    return proto::detail::pack(original, {.rms = flags.rms,
+    return proto::detail::pack(original, {.rms = flags.rms.value_or(proto::detail::PackOptions{}.rms),
+                                          .largest = flags.largest.value_or(0),
+                                          .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
+                                          .jobs = flags.jobs,
                                           .cancelled = [] { return Interruption::is_asked(); },
                                           .on_progress = [&](double share) { progress.show(share); }});
   });

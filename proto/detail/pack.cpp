@@ -1,21 +1,24 @@
 #include "proto/detail/pack.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "proto/detail/base_coder.h"
-#include "proto/detail/packed_reader.h"
-#include "proto/detail/packed_writer.h"
+#include "proto/detail/distance_search.h"
+#include "proto/detail/encodings.h"
 #include "proto/error_translation.h"
+#include "proto/problem.h"
 #include "proto/text.h"
 
 namespace papilio::proto::detail {
 namespace {
 
-/// Largest move of a base vertex by its grid, in wanted RMS distances. On five pairs of model and distance the files
-/// were 2 to 15 % smaller than with a quarter, and never more than 1.3 % larger than with the best of 0.25, 0.5, 1, 2
-/// and 4.
-constexpr double base_move = 1;
+/// Largest distance, in RMS distances, of about the models that were tried: where a search for it begins.
+constexpr double largest_of_rms = 8;
+/// RMS distance where a search for a number of bytes begins, and the power of it that they follow about.
+constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
 class Packer {
  public:
@@ -23,49 +26,125 @@ class Packer {
       : options_(options), mesh_(build_mesh({original.positions, original.triangles}, nullptr, rounding_gap)) {}
 
   Packed run() {
-    packed_.wanted_rms = options_.rms;
+    packed_.wanted_rms = has_other_goal() ? 0 : options_.rms;
     try {
       encode();
     } catch (const Error& error) {
       if (error.fault() != Fault::bad_surface) throw;
       packed_.reason = error.what();
     }
-    const double reached = packed_.model ? reach_of(*packed_.model).rms : 0;
-    PlainDraco plain = plain_at(std::max(options_.rms, reached));
-    if (packed_.model && packed_.glb.size() < plain.glb.size()) {
-      note(plain);
-      return std::move(packed_);
-    }
-    if (packed_.model) packed_.reason = reason_for(plain);
-    if (reached > options_.rms) plain = plain_at(options_.rms);
-    note(plain);
-    packed_.model.reset();
-    packed_.folds = 0;
-    packed_.glb = std::move(plain.glb);
+    if (options_.bytes > 0)
+      choose_within_bytes();
+    else if (options_.largest > 0)
+      choose_within_largest();
+    else
+      choose_at_rms();
     return std::move(packed_);
   }
 
  private:
+  [[nodiscard]] bool has_other_goal() const { return options_.bytes > 0 || options_.largest > 0; }
+
   void poll() const {
     if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Packing was cancelled.");
   }
 
+  /// Encodes for the goal, and keeps the best encoding.
   void encode() {
     const TriangleMesh surface = mesh_.triangles();
-    DracoBaseCoder coder(base_move * options_.rms * bounding_box(surface.positions).diagonal());
-    const DetailOptions options{.rms = options_.rms,
-                                .face_limit = options_.face_limit,
-                                .cancelled = options_.cancelled,
-                                .on_progress = options_.on_progress};
-    const EncodedDetail encoded =
-        encode_detail(surface, options, [&](const TriangleMesh& base) { return coder.code(base); });
-    packed_.glb = write_packed(encoded, coder.stream_of(encoded.base.triangles));
-    packed_.folds = encoded.folds;
-    packed_.model = read_packed(packed_.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
+    Encodings encodings(surface, options_, has_other_goal() ? most_probes : 1);
+    const auto encode_round = [&](std::span<const double> distances) {
+      std::vector<double> values;
+      for (Encoding& made : encodings.encode(distances)) {
+        values.push_back(std::max(value_of(made), std::numeric_limits<double>::min()));
+        if (!best_ || is_better(made, *best_)) best_ = std::move(made);
+      }
+      packed_.encodings = encodings.count();
+      return values;
+    };
+    if (options_.bytes > 0)
+      (void)search_distance(
+          {.value = static_cast<double>(options_.bytes), .power = power_of_bytes, .first = first_for_bytes},
+          encode_round);
+    else if (options_.largest > 0)
+      (void)search_distance({.value = options_.largest, .power = 1, .first = options_.largest / largest_of_rms},
+                            encode_round);
+    else
+      (void)encode_round(std::span(&options_.rms, 1));
   }
 
-  [[nodiscard]] PlainDraco plain_at(double rms) const {
-    return write_plain_draco(mesh_, rms, [this] { poll(); });
+  /// Returns what is held against the goal of a search.
+  [[nodiscard]] double value_of(const Encoding& made) const {
+    return options_.bytes > 0 ? static_cast<double>(made.glb.size()) : reach_of(made.model).largest;
+  }
+  [[nodiscard]] bool fits(const Encoding& made) const {
+    return value_of(made) <= (options_.bytes > 0 ? static_cast<double>(options_.bytes) : options_.largest);
+  }
+  /// Whether one encoding is better than another: of those within the goal the finest or the smallest, else the
+  /// nearest.
+  [[nodiscard]] bool is_better(const Encoding& made, const Encoding& other) const {
+    if (fits(made) != fits(other)) return fits(made);
+    if (!fits(made)) return value_of(made) < value_of(other);
+    return options_.bytes > 0 ? reach_of(made.model).rms < reach_of(other.model).rms
+                              : made.glb.size() < other.glb.size();
+  }
+
+  void choose_at_rms() {
+    const double reached = best_ ? reach_of(best_->model).rms : 0;
+    PlainDraco plain = plain_at(std::max(options_.rms, reached));
+    if (best_ && best_->glb.size() < plain.glb.size()) return take_packed(plain);
+    if (best_)
+      packed_.reason = "At an RMS distance of " + format_rounded(std::max(options_.rms, reached)) +
+                       " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) +
+                       " bytes, and a packed model " + std::to_string(best_->glb.size()) + ".";
+    take_plain(reached > options_.rms ? plain_at(options_.rms) : std::move(plain));
+  }
+
+  void choose_within_largest() {
+    PlainDraco plain = plain_within(options_.largest);
+    if (best_ && fits(*best_) && best_->glb.size() < plain.glb.size()) return take_packed(plain);
+    if (best_ && !fits(*best_))
+      packed_.reason = "No packed model was found that is nowhere farther than " + format_rounded(options_.largest) +
+                       " of the diagonal from the original.";
+    else if (best_)
+      packed_.reason = "With no distance above " + format_rounded(options_.largest) +
+                       " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) +
+                       " bytes, and a packed model " + std::to_string(best_->glb.size()) + ".";
+    take_plain(std::move(plain));
+  }
+
+  void choose_within_bytes() {
+    std::optional<PlainDraco> plain = finest_plain();
+    const bool is_fit = best_ && fits(*best_);
+    if (is_fit && (!plain || reach_of(best_->model).rms < plain->rms))
+      return take_packed(plain_at(reach_of(best_->model).rms));
+    if (!plain) refuse_bytes();
+    if (is_fit)
+      packed_.reason = "In " + std::to_string(options_.bytes) + " bytes plain Draco has an RMS distance of " +
+                       format_rounded(plain->rms) + " of the diagonal, and a packed model " +
+                       format_rounded(reach_of(best_->model).rms) + ".";
+    else if (best_)
+      packed_.reason = "No packed model of at most " + std::to_string(options_.bytes) + " bytes was found.";
+    take_plain(std::move(*plain));
+  }
+
+  [[noreturn]] void refuse_bytes() const {
+    size_t fewest = plain_of(fewest_position_bits).glb.size();
+    if (best_) fewest = std::min(fewest, best_->glb.size());
+    throw Problem(Code::result_too_large, "The smallest file found has " + std::to_string(fewest) +
+                                              " bytes, more than " + std::to_string(options_.bytes) + ". Allow more.");
+  }
+
+  void take_packed(const PlainDraco& plain) {
+    note(plain);
+    packed_.folds = best_->folds;
+    packed_.glb = std::move(best_->glb);
+    packed_.model = std::move(best_->model);
+  }
+
+  void take_plain(PlainDraco plain) {
+    note(plain);
+    packed_.glb = std::move(plain.glb);
   }
 
   void note(const PlainDraco& plain) {
@@ -74,14 +153,38 @@ class Packer {
     packed_.plain_rms = plain.rms;
   }
 
-  [[nodiscard]] std::string reason_for(const PlainDraco& plain) const {
-    return "At an RMS distance of " + format_rounded(std::max(options_.rms, reach_of(*packed_.model).rms)) +
-           " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) + " bytes, and a packed model " +
-           std::to_string(packed_.glb.size()) + ".";
+  [[nodiscard]] PlainDraco plain_at(double rms) const {
+    return write_plain_draco(mesh_, rms, [this] { poll(); });
+  }
+  [[nodiscard]] PlainDraco plain_of(int bits) const {
+    return write_plain_grid(mesh_, bits, [this] { poll(); });
+  }
+  /// Returns the file with the fewest bits that move no position by more than this share of the diagonal.
+  [[nodiscard]] PlainDraco plain_within(double largest) const {
+    const Box box = bounding_box(mesh_.positions);
+    int bits = fewest_position_bits;
+    while (bits < most_position_bits && tight_grid_distance(box, bits) > largest * box.diagonal()) ++bits;
+    return plain_of(bits);
+  }
+  /// Returns the file with the most bits that has no more bytes than are allowed.
+  [[nodiscard]] std::optional<PlainDraco> finest_plain() const {
+    std::optional<PlainDraco> finest;
+    for (int low = fewest_position_bits, high = most_position_bits; low <= high;) {
+      const int bits = (low + high) / 2;
+      PlainDraco plain = plain_of(bits);
+      if (plain.glb.size() > options_.bytes) {
+        high = bits - 1;
+      } else {
+        finest = std::move(plain);
+        low = bits + 1;
+      }
+    }
+    return finest;
   }
 
   const PackOptions& options_;
   Mesh mesh_;
+  std::optional<Encoding> best_;
   Packed packed_;
 };
 

@@ -10,11 +10,17 @@
 
 namespace papilio::proto::detail {
 
+/// One goal holds: `bytes` if it is set, else `largest` if it is set, else `rms`. For the first two, the RMS distance
+/// is searched in at most seven encodings (distance_search.h).
 struct PackOptions {
-  double rms = 1e-4;                          ///< wanted RMS distance, a share of the original's diagonal; 1e-6..0.1
-  uint64_t face_limit = 8'000'000;            ///< faces of the last level
-  std::function<bool()> cancelled{};          ///< asked now and then; true stops with `Problem` cancelled
-  std::function<void(double)> on_progress{};  ///< share done, 0..1
+  double rms = 1e-4;   ///< wanted RMS distance, a share of the original's diagonal; 1e-6..0.1
+  double largest = 0;  ///< largest distance of either direction that is allowed, as above; 1e-6..1; 0: none
+  uint64_t bytes = 0;  ///< most bytes of the file; 0: any number
+  int jobs = 1;        ///< most threads that encode at once; the file is the same
+  uint64_t face_limit = 8'000'000;  ///< faces of the last level
+  /// Asked now and then; true stops with `Problem` cancelled. Comes from several threads at once with several jobs.
+  std::function<bool()> cancelled{};
+  std::function<void(double)> on_progress{};  ///< share done, 0..1; calls do not overlap
 };
 
 /// A packed original.
@@ -22,16 +28,18 @@ struct Packed {
   std::string glb{};
   std::optional<PackedModel> model{};  ///< as read back; nothing: `glb` is plain Draco
   std::string reason{};                ///< why it is plain
-  double wanted_rms = 0;
-  uint32_t folds = 0;        ///< faces of the last level turned against the original
-  uint64_t plain_bytes = 0;  ///< of the plain .glb file at the same distance
-  int plain_bits = 0;        ///< its bits of a coordinate
-  double plain_rms = 0;      ///< its distance, by `grid_rms`
+  double wanted_rms = 0;               ///< 0 with another goal
+  size_t encodings = 0;                ///< made for the goal
+  uint32_t folds = 0;                  ///< faces of the last level turned against the original
+  uint64_t plain_bytes = 0;            ///< of the plain .glb file at the same distance
+  int plain_bits = 0;                  ///< its bits of a coordinate
+  double plain_rms = 0;                ///< its distance, by `grid_rms`
 };
 
-/// Packs the surface of an original; its attributes are left out. The result is a plain .glb file at the wanted
-/// distance where plain Draco, at the distance that was reached, takes no more bytes than the packed model, and where
-/// the surface is not closed and manifold. Throws `Problem`.
+/// Packs the surface of an original; its attributes are left out. The result is a plain .glb file where the surface is
+/// not closed and manifold, and where plain Draco is as good: at the RMS distance that was reached or at the largest
+/// allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. Throws `Problem`:
+/// result_too_large where no file found is so small; and as the coders.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);
 
 /// Returns JSON that describes a packed model: its base and levels with counts, bytes and distances.

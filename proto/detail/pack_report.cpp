@@ -34,7 +34,8 @@ std::string pack_report(const Packed& packed) {
   Json out{{"format", packed.model ? "packed" : "draco"}};
   if (!packed.reason.empty()) out["reason"] = packed.reason;
   out["bytes"] = packed.glb.size();
-  out["wanted_rms"] = packed.wanted_rms;
+  if (packed.wanted_rms > 0) out["wanted_rms"] = packed.wanted_rms;
+  out["encodings"] = packed.encodings;
   if (packed.model) {
     out["folds"] = packed.folds;
     out.update(json_of(*packed.model));

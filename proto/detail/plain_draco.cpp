@@ -6,6 +6,9 @@
 #include "proto/detail/packed_writer.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/document.h"
+#include "proto/gltf/extensions.h"
+#include "proto/gltf/flattening.h"
 
 namespace papilio::proto::detail {
 namespace {
@@ -47,17 +50,37 @@ double grid_rms(const Mesh& mesh, int position_bits) {
 }
 
 PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll) {
-  PlainDraco plain{.position_bits = fewest_position_bits};
-  plain.rms = grid_rms(mesh, plain.position_bits);
-  while (plain.rms > rms && plain.position_bits < most_position_bits) {
+  int bits = fewest_position_bits;
+  while (bits < most_position_bits && grid_rms(mesh, bits) > rms) {
     if (poll) poll();
-    plain.rms = grid_rms(mesh, ++plain.position_bits);
+    ++bits;
   }
+  return write_plain_grid(mesh, bits, poll);
+}
+
+PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll) {
+  PlainDraco plain{.position_bits = position_bits, .rms = grid_rms(mesh, position_bits)};
   const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
   const std::string stream = write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0}, {}, poll);
   constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
   plain.glb = write_plain(read_draco(stream, no_limits), stream);
   return plain;
+}
+
+std::optional<TriangleMesh> read_plain_draco(std::string_view glb, const Limits& limits) {
+  if (!gltf::is_glb(glb)) return std::nullopt;
+  const gltf::Json json = gltf::read_document(glb).json;
+  const gltf::Json& meshes = gltf::array_of(json, "meshes");
+  if (meshes.size() != 1) return std::nullopt;
+  const gltf::Json* primitives = gltf::find_member(meshes[0], "primitives", "meshes[0]");
+  if (primitives == nullptr || !primitives->is_array() || primitives->size() != 1) return std::nullopt;
+  const gltf::Json& primitive = (*primitives)[0];
+  if (gltf::find_extension(primitive, gltf::draco_extension, "a primitive") == nullptr ||
+      gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr)
+    return std::nullopt;
+  const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
+  if (attributes == nullptr || !attributes->is_object() || attributes->size() != 1) return std::nullopt;
+  return gltf::find_only_mesh(glb, limits);
 }
 
 }  // namespace papilio::proto::detail

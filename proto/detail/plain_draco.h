@@ -1,9 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "papilio/mesh.h"
+#include "proto/limits.h"
 
 namespace papilio::proto::detail {
 
@@ -22,5 +25,12 @@ struct PlainDraco {
 /// Writes the mesh as Draco at speed 0 with the fewest bits, from 6 to 20, whose `grid_rms` is at most `rms`; with 20
 /// where none is. Attributes are left out. Calls `poll`, unless empty; it may throw to stop. Throws `Problem`.
 [[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll = {});
+
+/// Writes the mesh as write_plain_draco() does, with so many bits of a coordinate.
+[[nodiscard]] PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll = {});
+
+/// Reads the mesh of a file without levels: a .glb scene that shows one primitive once, of positions alone, compressed
+/// by Draco. Nothing for other files. Throws `Problem` for a damaged one, and mesh_too_large.
+[[nodiscard]] std::optional<TriangleMesh> read_plain_draco(std::string_view glb, const Limits& limits);
 
 }  // namespace papilio::proto::detail

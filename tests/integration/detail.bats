@@ -178,9 +178,60 @@ report() { jq -r "$1" report.json; }
   [ "$(jq -r .format <<<"$output")" = draco ]
   [ "$("$papilio" info --json open.glb | jq -c '[.faces, .compression, .detail]')" = '[2,"draco",null]' ]
   is_within "$(distance open.obj open.glb rms)" 0.0001
-  run "$papilio" unpack open.glb -o out.obj
+  run --separate-stderr "$papilio" unpack open.glb -o out.obj
+  [ "$status" = 0 ]
+  [[ $output == "out.obj: 4 vertices, 2 faces, plain Draco without levels" ]]
+  [ "$stderr" = "" ]
+  is_within "$(distance open.glb out.obj hausdorff)" 1e-12
+  run --separate-stderr "$papilio" unpack open.glb -o out.obj --levels 2
+  [[ $stderr == *"has no levels"* ]]
+  "$papilio" pack open.obj -o open.glb >report.txt 2>/dev/null
+  [[ $(cat report.txt) == *" bytes of plain Draco ("*" bits, RMS "*")" ]]
+}
+
+@test "a scene that pack did not write is not unpacked" {
+  "$papilio" convert "$fine" scene.glb
+  run "$papilio" unpack scene.glb -o out.obj
   [ "$status" = 1 ]
   [[ $output == *"no packed model"* ]]
+}
+
+# ball: a small closed surface.
+ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahedron.obj" -o ball.obj --levels 4; }
+
+@test "no point is farther than --max, in either direction, with any number of jobs" {
+  ball
+  "$papilio" pack ball.obj -o far.glb --max 0.02 --json >far.json
+  [ "$(jq -r .format far.json)" = packed ]
+  is_within "$(jq .encodings far.json)" 7
+  is_within "$(jq '.levels[-1].largest' far.json)" 0.02
+  is_within 0.01 "$(jq '.levels[-1].largest' far.json)"
+  "$papilio" unpack far.glb -o far.ply
+  is_within "$(distance ball.obj far.ply hausdorff)" "1.1 * 0.02" # measured by other samples
+  "$papilio" pack ball.obj -o several.glb --max 0.02 --jobs 5
+  cmp far.glb several.glb
+}
+
+@test "plain Draco keeps to --max, too" {
+  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v .3 .7 .1' 'f 1 2 3' >open.obj
+  "$papilio" pack open.obj -o open.glb --max 0.001 --json 2>/dev/null >open.json
+  [ "$(jq -r .format open.json)" = draco ]
+  is_within "$(distance open.obj open.glb hausdorff)" 0.001
+  "$papilio" pack open.obj -o open.glb --bytes 1000 2>/dev/null
+  is_within "$(stat -c %s open.glb)" 1000
+}
+
+@test "a file has no more than --bytes" {
+  ball
+  "$papilio" pack ball.obj -o small.glb --bytes 1300 --json >small.json
+  [ "$(jq -r .format small.json)" = packed ]
+  is_within "$(stat -c %s small.glb)" 1300
+  is_within 1200 "$(stat -c %s small.glb)"
+  is_within "$(jq .encodings small.json)" 7
+  run "$papilio" pack ball.obj -o none.glb --bytes 300
+  [ "$status" = 1 ]
+  [[ $output == *"smallest file found has "*" bytes, more than 300"* ]]
+  [ ! -e none.glb ]
 }
 
 @test "what a packed model does not hold is said" {
@@ -189,6 +240,18 @@ report() { jq -r "$1" report.json; }
   run --separate-stderr "$papilio" pack textured.obj -o textured.glb
   [ "$status" = 0 ]
   [[ $stderr == *"texture coordinates, normals and other attributes are left out"* ]]
+}
+
+@test "a signal ends a search without a file" {
+  "$papilio" pack "$fine" -o searched.glb --max 0.001 --jobs 2 >out.txt 2>&1 &
+  pid=$!
+  sleep 0.7
+  kill -TERM "$pid"
+  status=0
+  wait "$pid" || status=$?
+  [ "$status" = 1 ]
+  [[ $(cat out.txt) == *cancelled* ]]
+  [ "$(find . -name '*searched.glb*')" = "" ]
 }
 
 @test "a signal ends packing without a file" {
@@ -211,6 +274,22 @@ report() { jq -r "$1" report.json; }
     run "$papilio" pack "$fine" -o out.glb --rms="$rms"
     [ "$status" = 2 ]
   done
+  for largest in 0 2 -0.1 nan; do
+    run "$papilio" pack "$fine" -o out.glb --max="$largest"
+    [ "$status" = 2 ]
+  done
+  for bytes in 0 -5 many; do
+    run "$papilio" pack "$fine" -o out.glb --bytes="$bytes"
+    [ "$status" = 2 ]
+  done
+  for goals in '--rms 0.001 --max 0.01' '--rms 0.001 --bytes 1000' '--max 0.01 --bytes 1000'; do
+    # shellcheck disable=SC2086
+    run "$papilio" pack "$fine" -o out.glb $goals
+    [ "$status" = 2 ]
+    [[ $output == *"Give one"* ]]
+  done
+  run "$papilio" pack "$fine" -o out.glb --max 0.01 --jobs 0
+  [ "$status" = 2 ]
   run "$papilio" unpack model.glb -o out.obj --levels 11
   [ "$status" = 2 ]
   run --separate-stderr "$papilio" unpack model.glb -o out.obj --levels 10

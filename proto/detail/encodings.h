@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proto/detail/pack.h"
+
+namespace papilio::proto::detail {
+
+/// Packed model of a surface, encoded for an RMS distance.
+struct Encoding {
+  double wanted_rms = 0;
+  std::string glb{};
+  PackedModel model{};  ///< as read back
+  uint32_t folds = 0;
+};
+
+/// Encoder of one surface at several distances. Encodings do not depend on each other, nor on the threads.
+class Encodings {
+ public:
+  /// Both must outlive this. `most`: how many encodings there may be, for the progress.
+  Encodings(const TriangleMesh& surface, const PackOptions& options, size_t most);
+
+  /// Encodes at these distances, up to `PackOptions::jobs` at once. Throws `Error` as encode_detail().
+  [[nodiscard]] std::vector<Encoding> encode(std::span<const double> distances);
+  /// Encodings made so far.
+  [[nodiscard]] size_t count() const { return count_; }
+
+ private:
+  [[nodiscard]] Encoding encode_at(double rms, size_t number);
+  void show(size_t number, double share);
+
+  const TriangleMesh& surface_;
+  const PackOptions& options_;
+  double diagonal_;
+  size_t count_ = 0;
+  std::mutex access_;           ///< guards `shares_` and calls of `PackOptions::on_progress`
+  std::vector<double> shares_;  ///< done of each encoding
+};
+
+}  // namespace papilio::proto::detail
