@@ -22,4 +22,22 @@ Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& 
   return trial;
 }
 
+DecodedSize decoded_size(const Mesh& coarse, int level, const MemoryPlan& plan) {
+  const uint64_t faces = uint64_t{coarse.topology.face_count()} << (2 * level);
+  return {faces, plan.made(faces, level, 0)};
+}
+
+double largest_move_below(const Mesh& coarse, int first, const Options& options, const MemoryPlan& plan,
+                          const Progress& progress) {
+  double largest = 0;
+  if (!coarse.detail) return largest;
+  const int levels = std::min(options.levels, coarse.detail->level_count());
+  for (int level = first; level < levels; ++level) {
+    const DecodedSize size = decoded_size(coarse, level + 1, plan);
+    if (!progress.has_room(size.faces, size.bytes)) break;
+    largest = std::max(largest, coarse.detail->largest_move(level, progress.cancelled()));
+  }
+  return largest;
+}
+
 }  // namespace papilio

@@ -4,6 +4,8 @@
 
 #include "criteria/selection.h"
 #include "hierarchy/hierarchy.h"
+#include "hierarchy/memory_plan.h"
+#include "hierarchy/progress.h"
 
 namespace papilio {
 
@@ -11,5 +13,18 @@ namespace papilio {
 /// the rules (try_split). Throws `Error` cancelled, and what Detail::new_vertices() throws.
 [[nodiscard]] Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& options,
                               const TrialContext& context, const std::function<bool()>& cancelled = {});
+
+/// Whole level of a mesh with detail.
+struct DecodedSize {
+  uint64_t faces = 0;
+  uint64_t bytes = 0;  ///< taken while it is decoded
+};
+/// Returns the size of the level that `level` levels give.
+[[nodiscard]] DecodedSize decoded_size(const Mesh& coarse, int level, const MemoryPlan& plan);
+
+/// Returns the largest move of the levels of detail from `first` on (0 is that of the coarse edges), as far as the
+/// options have levels and the limits room to decode them; 0 where there are none.
+[[nodiscard]] double largest_move_below(const Mesh& coarse, int first, const Options& options, const MemoryPlan& plan,
+                                        const Progress& progress);
 
 }  // namespace papilio

@@ -5,6 +5,7 @@
 
 #include "criteria/budget.h"
 #include "hierarchy/assemble.h"
+#include "hierarchy/detail_levels.h"
 #include "hierarchy/displaced_levels.h"
 #include "hierarchy/error_left.h"
 #include "hierarchy/level_choice.h"
@@ -12,7 +13,6 @@
 #include "hierarchy/repair.h"
 #include "hierarchy/surface_check.h"
 #include "hierarchy/transition.h"
-#include "papilio/detail.h"
 
 namespace papilio {
 namespace {
@@ -203,9 +203,15 @@ class RedGreen {
   }
 
   /// Whether the level may be made; throws where it passes a limit and the options do not end there. Faces that are
-  /// held but not in the result count too; those held for other requests do not.
+  /// held but not in the result count too; those held for other requests do not. Detail is decoded for whole levels.
   [[nodiscard]] bool has_room_below(int level) {
     const LevelChoice& choice = choices_.back();
+    if (choice.level->detail_levels > 1) {
+      const DecodedSize size = decoded_size(coarse(), level, levels_.plan());
+      is_at_limit_ = progress_.ends_before(size.faces, size.bytes);
+      if (is_at_limit_) return false;
+      progress_.require_room(size.faces, size.bytes, level);
+    }
     const Topology& mesh = choice.level->mesh.topology;
     const auto bytes = [&](uint64_t faces) { return levels_.plan().made(faces, level, bytes_per_held_face); };
     if (progress_.has_room(4ULL * mesh.face_count(), bytes(4ULL * mesh.face_count()))) return true;
@@ -249,7 +255,9 @@ class RedGreen {
       if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_) touch(f);
     }
     if (choice.level->detail_levels > 1) {
-      if (!bounds_distance()) move_below_ = largest_move_below();
+      if (!bounds_distance())
+        move_below_ =
+            largest_move_below(coarse(), static_cast<int>(choices_.size()), options_, levels_.plan(), progress_);
       for (uint32_t f : choice.region.faces)
         if (bounds_distance() || (choice.may_divide(f) && may_have_detail_below(f))) touch(f);
     }
@@ -280,20 +288,6 @@ class RedGreen {
     return std::any_of(edge, edge + 3, [&](uint32_t e) {
       return choice.shown[e] && selection_.error_of(level.mesh, level.trial, e, move_below_) >= threshold_;
     });
-  }
-
-  /// Returns the largest move of the levels of detail below the deepest level, as far as the limits let them be made.
-  [[nodiscard]] double largest_move_below() const {
-    const Mesh& coarse = choices_[0].level->mesh;
-    double largest = 0;
-    if (!coarse.detail) return largest;
-    const int levels = std::min(options_.levels, coarse.detail->level_count());
-    for (auto l = static_cast<int>(choices_.size()); l < levels; ++l) {
-      const uint64_t faces = uint64_t{coarse.topology.face_count()} << (2 * (l + 1));
-      if (!progress_.has_room(faces, levels_.plan().made(faces, l + 1, 0))) break;
-      largest = std::max(largest, coarse.detail->largest_move(l, progress_.cancelled()));
-    }
-    return largest;
   }
 
   /// Splits further edges until the result is within the tolerance of the uniform surface, as far as budget and limits
@@ -336,7 +330,8 @@ class RedGreen {
                     displacements_of(choices_, options_));
   }
 
-  [[nodiscard]] bool has_detail() const { return choices_[0].level->mesh.detail != nullptr; }
+  [[nodiscard]] const Mesh& coarse() const { return choices_[0].level->mesh; }
+  [[nodiscard]] bool has_detail() const { return coarse().detail != nullptr; }
   [[nodiscard]] bool is_uniform() const {
     const uint64_t coarse = choices_[0].region.faces.size();
     return count_assembled(choices_) == coarse << (2 * static_cast<uint64_t>(options_.levels));

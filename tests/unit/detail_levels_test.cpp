@@ -194,6 +194,23 @@ TEST(DetailLevels, AViewFindsABumpBelowFlatFaces) {
   EXPECT_NE(highest(refine(test::with_detail(bump), from_behind).mesh.positions), highest(all.positions));
 }
 
+TEST(DetailLevels, LimitsHoldForWhatIsDecoded) {
+  Options options = view_options(0);
+  options.view->fov_y = 1;  // shows few faces
+  options.face_limit = 20U << 6U;
+  try {
+    (void)refine(test::with_detail(rough_detail()), options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::result_too_large);
+    EXPECT_NE(std::string(error.what()).find(std::to_string(20U << 8U)), std::string::npos);
+  }
+  options.stop_at_limits = true;
+  const Result result = refine(test::with_detail(rough_detail()), options);
+  EXPECT_EQ(result.stop_reason, StopReason::limits);
+  EXPECT_EQ(result.levels, 3);
+}
+
 TEST(DetailLevels, APreparedMeshGivesTheBitsOfOneThatIsNot) {
   const DetailSource source = rough_detail();
   for (const uint64_t budget : {uint64_t{0}, uint64_t{200'000}, uint64_t{100} << 20}) {
