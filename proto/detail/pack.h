@@ -36,9 +36,9 @@ struct Packed {
   double plain_rms = 0;                ///< its distance, by `grid_rms`
 };
 
-/// Packs the surface of an original; its attributes are left out. The result is a plain .glb file where the surface is
-/// not closed and manifold, and where plain Draco is as good: at the RMS distance that was reached or at the largest
-/// allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. Throws `Problem`:
+/// Packs the surface of an original; its attributes are left out. The result is a plain .glb file where the surface
+/// cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the largest allowed
+/// distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. Throws `Problem`:
 /// result_too_large where no file found is so small; and as the coders.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);
 

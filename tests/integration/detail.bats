@@ -226,7 +226,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   "$papilio" pack ball.obj -o small.glb --bytes 1300 --json >small.json
   [ "$(jq -r .format small.json)" = packed ]
   is_within "$(stat -c %s small.glb)" 1300
-  is_within 1200 "$(stat -c %s small.glb)"
+  is_within 1000 "$(stat -c %s small.glb)"
   is_within "$(jq .encodings small.json)" 7
   run "$papilio" pack ball.obj -o none.glb --bytes 300
   [ "$status" = 1 ]

@@ -87,6 +87,49 @@ TEST(DetailLevels, UniformLevelsAreThoseOfTheDecoder) {
       }
 }
 
+size_t count(const Mesh& mesh, EdgeKind kind) {
+  return static_cast<size_t>(std::ranges::count(mesh.topology.kind, kind));
+}
+
+void expect_tolerance(const DetailSource& source, double tolerance) {
+  const Mesh uniform = build_mesh(decoded(source));
+  Options options;
+  options.levels = static_cast<int>(source.levels.size());
+  options.tolerance = tolerance;
+  const Result result = refine(test::with_detail(source), options);
+  const double distance = test::two_sided_distance(result.mesh, uniform).largest() / diagonal_of(source);
+  EXPECT_LE(distance, tolerance);
+  EXPECT_LE(distance, 1.001 * result.error);
+  EXPECT_LT(result.mesh.topology.face_count(), uniform.topology.face_count());
+  expect_vertices_among(result.mesh, uniform.triangles());
+}
+
+/// Encodes an original without a base coder.
+DetailSource encoded(const TriangleMesh& original, double rms) {
+  DetailOptions options;
+  options.rms = rms;
+  EncodedDetail made = encode_detail(original, options, [](const TriangleMesh& base) { return CodedBase{base, 1}; });
+  return {std::move(made.base), std::move(made.levels)};
+}
+
+TEST(DetailLevels, BoundariesAndCreasesAreThoseOfTheDecoder) {
+  TriangleMesh sheet = test::grid(24, 24);
+  for (Vec3f& p : sheet.positions) p.z = 2 * std::sin(0.3F * p.x) * std::cos(0.2F * p.y);
+  for (const auto& [original, kind] :
+       {std::pair(sheet, EdgeKind::boundary), std::pair(test::box({16, 16, 16}, {1, 2, 3}), EdgeKind::crease)}) {
+    const DetailSource source = encoded(original, 3e-4);
+    const auto levels = static_cast<int>(source.levels.size());
+    ASSERT_GT(levels, 0);
+    const size_t curves = count(test::with_detail(source), kind);
+    EXPECT_GT(curves, 0U);
+    Options options;
+    for (options.levels = 0; options.levels <= levels; ++options.levels)
+      EXPECT_EQ(refine(test::with_detail(source), options).mesh.triangles(), decoded(source, options.levels));
+    EXPECT_EQ(count(refine(test::with_detail(source), options).mesh, kind), curves << options.levels);
+    expect_tolerance(source, 0.002);
+  }
+}
+
 TEST(DetailLevels, ATinyToleranceGivesTheDecodersLevelsWithoutError) {
   const DetailSource source = rough_detail();
   Options options;
@@ -119,19 +162,6 @@ TEST(DetailLevels, FurtherLevelsSubdivideTheFinestDecodedOne) {
     const Mesh expected = refine(build_mesh(decoded(source, levels_of_detail)), options).mesh;
     EXPECT_EQ(sorted_faces(fine.mesh.triangles()), sorted_faces(expected.triangles()));
   }
-}
-
-void expect_tolerance(const DetailSource& source, double tolerance) {
-  const Mesh uniform = build_mesh(decoded(source));
-  Options options;
-  options.levels = static_cast<int>(source.levels.size());
-  options.tolerance = tolerance;
-  const Result result = refine(test::with_detail(source), options);
-  const double distance = test::two_sided_distance(result.mesh, uniform).largest() / diagonal_of(source);
-  EXPECT_LE(distance, tolerance);
-  EXPECT_LE(distance, 1.001 * result.error);
-  EXPECT_LT(result.mesh.topology.face_count(), uniform.topology.face_count());
-  expect_vertices_among(result.mesh, uniform.triangles());
 }
 
 TEST(DetailLevels, ToleranceHoldsAgainstTheFinestLevel) {
