@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# wasm.sh: builds the WebAssembly module (build/wasm) and the npm package that carries it (build/npm), of what is set up.
+# wasm.sh: builds the WebAssembly modules (build/wasm) and the npm package that carries them (build/npm), of what is set up.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
@@ -16,7 +16,7 @@ rm -rf build/npm.new
 mkdir -p build/npm.new build/npm
 cp client/npm/package.json client/npm/README.md LICENSE build/npm.new/
 client/web/node_modules/.bin/tsc -p client/npm --outDir build/npm.new/dist
-cp build/wasm/papilio.wasm build/npm.new/dist/
+cp build/wasm/papilio.wasm build/wasm/papilio-detail.wasm build/npm.new/dist/
 (cd build/npm && find . -type f) | while read -r file; do
   [[ -f build/npm.new/$file ]] || rm "build/npm/$file"
 done

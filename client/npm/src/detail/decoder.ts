@@ -1,0 +1,161 @@
+// The decoder of packed models as a WebAssembly module, papilio-detail.wasm, on the thread that calls it. Its structures are
+// those of client/wasm/detail_module.cpp.
+
+import { Problem } from '../client.js';
+import type { PackedLevel } from './packed_file.js';
+
+/// Indexed triangles, counter-clockwise seen from outside.
+export interface DecodedTriangles {
+  /// [points * 3]
+  positions: Float32Array<ArrayBuffer>;
+  /// [faces * 3]
+  triangles: Uint32Array<ArrayBuffer>;
+}
+
+interface Exports {
+  memory: WebAssembly.Memory;
+  _initialize(): void;
+  allocate(bytes: number): number;
+  release(block: number): void;
+  base_create(
+    points: number,
+    positions: number,
+    faces: number,
+    triangles: number,
+    bytes: number,
+    curves: number,
+  ): number;
+  base_edges(base: number): number;
+  base_free(base: number): void;
+  decode(base: number, levels: number, rows: number, maxFaces: number): number;
+  decoded_free(decoded: number): void;
+}
+
+const levelBytes = 12;
+// papilio.h
+const codes = ['bad_parameter', 'mesh_unusable', 'result_too_large', 'cancelled', 'out_of_memory'];
+
+/// Compiles papilio-detail.wasm, from its bytes or from what `fetch` gives.
+export async function compileDecoder(source: BufferSource | Response | Promise<Response>): Promise<WebAssembly.Module> {
+  const from = await source;
+  return from instanceof Response ? WebAssembly.compileStreaming(from) : WebAssembly.compile(from);
+}
+
+/// Decodes the levels of one base. Its arrays must not change.
+export class DetailDecoder {
+  readonly #module: WebAssembly.Module;
+  readonly #base: DecodedTriangles;
+  readonly #curves: Uint8Array;
+  readonly #mostBytes: number;
+  #instance: WebAssembly.Instance | null = null;
+  #exports!: Exports;
+  /// In the memory of this instance.
+  #pointer = 0;
+
+  /// `base`: as its Draco stream is decoded. `mostBytes`: memory never shrinks, so an instance that has come to hold more
+  /// than this is given up after it has decoded.
+  constructor(module: WebAssembly.Module, base: DecodedTriangles, curves: Uint8Array, mostBytes = 64 * 2 ** 20) {
+    this.#module = module;
+    this.#base = base;
+    this.#curves = curves;
+    this.#mostBytes = mostBytes;
+  }
+
+  /// What its instance holds in memory.
+  get bytes(): number {
+    return this.#instance ? this.#exports.memory.buffer.byteLength : 0;
+  }
+
+  /// Edges of the base. Throws Problem where it is not manifold.
+  countEdges(): number {
+    return this.#guarded(() => this.#exports.base_edges(this.#pointer));
+  }
+
+  /// The surface with these levels, to the bits that the native library decodes. Throws Problem.
+  decode(levels: readonly Pick<PackedLevel, 'step' | 'residuals'>[], maxFaces = 2 ** 30): DecodedTriangles {
+    const made = this.#guarded(() => {
+      const blocks: number[] = [];
+      const write = (bytes: ArrayBufferView) => blocks[blocks.push(this.#write(bytes)) - 1]!;
+      const rows = new DataView(new ArrayBuffer(levels.length * levelBytes));
+      for (const [l, { step, residuals }] of levels.entries()) {
+        rows.setFloat32(l * levelBytes, step, true);
+        rows.setUint32(l * levelBytes + 4, residuals.length, true);
+        rows.setUint32(l * levelBytes + 8, write(residuals), true);
+      }
+      const decoded = this.#exports.decode(this.#pointer, levels.length, write(rows), Math.min(maxFaces, 2 ** 30));
+      for (const block of blocks) this.#exports.release(block);
+      const copy = this.#read(decoded);
+      this.#exports.decoded_free(decoded);
+      return copy;
+    });
+    if (this.bytes > this.#mostBytes) this.close();
+    return made;
+  }
+
+  /// Gives its memory back; the next call starts anew.
+  close(): void {
+    this.#instance = null;
+  }
+
+  /// After an error the instance has lost its way: the next call starts another.
+  #guarded<T>(work: () => T): T {
+    try {
+      this.#start();
+      return work();
+    } catch (error) {
+      this.#instance = null;
+      if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError)
+        throw new Problem('internal', `The decoder of packed models failed: ${error.message}.`);
+      throw error;
+    }
+  }
+
+  #start(): void {
+    if (this.#instance) return;
+    this.#instance = new WebAssembly.Instance(this.#module, {
+      papilio: {
+        fault: (fault: number, message: number) => {
+          throw new Problem(codes[fault - 1] ?? 'internal', this.#text(message));
+        },
+      },
+      // For the order of a hash table, on which no result depends.
+      wasi_snapshot_preview1: { random_get: () => 0 },
+    });
+    this.#exports = this.#instance.exports as unknown as Exports;
+    this.#exports._initialize();
+    const { positions, triangles } = this.#base;
+    const blocks = [positions, triangles, this.#curves].map((array) => this.#write(array)) as [number, number, number];
+    const [points, faces] = [Math.floor(positions.length / 3), Math.floor(triangles.length / 3)];
+    this.#pointer = this.#exports.base_create(points, blocks[0], faces, blocks[1], this.#curves.length, blocks[2]);
+    for (const block of blocks) this.#exports.release(block);
+  }
+
+  /// Returns where the copy lies.
+  #write(array: ArrayBufferView): number {
+    const at = this.#exports.allocate(array.byteLength);
+    const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+    new Uint8Array(this.#exports.memory.buffer, at, array.byteLength).set(bytes);
+    return at;
+  }
+
+  /// Copies the triangles out.
+  #read(decoded: number): DecodedTriangles {
+    const { buffer } = this.#exports.memory;
+    const [points, faces, positions, triangles] = new Uint32Array(buffer, decoded, 4) as unknown as [
+      number,
+      number,
+      number,
+      number,
+    ];
+    return {
+      positions: new Float32Array(buffer, positions, 3 * points).slice() as Float32Array<ArrayBuffer>,
+      triangles: new Uint32Array(buffer, triangles, 3 * faces).slice() as Uint32Array<ArrayBuffer>,
+    };
+  }
+
+  /// Up to a 0.
+  #text(at: number): string {
+    const bytes = new Uint8Array(this.#exports.memory.buffer, at);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+}

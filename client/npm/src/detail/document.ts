@@ -1,0 +1,67 @@
+// Members of the JSON of a packed model, each checked.
+
+import { Problem } from '../client.js';
+import type { Json } from './container.js';
+
+export type JsonObject = { [key: string]: Json | undefined };
+
+/// Throws: the document is damaged. `where`: the place in it, such as `bufferViews[2]`.
+export function refuse(where: string, what: string): never {
+  throw new Problem('mesh_not_gltf', `The glTF document is damaged: ${where} ${what}.`);
+}
+
+/// Throws: the scene is none that the format allows.
+export function refuseScene(what: string): never {
+  throw new Problem('mesh_unsupported', `The scene has ${what}, so it is no packed model. Make one with papilio pack.`);
+}
+
+export function objectOf(json: Json | undefined, where: string): JsonObject {
+  if (json === null || typeof json !== 'object' || Array.isArray(json)) refuse(where, 'is not an object');
+  return json;
+}
+
+/// Empty where there is none.
+export function arrayOf(of: JsonObject, key: string): Json[] {
+  const array = of[key] ?? [];
+  if (!Array.isArray(array)) refuse(key, 'is not an array');
+  return array;
+}
+
+/// The only element of an array.
+export function only(of: JsonObject, key: string, name: string): JsonObject {
+  const array = arrayOf(of, key);
+  if (array.length !== 1) refuseScene(`other than one ${name}`);
+  return objectOf(array[0], `${key}[0]`);
+}
+
+export function element(of: JsonObject, key: string, index: number): JsonObject {
+  const array = arrayOf(of, key);
+  if (index >= array.length) refuse(`${key}[${index}]`, 'does not exist, and is referred to');
+  return objectOf(array[index], `${key}[${index}]`);
+}
+
+export function whole(of: JsonObject, key: string, where: string, otherwise?: number): number {
+  const value = of[key] ?? otherwise;
+  if (typeof value !== 'number' || !Number.isSafeInteger(value) || value < 0)
+    refuse(`${where}.${key}`, 'is no whole number');
+  return value;
+}
+
+/// Null where there is none.
+export function index(of: JsonObject, key: string, where: string): number | null {
+  return of[key] === undefined ? null : whole(of, key, where);
+}
+
+/// A finite number, not negative.
+export function distance(of: JsonObject, key: string, where: string): number {
+  const value = of[key];
+  if (typeof value !== 'number' || !Number.isFinite(value)) refuse(`${where}.${key}`, 'must be a finite number');
+  if (value < 0) refuse(`${where}.${key}`, 'must not be negative');
+  return value;
+}
+
+export function extensionOf(of: JsonObject, name: string, where: string): JsonObject | null {
+  if (of.extensions === undefined) return null;
+  const found = objectOf(of.extensions, `${where}.extensions`)[name];
+  return found === undefined ? null : objectOf(found, `${where}.extensions.${name}`);
+}

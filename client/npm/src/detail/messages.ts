@@ -1,0 +1,16 @@
+// What the page and the worker that decodes a packed model tell each other.
+
+import type { DecodedTriangles } from './decoder.js';
+import type { PackedLevel } from './packed_file.js';
+
+export type Residuals = Pick<PackedLevel, 'step' | 'residuals'>;
+
+export type ToDecoder =
+  | { kind: 'open'; module: WebAssembly.Module; base: DecodedTriangles; curves: Uint8Array; levels: Residuals[] }
+  | { kind: 'decode'; request: number; levels: number };
+
+/// The answer to `open` counts the edges of the base.
+export type FromDecoder =
+  | { kind: 'opened'; edges: number }
+  | { kind: 'decoded'; request: number; triangles: DecodedTriangles }
+  | { kind: 'failed'; request: number | null; code: string; message: string };

@@ -1,0 +1,195 @@
+// A packed model that is open: decoded in a worker, level by level.
+
+import { Problem } from '../client.js';
+import { compileDecoder, type DecodedTriangles } from './decoder.js';
+import type { FromDecoder, ToDecoder } from './messages.js';
+import { type PackedFile, type Reach, type ReadOptions, readPacked } from './packed_file.js';
+
+export interface OpenOptions extends ReadOptions {
+  /// Decodes the Draco stream of the base: three.js's DRACOLoader, or draco3d. Positions and triangles in its order.
+  decodeDraco: (draco: Uint8Array<ArrayBuffer>) => Promise<DecodedTriangles>;
+  /// papilio-detail.wasm: its bytes, what `fetch` gives, or compiled. Left out: the file beside this one.
+  wasm?: BufferSource | Response | Promise<Response> | WebAssembly.Module;
+}
+
+export interface LevelInfo extends Reach {
+  /// Of the level's residuals; of the base its Draco stream and its curves.
+  bytes: number;
+  /// Bytes of the file up to here: what has to come for this level.
+  fileBytes: number;
+  vertices: number;
+  faces: number;
+}
+
+export interface DecodeOptions {
+  /// Gives the levels up; the promise is rejected with the signal's reason.
+  signal?: AbortSignal;
+}
+
+interface Task {
+  request: number;
+  levels: number;
+  resolve: (triangles: DecodedTriangles) => void;
+  reject: (reason: unknown) => void;
+}
+
+let shared: Promise<WebAssembly.Module> | null = null;
+
+/// The module beside this file, fetched with the first model.
+function sharedModule(): Promise<WebAssembly.Module> {
+  shared ??= compileDecoder(fetch(new URL('../papilio-detail.wasm', import.meta.url)));
+  shared.catch(() => (shared = null)); // the next model tries again
+  return shared;
+}
+
+/// Rejects with Problem: as readPacked, and mesh_unusable where the base is not manifold or other than declared.
+export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOptions): Promise<PackedModel> {
+  const file = readPacked(bytes, options);
+  const { wasm } = options;
+  const compiled =
+    wasm === undefined ? sharedModule() : wasm instanceof WebAssembly.Module ? wasm : compileDecoder(wasm);
+  const [module, base] = await Promise.all([compiled, options.decodeDraco(file.base.draco)]);
+  if (base.positions.length !== 3 * file.base.vertices || base.triangles.length !== 3 * file.base.faces)
+    throw new Problem(
+      'mesh_not_gltf',
+      'The base declares other counts than its Draco stream has. Pack the model again.',
+    );
+  const model = new PackedModel(module, file, base);
+  try {
+    await model.opened;
+  } catch (error) {
+    model.close();
+    throw error;
+  }
+  return model;
+}
+
+export class PackedModel {
+  readonly base: LevelInfo;
+  /// Whole ones, coarse first.
+  readonly levels: readonly LevelInfo[];
+  /// Levels that the file declares: more than `levels` where it is cut.
+  readonly declaredLevels: number;
+  /// Rejects where the base is not what the file declares.
+  readonly opened: Promise<void>;
+  readonly #module: WebAssembly.Module;
+  readonly #file: PackedFile;
+  readonly #triangles: DecodedTriangles;
+  #worker: Worker | null = null;
+  #running: Task | null = null;
+  #waiting: Task[] = [];
+  #requests = 0;
+  #isClosed = false;
+  #settle!: { resolve: () => void; reject: (reason: unknown) => void };
+
+  /// For openPacked.
+  constructor(module: WebAssembly.Module, file: PackedFile, base: DecodedTriangles) {
+    this.#module = module;
+    this.#file = file;
+    this.#triangles = base;
+    this.declaredLevels = file.declaredLevels;
+    const { rms, largest, vertices, faces, draco, end } = file.base;
+    this.base = { rms, largest, bytes: draco.length + file.curves.length, fileBytes: end, vertices, faces };
+    let points = vertices;
+    this.levels = file.levels.map((level) => ({
+      rms: level.rms,
+      largest: level.largest,
+      bytes: level.residuals.length,
+      fileBytes: level.end,
+      vertices: (points += level.residualCount),
+      faces: level.faces,
+    }));
+    this.opened = new Promise((resolve, reject) => (this.#settle = { resolve, reject }));
+    this.#start();
+  }
+
+  /// The surface with the first `levels` levels, 0 for the base: the same bits as `papilio unpack` writes. Rejects with
+  /// Problem, or with the signal's reason.
+  decode(levels: number, { signal }: DecodeOptions = {}): Promise<DecodedTriangles> {
+    return new Promise((resolve, reject) => {
+      if (this.#isClosed) return reject(new Error('The packed model was closed.'));
+      if (!Number.isInteger(levels) || levels < 0 || levels > this.levels.length)
+        return reject(new RangeError(`The model has ${this.levels.length} levels, not ${levels}.`));
+      if (signal?.aborted) return reject(signal.reason);
+      const task: Task = { request: ++this.#requests, levels, resolve, reject };
+      signal?.addEventListener('abort', () => this.#abort(task, signal), { once: true });
+      this.#waiting.push(task);
+      this.#next();
+    });
+  }
+
+  /// Ends the worker and gives its memory back. What runs or waits is rejected.
+  close(): void {
+    this.#isClosed = true;
+    this.#worker?.terminate();
+    this.#worker = null;
+    const tasks = [...(this.#running ? [this.#running] : []), ...this.#waiting];
+    this.#running = null;
+    this.#waiting = [];
+    for (const task of tasks) task.reject(new Error('The packed model was closed.'));
+  }
+
+  #start(): void {
+    this.#worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'papilio-detail' });
+    this.#worker.onmessage = ({ data }: MessageEvent<FromDecoder>) => this.#take(data);
+    this.#worker.onerror = (event) => {
+      const message = `The worker failed: ${event.message || 'it could not be loaded'}.`;
+      this.#take({ kind: 'failed', request: this.#running?.request ?? null, code: 'internal', message });
+    };
+    const levels = this.#file.levels.map(({ step, residuals }) => ({ step, residuals: residuals.slice() }));
+    const [base, curves] = [this.#triangles, this.#file.curves.slice()];
+    this.#send({ kind: 'open', module: this.#module, base, curves, levels });
+  }
+
+  #next(): void {
+    if (this.#running !== null) return;
+    this.#running = this.#waiting.shift() ?? null;
+    if (this.#running === null) return;
+    if (this.#worker === null) this.#start();
+    const { request, levels } = this.#running;
+    this.#send({ kind: 'decode', request, levels });
+  }
+
+  #take(message: FromDecoder): void {
+    if (message.kind === 'opened') return this.#check(message.edges);
+    const problem = message.kind === 'failed' ? new Problem(message.code, message.message) : null;
+    if (problem !== null) this.#settle.reject(problem);
+    const task = this.#running;
+    if (task === null || task.request !== message.request) return;
+    this.#running = null;
+    if (message.kind === 'decoded') task.resolve(message.triangles);
+    else task.reject(problem);
+    this.#next();
+  }
+
+  /// Each level splits all edges of the one before.
+  #check(edges: number): void {
+    let { faces } = this.base;
+    for (const [l, { residualCount }] of this.#file.levels.entries()) {
+      if (residualCount !== edges) {
+        const what = `Level ${l + 1} declares ${residualCount} residuals, and the base gives ${edges}.`;
+        this.#settle.reject(new Problem('mesh_not_gltf', `${what} Pack the model again.`));
+        return this.close();
+      }
+      edges = 2 * edges + 3 * faces;
+      faces *= 4;
+    }
+    this.#settle.resolve();
+  }
+
+  /// A worker that decodes is ended: it looks at nothing meanwhile.
+  #abort(task: Task, signal: AbortSignal): void {
+    this.#waiting = this.#waiting.filter((one) => one !== task);
+    if (this.#running === task) {
+      this.#running = null;
+      this.#worker?.terminate();
+      this.#worker = null;
+    }
+    task.reject(signal.reason);
+    if (!this.#isClosed) this.#next();
+  }
+
+  #send(message: ToDecoder): void {
+    this.#worker!.postMessage(message);
+  }
+}

@@ -1,0 +1,105 @@
+// The decoder of packed models (papilio/detail.h) as a WebAssembly module of its own, papilio-detail.wasm: pages fetch
+// it with the first packed model. Its callers write arrays into its memory, and read results there.
+
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include "client/c/papilio.h"
+#include "client/wasm/runtime.h"
+#include "papilio/detail.h"
+#include "papilio/error.h"
+
+using papilio::DetailBase;
+using papilio::DetailStream;
+using papilio::Error;
+using papilio::Fault;
+using papilio::TriangleMesh;
+
+namespace {
+
+/// Residuals of one level, as the caller writes them.
+struct Level {
+  float step;
+  uint32_t length;
+  const uint8_t* bytes;
+};
+
+/// Triangles, as the caller reads them.
+struct Decoded {
+  uint32_t point_count;
+  uint32_t face_count;
+  const papilio::Vec3f* positions;
+  const papilio::Triangle* triangles;
+  TriangleMesh mesh;
+};
+
+}  // namespace
+
+extern "C" {
+
+/// Copies a base of `point_count` positions and `face_count` triangles, with its coded curves.
+PAPILIO_EXPORTED(base_create)
+DetailBase* module_base_create(uint32_t point_count, const papilio::Vec3f* positions, uint32_t face_count,
+                               const papilio::Triangle* triangles, uint32_t curve_bytes, const uint8_t* curves) {
+  auto* base = new DetailBase();
+  base->triangles.positions.assign(positions, positions + point_count);
+  base->triangles.triangles.assign(triangles, triangles + face_count);
+  base->curves.assign(curves, curves + curve_bytes);
+  return base;
+}
+PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete base; }
+
+/// Counts the edges of a base. Throws where it is not manifold.
+PAPILIO_EXPORTED(base_edges) uint32_t module_base_edges(const DetailBase* base) {
+  papilio::BuildReport found;
+  const papilio::Mesh mesh = papilio::build_mesh(base->triangles, &found);
+  const uint32_t changed = found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+  if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
+    throw Error(Fault::bad_surface, "The base is not a manifold surface. Pack the original again.");
+  return mesh.topology.edge_count();
+}
+
+/// Decodes these levels.
+PAPILIO_EXPORTED(decode)
+Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level* levels, uint32_t face_limit) {
+  std::vector<DetailStream> streams;
+  streams.reserve(level_count);
+  for (uint32_t l = 0; l < level_count; ++l)
+    streams.push_back({levels[l].step, {levels[l].bytes, levels[l].bytes + levels[l].length}});
+  auto* made = new Decoded{.mesh = papilio::decode_detail(*base, streams, face_limit)};
+  made->point_count = static_cast<uint32_t>(made->mesh.positions.size());
+  made->face_count = static_cast<uint32_t>(made->mesh.triangles.size());
+  made->positions = made->mesh.positions.data();
+  made->triangles = made->mesh.triangles.data();
+  return made;
+}
+PAPILIO_EXPORTED(decoded_free) void module_decoded_free(Decoded* decoded) { delete decoded; }
+
+}  // extern "C"
+
+namespace {
+
+papilio_fault fault_of(Fault fault) {
+  switch (fault) {
+    case Fault::result_too_large:
+      return PAPILIO_TOO_LARGE;
+    case Fault::out_of_memory:
+      return PAPILIO_OUT_OF_MEMORY;
+    default:
+      return PAPILIO_UNUSABLE_MESH;
+  }
+}
+
+}  // namespace
+
+// What `throw` calls.
+extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void* (* /*destructor*/)(void*)) {
+  if (*type == typeid(Error)) {
+    const Error& error = *static_cast<Error*>(thrown);
+    caller_fault(fault_of(error.fault()), error.what(), "");
+  }
+  if (*type == typeid(std::bad_alloc) || *type == typeid(std::length_error))
+    caller_fault(PAPILIO_OUT_OF_MEMORY, "There is not enough memory for this result. Ask for fewer levels.", "");
+  caller_fault(PAPILIO_INTERNAL, type->name(), "");
+}

@@ -1,0 +1,226 @@
+// papilio/detail in node: packed models decode to the bits of the native library, and damaged ones are refused.
+
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { brotliCompressSync, constants } from 'node:zlib';
+import { decodeDraco, originals, pack, unpack } from './packed.mjs';
+import { areSame, root } from './requests.mjs';
+
+const { compileDecoder, DetailDecoder, isPacked, readPacked, withLevels } = await import(
+  path.join(root, 'build/npm/dist/detail.js')
+);
+const wasm = readFileSync(path.join(root, 'build/npm/dist/papilio-detail.wasm'));
+const folder = mkdtempSync(path.join(tmpdir(), 'papilio-detail-'));
+after(() => rmSync(folder, { recursive: true }));
+
+let module;
+let torus;
+before(async () => {
+  module = await compileDecoder(wasm);
+  torus = pack('torus', folder).packed;
+});
+
+const bytesOf = (file) => new Uint8Array(readFileSync(file));
+const assertSame = (made, expected, what) => {
+  assert.ok(areSame(made.triangles, expected.triangles), `triangles: ${what}`);
+  assert.ok(areSame(made.positions, expected.positions), `positions: ${what}`);
+};
+
+let compared = 0;
+const seen = { curves: 0, none: 0 };
+// Open, closed, with hard edges and without.
+for (const name of [
+  ...Object.keys(originals),
+  'cgal/mask_cone.off',
+  'cgal/three_peaks.off',
+  'cgal/mushroom.off',
+  'cgal/anchor_dense.off',
+  'cgal/knot1.off',
+])
+  test(`${name}: each level has the bits of papilio unpack`, async () => {
+    const { packed, report } = pack(name, folder);
+    const file = readPacked(bytesOf(packed));
+    ++seen[file.curves.length > 0 ? 'curves' : 'none'];
+    assert.deepEqual(
+      file.levels.map(({ faces, residuals, rms }) => [faces, residuals.length, rms >= 0]),
+      report.levels.map(({ faces, bytes }) => [faces, bytes, true]),
+    );
+    const decoder = new DetailDecoder(module, await decodeDraco(file.base.draco), file.curves);
+    assert.equal(decoder.countEdges(), file.levels[0].residualCount);
+    for (let levels = 0; levels <= file.levels.length; ++levels) {
+      assertSame(decoder.decode(file.levels.slice(0, levels)), unpack(packed, levels), `${name} at level ${levels}`);
+      ++compared;
+    }
+  });
+
+test('at least 20 surfaces were compared, of bases with curves and without', () => {
+  assert.ok(compared >= 20, `${compared}`);
+  assert.ok(seen.curves >= 2 && seen.none >= 2, JSON.stringify(seen));
+});
+
+test('memory is given back: decoding again and again does not grow it', async () => {
+  const { base, curves, levels } = readPacked(bytesOf(torus));
+  const triangles = await decodeDraco(base.draco);
+  const decoder = new DetailDecoder(module, triangles, curves);
+  const first = decoder.decode(levels);
+  const { bytes } = decoder;
+  for (let i = 0; i < 20; ++i) assertSame(decoder.decode(levels), first);
+  assert.ok(decoder.bytes <= 1.5 * bytes, `${bytes} bytes, then ${decoder.bytes}`);
+  const tight = new DetailDecoder(module, triangles, curves, 2 ** 20);
+  assertSame(tight.decode(levels), first);
+  assert.equal(tight.bytes, 0);
+});
+
+test('the decoder says what is wrong, and goes on', async () => {
+  const { base, curves, levels } = readPacked(bytesOf(torus));
+  const triangles = await decodeDraco(base.draco);
+  const decoder = new DetailDecoder(module, triangles, curves);
+  const problem = (code, message) => (error) => {
+    assert.equal(error.code, code);
+    assert.match(error.message, message);
+    return true;
+  };
+  assert.throws(() => decoder.decode(levels, 1000), problem('result_too_large', /more than the limit of 1000/));
+  assert.throws(() => decoder.decode([{ ...levels[0], step: NaN }]), problem('mesh_unusable', /step/));
+  const far = { step: 1e18, residuals: new Uint8Array() };
+  assert.throws(() => decoder.decode([far, far]), problem('mesh_unusable', /beyond the largest coordinate/));
+  assert.equal(decoder.decode(levels.slice(0, 1)).triangles.length, 12 * base.faces);
+  const refused = (change, message) => {
+    const copy = { positions: triangles.positions.slice(), triangles: triangles.triangles.slice() };
+    change(copy);
+    assert.throws(() => new DetailDecoder(module, copy, curves).countEdges(), problem('mesh_unusable', message));
+  };
+  refused((copy) => (copy.triangles[0] = 1e6), /1000000/);
+  refused((copy) => (copy.positions[4] = NaN), /NaN|finite/);
+  refused((copy) => copy.positions.copyWithin(3, 0, 3), /not a manifold surface/);
+  refused((copy) => copy.triangles.subarray(0, 3).reverse(), /not a manifold surface/);
+});
+
+/// The file with another document.
+function edited(file, change) {
+  const bytes = Buffer.from(file);
+  const end = 20 + bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.toString('utf8', 20, end));
+  const detail = json.meshes[0].primitives[0].extensions.PAPILIO_detail;
+  change({ json, detail, primitive: json.meshes[0].primitives[0] });
+  let text = JSON.stringify(json);
+  text = text.padEnd(Math.ceil(text.length / 4) * 4);
+  const head = Buffer.from(bytes.subarray(0, 20));
+  head.writeUInt32LE(text.length, 12);
+  const made = Buffer.concat([head, Buffer.from(text), bytes.subarray(end)]);
+  made.writeUInt32LE(made.length, 8);
+  return new Uint8Array(made);
+}
+
+test('damaged and foreign documents are refused, with the place in them', () => {
+  const file = bytesOf(torus);
+  const refusals = [
+    [({ detail }) => (detail.version = 2), 'mesh_unsupported', /version 2; version 1 is supported/],
+    [({ detail }) => (detail.version = 1.5), 'mesh_not_gltf', /version is no whole number/],
+    [({ detail }) => delete detail.levels, 'mesh_not_gltf', /no array of levels/],
+    [({ detail }) => (detail.levels = Array(11).fill(detail.levels[0])), 'mesh_not_gltf', /11 levels; at most 10/],
+    [({ detail }) => (detail.rms = -1), 'mesh_not_gltf', /rms must not be negative/],
+    [({ detail }) => (detail.largest = 'far'), 'mesh_not_gltf', /largest must be a finite number/],
+    [({ detail }) => (detail.levels[1].step = 0), 'mesh_not_gltf', /levels\[1\]\.step must be above 0/],
+    [({ detail }) => (detail.levels[1].step = 1e-60), 'mesh_not_gltf', /levels\[1\]\.step must be above 0/],
+    [({ detail }) => (detail.levels[1].vertices = -3), 'mesh_not_gltf', /vertices is no whole number/],
+    [({ detail }) => (detail.levels[1].bufferView = 1), 'mesh_not_gltf', /before the end of bufferViews\[1\]/],
+    [({ detail }) => (detail.levels[0].bufferView = 99), 'mesh_not_gltf', /bufferViews\[99\] does not exist/],
+    [({ json }) => --json.bufferViews[2].byteOffset, 'mesh_not_gltf', /before the end of/],
+    [({ json }) => (json.bufferViews[2].byteLength += 1e6), 'mesh_not_gltf', /has the bytes .* of buffers\[0\]/],
+    [({ json }) => (json.bufferViews[1].byteStride = 4), 'mesh_not_gltf', /has byteStride/],
+    [({ json }) => (json.buffers[0].byteLength += 9), 'mesh_not_gltf', /buffers\[0\] declares/],
+    [({ json }) => (json.buffers[0].uri = 'other.bin'), 'mesh_unsupported', /one buffer, the binary chunk/],
+    [({ json }) => json.meshes.push(json.meshes[0]), 'mesh_unsupported', /other than one mesh/],
+    [({ json }) => (json.nodes[0].scale = [2, 2, 2]), 'mesh_unsupported', /a node with scale/],
+    [({ json }) => (json.asset.version = '1.0'), 'mesh_unsupported', /glTF version/],
+    [({ primitive }) => (primitive.mode = 5), 'mesh_unsupported', /a primitive with mode/],
+    [({ primitive }) => (primitive.attributes.NORMAL = 0), 'mesh_unsupported', /other attributes than POSITION/],
+    [({ primitive }) => delete primitive.extensions.PAPILIO_detail, 'mesh_unsupported', /no PAPILIO_detail/],
+    [({ primitive }) => delete primitive.extensions.KHR_draco_mesh_compression, 'mesh_not_gltf', /no base compressed/],
+    [({ json }) => ++json.accessors[1].count, 'mesh_not_gltf', /whole triangles/],
+    [({ json }) => (json.accessors[1].count = 3e6), 'result_too_large', /the limit is 8000000/],
+  ];
+  for (const [change, code, message] of refusals)
+    assert.throws(
+      () => readPacked(edited(file, change)),
+      (error) => {
+        assert.equal(error.name, 'Problem', String(change));
+        assert.deepEqual([error.code, message.test(error.message)], [code, true], `${change}: ${error.message}`);
+        return true;
+      },
+    );
+  assert.equal(readPacked(edited(file, () => {})).levels.length, readPacked(file).levels.length);
+});
+
+test('damaged containers are refused', () => {
+  const file = bytesOf(torus);
+  const at = (offset, word) => {
+    const copy = Buffer.from(file);
+    copy.writeUInt32LE(word, offset);
+    return new Uint8Array(copy);
+  };
+  for (const [bytes, message] of [
+    [new Uint8Array(), /do not begin with glTF/],
+    [file.slice(0, 12), /at least 20/],
+    [at(4, 1), /has version 1/],
+    [file.slice(0, -1), /header declares/],
+    [at(12, 2 ** 31), /declares 2147483648 bytes/],
+    [at(16, 0), /first chunk .* is not JSON/],
+    [at(20, 0), /not valid JSON/],
+  ])
+    assert.throws(() => readPacked(bytes), { name: 'Problem', message });
+});
+
+test('every prefix of a file is refused, or has fewer whole levels', () => {
+  const file = bytesOf(torus);
+  const whole = readPacked(file);
+  let most = -1;
+  for (let length = 0; length < file.length; length += 7) {
+    const prefix = file.slice(0, length);
+    assert.throws(() => readPacked(prefix), { name: 'Problem' });
+    let cut;
+    try {
+      cut = readPacked(prefix, { mayBeCut: true });
+    } catch (error) {
+      assert.equal(error.code, 'mesh_not_gltf');
+      assert.ok(length < whole.base.end, `${length}: ${error.message}`);
+      continue;
+    }
+    assert.equal(cut.declaredLevels, whole.levels.length);
+    assert.equal(cut.levels.length, whole.levels.filter(({ end }) => end <= length).length, `${length}`);
+    most = Math.max(most, cut.levels.length);
+  }
+  assert.ok(most >= whole.levels.length - 1);
+});
+
+test('a file of fewer levels is a packed model, which the native library reads', () => {
+  const file = bytesOf(torus);
+  const { levels } = readPacked(file);
+  for (let count = 0; count <= levels.length; ++count) {
+    const fewer = path.join(folder, `fewer${count}.glb`);
+    writeFileSync(fewer, withLevels(file, count));
+    const { head, ...surface } = unpack(fewer, 10);
+    const { head: expectedHead, ...expected } = unpack(torus, count);
+    assert.equal(head, expectedHead);
+    assertSame(surface, expected, `${count} levels`);
+    assert.equal(readPacked(bytesOf(fewer)).levels.length, count);
+    assert.ok(bytesOf(fewer).length < file.length || count === levels.length);
+  }
+});
+
+test('packed models are told from other files', () => {
+  const file = bytesOf(torus);
+  assert.ok(isPacked(file));
+  assert.ok(!isPacked(edited(file, ({ primitive }) => delete primitive.extensions.PAPILIO_detail)));
+  for (const bytes of [new Uint8Array(), file.slice(1), file.slice(0, 30), readFileSync(`${torus}.ply`)])
+    assert.ok(!isPacked(new Uint8Array(bytes)));
+});
+
+test('the module is small', () => {
+  const packed = brotliCompressSync(wasm, { params: { [constants.BROTLI_PARAM_QUALITY]: 11 } });
+  assert.ok(packed.length <= 40_000, `${packed.length} bytes`);
+});
