@@ -35,7 +35,7 @@ test('it holds what it exports, with types, and nothing else', () => {
   for (const file of named) assert.ok(readFileSync(path.join(installed, file)).length > 0, file);
   assert.deepEqual(readdirSync(installed).sort(), ['LICENSE', 'README.md', 'dist', 'package.json']);
   for (const file of readdirSync(path.join(installed, 'dist'), { recursive: true }))
-    assert.match(file, /(\.d\.ts|\.js|\.wasm|^three)$/);
+    assert.match(file, /(\.d\.ts|\.js|\.wasm|^three|^detail)$/);
 });
 
 test('node takes it as it is', () => {
@@ -45,22 +45,32 @@ test('node takes it as it is', () => {
     `import { readFileSync } from 'node:fs';
      import { createRequire } from 'node:module';
      import { Client } from 'papilio/client';
+     import { compileDecoder, DetailDecoder, isPacked } from 'papilio/detail';
      import { Kernel } from 'papilio/wasm';
      const file = createRequire(import.meta.url).resolve('papilio/papilio.wasm');
      const kernel = new Kernel(await Kernel.compile(readFileSync(file)));
      const mesh = kernel.open({ positions: new Float32Array([${mesh.positions}]), triangles: new Uint32Array([${mesh.triangles}]) });
-     console.log(kernel.refine(mesh, { levels: 2 }).mesh.triangles.length / 3, typeof new Client().refine);`,
+     console.log(kernel.refine(mesh, { levels: 2 }).mesh.triangles.length / 3, typeof new Client().refine);
+     const module = await compileDecoder(readFileSync(file.replace('papilio.wasm', 'papilio-detail.wasm')));
+     const positions = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+     const triangle = { positions, triangles: new Uint32Array([0, 1, 2]) };
+     console.log(new DetailDecoder(module, triangle, new Uint8Array()).countEdges(), isPacked(new Uint8Array()));`,
   );
-  assert.equal(run(process.execPath, 'use.js'), '96 function\n');
+  assert.equal(run(process.execPath, 'use.js'), '96 function\n3 false\n');
 });
 
 test('TypeScript finds its types', () => {
   writeFileSync(
     path.join(folder, 'use.ts'),
     `import { Client, type Refined } from 'papilio/client';
+     import { type LevelInfo, openPacked, type PackedModel } from 'papilio/detail';
      import { PapilioLoader, type RefinedModel } from 'papilio/three';
      import { Refiner } from 'papilio/wasm';
      export const load = (url: string): Promise<RefinedModel> => new PapilioLoader({ server: '/' }).loadAsync(url);
+     export async function unpack(bytes: Uint8Array<ArrayBuffer>): Promise<[LevelInfo, Float32Array]> {
+       const model: PackedModel = await openPacked(bytes, { decodeDraco: () => Promise.reject(new Error()), mayBeCut: true });
+       return [model.levels[0]!, (await model.decode(1, { signal: new AbortController().signal })).positions];
+     }
      export async function use(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
        const fine: Refined = await new Client().refine({ type: 'application/x-draco', bytes }, { view: { eye: [0, 0, 3] } });
        const refiner = await Refiner.start();

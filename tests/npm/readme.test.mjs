@@ -1,17 +1,21 @@
 // The package's README: each of its examples runs as it stands there, in a page that has what it takes for granted.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch, startServer } from '../web/browser.mjs';
 import { bunnyGlb, page as pageOf, startFiles } from './files.mjs';
+import { pack } from './packed.mjs';
 import { cone, root } from './requests.mjs';
 
 const readme = readFileSync(path.join(root, 'client/npm/README.md'), 'utf8');
 const examples = [...readme.matchAll(/```js\n(.*?)```/gs)].map(([, code]) => code);
 
-const served = { '/model.glb': bunnyGlb() };
+const folder = mkdtempSync(path.join(tmpdir(), 'papilio-readme-'));
+const { packed, report } = pack('torus', folder);
+const served = { '/model.glb': bunnyGlb(), '/packed.glb': readFileSync(packed) };
 let server;
 let files;
 let browser;
@@ -23,6 +27,7 @@ after(async () => {
   await browser.close();
   files.stop();
   await server.stop();
+  rmSync(folder, { recursive: true });
 });
 
 /// Runs `before`, the example and `after` as one module of a page, and resolves with what `after` says.
@@ -42,10 +47,10 @@ async function run(example, beforeIt, afterIt) {
   return JSON.parse(title.replace('said: ', ''));
 }
 
-test('there is one for each of papilio/three, papilio/wasm and papilio/client', () => {
+test('there is one for each part of the package', () => {
   assert.deepEqual(
     examples.map((code) => /from '(.*?)'/.exec(code)[1]),
-    ['papilio/three', 'papilio/wasm', 'papilio/client'],
+    ['papilio/three', 'papilio/wasm', 'papilio/client', 'papilio/detail'],
   );
 });
 
@@ -90,4 +95,14 @@ test('papilio/client: a scene comes back level by level', async () => {
   );
   assert.equal(faces[0][1], 600);
   assert.ok(faces.length > 1 && faces.every(([isLong]) => isLong), JSON.stringify(faces));
+});
+
+test('papilio/detail: a packed model gives all its faces', async () => {
+  const faces = await run(
+    examples[3],
+    `import * as THREE from 'three';
+     const mesh = new THREE.Mesh();`,
+    'const said = mesh.geometry.index.count / 3;',
+  );
+  assert.equal(faces, report.levels.at(-1).faces);
 });

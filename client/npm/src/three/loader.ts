@@ -15,9 +15,11 @@ import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 
 import { Client, type Encoded, Problem } from '../client.js';
+import { isPacked } from '../detail/packed_file.js';
 import type { Parameters } from '../parameters.js';
 import { Refiner } from '../refiner.js';
 import { computedNormals } from './arrays.js';
+import { decodePacked, dracoDecoder } from './packed.js';
 import { RefinedModel } from './refined_model.js';
 
 export interface PapilioLoaderOptions {
@@ -39,7 +41,7 @@ function sharedRefiner(): Promise<Refiner> {
   return shared;
 }
 
-/// `.glb`, `.gltf` and `.drc` files: `scene.add(await new PapilioLoader().loadAsync('model.glb'))`.
+/// `.glb`, `.gltf` and `.drc` files, and packed models with all their levels: `scene.add(await new PapilioLoader().loadAsync('model.glb'))`.
 export class PapilioLoader extends Loader<RefinedModel> {
   readonly #options: PapilioLoaderOptions;
   readonly #draco: DRACOLoader;
@@ -102,6 +104,8 @@ export class PapilioLoader extends Loader<RefinedModel> {
     type: string | undefined,
     folder: string,
   ): Promise<Pick<GLTF, 'animations'> & { scene: Object3D }> {
+    if (type === 'model/gltf-binary' && isPacked(new Uint8Array(file)))
+      return meshOf(await decodePacked(new Uint8Array(file), { decodeDraco: dracoDecoder(this.#draco) }));
     if (type !== 'application/x-draco') return this.#gltf.parseAsync(file, folder);
     const geometry = await new Promise<BufferGeometry>((resolve, reject) =>
       // The decoder's worker takes the bytes for good.
@@ -109,14 +113,18 @@ export class PapilioLoader extends Loader<RefinedModel> {
         reject(new Problem('mesh_not_draco', 'This Draco mesh is damaged.')),
       ),
     );
-    if (!geometry.hasAttribute('normal')) {
-      geometry.computeVertexNormals();
-      geometry.userData[computedNormals] = true;
-    }
-    const material = new MeshStandardMaterial({ color: 0xb9c6d2, roughness: 0.6 });
-    if (geometry.hasAttribute('color')) material.setValues({ color: 0xffffff, vertexColors: true });
-    return { scene: new Mesh(geometry, material), animations: [] };
+    return meshOf(geometry);
   }
+}
+
+function meshOf(geometry: BufferGeometry): Pick<GLTF, 'animations'> & { scene: Object3D } {
+  if (!geometry.hasAttribute('normal')) {
+    geometry.computeVertexNormals();
+    geometry.userData[computedNormals] = true;
+  }
+  const material = new MeshStandardMaterial({ color: 0xb9c6d2, roughness: 0.6 });
+  if (geometry.hasAttribute('color')) material.setValues({ color: 0xffffff, vertexColors: true });
+  return { scene: new Mesh(geometry, material), animations: [] };
 }
 
 /// Null for a .gltf file.

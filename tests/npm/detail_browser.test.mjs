@@ -1,0 +1,176 @@
+// papilio/detail and PapilioLoader in headless Chromium: packed models are decoded in a worker.
+
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch } from '../web/browser.mjs';
+import { page as pageOf, startFiles } from './files.mjs';
+import { pack, unpack } from './packed.mjs';
+
+const html = pageOf(`<script type="module">
+  import { openPacked } from 'papilio/detail';
+  import { dracoDecoder, PapilioLoader } from 'papilio/three';
+  import * as THREE from 'three';
+  import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
+  const decodeDraco = dracoDecoder(new DRACOLoader());
+  const fetched = async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer());
+  const open = async (url, options = {}) => openPacked(await fetched(url), { decodeDraco, ...options });
+  /** SHA-256 of the arrays. */
+  const digest = async ({ positions, triangles }) => {
+    const bytes = await new Blob([positions, triangles]).arrayBuffer();
+    const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
+    return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
+  };
+  /** What a promise is rejected with. */
+  const refusal = (promise) => promise.then(() => null, ({ name, code, message }) => ({ name, code, message }));
+  Object.assign(window, { THREE, PapilioLoader, fetched, open, openPacked, decodeDraco, digest, refusal });
+  document.documentElement.dataset.state = 'ready';
+</script>`);
+
+const folder = mkdtempSync(path.join(tmpdir(), 'papilio-detail-'));
+const { packed, report } = pack('vase', folder);
+const glb = readFileSync(packed);
+
+let files;
+let browser;
+before(async () => {
+  [files, browser] = await Promise.all([startFiles({ '/page.html': html, '/vase.glb': glb }), launch()]);
+});
+after(async () => {
+  await browser.close();
+  files.stop();
+  rmSync(folder, { recursive: true });
+});
+
+async function open() {
+  const page = await browser.newPage();
+  page.setDefaultTimeout(60_000);
+  const requests = [];
+  page.on('request', (request) => requests.push(new URL(request.url()).pathname));
+  await page.goto(`${files.url}/page.html`);
+  await page.waitForSelector('html[data-state=ready]', { state: 'attached' });
+  return { page, requests };
+}
+
+test('a worker decodes each level to the bits of papilio unpack', async () => {
+  const { page, requests } = await open();
+  const fetched = () => requests.filter((name) => name.endsWith('papilio-detail.wasm')).length;
+  assert.equal(fetched(), 0, 'the module is fetched before there is a packed model');
+  const made = await page.evaluate(async () => {
+    const model = await open('/vase.glb');
+    const levels = [model.base, ...model.levels];
+    const all = await Promise.all(levels.map(async (_, k) => digest(await model.decode(k))));
+    model.close();
+    return { levels, all, afterwards: await refusal(model.decode(0)) };
+  });
+  assert.equal(fetched(), 1);
+  const native = [report.base, ...report.levels].map((_, k) => unpack(packed, k));
+  const digests = native.map(({ positions, triangles }) =>
+    createHash('sha256')
+      .update(new Uint8Array(positions.buffer))
+      .update(new Uint8Array(triangles.buffer))
+      .digest('hex'),
+  );
+  assert.deepEqual(made.all, digests);
+  assert.deepEqual(
+    made.levels.map(({ faces, vertices }) => [faces, vertices]),
+    native.map(({ triangles, positions }) => [triangles.length / 3, positions.length / 3]),
+  );
+  assert.deepEqual(
+    made.levels.slice(1).map(({ bytes }) => bytes),
+    report.levels.map(({ bytes }) => bytes),
+  );
+  // What is stated is rounded up to four digits.
+  for (const [l, { rms, largest }] of made.levels.entries()) {
+    const stated = [report.base, ...report.levels][l];
+    assert.ok(Math.abs(rms - stated.rms) <= 0.001 * stated.rms, `${rms}, ${stated.rms}`);
+    assert.ok(Math.abs(largest - stated.largest) <= 0.001 * stated.largest);
+  }
+  assert.match(made.afterwards.message, /was closed/);
+  await page.close();
+});
+
+test('a decoding that is aborted is given up, and the next one is done', async () => {
+  const { page } = await open();
+  const seen = await page.evaluate(async () => {
+    const model = await open('/vase.glb');
+    const abort = new AbortController();
+    const given = refusal(model.decode(model.levels.length, { signal: abort.signal }));
+    const waiting = refusal(model.decode(1, { signal: abort.signal }));
+    const kept = model.decode(2);
+    abort.abort();
+    const late = await refusal(model.decode(1, { signal: abort.signal }));
+    const bad = await refusal(model.decode(99));
+    return { given: await given, waiting: await waiting, late, bad, faces: (await kept).triangles.length / 3 };
+  });
+  for (const one of [seen.given, seen.waiting, seen.late]) assert.equal(one.name, 'AbortError');
+  assert.equal(seen.bad.name, 'RangeError');
+  assert.equal(seen.faces, report.levels[1].faces);
+  await page.close();
+});
+
+test('a prefix is opened where that is allowed, and has the levels that have come', async () => {
+  const { page } = await open();
+  const seen = await page.evaluate(async () => {
+    const whole = await open('/vase.glb');
+    const bytes = await fetched('/vase.glb');
+    const prefix = bytes.slice(0, whole.levels[1].fileBytes);
+    const refused = await refusal(openPacked(prefix, { decodeDraco }));
+    const cut = await openPacked(prefix, { decodeDraco, mayBeCut: true });
+    const same = (await digest(await cut.decode(2))) === (await digest(await whole.decode(2)));
+    return { refused, levels: cut.levels.length, declared: cut.declaredLevels, same };
+  });
+  assert.equal(seen.refused.code, 'mesh_not_gltf');
+  assert.deepEqual([seen.levels, seen.declared, seen.same], [2, report.levels.length, true]);
+  await page.close();
+});
+
+test('a base that is not what the file declares is refused', async () => {
+  const { page } = await open();
+  const seen = await page.evaluate(async () => {
+    const refusedWith = (change) =>
+      refusal(
+        open('/vase.glb', {
+          decodeDraco: async (draco) => {
+            const mesh = await decodeDraco(draco);
+            return { ...mesh, ...change(mesh) };
+          },
+        }),
+      );
+    return {
+      fewer: await refusedWith(({ triangles }) => ({ triangles: triangles.slice(3) })),
+      turned: await refusedWith(({ triangles }) => ({ triangles: turn(triangles) })),
+      parted: await refusedWith(({ triangles }) => ({
+        triangles: triangles.map((v, i) => (i < 3 ? triangles[i + 3] : v)),
+      })),
+      large: await refusal(open('/vase.glb', { maxFaces: 1000 })),
+      damaged: await refusal(open('/vase.glb', { decodeDraco: () => decodeDraco(new Uint8Array(40)) })),
+    };
+    function turn(triangles) {
+      const [a, b, c, ...rest] = triangles;
+      return new Uint32Array([a, c, b, ...rest]);
+    }
+  });
+  assert.equal(seen.fewer.code, 'mesh_not_gltf');
+  assert.match(seen.fewer.message, /other counts/);
+  for (const one of [seen.turned, seen.parted]) {
+    assert.equal(one.code, 'mesh_unusable');
+    assert.match(one.message, /not a manifold surface/);
+  }
+  assert.equal(seen.large.code, 'result_too_large');
+  assert.equal(seen.damaged.code, 'mesh_not_draco');
+  await page.close();
+});
+
+test('PapilioLoader shows a packed model with all its levels', async () => {
+  const { page } = await open();
+  const faces = await page.evaluate(async () => {
+    const model = await new PapilioLoader().loadAsync('/vase.glb');
+    return model.statistics.faces;
+  });
+  assert.equal(faces, report.levels.at(-1).faces);
+  await page.close();
+});
