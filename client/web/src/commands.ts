@@ -20,7 +20,7 @@ export function commandsFor(
   queryFor: (mode: Mode) => string | null,
 ): Command[] {
   const base = new URL('.', location.href).href;
-  const { kind } = mesh.encoded;
+  const kind = mesh.sentKind;
   const file = mesh.name.endsWith(extensionOf[kind]) ? mesh.name : `mesh${extensionOf[kind]}`;
   return shown
     .map(({ mode, title }) => ({ mode, title, text: curlOf(base, queryFor(mode), { id, file, kind }, hasKey()) }))

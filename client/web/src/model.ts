@@ -1,17 +1,21 @@
-// What is shown: a mesh as Draco, or a glTF scene; its bytes, and what they are decoded to.
+// What is shown: a mesh as Draco, a glTF scene, or a packed model; its bytes, and what they are decoded to.
 
 import type { BufferGeometry, Object3D } from 'three';
 
 export type Bytes = Uint8Array<ArrayBuffer>;
 
-/// A file as the server takes and gives it.
+/// A file as the server takes and gives it; a packed model is refined as the mesh that it is decoded to.
 export interface Encoded {
-  kind: 'draco' | 'scene';
+  kind: 'draco' | 'scene' | 'packed';
   bytes: Bytes;
 }
 
-export const mediaTypes = { draco: 'application/x-draco', scene: 'model/gltf-binary' } as const;
-export const extensionOf = { draco: '.drc', scene: '.glb' } as const;
+export const mediaTypes = {
+  draco: 'application/x-draco',
+  scene: 'model/gltf-binary',
+  packed: 'model/gltf-binary',
+} as const;
+export const extensionOf = { draco: '.drc', scene: '.glb', packed: '.glb' } as const;
 
 /// Null for other types.
 export function kindOf(mediaType: string | null): Encoded['kind'] | null {

@@ -4,17 +4,18 @@ import { Alert } from './alert';
 import { Asker, lensOf } from './asker';
 import { commandRows, commandsFor, copy } from './commands';
 import { Controls } from './controls';
-import { decode } from './decode';
 import { defaults } from './defaults';
 import { fetchDecoder } from './draco';
 import { addChoice, find } from './elements';
 import { listenToFiles, listenToKeys } from './input';
 import { askForKey, listenToKey } from './key_form';
 import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest, type State, toHash } from './link';
-import { OpenMesh } from './mesh';
+import type { OpenMesh } from './mesh';
 import { MeshSelect } from './mesh_select';
 import type { Encoded } from './model';
 import { extensions, meshAmong, readMeshFile } from './open_file';
+import { openMesh } from './opening';
+import { PackedPanel } from './packed_panel';
 import { Panel } from './panel';
 import { ParameterForm } from './parameter_form';
 import { Pictures } from './pictures';
@@ -37,6 +38,7 @@ export class Viewer {
   #pictures: Pictures;
   #results: Results;
   #select = new MeshSelect();
+  #packed = new PackedPanel(find('packed'));
   #asker: Asker;
   /// How many meshes were asked to be opened.
   #opening = 0;
@@ -105,11 +107,12 @@ export class Viewer {
     find('stage').setAttribute('aria-busy', 'true');
     try {
       const encoded = await read();
-      const decoded = await decode(encoded).catch((error: unknown) => {
+      const mesh = await openMesh(name, encoded).catch((error: unknown) => {
         if (isNamed || !(error instanceof Problem) || error.code === 'unreachable') throw error;
         throw new Problem(error.code, `${name} cannot be read: ${error.message}`);
       });
-      if (isLatest()) this.#show(new OpenMesh(name, encoded, decoded), isNamed);
+      if (isLatest()) this.#show(mesh, isNamed);
+      else mesh.close();
     } catch (error) {
       const again = () => (this.#mesh === null ? this.start() : this.#open(name, isNamed, read));
       if (isLatest()) this.#tell(error, () => void again());
@@ -122,9 +125,9 @@ export class Viewer {
   #show(mesh: OpenMesh, isNamed: boolean): void {
     // The first one may come with a link's camera.
     if (this.#mesh !== null) this.#state.camera = this.#state.frozen = null;
-    this.#mesh?.dispose();
-    this.#mesh = mesh;
-    this.#asker.mesh = mesh;
+    this.#mesh?.close();
+    this.#take(mesh);
+    this.#packed.show(mesh);
     this.#showParameters();
     this.#showChoices();
     showParts(mesh.decoded.scene, (hidden) => (this.#pictures.hidden = hidden));
@@ -139,6 +142,11 @@ export class Viewer {
     this.#showCamera();
     this.#nameMesh();
     this.#refresh();
+  }
+
+  #take(mesh: OpenMesh): void {
+    this.#mesh = mesh;
+    this.#asker.mesh = mesh;
   }
 
   /// Some parameters are of scenes alone.
@@ -309,6 +317,12 @@ export class Viewer {
   #listen(): void {
     const stage = this.#stage;
     this.#select.onChoice = (name) => void this.#openNamed(name);
+    this.#packed.onProblem = (error) => this.#tell(error);
+    this.#packed.onLevel = (mesh) => {
+      this.#mesh?.dispose();
+      this.#take(mesh);
+      this.#refresh();
+    };
     listenToFiles((files) => {
       if (files.length > 0) void this.#openFiles(files);
       else this.#alert.show(`That is no file. Drop one of ${extensions.join(', ')}.`);
