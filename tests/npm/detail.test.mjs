@@ -7,7 +7,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { brotliCompressSync, constants } from 'node:zlib';
 import { decodeDraco, originals, pack, unpack } from './packed.mjs';
-import { areSame, root } from './requests.mjs';
+import { areSame, randomNumbers, root } from './requests.mjs';
 
 const { compileDecoder, DetailDecoder, isPacked, readPacked, withLevels } = await import(
   path.join(root, 'build/npm/dist/detail.js')
@@ -174,6 +174,60 @@ test('damaged containers are refused', () => {
   ])
     assert.throws(() => readPacked(bytes), { name: 'Problem', message });
 });
+
+test('of files damaged at random the same are refused as by the native reader, others have its bits', async () => {
+  const random = randomNumbers(7);
+  const below = (n) => Math.floor(n * random());
+  const { packed } = pack('vase', folder);
+  const file = readFileSync(packed);
+  const jsonEnd = 20 + file.readUInt32LE(12);
+  // Damage to the Draco stream is for its decoder to find.
+  const streams = jsonEnd + 8 + readPacked(new Uint8Array(file)).base.draco.length;
+  const damaged = path.join(folder, 'damaged.glb');
+  const seen = { decoded: 0, refused: 0 };
+  for (let i = 0; i < 200; ++i) {
+    const bytes = Buffer.from(file);
+    for (let k = below(3); k >= 0; --k)
+      if (i % 2 === 0) {
+        let at = 20 + below(jsonEnd - 20);
+        while (random() < 0.8 && !/\d/.test(String.fromCharCode(bytes[at]))) at = 20 + below(jsonEnd - 20);
+        bytes[at] = '0123456789.-eE",:{}[] '.charCodeAt(below(random() < 0.7 ? 10 : 22));
+      } else if (random() < 0.1) bytes[below(20)] = below(256);
+      else bytes[streams + below(bytes.length - streams)] = below(256);
+    writeFileSync(damaged, bytes);
+    let native = null;
+    try {
+      native = unpack(damaged, 3);
+    } catch (error) {
+      assert.equal(error.status, 1, error.stderr);
+    }
+    let made = null;
+    try {
+      made = await decodeAsDeclared(new Uint8Array(bytes), 3);
+    } catch (error) {
+      assert.ok(error.name === 'Problem' || error.name === 'AssertionError', error.stack);
+    }
+    assert.equal(made !== null, native !== null, `file ${i}`);
+    if (made !== null) assertSame(made, native, `file ${i}`);
+    ++seen[made === null ? 'refused' : 'decoded'];
+  }
+  assert.ok(seen.decoded >= 40 && seen.refused >= 40, JSON.stringify(seen));
+});
+
+/// As openPacked does it.
+async function decodeAsDeclared(bytes, count) {
+  const { base, curves, levels } = readPacked(bytes, { maxFaces: 2 ** 30 });
+  const triangles = await decodeDraco(base.draco);
+  assert.deepEqual([triangles.positions.length, triangles.triangles.length], [3 * base.vertices, 3 * base.faces]);
+  const decoder = new DetailDecoder(module, triangles, curves);
+  let [edges, { faces }] = [decoder.countEdges(), base];
+  for (const { residualCount } of levels) {
+    assert.equal(residualCount, edges);
+    edges = 2 * edges + 3 * faces;
+    faces *= 4;
+  }
+  return decoder.decode(levels.slice(0, count));
+}
 
 test('every prefix of a file is refused, or has fewer whole levels', () => {
   const file = bytesOf(torus);

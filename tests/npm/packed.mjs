@@ -85,7 +85,7 @@ export function pack(name, folder, rms = 0.001) {
 /// The first levels of a packed model by the native decoder.
 export function unpack(packed, levels) {
   const ply = `${packed}.ply`;
-  execFileSync(path.join(build, 'papilio'), ['unpack', packed, '-o', ply, '--levels', levels]);
+  execFileSync(path.join(build, 'papilio'), ['unpack', packed, '-o', ply, '--levels', levels], { stdio: 'pipe' });
   const bytes = readFileSync(ply);
   const end = bytes.indexOf('end_header\n') + 11;
   const head = bytes.toString('latin1', 0, end);

@@ -71,7 +71,10 @@ export function writeContainer(json: Json, binary: Uint8Array): Uint8Array<Array
 
 function parse(text: Uint8Array): Json {
   try {
-    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(text)) as Json;
+    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(text), (_, value: Json) => {
+      if (value === Infinity || value === -Infinity) throw new RangeError(); // such as 1e999
+      return value;
+    }) as Json;
   } catch {
     throw damaged('The first chunk of the .glb file is not valid JSON.');
   }
