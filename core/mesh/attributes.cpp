@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "base/sort.h"
 #include "papilio/error.h"
 
 namespace papilio {
@@ -49,7 +50,7 @@ Buffer<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& m
     if (vertex[p] == none) points.push_back(p);
     vertex[p] = mesh.origin[h];
   }
-  std::ranges::sort(points, [&](uint32_t p, uint32_t q) {
+  sort_range(points, [&](uint32_t p, uint32_t q) {
     if (vertex[p] != vertex[q]) return vertex[p] < vertex[q];
     const int order = compare(input.attributes, p, q);
     return order != 0 ? order < 0 : p < q;

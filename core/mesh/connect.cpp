@@ -4,6 +4,8 @@
 #include <compare>
 #include <span>
 
+#include "base/sort.h"
+
 namespace papilio {
 namespace {
 
@@ -23,7 +25,7 @@ Buffer<EdgeSide> sort_into_edges(const Topology& mesh, const IsChosen& is_chosen
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
     if (is_chosen(h))
       sides.push_back({std::min(mesh.origin[h], mesh.tip(h)), std::max(mesh.origin[h], mesh.tip(h)), h});
-  std::ranges::sort(sides);
+  sort_range(sides);
   return sides;
 }
 Buffer<EdgeSide> sort_into_edges(const Topology& mesh) {
@@ -58,7 +60,7 @@ uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std:
       candidates.push_back({{mesh.origin[h], mesh.tip(h), mesh.apex(h)}, Topology::face(h)});
     }
   });
-  std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+  sort_range(candidates, [](const Candidate& a, const Candidate& b) {
     return a.rotated != b.rotated ? a.rotated < b.rotated : a.face < b.face;
   });
   std::vector<bool> repeated;

@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "base/sort.h"
+
 namespace papilio {
 namespace {
 
@@ -46,7 +48,7 @@ class FaceDivider {
       if (known.is_inserted && known.half_edge == none && mesh.twin[h] == none) known.half_edge = h;
       if (known.is_inserted || known_[mesh.tip(h)].is_inserted) runs_.push_back(direction(mesh.origin[h], mesh.tip(h)));
     }
-    std::ranges::sort(runs_);
+    sort_range(runs_);
   }
 
   Draft run() {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sort.h"
 #include "mesh/normals.h"
 #include "papilio/mesh.h"
 
@@ -39,10 +40,11 @@ std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attri
   std::vector<uint32_t> equal(points.point_count);
   for (uint32_t p = 0; p < order.size(); ++p) order[p] = equal[p] = p;
   if (points.point_count == mesh.topology.vertex_count) return equal;
-  std::ranges::stable_sort(order, {}, [&](uint32_t p) {
+  const auto place = [&](uint32_t p) {
     const Vec3d v = value_at(attribute, p);
-    return std::tuple{vertex[p], v.x, v.y, v.z};
-  });
+    return std::tuple{vertex[p], v.x, v.y, v.z, p};
+  };
+  sort_range(order, [&](uint32_t p, uint32_t q) { return place(p) < place(q); });
   std::vector<uint32_t> kept;  // of the vertex at hand, those that equal none before
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t p = order[i];
@@ -118,7 +120,7 @@ void add_normals(Mesh& mesh) {
   } else {
     std::vector<std::pair<uint64_t, uint32_t>> corners(sector.size());  // sector and old point; the half-edge
     for (uint32_t h = 0; h < sector.size(); ++h) corners[h] = {uint64_t{sector[h]} << 32 | attributes.point[h], h};
-    std::ranges::sort(corners);
+    sort_range(corners);
     for (size_t i = 0; i < corners.size(); ++i) {
       const auto [both, h] = corners[i];
       if (i == 0 || both != corners[i - 1].first) {

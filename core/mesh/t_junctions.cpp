@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/sort.h"
 #include "mesh/point_tree.h"
 #include "papilio/triangle_distance.h"
 
@@ -16,7 +17,7 @@ constexpr ptrdiff_t most_boundary_edges = 16;  // looked at, at a vertex
 class EdgesAt {
  public:
   void add(uint32_t vertex, uint32_t half_edge) { edges_.emplace_back(vertex, half_edge); }
-  void sort() { std::ranges::sort(edges_); }
+  void sort() { sort_range(edges_); }
   /// Returns whether the predicate holds of any half-edge at the vertex.
   template <class Predicate>
   [[nodiscard]] bool any(uint32_t vertex, Predicate is) const {
@@ -43,7 +44,7 @@ class TJunctionFinder {
     }
     leaving_.sort();
     arriving_.sort();
-    std::ranges::sort(vertices_);
+    sort_range(vertices_);
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
   }
 
@@ -70,7 +71,7 @@ class TJunctionFinder {
       if (is_apart(v, h) && connects(v, h)) on_edge.push_back({h, dot(at(v) - a, b - a) / dot(b - a, b - a), v});
       return on_edge.size() < most_candidates;
     });
-    std::ranges::sort(on_edge, [](const Insertion& one, const Insertion& other) {
+    sort_range(on_edge, [](const Insertion& one, const Insertion& other) {
       return one.share != other.share ? one.share < other.share : one.vertex < other.vertex;
     });
     Vec3d last = a;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sort.h"
 #include "mesh/point_tree.h"
 #include "mesh/vertex_spokes.h"
 
@@ -59,7 +60,7 @@ class GapWelder {
       if (const auto apart = gap(i, j)) candidates.push_back({*apart, j});
       return candidates.size() < most_partners;
     });
-    std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+    sort_range(candidates, [](const Candidate& a, const Candidate& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.number < b.number;
     });
     for (const Candidate& candidate : candidates) {
@@ -151,7 +152,7 @@ class GapWelder {
         for_each_member(root, [&](uint32_t v) {
           for (const uint32_t h : spokes_->of(v)) faces_.push_back(Topology::face(h));
         });
-    std::ranges::sort(faces_);
+    sort_range(faces_);
     faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
     looks_ += faces_.size();
     for (const uint32_t f : faces_)
@@ -178,7 +179,7 @@ class GapWelder {
     for (const uint32_t f : faces_)
       for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
         runs_.emplace_back(merge(root_[mesh_.origin[h]]), merge(root_[mesh_.tip(h)]));
-    std::ranges::sort(runs_);
+    sort_range(runs_);
     size_t repeated = 0;
     for (size_t i = 1; i < runs_.size(); ++i) repeated += runs_[i] == runs_[i - 1] ? 1 : 0;
     return repeated;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/sort.h"
 #include "mesh/connect.h"
 #include "simplify/flip_slivers.h"
 
@@ -97,7 +98,7 @@ void Collapser::split_into_parts(std::vector<bool> to_collapse) {
   std::vector<uint32_t> faces;
   const auto end_part = [&] {
     if (faces.empty()) return;
-    std::ranges::sort(faces);
+    sort_range(faces);
     Corners& part = parts_.emplace_back();
     for (uint32_t f : faces) append(part, mesh_, f);
     faces.clear();
@@ -149,7 +150,7 @@ Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
 void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, double error,
                          Buffer<uint32_t>& out) const {
   Corners points = part;  // its own, in ascending order
-  std::ranges::sort(points);
+  sort_range(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   Corners own(part.size());
   std::ranges::transform(part, own.begin(), [&](uint32_t p) {

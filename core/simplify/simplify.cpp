@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/sort.h"
 #include "criteria/camera.h"
 #include "mesh/connect.h"
 #include "mesh/normals.h"
@@ -47,7 +48,7 @@ class Trouble {
 
   /// Locks the faults and what is within a few edges of each: twice as many each time that a vertex turns up again.
   void lock(std::vector<uint32_t> faults, std::vector<bool>& locked) {
-    std::ranges::sort(faults);
+    sort_range(faults);
     faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
     std::vector<uint32_t> rings(mesh_.vertex_count, 0);  // how far the lock still goes from here, and one
     uint32_t most = 0;
@@ -120,7 +121,7 @@ bool restore_creases(const Topology& before, const std::vector<uint32_t>& crease
   std::vector<Ends> wanted;
   wanted.reserve(creases.size());
   for (uint32_t e : creases) wanted.push_back(ends(before, e));
-  std::ranges::sort(wanted);
+  sort_range(wanted);
   size_t found = 0;
   for (uint32_t e = 0; e < mesh.edge_count() && !wanted.empty(); ++e) {
     const auto [a, b] = ends(mesh, e);

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/disjoint_sets.h"
+#include "base/sort.h"
 #include "mesh/normals.h"
 
 namespace papilio {
@@ -18,7 +19,7 @@ std::vector<Edge> open_half_edges(const Topology& mesh, const Number& number) {
   std::vector<Edge> open;
   for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
     if (mesh.twin[h] == none) open.push_back({number(mesh.origin[h]), number(mesh.tip(h))});
-  std::ranges::sort(open);
+  sort_range(open);
   return open;
 }
 
@@ -51,7 +52,7 @@ std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Bu
     std::rotate(t.begin(), std::ranges::min_element(t), t.end());
     bad.push_back(t);
   }
-  std::ranges::sort(bad);
+  sort_range(bad);
   return bad;
 }
 
