@@ -11,18 +11,10 @@
 #include "detail/level_decoder.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
+#include "papilio/triangle_distance.h"
 
 namespace papilio {
 namespace {
-
-/// Returns the squared distance from a point to the segment from a to b.
-double squared_distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
-  const Vec3d along = b - a;
-  const double size = dot(along, along);
-  const double share = size > 0 ? std::clamp(dot(p - a, along) / size, 0.0, 1.0) : 0.0;
-  const Vec3d off = p - (a + share * along);
-  return dot(off, off);
-}
 
 /// Returns the largest distance from the last positions, one an edge, to their edges.
 double largest_move_of(const Topology& t, const Buffer<Vec3f>& positions) {
