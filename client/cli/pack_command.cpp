@@ -44,7 +44,9 @@ void print_packed(std::ostream& out, const Packed& packed) {
         << " bytes: " << reach_text(level.reach) << '\n';
   }
   out << "container " << packed.glb.size() - bytes << " bytes\n"
-      << "distances are shares of the diagonal; " << packed.folds << " folded faces\n";
+      << "distances are shares of the diagonal; " << packed.folds << " folded faces";
+  if (packed.parted > 0) out << "; parted at " << packed.parted << " vertices where the surface touches itself";
+  out << '\n';
 }
 
 void print_report(std::ostream& out, const PackFlags& flags, const Packed& packed) {
@@ -55,7 +57,12 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
   const std::string grid =
       std::to_string(packed.plain_bits) + " bits, RMS " + format_rounded(100 * packed.plain_rms) + " %";
   if (!packed.model) {
-    out << packed.glb.size() << " bytes of plain Draco (" << grid << ")\n";
+    const auto& simplified = packed.simplified;
+    if (simplified && simplified->bytes == packed.glb.size())
+      out << packed.glb.size() << " bytes of Draco, simplified to " << simplified->faces << " faces ("
+          << simplified->position_bits << " bits, " << reach_text(simplified->reach) << ")\n";
+    else
+      out << packed.glb.size() << " bytes of plain Draco (" << grid << ")\n";
     return;
   }
   print_packed(out, packed);
@@ -63,6 +70,9 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
       format_rounded(static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size()));
   out << packed.glb.size() << " bytes; plain Draco at the same distance (" << grid << "): " << packed.plain_bytes
       << " bytes, " << (ratio == "1" ? "as many" : ratio + " times as many") << '\n';
+  if (packed.simplified)
+    out << "simplified to " << packed.simplified->faces << " faces, as Draco: " << packed.simplified->bytes
+        << " bytes\n";
 }
 
 void check_goals(const PackFlags& flags) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "papilio/vec3.h"
 
 namespace papilio {
@@ -28,6 +30,7 @@ class Quadric {
     return *this;
   }
 
+  friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
   /// Value at p; never negative.
   [[nodiscard]] double at(Vec3d p) const {
     const Vec3d product{xx_ * p.x + xy_ * p.y + xz_ * p.z, xy_ * p.x + yy_ * p.y + yz_ * p.z,
@@ -36,7 +39,20 @@ class Quadric {
     return value > 0 ? value : 0;
   }
 
+  /// Point of the least value, by Cramer's rule; nothing where the planes are too nearly parallel to one line.
+  [[nodiscard]] std::optional<Vec3d> minimum() const {
+    const Vec3d x{xx_, xy_, xz_}, y{xy_, yy_, yz_}, z{xz_, yz_, zz_};
+    const Vec3d minors = cross(y, z);
+    const double determinant = dot(x, minors);
+    const double mean = (xx_ + yy_ + zz_) / 3;
+    if (!(determinant > least_determinant * mean * mean * mean)) return std::nullopt;
+    const Vec3d adjugate = linear_.x * minors + linear_.y * cross(z, x) + linear_.z * cross(x, y);
+    return (-1 / determinant) * adjugate;
+  }
+
  private:
+  static constexpr double least_determinant = 1e-9;  ///< relative to that of a sphere's normals, 1
+
   double xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;
   Vec3d linear_{};
   double constant_ = 0;

@@ -56,7 +56,7 @@ Encoding Encodings::encode_at(double rms, size_t number) {
                               .on_progress = [this, number](double share) { show(number, share); }};
   const EncodedDetail encoded =
       encode_detail(surface_, options, [&](const TriangleMesh& base) { return coder.code(base); });
-  Encoding made{.wanted_rms = rms, .folds = encoded.folds};
+  Encoding made{.wanted_rms = rms, .folds = encoded.folds, .parted = encoded.parted};
   made.glb = write_packed(encoded, coder.stream_of(encoded.base.triangles));
   made.model = read_packed(made.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
   show(number, 1);

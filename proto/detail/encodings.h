@@ -14,8 +14,8 @@ namespace papilio::proto::detail {
 struct Encoding {
   double wanted_rms = 0;
   std::string glb{};
-  PackedModel model{};  ///< as read back
-  uint32_t folds = 0;
+  PackedModel model{};             ///< as read back
+  uint32_t folds = 0, parted = 0;  ///< faces and vertices, as of `EncodedDetail`
 };
 
 /// Encoder of one surface at several distances. Encodings do not depend on each other, nor on the threads.

@@ -92,12 +92,34 @@ class Packer {
   void choose_at_rms() {
     const double reached = best_ ? reach_of(best_->model).rms : 0;
     PlainDraco plain = plain_at(std::max(options_.rms, reached));
+    if (options_.simplifies) {
+      packed_.simplified = write_simplified_draco(mesh_.triangles(), options_.rms, options_.cancelled);
+      if (packed_.simplified && is_smallest(*packed_.simplified, plain)) return take_simplified(plain);
+    }
     if (best_ && best_->glb.size() < plain.glb.size()) return take_packed(plain);
     if (best_)
       packed_.reason = "At an RMS distance of " + format_rounded(std::max(options_.rms, reached)) +
                        " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) +
                        " bytes, and a packed model " + std::to_string(best_->glb.size()) + ".";
     take_plain(reached > options_.rms ? plain_at(options_.rms) : std::move(plain));
+  }
+
+  [[nodiscard]] bool is_smallest(const SimplifiedDraco& simplified, const PlainDraco& plain) const {
+    const uint64_t bytes = simplified.bytes;
+    const bool is_packed_farther = best_ && reach_of(best_->model).rms > options_.rms;
+    return bytes < plain.glb.size() && (!best_ || is_packed_farther || bytes < best_->glb.size());
+  }
+
+  void take_simplified(const PlainDraco& plain) {
+    SimplifiedDraco& simplified = *packed_.simplified;
+    if (best_)
+      packed_.reason = "At an RMS distance of " + format_rounded(options_.rms) +
+                       " of the diagonal a simplified mesh of " + std::to_string(simplified.faces) + " faces takes " +
+                       std::to_string(simplified.bytes) + " bytes as Draco, and a packed model " +
+                       std::to_string(best_->glb.size()) +
+                       (reach_of(best_->model).rms > options_.rms ? " without reaching it." : ".");
+    note(plain);
+    packed_.glb = std::move(simplified.glb);
   }
 
   void choose_within_largest() {
@@ -138,6 +160,7 @@ class Packer {
   void take_packed(const PlainDraco& plain) {
     note(plain);
     packed_.folds = best_->folds;
+    packed_.parted = best_->parted;
     packed_.glb = std::move(best_->glb);
     packed_.model = std::move(best_->model);
   }

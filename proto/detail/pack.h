@@ -6,6 +6,7 @@
 
 #include "proto/detail/packed_model.h"
 #include "proto/detail/plain_draco.h"
+#include "proto/detail/simplified_draco.h"
 #include "proto/limits.h"
 
 namespace papilio::proto::detail {
@@ -18,6 +19,7 @@ struct PackOptions {
   uint64_t bytes = 0;  ///< most bytes of the file; 0: any number
   int jobs = 1;        ///< most threads that encode at once; the file is the same
   uint64_t face_limit = 8'000'000;  ///< faces of the last level
+  bool simplifies = true;           ///< whether a simplified mesh is compared too, where the goal is `rms`
   /// Asked now and then; true stops with `Problem` cancelled. Comes from several threads at once with several jobs.
   std::function<bool()> cancelled{};
   std::function<void(double)> on_progress{};  ///< share done, 0..1; calls do not overlap
@@ -26,7 +28,7 @@ struct PackOptions {
 /// A packed original.
 struct Packed {
   std::string glb{};
-  std::optional<PackedModel> model{};  ///< as read back; nothing: `glb` is plain Draco
+  std::optional<PackedModel> model{};  ///< as read back; nothing: `glb` is plain Draco, perhaps of a simplified mesh
   std::string reason{};                ///< why it is plain
   double wanted_rms = 0;               ///< 0 with another goal
   size_t encodings = 0;                ///< made for the goal
@@ -34,11 +36,14 @@ struct Packed {
   uint64_t plain_bytes = 0;            ///< of the plain .glb file at the same distance
   int plain_bits = 0;                  ///< its bits of a coordinate
   double plain_rms = 0;                ///< its distance, by `grid_rms`
+  std::optional<SimplifiedDraco> simplified{};  ///< what was compared; its `glb` is moved out where it is the result
+  uint32_t parted = 0;                          ///< vertices at which the original touches itself, which were parted
 };
 
 /// Packs the surface of an original; its attributes are left out. The result is a plain .glb file where the surface
 /// cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the largest allowed
-/// distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. Throws `Problem`:
+/// distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For an RMS distance a
+/// simplified mesh as Draco is compared too. Throws `Problem`:
 /// result_too_large where no file found is so small; and as the coders.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);
 

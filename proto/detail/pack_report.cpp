@@ -38,9 +38,16 @@ std::string pack_report(const Packed& packed) {
   out["encodings"] = packed.encodings;
   if (packed.model) {
     out["folds"] = packed.folds;
+    out["parted"] = packed.parted;
     out.update(json_of(*packed.model));
   }
   out["plain"] = {{"bytes", packed.plain_bytes}, {"position_bits", packed.plain_bits}, {"rms", packed.plain_rms}};
+  if (packed.simplified) {
+    Json& simplified = out["simplified"] = {{"faces", packed.simplified->faces},
+                                            {"bytes", packed.simplified->bytes},
+                                            {"position_bits", packed.simplified->position_bits}};
+    add_reach(simplified, packed.simplified->reach);
+  }
   out["ratio"] = static_cast<double>(packed.plain_bytes) / static_cast<double>(packed.glb.size());
   return out.dump(2);
 }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/detail/optimal_collapse.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
-#include "tests/support/optimal_collapse.h"
 
 namespace papilio::test {
 namespace {

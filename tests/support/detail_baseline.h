@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/detail/optimal_collapse.h"
 #include "papilio/mesh.h"
-#include "tests/support/optimal_collapse.h"
 #include "tests/support/rate_curve.h"
 #include "tests/support/sampled_distance.h"
 

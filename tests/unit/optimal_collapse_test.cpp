@@ -1,4 +1,4 @@
-#include "tests/support/optimal_collapse.h"
+#include "core/detail/optimal_collapse.h"
 
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "client/lib/compare.h"
+#include "core/detail/quadric.h"
 #include "papilio/refine.h"
 #include "tests/support/invariants.h"
-#include "tests/support/quadric.h"
 #include "tests/support/shapes.h"
 
 namespace papilio::test {

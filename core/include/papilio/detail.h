@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -113,5 +114,21 @@ struct EncodedDetail {
 /// build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
+
+/// Mesh without levels, as its decoder has it.
+struct SimplifiedDetail {
+  TriangleMesh triangles;
+  DetailReach reach;
+  uint64_t bytes = 0;     ///< of its code
+  int position_bits = 0;  ///< of a coordinate
+};
+/// Codes and decodes a mesh with so many bits of a coordinate.
+using MeshCoder = std::function<CodedBase(const TriangleMesh&, int)>;
+
+/// Simplifies an original without its attributes to what its levels compete with: the fewest faces and bits, of those
+/// tried, that leave the wanted distance, by quadrics with optimal placement. Nothing where none do. Throws `Error`:
+/// bad_option, cancelled, out_of_memory, and what build_mesh() throws.
+[[nodiscard]] std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original,
+                                                              const DetailOptions& options, const MeshCoder& code);
 
 }  // namespace papilio

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "papilio/mesh.h"
 
-namespace papilio::test {
+namespace papilio {
 
 /// Surface from which the quadric of an edge is made.
 enum class Quadrics {
@@ -25,8 +26,9 @@ enum class Quadrics {
                                               Quadrics quadrics = Quadrics::accumulated);
 
 /// Results of `collapse_optimally` for several counts, in one sequence of collapses. `faces` must descend. Counts that
-/// cannot be reached are left out at the end.
+/// cannot be reached are left out at the end. `poll` is called every few thousand collapses and may throw to stop.
 [[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
-                                                          Quadrics quadrics = Quadrics::accumulated);
+                                                          Quadrics quadrics = Quadrics::accumulated,
+                                                          const std::function<void()>& poll = {});
 
-}  // namespace papilio::test
+}  // namespace papilio

@@ -1,4 +1,4 @@
-#include "tests/support/optimal_collapse.h"
+#include "detail/optimal_collapse.h"
 
 #include <algorithm>
 #include <queue>
@@ -7,26 +7,27 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/disjoint_sets.h"
+#include "base/disjoint_sets.h"
+#include "detail/quadric.h"
 #include "papilio/mesh.h"
-#include "tests/support/quadric.h"
 
-namespace papilio::test {
+namespace papilio {
 namespace {
 
 /// A boundary's plane counts this many times as much as a face's of the edge's length squared.
 constexpr double boundary_weight = 100;
 /// A collapse that turns a face's normal to a smaller cosine is refused.
-constexpr double least_cosine = 0.2;
+constexpr double least_cosine_of_turn = 0.2;
+constexpr uint32_t steps_between_polls = 4096;
 
-struct Collapse {
+struct PairCollapse {
   double cost;
   Vec3d place;  ///< of the vertex that is left
   uint32_t kept, removed;
   uint32_t age;  ///< the ages of both vertices when it was computed: a collapse is stale once either has changed
 };
 /// For a heap whose top is the cheapest. Ties go by index: the result does not depend on the library.
-bool is_later(const Collapse& a, const Collapse& b) {
+bool is_costlier(const PairCollapse& a, const PairCollapse& b) {
   if (a.cost != b.cost) return a.cost > b.cost;
   return a.kept != b.kept ? a.kept > b.kept : a.removed > b.removed;
 }
@@ -67,9 +68,10 @@ class Simplifier {
   }
 
   /// Returns whether so few faces are left.
-  [[nodiscard]] bool reaches(size_t faces) {
+  [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll = {}) {
     while (face_count_ > faces && !queue_.empty()) {
-      const Collapse next = queue_.top();
+      if (poll && ++steps_ % steps_between_polls == 0) poll();
+      const PairCollapse next = queue_.top();
       queue_.pop();
       if (next.age == ages_[next.kept] + ages_[next.removed] && is_allowed(next)) apply(next);
     }
@@ -152,7 +154,7 @@ class Simplifier {
   [[nodiscard]] bool has(uint32_t face, uint32_t v) const {
     return std::ranges::find(faces_[face], v) != faces_[face].end();
   }
-  [[nodiscard]] bool is_allowed(const Collapse& c) const {
+  [[nodiscard]] bool is_allowed(const PairCollapse& c) const {
     return keeps_topology(c.kept, c.removed) && turns_no_face(c);
   }
 
@@ -173,18 +175,18 @@ class Simplifier {
     return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
   }
 
-  [[nodiscard]] bool turns_no_face(const Collapse& c) const {
+  [[nodiscard]] bool turns_no_face(const PairCollapse& c) const {
     const auto is_kept_upright = [&](uint32_t v, uint32_t other) {
       return std::ranges::all_of(faces_of_[v], [&](uint32_t f) {
         if (has(f, other)) return true;
         const Vec3d before = normal(faces_[f], v, places_[v]), after = normal(faces_[f], v, c.place);
-        return dot(before, after) > least_cosine * length(before) * length(after) || length(before) == 0;
+        return dot(before, after) > least_cosine_of_turn * length(before) * length(after) || length(before) == 0;
       });
     };
     return is_kept_upright(c.kept, c.removed) && is_kept_upright(c.removed, c.kept);
   }
 
-  void apply(const Collapse& c) {
+  void apply(const PairCollapse& c) {
     for (const uint32_t f : faces_of_[c.removed]) {
       if (has(f, c.kept)) {
         for (const uint32_t v : faces_[f])
@@ -228,17 +230,18 @@ class Simplifier {
   std::vector<Quadric> quadrics_;
   std::vector<uint32_t> ages_;  ///< how often the vertex has changed
   size_t face_count_;
-  std::priority_queue<Collapse, std::vector<Collapse>, decltype(&is_later)> queue_{&is_later};
+  uint32_t steps_ = 0;
+  std::priority_queue<PairCollapse, std::vector<PairCollapse>, decltype(&is_costlier)> queue_{&is_costlier};
 };
 
 }  // namespace
 
-std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
-                                            Quadrics quadrics) {
+std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces, Quadrics quadrics,
+                                            const std::function<void()>& poll) {
   Simplifier simplifier(build_mesh(mesh), quadrics);
   std::vector<TriangleMesh> results;
   for (const size_t count : faces) {
-    if (!simplifier.reaches(count)) break;
+    if (!simplifier.reaches(count, poll)) break;
     results.push_back(simplifier.result());
   }
   return results;
@@ -252,4 +255,4 @@ TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces, Quadrics
   return simplifier.result();
 }
 
-}  // namespace papilio::test
+}  // namespace papilio

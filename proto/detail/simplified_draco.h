@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "papilio/detail.h"
+
+namespace papilio::proto::detail {
+
+/// A simplified mesh without levels, for comparison and where it is smaller.
+struct SimplifiedDraco {
+  std::string glb{};
+  uint64_t bytes = 0;  ///< of `glb`
+  size_t faces = 0;
+  int position_bits = 0;
+  DetailReach reach{};  ///< from samples
+};
+
+/// Simplifies a surface to an RMS distance, a share of the diagonal, and writes it as Draco in a .glb file. Nothing
+/// where no file was found that reaches the distance. Throws `Problem` and `Error`.
+[[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, double rms,
+                                                                    const std::function<bool()>& cancelled = {});
+
+}  // namespace papilio::proto::detail

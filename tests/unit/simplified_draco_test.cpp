@@ -1,0 +1,71 @@
+#include "proto/detail/simplified_draco.h"
+
+#include <gtest/gtest.h>
+
+#include "papilio/error.h"
+#include "papilio/refine.h"
+#include "proto/detail/pack.h"
+#include "tests/support/sampled_distance.h"
+#include "tests/support/shapes.h"
+
+// Simplified meshes as Draco: what a packed model must be smaller than.
+
+namespace papilio::proto::detail {
+namespace {
+
+TriangleMesh fine_sphere() {
+  Options options;
+  options.levels = 5;
+  options.tension = Tension::off;
+  TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
+  for (Vec3f& p : mesh.positions) p = (1 / length(p)) * p;
+  return mesh;
+}
+
+TEST(SimplifiedDraco, OfAFinelyDividedBoxHasTwelveFaces) {
+  const auto made = write_simplified_draco(test::box({20, 20, 20}, {1, 2, 3}), 1e-4);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->faces, 12U);
+  EXPECT_LE(made->reach.rms, 1e-4);
+  EXPECT_EQ(made->bytes, made->glb.size());
+}
+
+TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
+  const TriangleMesh original = fine_sphere();
+  for (const double rms : {3e-3, 3e-4}) {
+    const auto made = write_simplified_draco(original, rms);
+    ASSERT_TRUE(made);
+    EXPECT_LE(made->reach.rms, rms);
+    EXPECT_LT(made->faces, original.triangles.size());
+    const auto read = read_plain_draco(made->glb, {});
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->triangles.size(), made->faces);
+    const test::SampledDistance distance = test::SampledSurface(original, 40'000).distance_to(*read);
+    EXPECT_NEAR(distance.rms / 100, made->reach.rms, 0.05 * made->reach.rms);
+  }
+}
+
+TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
+  try {
+    (void)write_simplified_draco(fine_sphere(), 1e-3, [] { return true; });
+    ADD_FAILURE() << "it was not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::cancelled);
+  }
+}
+
+TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
+  const Packed box = pack(test::box({20, 20, 20}, {1, 2, 3}), {.rms = 1e-4});
+  EXPECT_FALSE(box.model);
+  ASSERT_TRUE(box.simplified);
+  EXPECT_EQ(box.simplified->bytes, box.glb.size());
+  EXPECT_NE(box.reason.find("simplified mesh of 12 faces"), std::string::npos) << box.reason;
+  EXPECT_LT(box.glb.size(), box.plain_bytes);
+  const Packed sphere = pack(fine_sphere(), {.rms = 1e-4});
+  ASSERT_TRUE(sphere.model);
+  ASSERT_TRUE(sphere.simplified);
+  EXPECT_LT(sphere.glb.size(), sphere.simplified->bytes);
+}
+
+}  // namespace
+}  // namespace papilio::proto::detail
