@@ -50,7 +50,7 @@ struct PackFlags {
   MeshPlace input, output;          ///< the output is a .glb file
   std::optional<double> rms{};      ///< wanted RMS distance, a share of the diagonal
   std::optional<double> largest{};  ///< largest distance allowed, a share of the diagonal
-  std::optional<int64_t> bytes{};  ///< most bytes of the file; at most one of these three is given
+  std::optional<int64_t> bytes{};   ///< most bytes of the file; at most one of these three is given
   int jobs = 1;                     ///< most encodings at once
   bool json = false;
 };

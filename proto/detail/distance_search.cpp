@@ -51,8 +51,8 @@ class Search {
   void add(const std::vector<double>& round) {
     const std::vector<double> values = measure_(round);
     for (size_t i = 0; i < round.size(); ++i) {
-      const Probe& probe = probes_.emplace_back(Probe{round[i], values[i]});
-      const double excess = axis_.excess(probe);
+      probes_.push_back({round[i], values[i]});
+      const double excess = axis_.excess(probes_.back());
       is_found_ |= excess <= 0 && excess >= std::log(1 - near_enough);
     }
     // Values are not quite monotone: the goal lies beyond the last that is below it.
@@ -94,7 +94,8 @@ class Search {
   [[nodiscard]] std::vector<double> beyond() const {
     const Probe& nearest = below_ ? *below_ : *above_;
     const double away = -axis_.excess(nearest) / slope_at(nearest);
-    const double widening = std::pow(2.0, static_cast<double>(probes_.size() / 2));
+    const size_t rounds = probes_.size() / 2;
+    const auto widening = static_cast<double>(size_t{1} << rounds);
     const double root = axis_.of(nearest.rms) + away;
     const double half = (away > 0 ? 1 : -1) * std::log(spread_without_bracket) * widening;
     const auto inside = [&](double at) { return std::clamp(at, axis_.least(), axis_.most()); };

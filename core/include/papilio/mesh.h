@@ -129,7 +129,8 @@ struct Mesh {
   /// where the rules give all. Results of refine() have none.
   std::shared_ptr<const Detail> detail{};
 
-  /// Sets `detail`, and marks the curves of its base. Throws `Error` bad_surface unless the mesh is its base (`Detail::fits`).
+  /// Sets `detail`, and marks the curves of its base. Throws `Error` bad_surface unless the mesh is its base
+  /// (`Detail::fits`).
   void attach_detail(std::shared_ptr<const Detail> given);
 
   /// Copies the faces and positions out; with attributes, points in place of vertices. Of a mesh that is not needed any
