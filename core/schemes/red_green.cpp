@@ -208,7 +208,8 @@ class RedGreen {
     const LevelChoice& choice = choices_.back();
     if (choice.level->detail_levels > 1) {
       const DecodedSize size = decoded_size(coarse(), level, levels_.plan());
-      is_at_limit_ = progress_.ends_before(size.faces, size.bytes);
+      // Without the rest of the levels the distance is not known.
+      is_at_limit_ = !bounds_distance() && progress_.ends_before(size.faces, size.bytes);
       if (is_at_limit_) return false;
       progress_.require_room(size.faces, size.bytes, level);
     }

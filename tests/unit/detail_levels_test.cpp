@@ -241,6 +241,22 @@ TEST(DetailLevels, LimitsHoldForWhatIsDecoded) {
   EXPECT_EQ(result.levels, 3);
 }
 
+TEST(DetailLevels, ADistanceThatCannotBeBoundedWithinTheLimitsIsRefused) {
+  Options options;
+  options.levels = levels_of_detail;
+  options.tolerance = 0.05;
+  options.stop_at_limits = true;
+  options.face_limit = 20U << 6U;
+  try {
+    (void)refine(test::with_detail(rough_detail()), options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::result_too_large);
+  }
+  options.levels = 3;
+  EXPECT_LE(refine(test::with_detail(rough_detail()), options).error, options.tolerance);
+}
+
 TEST(DetailLevels, APreparedMeshGivesTheBitsOfOneThatIsNot) {
   const DetailSource source = rough_detail();
   for (const uint64_t budget : {uint64_t{0}, uint64_t{200'000}, uint64_t{100} << 20}) {
