@@ -7,6 +7,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "proto/draco_decoder.h"
 #include "proto/draco_header.h"
 #include "proto/problem.h"
 
@@ -23,17 +24,21 @@ static_assert(draco::GeometryAttribute::GENERIC == 1 + static_cast<int>(Attribut
 static_assert(draco::DT_INT8 == 1 + static_cast<int>(ValueType::int8));
 static_assert(draco::DT_BOOL == 1 + static_cast<int>(ValueType::boolean));
 
+ValueType type_of(const draco::PointAttribute& attribute) {
+  if (attribute.data_type() <= draco::DT_INVALID || attribute.data_type() > draco::DT_BOOL)
+    throw Problem(Code::mesh_not_draco, "Attribute " + std::to_string(attribute.unique_id()) + " has data type " +
+                                            std::to_string(attribute.data_type()) + "; Draco has 1 to " +
+                                            std::to_string(draco::DT_BOOL) + ". Encode the mesh again.");
+  return static_cast<ValueType>(attribute.data_type() - 1);
+}
+
 AttributeFormat format_of(const draco::Mesh& mesh, int number) {
   const draco::PointAttribute& attribute = *mesh.attribute(number);
   AttributeFormat format;
   const int kind = attribute.attribute_type() - 1;
   format.kind = kind >= 0 && kind < static_cast<int>(AttributeKind::generic) ? static_cast<AttributeKind>(kind)
                                                                              : AttributeKind::generic;
-  if (attribute.data_type() <= draco::DT_INVALID || attribute.data_type() > draco::DT_BOOL)
-    throw Problem(Code::mesh_not_draco, "Attribute " + std::to_string(attribute.unique_id()) + " has data type " +
-                                            std::to_string(attribute.data_type()) + "; Draco has 1 to " +
-                                            std::to_string(draco::DT_BOOL) + ". Encode the mesh again.");
-  format.type = static_cast<ValueType>(attribute.data_type() - 1);
+  format.type = type_of(attribute);
   format.normalized = attribute.normalized();
   format.id = attribute.unique_id();
   const draco::AttributeMetadata* metadata = mesh.GetAttributeMetadataByAttributeId(number);
@@ -43,7 +48,7 @@ AttributeFormat format_of(const draco::Mesh& mesh, int number) {
 }
 
 template <class Number>
-std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t points) {
+std::vector<double> read_numbers(const draco::PointAttribute& attribute, uint32_t points) {
   const size_t components = attribute.num_components();
   std::vector<double> values;
   values.reserve(points * components);
@@ -117,6 +122,10 @@ void require_attributes_within_limits(const draco::PointCloud& mesh) {
   require_within(components, 3 + most_components, "components of attributes, positions included", "Remove attributes.");
 }
 
+std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t points) {
+  return with_number(type_of(attribute), [&](auto zero) { return read_numbers<decltype(zero)>(attribute, points); });
+}
+
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
   for (int number = 0; number < mesh.num_attributes(); ++number) {
     const draco::PointAttribute& attribute = *mesh.attribute(number);
@@ -129,9 +138,7 @@ void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {
     read.components = attribute.num_components();
     read.unit_length = is_unit_normal(format, read.components);
     read.is_smoothing_group = is_smoothing_group(format, read.components);
-    read.values = with_number(format.type, [&](auto zero) {
-      return read_values<decltype(zero)>(attribute, static_cast<uint32_t>(out.positions.size()));
-    });
+    read.values = read_values(attribute, static_cast<uint32_t>(out.positions.size()));
     out.format.attributes.push_back(format);
   }
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "proto/draco_attributes.h"
+#include "proto/draco_decoder.h"
 #include "proto/draco_header.h"
 #include "proto/draco_merges.h"
 #include "proto/draco_orientations.h"
@@ -82,36 +83,50 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
 
 }  // namespace
 
-FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
+std::unique_ptr<draco::Mesh> decode_draco(std::string_view bytes, const Limits& limits) {
   const DracoHeader header = read_draco_header(bytes, limits);
   if (header.edgebreaker) require_bounded_merges(bytes, header);
-  const std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
+  std::unique_ptr<draco::Mesh> mesh = decode(bytes, header.edgebreaker);
   require_within(mesh->num_faces(), limits.max_input_faces, "faces");
   // Upper bound with seams: a point for every corner.
   require_within(mesh->num_points(), limits.max_input_vertices + 3 * limits.max_input_faces, "points");
   if (mesh->num_faces() == 0) throw Problem(Code::mesh_unusable, "The mesh has no faces. Provide a triangle mesh.");
+  return mesh;
+}
 
-  const draco::PointAttribute& attribute = position_attribute(*mesh);
-  FormattedMesh out;
-  out.positions.resize_for_overwrite(mesh->num_points());
-  for (draco::PointIndex p(0); p < mesh->num_points(); ++p) {
+Buffer<Vec3f> read_positions(const draco::Mesh& mesh) {
+  const draco::PointAttribute& attribute = position_attribute(mesh);
+  auto positions = Buffer<Vec3f>::for_overwrite(mesh.num_points());
+  for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
     const draco::AttributeValueIndex value = attribute.mapped_index(p);
     if (value.value() >= attribute.size())
       throw Problem(Code::mesh_unusable,
                     "Point " + std::to_string(p.value()) + " has no position. Encode the mesh again.");
-    attribute.GetValue(value, &out.positions[p.value()]);
+    attribute.GetValue(value, &positions[p.value()]);
   }
-  out.triangles.resize_for_overwrite(mesh->num_faces());
-  for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {
+  return positions;
+}
+
+Buffer<Triangle> read_triangles(const draco::Mesh& mesh) {
+  auto triangles = Buffer<Triangle>::for_overwrite(mesh.num_faces());
+  for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
     for (int corner = 0; corner < 3; ++corner) {
-      const uint32_t p = mesh->face(f)[corner].value();
-      if (p >= mesh->num_points())
+      const uint32_t p = mesh.face(f)[corner].value();
+      if (p >= mesh.num_points())
         throw Problem(Code::mesh_unusable, "Face " + std::to_string(f.value()) + " has point " + std::to_string(p) +
-                                               "; the mesh has " + std::to_string(mesh->num_points()) +
+                                               "; the mesh has " + std::to_string(mesh.num_points()) +
                                                " points. Encode the mesh again.");
-      out.triangles[f.value()][corner] = p;
+      triangles[f.value()][corner] = p;
     }
   }
+  return triangles;
+}
+
+FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
+  const std::unique_ptr<draco::Mesh> mesh = decode_draco(bytes, limits);
+  FormattedMesh out;
+  out.positions = read_positions(*mesh);
+  out.triangles = read_triangles(*mesh);
   read_attributes(*mesh, out);
   return out;
 }

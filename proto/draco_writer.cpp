@@ -17,6 +17,8 @@ namespace {
 
 constexpr double smallest_range = 1e-30;  // below, steps per unit overflow in Draco
 
+}  // namespace
+
 AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   AttributeEncoding::Grid grid;
   double range = 0;
@@ -34,8 +36,6 @@ AttributeEncoding::Grid grid_of(const Attribute& attribute) {
   if (range < static_cast<double>(std::numeric_limits<float>::max())) grid.range = static_cast<float>(range);
   return grid;
 }
-
-}  // namespace
 
 AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format) {
   AttributeEncoding encoding{std::move(format), {}};

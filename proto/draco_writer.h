@@ -21,6 +21,8 @@ struct AttributeEncoding {
   MeshFormat format{};
   std::vector<Grid> grids{};  ///< one for each attribute
 };
+/// Returns the grid of an attribute's values.
+[[nodiscard]] AttributeEncoding::Grid grid_of(const Attribute& attribute);
 /// Returns the encoding of the attributes of refinements of `coarse`.
 [[nodiscard]] AttributeEncoding attribute_encoding(const Mesh& coarse, MeshFormat format);
 

@@ -46,14 +46,20 @@ OutputAttribute exact_attribute(const Attribute& attribute, const AttributeForma
           .values = store_values(attribute, format, points)};
 }
 
+OutputAttribute output_attribute(const Attribute& attribute, const AttributeFormat& format,
+                                 const AttributeEncoding::Grid& grid, const VertexPoints& points) {
+  OutputAttribute output = exact_attribute(attribute, format, points);
+  choose_coding(output, attribute, grid);
+  return output;
+}
+
 std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const AttributeEncoding& encoding) {
   std::vector<OutputAttribute> outputs;
   std::optional<VertexPoints> points;
   for (size_t a = 0; a < encoding.format.attributes.size(); ++a) {
-    const AttributeFormat& format = encoding.format.attributes[a];
     if (!points) points.emplace(mesh);
-    const Attribute& attribute = mesh.attributes.attributes[a];
-    choose_coding(outputs.emplace_back(exact_attribute(attribute, format, *points)), attribute, encoding.grids[a]);
+    outputs.push_back(
+        output_attribute(mesh.attributes.attributes[a], encoding.format.attributes[a], encoding.grids[a], *points));
   }
   return outputs;
 }

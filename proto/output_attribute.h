@@ -28,6 +28,10 @@ struct OutputAttribute {
   StoredValues values{};
 };
 
+/// Returns an attribute with values [points], in the coding that its format and grid allow.
+[[nodiscard]] OutputAttribute output_attribute(const Attribute& attribute, const AttributeFormat& format,
+                                               const AttributeEncoding::Grid& grid, const VertexPoints& points);
+
 /// Returns the attributes that `encoding` describes.
 [[nodiscard]] std::vector<OutputAttribute> output_attributes(const Mesh& mesh, const AttributeEncoding& encoding);
 

@@ -100,19 +100,23 @@ class Spares {
     bytes_ += size.bytes;
     return true;
   }
-  void release() noexcept {
-    std::array<Link*, classes> all{};
+  /// Gives back until at most so many bytes are kept: large blocks first, as they are few, and of what is left to give
+  /// back the smallest that suffices.
+  void release(size_t most_kept) noexcept {
+    Link* released = nullptr;
     {
       const Lock lock(mutex_);
-      std::swap(all, first_);
-      bytes_ = 0;
+      for (size_t c = classes; c-- > 0;)
+        while (first_[c] != nullptr && bytes_ > most_kept && bytes_ - first_[c]->bytes >= most_kept)
+          move_first(c, released);
+      for (size_t c = 0; c < classes && bytes_ > most_kept; ++c)
+        if (first_[c] != nullptr) move_first(c, released);
     }
-    for (Link* block : all)
-      while (block != nullptr) {
-        Link* next = block->next;
-        delete_block(block, block->bytes);
-        block = next;
-      }
+    while (released != nullptr) {
+      Link* next = released->next;
+      delete_block(released, released->bytes);
+      released = next;
+    }
   }
   [[nodiscard]] size_t bytes() noexcept {
     const Lock lock(mutex_);
@@ -125,6 +129,15 @@ class Spares {
     size_t bytes;
   };
   static constexpr size_t classes = size_t{64} * steps;
+
+  /// Moves the first block of a class to another list.
+  void move_first(size_t index, Link*& list) noexcept {
+    Link* block = first_[index];
+    first_[index] = block->next;
+    bytes_ -= block->bytes;
+    block->next = list;
+    list = block;
+  }
 
   Mutex mutex_;
   std::array<Link*, classes> first_{};
@@ -157,6 +170,6 @@ void give_block(void* block, size_t bytes) noexcept {
 
 size_t spare_bytes() noexcept { return spares().bytes(); }
 
-void release_spare_blocks() noexcept { spares().release(); }
+void release_spare_blocks(size_t most_kept) noexcept { spares().release(most_kept); }
 
 }  // namespace papilio

@@ -62,6 +62,7 @@ Buffer<uint32_t> weld(const TriangleMesh& input, Buffer<Vec3f>& positions, Build
   Buffer<uint32_t> vertex(point_count, none);
   auto corners = Buffer<uint32_t>::for_overwrite(3 * input.triangles.size());
   positions.resize_for_overwrite(point_count);
+  if (!input.attributes.empty()) corner_point.reserve(corners.size());
   uint32_t* corner = corners.data();
   uint32_t vertices = 0;
   for (const Triangle& t : input.triangles) {

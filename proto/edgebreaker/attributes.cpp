@@ -87,12 +87,12 @@ class ValueWriter {
               Poller& poller)
       : attribute_(attribute), surface_(mesh, corners, poller), speed_(speed), poller_(poller) {}
 
-  void run(const Buffer<uint32_t>& value, const WrittenSurface& written, draco::EncoderBuffer& out) {
+  void run(const WrittenSurface& written, draco::EncoderBuffer& out) {
     if (attribute_.coding == Coding::as_is) {
-      write_raw(value, out);
+      write_raw(written, out);
       return;
     }
-    const Integers integers = to_integers(value);
+    const Integers integers = to_integers(written);
     if (attribute_.is_too_large) {
       write_unpredicted(integers, out);
       return;
@@ -108,22 +108,25 @@ class ValueWriter {
   }
 
  private:
-  [[nodiscard]] const char* bytes_of(uint32_t value) const { return attribute_.values.bytes.data() + value * stride_; }
+  [[nodiscard]] const char* bytes_at(const WrittenSurface& written, draco::CornerIndex corner) const {
+    const StoredValues& values = attribute_.values;
+    return values.bytes.data() + values.value[written.corner_point[corner.value()]] * stride_;
+  }
 
-  void write_raw(const Buffer<uint32_t>& value, draco::EncoderBuffer& out) {
+  void write_raw(const WrittenSurface& written, draco::EncoderBuffer& out) {
     for (draco::CornerIndex c : surface_.corners()) {
       poller_.step();
-      out.Encode(bytes_of(value[c.value()]), stride_);
+      out.Encode(bytes_at(written, c), stride_);
     }
   }
 
-  [[nodiscard]] Integers to_integers(const Buffer<uint32_t>& value) {
+  [[nodiscard]] Integers to_integers(const WrittenSurface& written) {
     AttributeQuantizer quantizer(attribute_);
     Integers integers{quantizer.components(), {}};
     integers.values.reserve(surface_.corners().size() * integers.components);
     for (draco::CornerIndex c : surface_.corners()) {
       poller_.step();
-      quantizer.append(bytes_of(value[c.value()]), integers.values);
+      quantizer.append(bytes_at(written, c), integers.values);
     }
     return integers;
   }
@@ -191,12 +194,12 @@ void write_declaration(const OutputAttribute& attribute, draco::EncoderBuffer& o
 void write_values(const OutputAttribute& attribute, const Seams& seams, const WrittenSurface& written, int speed,
                   Poller& poller, draco::EncoderBuffer& out) {
   if (seams.empty()) {
-    ValueWriter(attribute, written.mesh, written.order.corners, speed, poller).run(seams.value, written, out);
+    ValueWriter(attribute, written.mesh, written.order.corners, speed, poller).run(written, out);
     return;
   }
   const CornerMesh open = cut_open(written.mesh, seams);
   const VertexOrder order = order_vertices(open, written.starts, poller);
-  ValueWriter(attribute, open, order.corners, speed, poller).run(seams.value, written, out);
+  ValueWriter(attribute, open, order.corners, speed, poller).run(written, out);
 }
 
 void write_quantization(const OutputAttribute& attribute, draco::EncoderBuffer& out) {

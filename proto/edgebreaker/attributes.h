@@ -16,10 +16,11 @@ void write_declaration(const OutputAttribute& attribute, draco::EncoderBuffer& o
 /// A surface with its walk and its positions as they were written.
 struct WrittenSurface {
   const CornerMesh& mesh;
-  const Buffer<uint32_t>& starts;      ///< [faces] entry corners (connectivity.h)
-  const VertexOrder& order;            ///< order of values without seams
-  const Buffer<GridPoint>& positions;  ///< [vertices] quantized positions; empty: positions are exact
-  uint32_t points;                     ///< points of the mesh
+  const Buffer<uint32_t>& corner_point;  ///< [corners] point of the mesh at each corner
+  const Buffer<uint32_t>& starts;        ///< [faces] entry corners (connectivity.h)
+  const VertexOrder& order;              ///< order of values without seams
+  const Buffer<GridPoint>& positions;    ///< [vertices] quantized positions; empty: positions are exact
+  uint32_t points;                       ///< points of the mesh
 };
 
 /// Writes the values of an attribute: raw, or as differences from the predictions of Draco's `speed`, 0 to 10.

@@ -1,5 +1,6 @@
 #include "proto/edgebreaker/positions.h"
 
+#include <draco/core/quantization_utils.h>
 #include <algorithm>
 #include <cstring>
 #include <span>
@@ -109,6 +110,24 @@ Buffer<GridPoint> to_grid(const Buffer<Vec3f>& positions, const Surface& surface
     values[v] = quantizer.quantize(Floats{p.x, p.y, p.z, 0});
   }
   return values;
+}
+
+Box decoded_box(const Buffer<GridPoint>& points, const QuantizationBox& box, int bits) {
+  GridPoint low = points[0];
+  GridPoint high = points[0];
+  for (const GridPoint& point : points)
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], point[c]);
+      high[c] = std::max(high[c], point[c]);
+    }
+  draco::Dequantizer dequantizer;
+  dequantizer.Init(box.range, (1 << bits) - 1);
+  const auto decoded = [&](const GridPoint& point) {
+    return Vec3f{dequantizer.DequantizeFloat(point[0]) + box.origin.x,
+                 dequantizer.DequantizeFloat(point[1]) + box.origin.y,
+                 dequantizer.DequantizeFloat(point[2]) + box.origin.z};
+  };
+  return {decoded(low), decoded(high)};
 }
 
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buffer<GridPoint>& values,

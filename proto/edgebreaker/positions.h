@@ -22,6 +22,9 @@ using GridPoint = int32_t __attribute__((vector_size(16)));
 [[nodiscard]] Buffer<GridPoint> to_grid(const Buffer<Vec3f>& positions, const Surface& surface,
                                         const QuantizationBox& box, int bits);
 
+/// Returns the bounding box of the positions that a decoder makes of points of the grid.
+[[nodiscard]] Box decoded_box(const Buffer<GridPoint>& points, const QuantizationBox& box, int bits);
+
 /// Writes the positions [vertices] in the given order as differences from their predictions. `compression_level`: of
 /// Draco's entropy coder, 0 to 10. `poller` steps once a value.
 void write_positions(const CornerMesh& mesh, const VertexOrder& order, const Buffer<GridPoint>& values,

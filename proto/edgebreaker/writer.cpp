@@ -17,6 +17,7 @@
 #include "proto/edgebreaker/seams.h"
 #include "proto/edgebreaker/speeds.h"
 #include "proto/edgebreaker/surface.h"
+#include "proto/freed_memory.h"
 
 namespace papilio::proto::edgebreaker {
 namespace {
@@ -35,9 +36,35 @@ class StreamWriter {
         surface_(manifold_surface(mesh.topology)),
         single_connectivity_(is_single_connectivity()) {}
 
+  /// Lets the writer free the arrays of the mesh, whose positions are quantized, and the attributes.
+  void consume(Mesh& mesh, std::span<OutputAttribute> attributes) {
+    constexpr uint32_t large = 1 << 15;  // faces
+    consumed_ = &mesh;
+    consumed_attributes_ = attributes;
+    for (Buffer<uint32_t> Topology::*array :
+         {&Topology::origin, &Topology::twin, &Topology::edge, &Topology::half_edge})
+      mesh.topology.*array = {};
+    mesh.topology.kind = {};
+    gives_back_ = surface_.mesh.face_count() >= large;
+    give_back();
+  }
+
   std::string run() {
+    write();
+    return {out_.data(), out_.size()};
+  }
+
+  /// Returns the stream and what a reader decodes, of a mesh with quantized positions.
+  WrittenStream run_and_describe() {
+    write();
+    return {{out_.data(), out_.size()}, decoded_points_, surface_.mesh.face_count(), decoded_box_};
+  }
+
+ private:
+  void write() {
     poller_.call();
     std::vector<Seams> seams;
+    seams.reserve(attributes_.size());
     for (const OutputAttribute& attribute : attributes_)
       seams.push_back(find_seams(surface_.mesh, mesh_.attributes.point, attribute));
     const std::span<const Seams> separate = single_connectivity_ ? std::span<const Seams>() : seams;
@@ -45,15 +72,14 @@ class StreamWriter {
     const Buffer<uint32_t> starts = write_connectivity(surface_.mesh, traversal(), separate, poller_, out_);
     write_encoders(separate);
     write_declarations();
+    if (consumed_ != nullptr) decoded_points_ = decoded_points(surface_.mesh, separate);
     write_all_values(seams, starts);
     poller_.call();
-    return {out_.data(), out_.size()};
   }
 
- private:
   [[nodiscard]] Traversal traversal() const {
     const bool is_standard =
-        options_.speed >= min_standard_traversal_speed || mesh_.topology.face_count() < min_valence_faces;
+        options_.speed >= min_standard_traversal_speed || surface_.mesh.face_count() < min_valence_faces;
     return is_standard ? Traversal::standard : Traversal::valence;
   }
   /// Returns whether one encoder writes all attributes with the connectivity of the positions. Draco does so at high
@@ -65,6 +91,11 @@ class StreamWriter {
   /// Returns the number of points of the mesh in libdraco.
   [[nodiscard]] uint32_t point_count() const {
     return !attributes_.empty() ? mesh_.attributes.point_count : mesh_.topology.vertex_count;
+  }
+
+  /// Gives back what is freed of a large mesh.
+  void give_back() const {
+    if (gives_back_) give_back_freed();
   }
 
   void write_header() {
@@ -125,12 +156,18 @@ class StreamWriter {
     if (!is_by_prediction_degree() || !attributes_.empty()) order = order_vertices(mesh, starts, poller_);
     Buffer<GridPoint> positions;
     if (box_ != nullptr) positions = to_grid(mesh_.positions, surface_, *box_, options_.position_bits);
+    if (consumed_ != nullptr) {
+      consumed_->positions = {};
+      decoded_box_ = decoded_box(positions, *box_, options_.position_bits);
+    }
     write_position_values(order, positions, starts);
     if (!single_connectivity_) write_position_quantization();
     for (size_t a = 0; a < attributes_.size(); ++a) {
-      write_values(attributes_[a], seams[a], {mesh, starts, order, positions, point_count()}, options_.speed, poller_,
-                   out_);
+      write_values(attributes_[a], seams[a], {mesh, mesh_.attributes.point, starts, order, positions, point_count()},
+                   options_.speed, poller_, out_);
       if (!single_connectivity_) write_quantization(attributes_[a], out_);
+      if (consumed_ != nullptr) consumed_attributes_[a].values = {};
+      give_back();
     }
     if (!single_connectivity_) return;
     write_position_quantization();
@@ -166,6 +203,11 @@ class StreamWriter {
   Surface surface_;
   bool single_connectivity_;
   draco::EncoderBuffer out_;
+  Mesh* consumed_ = nullptr;  ///< null: the mesh is only read
+  bool gives_back_ = false;
+  uint32_t decoded_points_ = 0;
+  Box decoded_box_{};
+  std::span<OutputAttribute> consumed_attributes_{};
 };
 
 }  // namespace
@@ -173,6 +215,13 @@ class StreamWriter {
 std::string write(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options, uint32_t position_id,
                   std::span<const OutputAttribute> attributes, const std::function<void()>& poll) {
   return StreamWriter(mesh, &box, options, position_id, attributes, poll).run();
+}
+
+WrittenStream write_and_free(Mesh mesh, const QuantizationBox& box, const OutputOptions& options, uint32_t position_id,
+                             std::vector<OutputAttribute> attributes, const std::function<void()>& poll) {
+  StreamWriter writer(mesh, &box, options, position_id, attributes, poll);
+  writer.consume(mesh, attributes);
+  return writer.run_and_describe();
 }
 
 std::string write_exact(const Mesh& mesh, uint32_t position_id, std::span<const OutputAttribute> attributes) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "proto/output_attribute.h"
 
@@ -16,6 +17,18 @@ namespace papilio::proto::edgebreaker {
 [[nodiscard]] std::string write(const Mesh& mesh, const QuantizationBox& box, const OutputOptions& options,
                                 uint32_t position_id, std::span<const OutputAttribute> attributes = {},
                                 const std::function<void()>& poll = {});
+
+/// A stream, and what a reader decodes from it.
+struct WrittenStream {
+  std::string bytes;
+  uint32_t points = 0, faces = 0;
+  Box box{};  ///< of the positions
+};
+
+/// Writes the mesh as write() does. Its arrays and those of the attributes are freed once they are read.
+[[nodiscard]] WrittenStream write_and_free(Mesh mesh, const QuantizationBox& box, const OutputOptions& options,
+                                           uint32_t position_id, std::vector<OutputAttribute> attributes,
+                                           const std::function<void()>& poll);
 
 /// Writes the mesh with exact positions, at speed 5. Attributes must not be predicted from positions
 /// (`exact_attribute`).

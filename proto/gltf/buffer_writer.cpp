@@ -102,11 +102,11 @@ class BufferWriter {
     cursor_[buffer] = to;
   }
 
-  /// Appends bytes to a buffer; returns their offset.
-  uint64_t append_bytes(uint32_t buffer, std::string bytes) {
+  /// Appends bytes to a buffer; returns their offset. `left_out`: bytes that a buffer of fallback sizes counts.
+  uint64_t append_bytes(uint32_t buffer, std::string bytes, uint64_t left_out = 0) {
     pad(buffer, (cursor_[buffer] + content_alignment - 1) / content_alignment * content_alignment);
     const uint64_t at = cursor_[buffer];
-    cursor_[buffer] += bytes.size();
+    cursor_[buffer] += bytes.size() + left_out;
     if (!is_fallback(buffer)) pieces_[buffer].push_back({{}, std::move(bytes)});
     return at;
   }
@@ -140,7 +140,7 @@ class BufferWriter {
 
   void append(ViewContent& content) {
     Json& view = json_["bufferViews"][content.view];
-    view["byteLength"] = content.bytes.size();
+    view["byteLength"] = content.length();
     if (content.strided)
       view["byteStride"] = content.stride;
     else
@@ -152,28 +152,26 @@ class BufferWriter {
     Json* compressed = meshopt_member(view);
     const uint32_t buffer = data_buffer(compressed != nullptr ? *compressed : view);
     erase_extension(view, meshopt_extension);
-    place_view(view, buffer, std::move(content.bytes));
+    place_view(view, buffer, std::move(content));
   }
 
-  void place_view(Json& view, uint32_t buffer, std::string bytes) {
+  void place_view(Json& view, uint32_t buffer, ViewContent content) {
     view["buffer"] = buffer;
-    view["byteOffset"] = append_bytes(buffer, std::move(bytes));
+    view["byteOffset"] = append_bytes(buffer, std::move(content.bytes), content.left_out);
   }
 
   void append_compressed(Json& view, ViewContent& content) {
     Json* old = meshopt_member(view);
     const uint32_t source = data_buffer(old != nullptr ? *old : view);
-    std::string bytes = content.mode == MeshoptMode::attributes
-                            ? encode_meshopt_attributes(content.bytes, content.stride)
-                            : encode_meshopt_triangles(content.bytes, content.stride);
+    std::string bytes = content.encoded.empty() ? encode_meshopt(content) : std::move(content.encoded);
     Json extension{{"buffer", source}, {"byteOffset", 0}, {"byteLength", bytes.size()}, {"byteStride", content.stride}};
     extension["mode"] = mode_names[static_cast<size_t>(content.mode)];
-    extension["count"] = content.bytes.size() / content.stride;
+    extension["count"] = content.length() / content.stride;
     extension["byteOffset"] = append_bytes(source, std::move(bytes));
     const bool has_own = old != nullptr && view.value("buffer", UINT32_MAX) < document_.buffers.size();
     const uint32_t buffer = has_own ? view["buffer"].get<uint32_t>() : fallback_buffer();
     view["extensions"][meshopt_extension] = std::move(extension);
-    place_view(view, buffer, std::move(content.bytes));
+    place_view(view, buffer, std::move(content));
   }
 
   /// Lets a view that has lost its content name the bytes of the first new content; without any, of the first view.
@@ -214,6 +212,11 @@ class BufferWriter {
 };
 
 }  // namespace
+
+std::string encode_meshopt(const ViewContent& content) {
+  return content.mode == MeshoptMode::attributes ? encode_meshopt_attributes(content.bytes, content.stride)
+                                                 : encode_meshopt_triangles(content.bytes, content.stride);
+}
 
 BufferPieces replace_contents(Document& document, std::vector<ViewContent> contents,
                               const std::vector<uint32_t>& aliased) {

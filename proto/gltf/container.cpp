@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "papilio/buffer.h"
+#include "proto/freed_memory.h"
 #include "proto/problem.h"
 
 namespace papilio::proto::gltf {
@@ -16,6 +18,7 @@ constexpr size_t chunk_header_bytes = 8;
 constexpr uint32_t glb_version = 2;
 constexpr uint32_t json_chunk = 0x4E4F534A;
 constexpr uint32_t binary_chunk = 0x004E4942;
+constexpr uint64_t freed_at_once = 4 * worth_giving_back;  ///< bytes of pieces
 
 uint32_t little_endian(std::string_view bytes, size_t at) {
   uint32_t number = 0;
@@ -108,9 +111,13 @@ std::string write_glb(std::string_view json, std::optional<std::vector<Piece>> b
   append_padding(out, json.size(), ' ');
   if (binary) {
     begin_chunk(binary_bytes, binary_chunk);
+    uint64_t freed = 0;
     for (Piece& piece : *binary) {
       out += piece.bytes();
-      piece = {};
+      freed += std::exchange(piece.owned, std::string()).size();
+      if (freed < freed_at_once || spare_bytes() >= freed_at_once) continue;  // or spare blocks have made room
+      give_back_freed();
+      freed = 0;
     }
     append_padding(out, binary_bytes, '\0');
   }

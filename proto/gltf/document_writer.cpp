@@ -13,7 +13,7 @@ std::string joined(std::vector<Piece> pieces) {
   bytes.reserve(size);
   for (Piece& piece : pieces) {
     bytes += piece.bytes();
-    piece = {};
+    std::string().swap(piece.owned);
   }
   return bytes;
 }

@@ -5,10 +5,14 @@
 #include <limits>
 #include <utility>
 
+#include "proto/draco_decoder.h"
 #include "proto/draco_reader.h"
+#include "proto/edgebreaker/writer.h"
 #include "proto/encoding_memory.h"
 #include "proto/error_translation.h"
+#include "proto/freed_memory.h"
 #include "proto/gltf/extensions.h"
+#include "proto/gltf/pointed_mesh.h"
 #include "proto/gltf/vertices.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -36,12 +40,12 @@ Elements elements_of(const ElementFormat& format, const std::vector<double>& val
   return out;
 }
 
-Elements position_elements(const FormattedMesh& mesh) {
-  Elements out = zero_elements({ComponentType::float32, 3, false}, mesh.positions.size());
-  for (size_t i = 0; i < mesh.positions.size(); ++i) {
-    out.set_number(i, 0, mesh.positions[i].x);
-    out.set_number(i, 1, mesh.positions[i].y);
-    out.set_number(i, 2, mesh.positions[i].z);
+Elements position_elements(const Buffer<Vec3f>& positions) {
+  Elements out = zero_elements({ComponentType::float32, 3, false}, positions.size());
+  for (size_t i = 0; i < positions.size(); ++i) {
+    out.set_number(i, 0, positions[i].x);
+    out.set_number(i, 1, positions[i].y);
+    out.set_number(i, 2, positions[i].z);
   }
   return out;
 }
@@ -50,7 +54,7 @@ Elements position_elements(const FormattedMesh& mesh) {
 std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, const ElementFormat& format) {
   if (id == mesh.format.position_id) {
     if (format.components != 3 || format.type != ComponentType::float32) return std::nullopt;
-    return position_elements(mesh);
+    return position_elements(mesh.positions);
   }
   const auto found = std::ranges::find(mesh.format.attributes, id, &AttributeFormat::id);
   if (found == mesh.format.attributes.end()) return std::nullopt;
@@ -69,41 +73,84 @@ std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, u
   return made;
 }
 
-/// Returns the vertices and triangles of a primitive as the core takes them, and their format.
-FormattedMesh formatted(const VertexSet& set, const Buffer<Triangle>& triangles,
-                        std::vector<std::pair<std::string, uint32_t>>& ids) {
-  FormattedMesh mesh;
-  mesh.positions = vertex_positions(set);
-  mesh.triangles.assign(triangles.begin(), triangles.end());
+/// Returns whether the arrays of a primitive are so large that memory matters more than the time to get it again.
+bool is_worth_giving_back(const VertexSet& set, const Buffer<Triangle>& triangles) {
+  return set.count * bytes_of_vertex(set) + triangles.size() * sizeof(Triangle) >= worth_giving_back;
+}
+
+/// Compresses a primitive, and names its attributes in `ids`. Takes the bytes of the set's elements.
+edgebreaker::WrittenStream compress(VertexSet& set, Buffer<Triangle> triangles, const QuantizationBox& box,
+                                    const OutputOptions& options, const std::function<void()>& poll,
+                                    std::vector<std::pair<std::string, uint32_t>>& ids) {
+  const bool is_large = is_worth_giving_back(set, triangles);
+  if (is_large) give_back_freed();  // what the core keeps: the mesh takes its place
+  PointedMesh pointed = translate_errors([&] { return build_pointed_mesh(set, std::move(triangles)); });
+  if (is_large) give_back_freed();
+  std::vector<OutputAttribute> attributes;
+  std::optional<VertexPoints> points;
   ids.emplace_back("POSITION", 0);
-  for (const VertexStream& stream : set.attributes) {
+  for (VertexStream& stream : set.attributes) {
     if (stream.semantic == "POSITION") continue;
     const auto id = static_cast<uint32_t>(ids.size());
     ids.emplace_back(stream.semantic, id);
     auto [attribute, format] = attribute_of(stream, id);
-    attribute.values.resize(set.count * attribute.components);
-    for (size_t i = 0; i < attribute.values.size(); ++i)
-      attribute.values[i] = stream.elements.number(i / attribute.components, i % attribute.components);
-    mesh.attributes.push_back(std::move(attribute));
-    mesh.format.attributes.push_back(std::move(format));
+    attribute.values = pointed.values_of(stream.elements);
+    std::string().swap(stream.elements.bytes);
+    AttributeEncoding::Grid grid = grid_of(attribute);
+    if (stream.semantic.starts_with("WEIGHTS_")) grid.range = 0;  // on a grid they would not add up to 1
+    if (!points) points.emplace(pointed.mesh);
+    attributes.push_back(output_attribute(attribute, format, grid, *points));
   }
-  return mesh;
+  points.reset();
+  if (is_large) give_back_freed();
+  edgebreaker::WrittenStream written =
+      edgebreaker::write_and_free(std::move(pointed.mesh), box, options, 0, std::move(attributes), poll);
+  if (is_large) give_back_freed();
+  return written;
 }
 
-/// Returns the stream of a primitive, and in `ids` its attributes.
-std::string compress(const VertexSet& set, const Buffer<Triangle>& triangles, const QuantizationBox& box,
-                     const OutputOptions& options, const std::function<void()>& poll,
-                     std::vector<std::pair<std::string, uint32_t>>& ids) {
-  MeshFormat format;
-  const Mesh mesh = [&] {
-    FormattedMesh input = formatted(set, triangles, ids);
-    format = std::move(input.format);
-    return translate_errors([&] { return build_mesh(input); });
-  }();
-  AttributeEncoding encoding = attribute_encoding(mesh, std::move(format));
-  for (size_t a = 0; a < encoding.grids.size(); ++a)  // weights on a grid would not add up to 1
-    if (ids[a + 1].first.starts_with("WEIGHTS_")) encoding.grids[a].range = 0;
-  return write_draco(mesh, box, options, encoding, poll);
+Json json_of(Vec3f v) {
+  return Json::array({static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
+}
+
+/// Finds the bounds of attributes besides POSITION that the document declares. Only then is the stream decoded, which
+/// takes more memory than to make it.
+void find_other_bounds(const Json& document, DracoContent& made) {
+  const auto is_wanted = [&](const auto& attribute) {
+    return attribute.first != "POSITION" && declares_bounds(document, attribute.second.accessor);
+  };
+  if (std::ranges::none_of(made.attributes, is_wanted)) return;
+  const Limits no_limits{.max_input_faces = face_count_limit,
+                         .max_input_vertices = face_count_limit,
+                         .max_output_faces = face_count_limit};
+  const std::unique_ptr<draco::Mesh> decoded = decode_draco(made.stream, no_limits);
+  for (size_t a = 0; a < made.attributes.size(); ++a) {
+    if (!is_wanted(made.attributes[a])) continue;
+    ElementSummary& summary = made.attributes[a].second;
+    const draco::PointAttribute& attribute = *decoded->GetAttributeByUniqueId(made.ids[a].second);
+    summary = summarize(document, summary.accessor,
+                        elements_of(summary.format, read_values(attribute, decoded->num_points())));
+  }
+}
+
+/// Describes what a reader decodes from the stream.
+void describe(const Json& document, const VertexSet& set, std::optional<uint32_t> indices,
+              const edgebreaker::WrittenStream& written, DracoContent& made) {
+  for (const auto& [semantic, id] : made.ids) {
+    const VertexStream& stream = *set.find(semantic);
+    ElementSummary summary{.accessor = stream.accessor, .format = stream.elements.format, .count = written.points};
+    if (semantic == "POSITION") {
+      summary.format = {ComponentType::float32, 3, false};
+      if (declares_bounds(document, stream.accessor))
+        summary.bounds.emplace(json_of(written.box.min), json_of(written.box.max));
+    }
+    made.attributes.emplace_back(semantic, std::move(summary));
+  }
+  find_other_bounds(document, made);
+  made.indices = {
+      .accessor = indices, .format = index_elements({}, written.points).format, .count = uint64_t{3} * written.faces};
+  if (declares_bounds(document, indices))
+    made.indices.bounds.emplace(Json::array({0}), Json::array({written.points - 1}));
 }
 
 }  // namespace
@@ -134,22 +181,13 @@ DracoPrimitive read_draco_primitive(Views& views, const Json& extension, const J
   return out;
 }
 
-EncodedPrimitive encode_draco_primitive(const VertexSet& set, const Buffer<Triangle>& triangles,
-                                        const QuantizationBox& box, const OutputOptions& options,
-                                        const std::function<void()>& poll) {
-  EncodedPrimitive made;
-  made.stream = compress(set, triangles, box, options, poll, made.ids);
-  const Limits no_limits{.max_input_faces = face_count_limit,
-                         .max_input_vertices = face_count_limit,
-                         .max_output_faces = face_count_limit};
-  const FormattedMesh decoded = read_draco(made.stream, no_limits);
-  made.decoded.count = decoded.positions.size();
-  made.decoded.triangles.assign(decoded.triangles.begin(), decoded.triangles.end());
-  for (const auto& [semantic, id] : made.ids) {
-    ElementFormat format = set.find(semantic)->elements.format;
-    if (semantic == "POSITION") format = {ComponentType::float32, 3, false};
-    made.decoded.attributes.push_back({semantic, set.find(semantic)->accessor, *find_elements(decoded, id, format)});
-  }
+DracoContent encode_draco_primitive(const Json& document, VertexSet set, Buffer<Triangle> triangles,
+                                    std::optional<uint32_t> indices, const QuantizationBox& box,
+                                    const OutputOptions& options, const std::function<void()>& poll) {
+  DracoContent made;
+  edgebreaker::WrittenStream written = compress(set, std::move(triangles), box, options, poll, made.ids);
+  made.stream = std::move(written.bytes);
+  describe(document, set, indices, written, made);
   return made;
 }
 
@@ -165,13 +203,16 @@ OutputBytes draco_bytes(const VertexSet& set) {
   for (const VertexStream& stream : set.attributes) {
     if (stream.semantic == "POSITION") continue;
     auto [attribute, described] = attribute_of(stream, 0);
+    described.kind = AttributeKind::generic;  // normals are not made here
     attributes.push_back(std::move(attribute));
     format.attributes.push_back(std::move(described));
   }
   OutputBytes bytes = encoding_bytes(attributes, false, format);
-  bytes.face += sizeof(Triangle);
-  bytes.point += bytes_of_vertex(set);
-  for (const Attribute& attribute : attributes) bytes.point += attribute.components * sizeof(double);
+  // The refined mesh is freed by then: half-edges, and where each point is and comes from.
+  constexpr uint64_t freed_face_bytes = 3 * 3 * sizeof(uint32_t);
+  constexpr uint64_t freed_point_bytes = sizeof(Vec3f) + 3 * sizeof(double);
+  bytes.face += sizeof(Triangle) - freed_face_bytes;
+  bytes.point -= std::min(bytes.point, freed_point_bytes);
   return bytes;
 }
 

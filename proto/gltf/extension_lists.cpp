@@ -56,4 +56,9 @@ void list_extensions(Json& document) {
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) put_listed(document, list, detail_extension, false);
 }
 
+bool uses_compression(const Json& document) {
+  return std::ranges::any_of(array_of(document, "extensionsUsed"),
+                             [](const Json& name) { return name == draco_extension || name == meshopt_extension; });
+}
+
 }  // namespace papilio::proto::gltf

@@ -11,4 +11,7 @@ void list_extensions(Json& document);
 /// Returns whether the extension is used anywhere in a value, extras left out.
 [[nodiscard]] bool uses_extension(const Json& value, const char* name);
 
+/// Returns whether a document says that Draco or meshopt compresses some of it.
+[[nodiscard]] bool uses_compression(const Json& document);
+
 }  // namespace papilio::proto::gltf

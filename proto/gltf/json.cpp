@@ -142,10 +142,11 @@ const Json& array_of(const Json& document, const char* name) {
   return *found;
 }
 
-const Json& element_of(const Json& document, const char* name, uint64_t index, const std::string& where) {
+const Json& element_of(const Json& document, const char* name, uint64_t index, std::string_view where) {
   const Json& array = array_of(document, name);
   if (index >= array.size())
-    refuse_document(where, "refers to " + place(name, index) + ", and there are " + std::to_string(array.size()));
+    refuse_document(std::string(where),
+                    "refers to " + place(name, index) + ", and there are " + std::to_string(array.size()));
   require_object(array[index], place(name, index));
   return array[index];
 }

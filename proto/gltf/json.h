@@ -35,8 +35,9 @@ using Json = nlohmann::ordered_json;
 
 /// Returns a top-level array of the document; an empty one if it is absent.
 [[nodiscard]] const Json& array_of(const Json& document, const char* name);
-/// Returns an element of a top-level array. Throws `Problem` if it does not exist; `where` names what refers to it.
-[[nodiscard]] const Json& element_of(const Json& document, const char* name, uint64_t index, const std::string& where);
+/// Returns an element of a top-level array. Throws `Problem` if it does not exist; `where` names what refers to it. A
+/// view, as compilers take a reference that is returned for one to a string made for the call.
+[[nodiscard]] const Json& element_of(const Json& document, const char* name, uint64_t index, std::string_view where);
 
 /// Returns the extension `name` of an object; null if it has none.
 [[nodiscard]] const Json* find_extension(const Json& object, const char* name, const std::string& where);

@@ -122,6 +122,7 @@ std::string encode_meshopt_attributes(std::string_view elements, uint32_t stride
   std::string out(meshopt_encodeVertexBufferBound(count, stride), '\0');
   out.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), elements.data(),
                                         count, stride));
+  out.shrink_to_fit();  // the bound is above the size of the elements
   return out;
 }
 
@@ -136,6 +137,7 @@ std::string encode_meshopt_triangles(std::string_view indices, uint32_t stride) 
   std::string out(meshopt_encodeIndexBufferBound(numbers.size(), size_t{largest} + 1), '\0');
   out.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), numbers.data(),
                                        numbers.size()));
+  out.shrink_to_fit();
   return out;
 }
 

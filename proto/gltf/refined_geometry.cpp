@@ -46,6 +46,16 @@ NewGeometry unrefined_geometry(const SceneMesh& mesh) {
   return {mesh.number, mesh.geometry, quantization_box(mesh.surface.mesh.positions)};
 }
 
+uint64_t parting_bytes(const SceneMesh& mesh, const Mesh& refined, bool is_compressed) {
+  constexpr uint64_t numbers = 16;  // of a point: where it is and where it goes
+  constexpr uint64_t copies = 2;    // before and while they are compressed
+  uint64_t vertex = 0;
+  for (const VertexSet& set : mesh.geometry.sets) vertex = std::max(vertex, bytes_of_vertex(set));
+  const uint64_t points = refined.attributes.point_count;
+  const uint64_t parts = points * vertex + refined.topology.face_count() * sizeof(Triangle);
+  return points * numbers + (is_compressed ? copies * parts : 0);
+}
+
 OutputBytes output_bytes(const SceneMesh& mesh, const Json& primitives, Compression requested) {
   constexpr uint64_t bytes_of_parting = 40;  // of a point: its numbers, and its place in their order
   OutputBytes bytes{.face = 36, .point = bytes_of_parting};

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "papilio/refine.h"
-#include "proto/gltf/geometry_writer.h"
+#include "proto/gltf/encoded_geometry.h"
 #include "proto/gltf/scene_mesh.h"
 
 namespace papilio::proto::gltf {
@@ -16,6 +16,10 @@ namespace papilio::proto::gltf {
 
 /// Returns the geometry of a mesh as it came.
 [[nodiscard]] NewGeometry unrefined_geometry(const SceneMesh& mesh);
+
+/// Returns about the bytes that parting a refined mesh into primitives takes beside what is written. `is_compressed`:
+/// what is written is smaller than the parts.
+[[nodiscard]] uint64_t parting_bytes(const SceneMesh& mesh, const Mesh& refined, bool is_compressed);
 
 /// Returns an upper bound of the memory for parting a refined mesh into primitives and writing them. `primitives`:
 /// those of the mesh in the document.

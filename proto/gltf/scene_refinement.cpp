@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "proto/error_translation.h"
+#include "proto/freed_memory.h"
 #include "proto/gltf/document_writer.h"
+#include "proto/gltf/extension_lists.h"
+#include "proto/gltf/geometry_writer.h"
 #include "proto/gltf/mesh_options.h"
 #include "proto/gltf/refined_geometry.h"
 #include "proto/problem.h"
@@ -22,8 +25,8 @@ using Clock = std::chrono::steady_clock;
 /// Bytes that the prepared meshes of one request may hold.
 constexpr uint64_t prepared_bytes = uint64_t{256} << 20;
 
-/// Bytes of refined vertices from which on memory matters more than the time to get it.
-constexpr uint64_t large_result = uint64_t{4} << 20;
+/// Bytes of encoded meshes after which the heap is trimmed.
+constexpr uint64_t held_between_trims = 8 * worth_giving_back;
 
 /// Order in which a reason to stop tells more than another.
 int rank_of(StopReason reason) {
@@ -118,6 +121,8 @@ class SceneRefinement::State {
       if (options) options->max_faces = 0;
     }
     coarse_faces_ = decoded().coarse_faces();
+    is_compressed_ = parameters_.compression == Compression::same ? uses_compression(decoded().document.json)
+                                                                  : parameters_.compression != Compression::none;
     require_room();
   }
 
@@ -228,10 +233,11 @@ class SceneRefinement::State {
   /// A scene in the making.
   struct Making {
     Statistics statistics{};
-    std::vector<NewGeometry> replaced{};
+    std::vector<EncodedGeometry> replaced{};
     uint64_t budget_left = 0;       ///< faces of `max_faces` that no mesh has yet
     uint64_t remaining_coarse = 0;  ///< faces of meshes that are not refined yet
-    uint64_t held_bytes = 0;        ///< of refined meshes
+    uint64_t held_bytes = 0;        ///< of encoded meshes
+    uint64_t held_at_trim = 0;      ///< of them when the heap was last trimmed
     ShapeReport shape{};
   };
 
@@ -244,9 +250,7 @@ class SceneRefinement::State {
     if (options_.view) making.statistics.error_pixels = 0;
     for (size_t m = 0; m < runs_.size(); ++m) add_mesh(m, levels, making);
     times_.refine += lap();
-    // What is kept for later refinements makes room for a large answer; to get it again takes a few hundredths of
-    // the time.
-    if (making.held_bytes >= large_result) release_spare_blocks();
+    make_room(making.held_bytes);
     EncodedLevel made{write(std::move(making.replaced)), std::move(making.statistics)};
     times_.encode += lap();
     made.statistics.times = times_;
@@ -271,20 +275,40 @@ class SceneRefinement::State {
     if (!runs_[m].options) {
       making.statistics.vertices += mesh.surface.mesh.topology.vertex_count;
       making.statistics.faces += mesh.coarse_faces();
-      if (parameters_.compression != Compression::same) making.replaced.push_back(unrefined_geometry(mesh));
+      if (parameters_.compression != Compression::same) encode(unrefined_geometry(mesh), making);
       return;
     }
     Result result = translate_errors([&] { return refine_mesh(m, options_within(m, levels, making)); });
+    make_room(parting_bytes(mesh, result.mesh, is_compressed_));
     if (options_.max_faces > 0) making.budget_left -= result.mesh.topology.face_count();
     count_result(mesh, result, making);
     const bool is_new = result.levels > 0 || parameters_.normals || parameters_.compression != Compression::same;
-    if (is_new) {
-      making.replaced.push_back(refined_geometry(mesh, std::move(result), parameters_.normals, [this] { poll(); }));
-      for (const VertexSet& set : making.replaced.back().geometry.sets)
-        making.held_bytes += set.count * bytes_of_vertex(set);
+    if (!is_new) {
+      if (is_made_once()) release(m);
+      return;
     }
-    if (!shared_ && !hooks_->on_level) release(m);
+    NewGeometry refined = refined_geometry(mesh, std::move(result), parameters_.normals, [this] { poll(); });
+    if (is_made_once()) release(m);
+    encode(std::move(refined), making);
   }
+
+  void encode(NewGeometry mesh, Making& making) {
+    times_.refine += lap();
+    making.replaced.push_back(encode_geometry(decoded().document, std::move(mesh), encoding()));
+    making.held_bytes += making.replaced.back().bytes();
+    if (making.held_bytes - making.held_at_trim >= held_between_trims) {
+      trim_heap();  // of what lay between the bytes that are held
+      making.held_at_trim = making.held_bytes;
+    }
+    times_.encode += lap();
+  }
+
+  [[nodiscard]] GeometryEncoding encoding() {
+    return {parameters_.compression, parameters_.output, [this] { poll(); }};
+  }
+
+  /// Returns whether nothing of the scene is needed once it is written.
+  [[nodiscard]] bool is_made_once() const { return !shared_ && !hooks_->on_level; }
 
   /// Returns the options of a mesh within what the meshes before it have left.
   [[nodiscard]] Options options_within(size_t m, int levels, Making& making) const {
@@ -321,12 +345,11 @@ class SceneRefinement::State {
     own_.scene.meshes[m].surface = {};
   }
 
-  std::string write(std::vector<NewGeometry> replaced) {
-    const GeometryEncoding encoding{parameters_.compression, parameters_.output, [this] { poll(); }};
-    Document document = decoded().document;
+  std::string write(std::vector<EncodedGeometry> replaced) {
+    Document document = is_made_once() ? std::move(own_.document) : decoded().document;
     BufferPieces pieces;
     if (!replaced.empty() || parameters_.compression != Compression::same)
-      pieces = write_geometry(document, std::move(replaced), encoding);
+      pieces = write_geometry(document, std::move(replaced), parameters_.compression);
     else if (decoded().is_packed)
       pieces = remove_detail(document);  // the answer at level 0 is the base
     else
@@ -345,7 +368,8 @@ class SceneRefinement::State {
   Options options_;            ///< for the scene
   double scene_diagonal_ = 0;
   uint64_t coarse_faces_ = 0;
-  uint64_t budget_left_ = 0;  ///< faces of `max_faces` that no mesh takes at the tolerance of all
+  bool is_compressed_ = false;  ///< whether any of the new geometry may be
+  uint64_t budget_left_ = 0;    ///< faces of `max_faces` that no mesh takes at the tolerance of all
   StageTimes times_;
   const RefinementHooks* hooks_ = nullptr;
 };

@@ -1,7 +1,6 @@
 #include "proto/gltf/slots.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "proto/gltf/byte_ranges.h"
@@ -10,35 +9,9 @@
 namespace papilio::proto::gltf {
 namespace {
 
-constexpr uint32_t vertex_alignment = 4;
 constexpr uint32_t array_buffer = 34962, element_array_buffer = 34963;  // targets of views
 
 constexpr const char* type_names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-
-/// Returns elements at a stride of a multiple of four bytes.
-std::string strided(Elements elements, uint32_t stride) {
-  const uint32_t size = elements.format.bytes();
-  if (stride == size) return std::move(elements.bytes);
-  std::string out(elements.count * stride, '\0');
-  for (uint64_t i = 0; i < elements.count; ++i) std::memcpy(&out[i * stride], &elements.bytes[i * size], size);
-  return out;
-}
-
-Json bound(const Elements& elements, bool upper) {
-  Json out = Json::array();
-  for (uint32_t c = 0; c < elements.format.components; ++c) {
-    double extreme = elements.number(0, c);
-    for (uint64_t i = 1; i < elements.count; ++i) {
-      const double number = elements.number(i, c);
-      extreme = upper ? std::max(extreme, number) : std::min(extreme, number);
-    }
-    if (elements.format.type == ComponentType::float32)
-      out.push_back(extreme);
-    else
-      out.push_back(static_cast<int64_t>(extreme));
-  }
-  return out;
-}
 
 /// Bytes of a view that an accessor names.
 ByteRange range_in_view(const Json& accessor, const Json& view, uint32_t number) {
@@ -77,13 +50,8 @@ Slots::Slots(Document& document, Released released)
   compact_shared_views();
 }
 
-bool Slots::is_compressed(uint32_t accessor) const {
-  const auto view = index_member(old_accessors_[accessor], "bufferView", place("accessors", accessor));
-  return view && *view < released_.views.size() &&
-         find_extension(json_["bufferViews"][*view], meshopt_extension, place("bufferViews", *view)) != nullptr;
-}
-
-uint32_t Slots::take_accessor(std::optional<uint32_t> old, const Elements& elements) {
+uint32_t Slots::take_accessor(const ElementSummary& elements) {
+  const std::optional<uint32_t> old = elements.accessor;
   if (old) (void)element_of(json_, "accessors", *old, "a primitive");
   const bool reuses = old && *old < released_.accessors.size() && released_.accessors[*old] && !accessor_is_used_[*old];
   Json accessor = old ? old_accessors_[*old] : Json::object();
@@ -92,10 +60,9 @@ uint32_t Slots::take_accessor(std::optional<uint32_t> old, const Elements& eleme
   if (!elements.format.normalized) accessor.erase("normalized");
   accessor["count"] = elements.count;
   if (!old) accessor["type"] = type_names[elements.format.components - 1];
-  const bool has_bounds = accessor.contains("min") || accessor.contains("max");
-  if (has_bounds && elements.count > 0) {
-    if (accessor.contains("min")) accessor["min"] = bound(elements, false);
-    if (accessor.contains("max")) accessor["max"] = bound(elements, true);
+  if (elements.bounds) {
+    if (accessor.contains("min")) accessor["min"] = elements.bounds->first;
+    if (accessor.contains("max")) accessor["max"] = elements.bounds->second;
   }
   if (reuses) {
     accessor_is_used_[*old] = true;
@@ -124,23 +91,16 @@ uint32_t Slots::take_view(std::optional<uint32_t> preferred, Use use) {
   return static_cast<uint32_t>(json_["bufferViews"].size() - 1);
 }
 
-uint32_t Slots::put(std::optional<uint32_t> old, Elements elements, Use use, bool compressed) {
-  const uint32_t accessor = take_accessor(old, elements);
+uint32_t Slots::put(EncodedElements elements, Use use) {
+  const std::optional<uint32_t> old = elements.summary.accessor;
+  const uint32_t accessor = take_accessor(elements.summary);
   const auto old_view = old ? index_member(old_accessors_[*old], "bufferView", place("accessors", *old)) : std::nullopt;
-  ViewContent content;
+  ViewContent content = std::move(elements.content);
   content.view = take_view(old_view, use);
-  const uint32_t size = elements.format.bytes();
-  content.stride = use == Use::vertices ? (size + vertex_alignment - 1) / vertex_alignment * vertex_alignment : size;
-  content.strided = use == Use::vertices;
-  content.compressed = compressed && elements.count > 0;
-  content.mode = use == Use::vertices ? MeshoptMode::attributes : MeshoptMode::triangles;
-  content.bytes = strided(std::move(elements), content.stride);
   json_["accessors"][accessor]["bufferView"] = content.view;
   contents_.push_back(std::move(content));
   return accessor;
 }
-
-uint32_t Slots::describe(std::optional<uint32_t> old, const Elements& elements) { return take_accessor(old, elements); }
 
 uint32_t Slots::put_stream(std::optional<uint32_t> old, std::string stream) {
   const uint32_t view = take_view(old, Use::vertices);

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/gltf/accessor.h"
-#include "proto/gltf/buffer_writer.h"
+#include "proto/gltf/encoded_geometry.h"
 #include "proto/gltf/references.h"
 
 namespace papilio::proto::gltf {
@@ -19,14 +18,11 @@ class Slots {
  public:
   Slots(Document& document, Released released);
 
-  /// Returns whether EXT_meshopt_compression compresses the view of an accessor.
-  [[nodiscard]] bool is_compressed(uint32_t accessor) const;
-
-  /// Puts elements in place of those of the accessor `old`, if it is released and not yet used again; else appends an
+  /// Puts elements in place of those of their old accessor, if it is released and not yet used again; else appends an
   /// accessor like it. Returns the accessor.
-  uint32_t put(std::optional<uint32_t> old, Elements elements, Use use, bool compressed);
+  uint32_t put(EncodedElements elements, Use use);
   /// Describes elements that a Draco stream holds: as `put`, but the accessor has no view.
-  uint32_t describe(std::optional<uint32_t> old, const Elements& elements);
+  uint32_t describe(const ElementSummary& elements) { return take_accessor(elements); }
   /// Puts a Draco stream in place of that of the view `old`. Returns its view.
   uint32_t put_stream(std::optional<uint32_t> old, std::string stream);
 
@@ -36,7 +32,7 @@ class Slots {
   [[nodiscard]] BufferPieces finish();
 
  private:
-  uint32_t take_accessor(std::optional<uint32_t> old, const Elements& elements);
+  uint32_t take_accessor(const ElementSummary& elements);
   uint32_t take_view(std::optional<uint32_t> preferred, Use use);
   /// Removes what released accessors had in a view that others need.
   void compact_shared_views();

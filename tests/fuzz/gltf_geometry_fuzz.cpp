@@ -43,12 +43,13 @@ std::vector<std::array<uint32_t, 3>> corners(const MeshGeometry& geometry) {
 /// Writes all geometry anew in its own place, and reads it again.
 std::vector<MeshGeometry> rewritten(Document document, const std::vector<MeshGeometry>& before,
                                     Compression compression) {
-  std::vector<NewGeometry> same;
+  std::vector<EncodedGeometry> same;
   for (uint32_t m = 0; m < before.size(); ++m)
     if (!before[m].primitives.empty())
-      same.push_back({m, before[m], proto::quantization_box(vertex_positions(before[m].sets[0]))});
-  BufferPieces pieces =
-      write_geometry(document, std::move(same), {.compression = compression, .draco = {}, .poll = {}});
+      same.push_back(encode_geometry(document,
+                                     {m, before[m], proto::quantization_box(vertex_positions(before[m].sets[0]))},
+                                     {.compression = compression, .draco = {}, .poll = {}}));
+  BufferPieces pieces = write_geometry(document, std::move(same), compression);
   const std::string written = write_document(document, std::move(pieces), FileKind::glb).document;
   std::vector<MeshGeometry> after = read_all(read_document(written));
   fuzz::require(after.size() == before.size(), "meshes survive");

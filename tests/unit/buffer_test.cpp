@@ -52,6 +52,36 @@ TEST(BufferBlocks, ComeBackForASizeALittleLargerAndSmaller) {
   EXPECT_EQ(spare_bytes(), 0U);
 }
 
+TEST(BufferBlocks, AreGivenBackDownToWhatMayBeKept) {
+  if (!keeps_blocks) return;
+  constexpr size_t small = 1 << 12, large = 1 << 20;
+  release_spare_blocks();
+  std::vector<std::pair<void*, size_t>> blocks;
+  for (int i = 0; i < 8; ++i)
+    for (const size_t bytes : {small, large}) blocks.emplace_back(take_block(bytes), bytes);
+  for (const auto& [block, bytes] : blocks) give_block(block, bytes);
+  ASSERT_EQ(spare_bytes(), 8 * (small + large));
+  release_spare_blocks(8 * (small + large));
+  EXPECT_EQ(spare_bytes(), 8 * (small + large));
+  release_spare_blocks(6 * large);  // two of the large ones, and the small ones
+  EXPECT_EQ(spare_bytes(), 6 * large);
+  release_spare_blocks(6 * large - 1);
+  EXPECT_EQ(spare_bytes(), 5 * large);
+  release_spare_blocks();
+  EXPECT_EQ(spare_bytes(), 0U);
+}
+
+TEST(Buffer, OfNothingGivesItsMemoryBack) {
+  Buffer<uint32_t> numbers(1000, 7);
+  numbers.clear();
+  EXPECT_GE(numbers.capacity(), 1000U);
+  numbers = {};
+  EXPECT_EQ(numbers.capacity(), 0U);
+  EXPECT_TRUE(numbers.empty());
+  numbers = {1, 2};
+  EXPECT_EQ(numbers, (Buffer<uint32_t>{1, 2}));
+}
+
 TEST(BufferBlocks, AreSharedByThreads) {
   std::vector<std::thread> threads;
   for (uint32_t t = 0; t < 4; ++t)

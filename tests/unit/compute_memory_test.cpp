@@ -169,11 +169,11 @@ TEST(ComputeMemory, LimitOfAScenesMemoryIsNeitherPassedNorHalfUnused) {
 TEST(ComputeMemory, UniformRequestIsRefusedBeforeTheWork) {
   const std::string draco = encoded(with_values(torus(16, 16), 4, 8, ValueType::float64));
   try {
-    const Refinement refinement(draco, parse_query({{"levels", "7"}}), {.max_compute_bytes = uint64_t{2} << 30});
+    const Refinement refinement(draco, parse_query({{"levels", "7"}}), {.max_compute_bytes = uint64_t{1} << 30});
     FAIL() << "was not refused";
   } catch (const Problem& problem) {
     EXPECT_EQ(problem.code(), Code::result_too_large);
-    EXPECT_NE(std::string(problem.what()).find("of memory; the limit is 2048 MiB"), std::string::npos)
+    EXPECT_NE(std::string(problem.what()).find("of memory; the limit is 1024 MiB"), std::string::npos)
         << problem.what();
   }
 }

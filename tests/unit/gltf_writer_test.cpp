@@ -26,7 +26,8 @@ std::string rewrite(const std::string& glb, Compression compression = Compressio
   Document document = read_document(glb);
   Views views(document);
   Allowance allowance({});
-  std::vector<NewGeometry> meshes;
+  std::vector<EncodedGeometry> meshes;
+  const GeometryEncoding encoding{.compression = compression, .draco = {}, .poll = {}};
   for (uint32_t m = 0; m < array_of(document.json, "meshes").size(); ++m) {
     NewGeometry mesh{.mesh = m, .geometry = read_geometry(views, m, allowance), .box = {}};
     for (VertexSet& set : mesh.geometry.sets) {
@@ -36,10 +37,9 @@ std::string rewrite(const std::string& glb, Compression compression = Compressio
       set.count = 2 * count;
       mesh.box = quantization_box(vertex_positions(set));
     }
-    if (!mesh.geometry.primitives.empty()) meshes.push_back(std::move(mesh));
+    if (!mesh.geometry.primitives.empty()) meshes.push_back(encode_geometry(document, std::move(mesh), encoding));
   }
-  const GeometryEncoding encoding{.compression = compression, .draco = {}, .poll = {}};
-  BufferPieces pieces = write_geometry(document, std::move(meshes), encoding);
+  BufferPieces pieces = write_geometry(document, std::move(meshes), compression);
   return write_document(document, std::move(pieces), FileKind::glb).document;
 }
 
@@ -226,9 +226,10 @@ TEST(GltfWriter, DocumentsWithoutViewsGetThem) {
       "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]})");
   Views views(document);
   Allowance allowance({});
-  std::vector<NewGeometry> meshes;
-  meshes.push_back({.mesh = 0, .geometry = read_geometry(views, 0, allowance), .box = {}});
-  BufferPieces pieces = write_geometry(document, std::move(meshes), {.compression = {}, .draco = {}, .poll = {}});
+  std::vector<EncodedGeometry> meshes;
+  NewGeometry mesh{.mesh = 0, .geometry = read_geometry(views, 0, allowance), .box = {}};
+  meshes.push_back(encode_geometry(document, std::move(mesh), {.compression = {}, .draco = {}, .poll = {}}));
+  BufferPieces pieces = write_geometry(document, std::move(meshes), Compression::same);
   const std::string glb = write_document(document, std::move(pieces), FileKind::glb).document;
   const Json json = test::json_of_glb(glb);
   ASSERT_TRUE(json.contains("bufferViews"));

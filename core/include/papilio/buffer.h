@@ -20,8 +20,8 @@ void give_block(void* block, size_t bytes) noexcept;
 inline constexpr size_t spare_limit = size_t{2} << 30;
 /// Bytes kept for later now.
 [[nodiscard]] size_t spare_bytes() noexcept;
-/// Returns the bytes kept for later to the system.
-void release_spare_blocks() noexcept;
+/// Returns bytes kept for later to the system, until at most so many are kept.
+void release_spare_blocks(size_t most_kept = 0) noexcept;
 
 /// A vector of trivially copyable elements, for the long arrays that meshes are made of. Its memory comes from
 /// take_block(): the system provides fresh pages slowly, so blocks are kept and reused. Iterators and references are
@@ -65,7 +65,9 @@ class Buffer {
     swap(taken);
     return *this;
   }
+  /// Of no elements: gives the memory back, which clear() keeps.
   Buffer& operator=(std::initializer_list<T> values) {
+    if (values.size() == 0) return *this = Buffer();
     assign(values.begin(), values.end());
     return *this;
   }

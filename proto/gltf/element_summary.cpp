@@ -1,0 +1,49 @@
+#include "proto/gltf/element_summary.h"
+
+#include <algorithm>
+
+namespace papilio::proto::gltf {
+namespace {
+
+/// Smallest index that restarts primitives where indices have 16 bits.
+constexpr uint64_t restart_index_16 = 65535;
+
+Json bound(const Elements& elements, bool upper) {
+  Json out = Json::array();
+  for (uint32_t c = 0; c < elements.format.components; ++c) {
+    double extreme = elements.number(0, c);
+    for (uint64_t i = 1; i < elements.count; ++i) {
+      const double number = elements.number(i, c);
+      extreme = upper ? std::max(extreme, number) : std::min(extreme, number);
+    }
+    if (elements.format.type == ComponentType::float32)
+      out.push_back(extreme);
+    else
+      out.push_back(static_cast<int64_t>(extreme));
+  }
+  return out;
+}
+
+}  // namespace
+
+bool declares_bounds(const Json& document, std::optional<uint32_t> old) {
+  if (!old) return false;
+  const Json& accessor = element_of(document, "accessors", *old, "a primitive");
+  return accessor.contains("min") || accessor.contains("max");
+}
+
+ElementSummary summarize(const Json& document, std::optional<uint32_t> old, const Elements& elements) {
+  ElementSummary summary{.accessor = old, .format = elements.format, .count = elements.count};
+  if (elements.count > 0 && declares_bounds(document, old))
+    summary.bounds.emplace(bound(elements, false), bound(elements, true));
+  return summary;
+}
+
+Elements index_elements(const Buffer<Triangle>& triangles, uint64_t vertices) {
+  const ComponentType type = vertices <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+  Elements out = zero_elements({type, 1, false}, 3 * triangles.size());
+  for (size_t i = 0; i < 3 * triangles.size(); ++i) out.set_number(i, 0, triangles[i / 3][i % 3]);
+  return out;
+}
+
+}  // namespace papilio::proto::gltf

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "papilio/mesh.h"
+#include "proto/gltf/accessor.h"
+
+namespace papilio::proto::gltf {
+
+/// Description of an accessor's elements.
+struct ElementSummary {
+  std::optional<uint32_t> accessor{};  ///< the old one; nothing: a new one
+  ElementFormat format{};
+  uint64_t count = 0;
+  std::optional<std::pair<Json, Json>> bounds{};  ///< lowest and highest numbers, where the old accessor declares any
+};
+
+/// Returns whether the accessor `old` declares its lowest or highest numbers.
+[[nodiscard]] bool declares_bounds(const Json& document, std::optional<uint32_t> old);
+
+/// Describes elements that take the place of those of the document's accessor `old`. Throws `Problem` mesh_not_gltf if
+/// there is no such accessor.
+[[nodiscard]] ElementSummary summarize(const Json& document, std::optional<uint32_t> old, const Elements& elements);
+
+/// Returns the indices of triangles, in 16 bits where these number all `vertices`.
+[[nodiscard]] Elements index_elements(const Buffer<Triangle>& triangles, uint64_t vertices);
+
+}  // namespace papilio::proto::gltf

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "papilio/mesh.h"
+#include "proto/parameters.h"
+#include "tests/support/gltf_scene.h"
+
+// What refining a scene takes in memory, beside the sum of what it cannot do without.
+
+namespace papilio::test {
+
+/// Gives the first primitive of a mesh normals and texture coordinates; `is_skinned`: joints and weights too.
+void dress(GltfScene& scene, const TriangleMesh& mesh, bool is_skinned, size_t number = 0);
+
+/// MiB at their most.
+struct SceneMemory {
+  double taken = 0;    ///< by the refinement, with the scene that comes
+  double allowed = 0;  ///< of the scene that comes, the one that goes and the core's refinement of each mesh in turn
+};
+
+/// Measures the refinement of a scene in child processes, which are prepared by `prepare`.
+[[nodiscard]] SceneMemory measure_scene(
+    const std::string& glb, const proto::QueryFields& fields, const std::function<void()>& prepare = [] {});
+
+/// A scene to measure, and its name.
+struct MeasuredScene {
+  std::string name;
+  std::string glb;
+  proto::QueryFields fields;
+};
+
+/// Returns scenes of each kind that is refined in a way of its own: of `mesh`, of `small`, and of 20 times `small`.
+[[nodiscard]] std::vector<MeasuredScene> measured_scenes(const TriangleMesh& mesh, const TriangleMesh& small);
+
+}  // namespace papilio::test
