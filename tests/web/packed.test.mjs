@@ -156,6 +156,34 @@ test('the server refines the level that is shown', async () => {
   assert.deepEqual(faults, []);
 });
 
+/// The packed model with further levels to so many, whose residuals are too small to be seen.
+function withMoreLevels(count) {
+  const end = 20 + glb.readUInt32LE(12);
+  const json = JSON.parse(glb.toString('utf8', 20, end));
+  const detail = json.meshes[0].primitives[0].extensions.PAPILIO_detail;
+  let [vertices, faces] = [detail.levels[0].vertices, levels[0].faces];
+  for (let l = 0; l < count; ++l) {
+    detail.levels[l] ??= { step: 1e-30, vertices, rms: 0.001, largest: 0.01 };
+    vertices = 2 * vertices + 3 * faces;
+    faces *= 4;
+  }
+  let text = JSON.stringify(json);
+  text = text.padEnd(Math.ceil(text.length / 4) * 4);
+  const made = Buffer.concat([glb.subarray(0, 20), Buffer.from(text), glb.subarray(end)]);
+  made.writeUInt32LE(made.length, 8);
+  made.writeUInt32LE(text.length, 12);
+  return made;
+}
+
+test('a model of very many faces opens with the levels that are shown well', async () => {
+  const { page } = await open();
+  const most = Math.floor(Math.log(300_000 / levels[0].faces) / Math.log(4));
+  assert.ok(most > last);
+  await drop(page, 'many.glb', withMoreLevels(most + 1));
+  await page.locator(`.panel[data-mode=coarse][data-faces="${levels[0].faces * 4 ** most}"]`).waitFor();
+  assert.equal(await page.locator('#packed output').innerText(), `${most} of ${most + 1}`);
+});
+
 test('Save gives a packed model of the levels that are shown', async () => {
   const { page } = await open();
   await slider(page).fill('1');

@@ -20,11 +20,15 @@ export interface PackedLevel {
   encode(): Promise<Bytes>;
 }
 
-/// The model with all its levels. Rejects with a Problem.
+/// Levels with more faces are not shown until the user asks for them.
+const mostFacesAtFirst = 300_000;
+
+/// The model with all its levels, or with those that a browser shows well. Rejects with a Problem.
 export async function openPackedMesh(name: string, file: Bytes): Promise<OpenMesh> {
   const model = await openPacked(file, { decodeDraco: async (draco) => dracoDecoder(await fetchDecoder())(draco) });
   try {
-    return await levelOf(name, { model, file }, model.levels.length);
+    const level = model.levels.filter(({ faces }) => faces <= mostFacesAtFirst).length;
+    return await levelOf(name, { model, file }, level);
   } catch (error) {
     model.close();
     throw error;
