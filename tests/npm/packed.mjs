@@ -107,7 +107,7 @@ export async function decodeDraco(draco) {
   buffer.Init(draco, draco.length);
   const mesh = new module.Mesh();
   const status = decoder.DecodeBufferToMesh(buffer, mesh);
-  if (!status.ok()) throw new Error(status.error_msg());
+  if (!status.ok()) throw new Error(status.error_msg(), { cause: 'draco' });
   const position = decoder.GetAttribute(mesh, decoder.GetAttributeId(mesh, module.POSITION));
   const values = new module.DracoFloat32Array();
   decoder.GetAttributeFloatForAllPoints(mesh, position, values);
