@@ -67,7 +67,7 @@ class Buffer {
   }
   /// Of no elements: gives the memory back, which clear() keeps.
   Buffer& operator=(std::initializer_list<T> values) {
-    if (values.size() == 0) return *this = Buffer();
+    if (values.size() == 0) Buffer().swap(*this);
     assign(values.begin(), values.end());
     return *this;
   }
