@@ -205,7 +205,7 @@ class CollapseSequence::Collapser {
 
   /// Calls visit(neighbour) for the neighbours of a vertex; returns whether it is inside the surface.
   template <class Visit>
-  bool visit_neighbours(uint32_t v, const Visit& visit) const {
+  bool visit_neighbours(uint32_t v, const Visit& visit) const {  // NOLINT(modernize-use-nodiscard)
     uint32_t h = out_[v];
     do {
       visit(tip(h));

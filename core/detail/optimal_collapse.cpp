@@ -137,7 +137,10 @@ class Simplifier {
     const Vec3d middle = 0.5 * (a + b);
     const std::optional<Vec3d> minimum = quadric.minimum();
     if (minimum && length(*minimum - middle) < 2 * length(b - a)) return *minimum;
-    return std::ranges::min({middle, a, b}, {}, [&](Vec3d p) { return quadric.at(p); });
+    Vec3d best = middle;
+    for (const Vec3d p : {a, b})
+      if (quadric.at(p) < quadric.at(best)) best = p;
+    return best;
   }
 
   [[nodiscard]] std::vector<uint32_t> neighbours(uint32_t v) const {
@@ -217,7 +220,7 @@ class Simplifier {
     }
     std::vector<std::pair<uint32_t, uint32_t>> edges;
     for (const uint32_t v : changed)
-      for (const uint32_t other : neighbours(v)) edges.push_back(std::minmax(v, other));
+      for (const uint32_t other : neighbours(v)) edges.emplace_back(std::min(v, other), std::max(v, other));
     std::ranges::sort(edges);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (const auto& [a, b] : edges) propose(a, b);

@@ -32,9 +32,11 @@ class Simplification {
 
   std::optional<SimplifiedDetail> run() {
     std::vector<size_t> sizes;
-    for (auto faces = static_cast<double>(tree_.surface().triangles.size()); faces >= fewest_faces;
-         faces *= ratio_of_sizes)
-      sizes.push_back(static_cast<size_t>(faces));
+    size_t faces = tree_.surface().triangles.size();
+    while (faces >= fewest_faces) {
+      sizes.push_back(faces);
+      faces = static_cast<size_t>(ratio_of_sizes * static_cast<double>(faces));
+    }
     const std::vector<TriangleMesh> meshes =
         collapse_to_sizes(tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); });
     // Distances ascend, or nearly so: the first size that is too far.
