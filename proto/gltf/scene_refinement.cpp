@@ -346,7 +346,7 @@ class SceneRefinement::State {
   }
 
   std::string write(std::vector<EncodedGeometry> replaced) {
-    Document document = is_made_once() ? std::move(own_.document) : decoded().document;
+    Document document = decoded().document;
     BufferPieces pieces;
     if (!replaced.empty() || parameters_.compression != Compression::same)
       pieces = write_geometry(document, std::move(replaced), parameters_.compression);
