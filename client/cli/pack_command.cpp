@@ -108,6 +108,7 @@ void pack_command(const PackFlags& flags) {
                                           .largest = flags.largest.value_or(0),
                                           .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
                                           .jobs = flags.jobs,
+                                          .simplifies = flags.simplify,
                                           .cancelled = [] { return Interruption::is_asked(); },
                                           .on_progress = [&](double share) { progress.show(share); }});
   });

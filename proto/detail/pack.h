@@ -19,7 +19,7 @@ struct PackOptions {
   uint64_t bytes = 0;  ///< most bytes of the file; 0: any number
   int jobs = 1;        ///< most threads that encode at once; the file is the same
   uint64_t face_limit = 8'000'000;  ///< faces of the last level
-  bool simplifies = true;           ///< whether a simplified mesh is compared too, where the goal is `rms`
+  bool simplifies = false;          ///< whether a simplified mesh is compared too, where the goal is `rms`
   /// Asked now and then; true stops with `Problem` cancelled. Comes from several threads at once with several jobs.
   std::function<bool()> cancelled{};
   std::function<void(double)> on_progress{};  ///< share done, 0..1; calls do not overlap

@@ -36,7 +36,7 @@ constexpr double distances[] = {0.05, 0.02, 0.01, 0.005};  // RMS, % of the diag
 std::vector<RatePoint> packed_points(const DetailSubject& subject) {
   std::vector<RatePoint> points;
   for (const double rms : distances) {
-    const auto packed = proto::detail::pack(subject.original, {.rms = rms / 100, .simplifies = false});
+    const auto packed = proto::detail::pack(subject.original, {.rms = rms / 100});
     if (!packed.model) continue;
     uint64_t bytes = packed.model->base_bytes;
     for (const auto& level : packed.model->levels) bytes += level.stream.bytes.size();

@@ -55,13 +55,13 @@ TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
 }
 
 TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
-  const Packed box = pack(test::box({20, 20, 20}, {1, 2, 3}), {.rms = 1e-4});
+  const Packed box = pack(test::box({20, 20, 20}, {1, 2, 3}), {.rms = 1e-4, .simplifies = true});
   EXPECT_FALSE(box.model);
   ASSERT_TRUE(box.simplified);
   EXPECT_EQ(box.simplified->bytes, box.glb.size());
   EXPECT_NE(box.reason.find("simplified mesh of 12 faces"), std::string::npos) << box.reason;
   EXPECT_LT(box.glb.size(), box.plain_bytes);
-  const Packed sphere = pack(fine_sphere(), {.rms = 1e-4});
+  const Packed sphere = pack(fine_sphere(), {.rms = 1e-4, .simplifies = true});
   ASSERT_TRUE(sphere.model);
   ASSERT_TRUE(sphere.simplified);
   EXPECT_LT(sphere.glb.size(), sphere.simplified->bytes);
