@@ -40,7 +40,9 @@ constexpr double least_share = 0.96;
 constexpr int turns_of_trial = 2, turns_at_last = 5;  // a level
 constexpr double rate_weight = 2;
 constexpr int weighting_passes = 3;
-constexpr uint32_t samples_of_trial = 20'000, samples_at_last = 60'000;
+/// Of a surface whose distance is measured in a trial: so many a face of the original, within bounds.
+constexpr uint32_t samples_a_face = 4, least_samples = 5'000, most_samples = 20'000;
+constexpr uint32_t samples_at_last = 60'000;
 /// No step leaves the wanted distance where exact residuals leave more than this share of it.
 constexpr double largest_floor = 0.9;
 /// Bytes of the residuals go about with this power of 1 / step. A larger distance saves no more than this power of it.
@@ -94,6 +96,8 @@ class DetailEncoder {
         code_base_(code_base),
         wanted_(options.rms * bounding_box(triangles.positions).diagonal()),
         original_(prepare(triangles)),
+        samples_of_trial_(
+            std::clamp(samples_a_face * original_.mesh().topology.face_count(), least_samples, most_samples)),
         first_step_(first_step * wanted_) {}
 
   EncodedDetail run() {
@@ -222,18 +226,18 @@ class DetailEncoder {
     }
   }
   [[nodiscard]] double floor_of(const Trial& trial) const {
-    return distance(fit(trial, fine_step * wanted_, 0), samples_of_trial).rms;
+    return distance(fit(trial, fine_step * wanted_, 0), samples_of_trial_).rms;
   }
 
   /// Finds the step, and more levels as long as they are expected to take fewer bytes.
   void choose(Trial& trial) {
-    find_step(trial, turns_of_trial, samples_of_trial, step_trials);
+    find_step(trial, turns_of_trial, samples_of_trial_, step_trials);
     while (trial.chosen.levels < trial.most_levels && trial.chosen.floor > floor_of_enough_levels * wanted_) {
       const Trial::Choice before = trial.chosen;
       ++trial.chosen.levels;
       trial.chosen.floor = floor_of(trial);
       trial.chosen.outcome = {};
-      find_step(trial, turns_of_trial, samples_of_trial, step_trials);
+      find_step(trial, turns_of_trial, samples_of_trial_, step_trials);
       if (is_better(trial.chosen.outcome, before.outcome)) continue;
       trial.chosen = before;
       return;
@@ -344,6 +348,7 @@ class DetailEncoder {
   double wanted_;        ///< in the mesh's unit
   uint32_t parted_ = 0;  ///< vertices
   OriginalSurface original_;
+  uint32_t samples_of_trial_;
   double first_step_;  ///< to try
   std::unique_ptr<CollapseSequence> sequence_;
   std::vector<BaseMesh> bases_;

@@ -6,6 +6,8 @@
 namespace papilio {
 namespace {
 
+double fraction(double x) { return x - std::floor(x); }
+
 /// Calls visit(point) for samples of a surface. Within a triangle they follow the plastic number's sequence, folded
 /// into it [Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018].
 template <class Visit>
@@ -20,8 +22,8 @@ void for_each_sample(const SurfaceTree& surface, uint32_t samples, const Visit& 
     const TriangleCorners c = surface.corners(f);
     sum += area(c);
     for (; taken < samples && sum * samples > (taken + 0.5) * total; ++taken) {
-      double u = std::fmod(0.5 + taken * 0.7548776662466927, 1.0);
-      double v = std::fmod(0.5 + taken * 0.5698402909980532, 1.0);
+      double u = fraction(0.5 + taken * 0.7548776662466927);
+      double v = fraction(0.5 + taken * 0.5698402909980532);
       if (u + v > 1) u = 1 - u, v = 1 - v;
       visit(c.a + u * (c.b - c.a) + v * (c.c - c.a));
     }
