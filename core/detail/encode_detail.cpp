@@ -41,8 +41,8 @@ constexpr int turns_of_trial = 2, turns_at_last = 5;  // a level
 constexpr double rate_weight = 2;
 constexpr int weighting_passes = 3;
 /// Of a surface whose distance is measured in a trial: so many a face of the original, within bounds.
-constexpr uint32_t samples_a_face = 4, least_samples = 5'000, most_samples = 20'000;
-constexpr uint32_t samples_at_last = 60'000;
+constexpr uint32_t samples_a_face = 2, least_samples = 5'000, most_samples = 20'000;
+constexpr uint32_t samples_at_last = 3;  ///< for each of a trial
 /// No step leaves the wanted distance where exact residuals leave more than this share of it.
 constexpr double largest_floor = 0.9;
 /// Bytes of the residuals go about with this power of 1 / step. A larger distance saves no more than this power of it.
@@ -108,7 +108,8 @@ class DetailEncoder {
     std::optional<ResidualFit> best_fit;
     for (int tried = 0; tried < most_last_bases; ++tried) {
       Trial& last = trial(at);
-      std::optional<ResidualFit> fit = find_step(last, turns_at_last, samples_at_last, step_trials_at_last);
+      std::optional<ResidualFit> fit =
+          find_step(last, turns_at_last, samples_at_last * samples_of_trial_, step_trials_at_last);
       if (best == nullptr || is_better_result(last.chosen.outcome, best->chosen.outcome)) {
         best = &last;
         best_fit.emplace(std::move(*fit));
@@ -246,7 +247,7 @@ class DetailEncoder {
 
   [[nodiscard]] int most_levels(size_t base_faces) const {
     const uint64_t original = original_.mesh().topology.face_count();
-    const uint64_t most = std::min(options_.face_limit, std::max<uint64_t>(16 * original, 20'000));
+    const uint64_t most = std::min(options_.face_limit, std::max<uint64_t>(16 * original, 1000));
     int levels = 0;
     const auto faces = [&](int at) { return uint64_t{base_faces} << (2 * at); };
     while (levels < most_detail_levels && faces(levels + 1) <= most &&
@@ -321,7 +322,7 @@ class DetailEncoder {
     for (size_t l = 0; l <= encoded.levels.size(); ++l) {
       poll();
       const SurfaceTree surface(fit.surface(l));
-      const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last);
+      const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last * samples_of_trial_);
       encoded.reach.push_back({d.rms / original_.diagonal(), d.largest / original_.diagonal()});
       if (l == encoded.levels.size()) encoded.folds = count_folds(surface);
       progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));

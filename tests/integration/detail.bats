@@ -7,7 +7,7 @@ load helpers
 fine=$PAPILIO_MESHES/bunny.obj
 
 setup_file() {
-  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.0007 --json >"$BATS_FILE_TMPDIR/report.json"
+  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.003 --json >"$BATS_FILE_TMPDIR/report.json"
 }
 setup() {
   cd "$BATS_TEST_TMPDIR" || return
@@ -22,7 +22,7 @@ report() { jq -r "$1" report.json; }
 
 @test "what is unpacked has the distance to the original that was stated, at every level" {
   [ "$(report .format)" = packed ]
-  is_within "$(report '.levels[-1].rms')" 0.0007
+  is_within "$(report '.levels[-1].rms')" 0.003
   levels=$(report '.levels | length')
   for ((level = 0; level <= levels; ++level)); do
     "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
@@ -49,18 +49,25 @@ report() { jq -r "$1" report.json; }
   "$papilio" unpack - -o - --to obj <model.glb | cmp - out.obj
 }
 
+# ball: a small closed surface.
+ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahedron.obj" -o ball.obj --levels 4; }
+
+# bats test_tags=many_encodings
 @test "packing is deterministic, from each kind of file" {
-  "$papilio" pack - -o - --rms 0.0007 <"$fine" | cmp - model.glb
+  ball
+  "$papilio" pack - -o - --rms 0.005 <ball.obj >ball.glb
   for kind in drc ply stl; do
-    "$papilio" convert "$fine" "in.$kind"
-    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.0007 --json | jq -e '.folds >= 0' >/dev/null
+    "$papilio" convert ball.obj "in.$kind"
+    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.005 --json | jq -e '.folds >= 0' >/dev/null
     "$papilio" unpack "$kind.glb" -o out.off
-    is_within "$(distance "in.$kind" out.off rms)" 0.00077
+    is_within "$(distance "in.$kind" out.off rms)" 0.0055
   done
+  cmp ball.glb ply.glb
 }
 
 @test "the report on a terminal's lines has base, levels, distances and the ratio" {
-  run --separate-stderr "$papilio" pack "$fine" -o again.glb --rms 0.0007
+  ball
+  run --separate-stderr "$papilio" pack ball.obj -o again.glb --rms 0.005
   [ "$status" = 0 ]
   [ "$stderr" = "" ]
   [[ $output == *"base "*" faces, "*" bytes: RMS "*" %, largest "*"level 1 "*"plain Draco at the same distance"*"times as many"* ]]
@@ -196,9 +203,7 @@ report() { jq -r "$1" report.json; }
   [[ $output == *"no packed model"* ]]
 }
 
-# ball: a small closed surface.
-ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahedron.obj" -o ball.obj --levels 4; }
-
+# bats test_tags=many_encodings
 @test "no point is farther than --max, in either direction, with any number of jobs" {
   ball
   "$papilio" pack ball.obj -o far.glb --max 0.02 --json >far.json
@@ -212,6 +217,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp far.glb several.glb
 }
 
+# bats test_tags=many_encodings
 @test "plain Draco keeps to --max, too" {
   printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v .3 .7 .1' 'f 1 2 3' >open.obj
   "$papilio" pack open.obj -o open.glb --max 0.001 --json 2>/dev/null >open.json
@@ -221,6 +227,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   is_within "$(stat -c %s open.glb)" 1000
 }
 
+# bats test_tags=many_encodings
 @test "a file has no more than --bytes" {
   ball
   "$papilio" pack ball.obj -o small.glb --bytes 1300 --json >small.json

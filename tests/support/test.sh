@@ -24,6 +24,8 @@ one_thread='Detail\.|DetailBaseline|Edgebreaker|EveryRealMesh|Growth|mesh_file|O
 "${unit[@]}" || failed=1
 
 integration='bats --tap'
+# Sanitized encoders of detail take minutes, and are tested by CTest.
+[[ $preset == release ]] || integration+=' --filter-tags !many_encodings'
 web=tests/support/web_test.sh
 if [[ -n $filter ]]; then # prove splits it at spaces
   integration+=" --filter ${filter// /.}"

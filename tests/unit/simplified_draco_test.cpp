@@ -67,5 +67,12 @@ TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
   EXPECT_LT(round.glb.size(), round.simplified->bytes);
 }
 
+TEST(PackJobs, MakeTheSameFile) {
+  const TriangleMesh original = sphere(1);
+  const Packed alone = pack(original, {.largest = 0.1});
+  EXPECT_GT(alone.encodings, 1U);
+  EXPECT_EQ(pack(original, {.largest = 0.1, .jobs = 4}).glb, alone.glb);
+}
+
 }  // namespace
 }  // namespace papilio::proto::detail
