@@ -7,7 +7,6 @@
 #include <memory>
 #include <type_traits>
 
-#include "proto/draco_decoder.h"
 #include "proto/draco_header.h"
 #include "proto/problem.h"
 
@@ -69,6 +68,11 @@ std::vector<double> read_numbers(const draco::PointAttribute& attribute, uint32_
   return values;
 }
 
+/// Returns the values of the points.
+std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t points) {
+  return with_number(type_of(attribute), [&](auto zero) { return read_numbers<decltype(zero)>(attribute, points); });
+}
+
 template <class Number>
 Number nearest(double value) {
   if constexpr (std::is_same_v<Number, bool>) return value >= 0.5;
@@ -120,10 +124,6 @@ void require_attributes_within_limits(const draco::PointCloud& mesh) {
   require_within(static_cast<uint64_t>(mesh.num_attributes()), 1 + most_attributes, "attributes, positions included",
                  "Remove attributes.");
   require_within(components, 3 + most_components, "components of attributes, positions included", "Remove attributes.");
-}
-
-std::vector<double> read_values(const draco::PointAttribute& attribute, uint32_t points) {
-  return with_number(type_of(attribute), [&](auto zero) { return read_numbers<decltype(zero)>(attribute, points); });
 }
 
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out) {

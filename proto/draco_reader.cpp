@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "proto/draco_attributes.h"
-#include "proto/draco_decoder.h"
 #include "proto/draco_header.h"
 #include "proto/draco_merges.h"
 #include "proto/draco_orientations.h"
@@ -81,8 +80,7 @@ const draco::PointAttribute& position_attribute(const draco::Mesh& mesh) {
   return attribute;
 }
 
-}  // namespace
-
+/// Decodes a stream with bounded work. The mesh has faces.
 std::unique_ptr<draco::Mesh> decode_draco(std::string_view bytes, const Limits& limits) {
   const DracoHeader header = read_draco_header(bytes, limits);
   if (header.edgebreaker) require_bounded_merges(bytes, header);
@@ -94,6 +92,7 @@ std::unique_ptr<draco::Mesh> decode_draco(std::string_view bytes, const Limits& 
   return mesh;
 }
 
+/// Returns the positions of the points.
 Buffer<Vec3f> read_positions(const draco::Mesh& mesh) {
   const draco::PointAttribute& attribute = position_attribute(mesh);
   auto positions = Buffer<Vec3f>::for_overwrite(mesh.num_points());
@@ -107,6 +106,7 @@ Buffer<Vec3f> read_positions(const draco::Mesh& mesh) {
   return positions;
 }
 
+/// Returns the faces, whose indices it checks.
 Buffer<Triangle> read_triangles(const draco::Mesh& mesh) {
   auto triangles = Buffer<Triangle>::for_overwrite(mesh.num_faces());
   for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
@@ -121,6 +121,8 @@ Buffer<Triangle> read_triangles(const draco::Mesh& mesh) {
   }
   return triangles;
 }
+
+}  // namespace
 
 FormattedMesh read_draco(std::string_view bytes, const Limits& limits) {
   const std::unique_ptr<draco::Mesh> mesh = decode_draco(bytes, limits);

@@ -5,16 +5,15 @@
 #include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_tex_coords_portable_encoder.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_delta_encoder.h>
 #include <draco/core/bit_utils.h>
-#include <draco/core/quantization_utils.h>
 #include <draco/core/varint_encoding.h>
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "proto/edgebreaker/attribute_quantizer.h"
 #include "proto/edgebreaker/predictions.h"
 #include "proto/edgebreaker/speeds.h"
 
@@ -22,50 +21,6 @@ namespace papilio::proto::edgebreaker {
 namespace {
 
 constexpr uint32_t texture_components = 2;
-
-template <class Number>
-void append_integers(const OutputAttribute& attribute, const char* bytes, std::vector<int32_t>& out) {
-  for (uint32_t i = 0; i < attribute.components; ++i) {
-    Number number;
-    std::memcpy(&number, bytes + i * sizeof number, sizeof number);
-    out.push_back(static_cast<int32_t>(number));
-  }
-}
-
-/// Quantizer of one attribute: bit-identical to libdraco's.
-class AttributeQuantizer {
- public:
-  explicit AttributeQuantizer(const OutputAttribute& attribute) : attribute_(attribute) {
-    if (attribute.coding == Coding::octahedral) octahedron_.SetQuantizationBits(attribute.bits);
-    if (attribute.coding == Coding::grid) grid_.Init(attribute.grid.range, (1 << attribute.bits) - 1);
-  }
-  [[nodiscard]] uint32_t components() const {
-    return attribute_.coding == Coding::octahedral ? 2 : attribute_.components;
-  }
-  void append(const char* bytes, std::vector<int32_t>& out) {
-    if (attribute_.coding == Coding::integers) {
-      with_number(attribute_.format.type, [&](auto zero) { append_integers<decltype(zero)>(attribute_, bytes, out); });
-      return;
-    }
-    floats_.resize(attribute_.components);
-    std::memcpy(floats_.data(), bytes, floats_.size() * sizeof(float));
-    if (attribute_.coding == Coding::octahedral) {
-      int32_t s = 0;
-      int32_t t = 0;
-      octahedron_.FloatVectorToQuantizedOctahedralCoords(floats_.data(), &s, &t);
-      out.insert(out.end(), {s, t});
-    } else {
-      for (uint32_t i = 0; i < floats_.size(); ++i)
-        out.push_back(grid_.QuantizeFloat(floats_[i] - attribute_.grid.origin[i]));
-    }
-  }
-
- private:
-  const OutputAttribute& attribute_;
-  draco::OctahedronToolBox octahedron_;
-  draco::Quantizer grid_;
-  std::vector<float> floats_;
-};
 
 /// Writes integers without entropy coding and without predictions, for values too large for libdraco's entropy coder.
 void write_unpredicted(const Integers& integers, draco::EncoderBuffer& out) {

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
-#include "proto/draco_decoder.h"
 #include "proto/draco_reader.h"
+#include "proto/edgebreaker/decoded_bounds.h"
 #include "proto/edgebreaker/writer.h"
 #include "proto/encoding_memory.h"
 #include "proto/error_translation.h"
@@ -78,21 +77,30 @@ bool is_worth_giving_back(const VertexSet& set, const Buffer<Triangle>& triangle
   return set.count * bytes_of_vertex(set) + triangles.size() * sizeof(Triangle) >= worth_giving_back;
 }
 
-/// Compresses a primitive, and names its attributes in `ids`. Takes the bytes of the set's elements.
-edgebreaker::WrittenStream compress(VertexSet& set, Buffer<Triangle> triangles, const QuantizationBox& box,
-                                    const OutputOptions& options, const std::function<void()>& poll,
-                                    std::vector<std::pair<std::string, uint32_t>>& ids) {
+/// Returns the bounds of an attribute's decoded numbers as an accessor of `type` declares them.
+std::pair<Json, Json> declared_bounds(const OutputAttribute& attribute, ComponentType type) {
+  const edgebreaker::NumberBounds bounds = edgebreaker::decoded_bounds(attribute);
+  return {declared_bound(type, bounds.low), declared_bound(type, bounds.high)};
+}
+
+/// Compresses a primitive. Names and describes its attributes in `made`, except for the numbers of points and the
+/// bounds of the positions, which the stream tells. Takes the bytes of the set's elements.
+edgebreaker::WrittenStream compress(const Json& document, VertexSet& set, Buffer<Triangle> triangles,
+                                    const QuantizationBox& box, const OutputOptions& options,
+                                    const std::function<void()>& poll, DracoContent& made) {
   const bool is_large = is_worth_giving_back(set, triangles);
   if (is_large) give_back_freed();  // what the core keeps: the mesh takes its place
   PointedMesh pointed = translate_errors([&] { return build_pointed_mesh(set, std::move(triangles)); });
   if (is_large) give_back_freed();
   std::vector<OutputAttribute> attributes;
   std::optional<VertexPoints> points;
-  ids.emplace_back("POSITION", 0);
+  made.ids.emplace_back("POSITION", 0);
+  made.attributes.emplace_back("POSITION", ElementSummary{.accessor = set.find("POSITION")->accessor,
+                                                          .format = {ComponentType::float32, 3, false}});
   for (VertexStream& stream : set.attributes) {
     if (stream.semantic == "POSITION") continue;
-    const auto id = static_cast<uint32_t>(ids.size());
-    ids.emplace_back(stream.semantic, id);
+    const auto id = static_cast<uint32_t>(made.ids.size());
+    made.ids.emplace_back(stream.semantic, id);
     auto [attribute, format] = attribute_of(stream, id);
     attribute.values = pointed.values_of(stream.elements);
     std::string().swap(stream.elements.bytes);
@@ -100,6 +108,10 @@ edgebreaker::WrittenStream compress(VertexSet& set, Buffer<Triangle> triangles, 
     if (stream.semantic.starts_with("WEIGHTS_")) grid.range = 0;  // on a grid they would not add up to 1
     if (!points) points.emplace(pointed.mesh);
     attributes.push_back(output_attribute(attribute, format, grid, *points));
+    ElementSummary summary{.accessor = stream.accessor, .format = stream.elements.format};
+    if (declares_bounds(document, stream.accessor))
+      summary.bounds = declared_bounds(attributes.back(), summary.format.type);
+    made.attributes.emplace_back(stream.semantic, std::move(summary));
   }
   points.reset();
   if (is_large) give_back_freed();
@@ -113,40 +125,13 @@ Json json_of(Vec3f v) {
   return Json::array({static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
 }
 
-/// Finds the bounds of attributes besides POSITION that the document declares. Only then is the stream decoded, which
-/// takes more memory than to make it.
-void find_other_bounds(const Json& document, DracoContent& made) {
-  const auto is_wanted = [&](const auto& attribute) {
-    return attribute.first != "POSITION" && declares_bounds(document, attribute.second.accessor);
-  };
-  if (std::ranges::none_of(made.attributes, is_wanted)) return;
-  const Limits no_limits{.max_input_faces = face_count_limit,
-                         .max_input_vertices = face_count_limit,
-                         .max_output_faces = face_count_limit};
-  const std::unique_ptr<draco::Mesh> decoded = decode_draco(made.stream, no_limits);
-  for (size_t a = 0; a < made.attributes.size(); ++a) {
-    if (!is_wanted(made.attributes[a])) continue;
-    ElementSummary& summary = made.attributes[a].second;
-    const draco::PointAttribute& attribute = *decoded->GetAttributeByUniqueId(made.ids[a].second);
-    summary = summarize(document, summary.accessor,
-                        elements_of(summary.format, read_values(attribute, decoded->num_points())));
-  }
-}
-
-/// Describes what a reader decodes from the stream.
-void describe(const Json& document, const VertexSet& set, std::optional<uint32_t> indices,
-              const edgebreaker::WrittenStream& written, DracoContent& made) {
-  for (const auto& [semantic, id] : made.ids) {
-    const VertexStream& stream = *set.find(semantic);
-    ElementSummary summary{.accessor = stream.accessor, .format = stream.elements.format, .count = written.points};
-    if (semantic == "POSITION") {
-      summary.format = {ComponentType::float32, 3, false};
-      if (declares_bounds(document, stream.accessor))
-        summary.bounds.emplace(json_of(written.box.min), json_of(written.box.max));
-    }
-    made.attributes.emplace_back(semantic, std::move(summary));
-  }
-  find_other_bounds(document, made);
+/// Completes the description by what a reader decodes from the stream.
+void describe(const Json& document, std::optional<uint32_t> indices, const edgebreaker::WrittenStream& written,
+              DracoContent& made) {
+  for (auto& [semantic, summary] : made.attributes) summary.count = written.points;
+  ElementSummary& positions = made.attributes.front().second;
+  if (declares_bounds(document, positions.accessor))
+    positions.bounds.emplace(json_of(written.box.min), json_of(written.box.max));
   made.indices = {
       .accessor = indices, .format = index_elements({}, written.points).format, .count = uint64_t{3} * written.faces};
   if (declares_bounds(document, indices))
@@ -185,9 +170,9 @@ DracoContent encode_draco_primitive(const Json& document, VertexSet set, Buffer<
                                     std::optional<uint32_t> indices, const QuantizationBox& box,
                                     const OutputOptions& options, const std::function<void()>& poll) {
   DracoContent made;
-  edgebreaker::WrittenStream written = compress(set, std::move(triangles), box, options, poll, made.ids);
+  edgebreaker::WrittenStream written = compress(document, set, std::move(triangles), box, options, poll, made);
   made.stream = std::move(written.bytes);
-  describe(document, set, indices, written, made);
+  describe(document, indices, written, made);
   return made;
 }
 

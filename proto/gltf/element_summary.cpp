@@ -9,19 +9,16 @@ namespace {
 constexpr uint64_t restart_index_16 = 65535;
 
 Json bound(const Elements& elements, bool upper) {
-  Json out = Json::array();
-  for (uint32_t c = 0; c < elements.format.components; ++c) {
-    double extreme = elements.number(0, c);
+  std::vector<double> extremes(elements.format.components);
+  for (uint32_t c = 0; c < extremes.size(); ++c) {
+    double& extreme = extremes[c];
+    extreme = elements.number(0, c);
     for (uint64_t i = 1; i < elements.count; ++i) {
       const double number = elements.number(i, c);
       extreme = upper ? std::max(extreme, number) : std::min(extreme, number);
     }
-    if (elements.format.type == ComponentType::float32)
-      out.push_back(extreme);
-    else
-      out.push_back(static_cast<int64_t>(extreme));
   }
-  return out;
+  return declared_bound(elements.format.type, extremes);
 }
 
 }  // namespace
@@ -30,6 +27,17 @@ bool declares_bounds(const Json& document, std::optional<uint32_t> old) {
   if (!old) return false;
   const Json& accessor = element_of(document, "accessors", *old, "a primitive");
   return accessor.contains("min") || accessor.contains("max");
+}
+
+Json declared_bound(ComponentType type, const std::vector<double>& numbers) {
+  Json out = Json::array();
+  for (const double number : numbers) {
+    if (type == ComponentType::float32)
+      out.push_back(number);
+    else
+      out.push_back(static_cast<int64_t>(number));
+  }
+  return out;
 }
 
 ElementSummary summarize(const Json& document, std::optional<uint32_t> old, const Elements& elements) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "papilio/mesh.h"
 #include "proto/gltf/accessor.h"
@@ -18,6 +19,9 @@ struct ElementSummary {
 
 /// Returns whether the accessor `old` declares its lowest or highest numbers.
 [[nodiscard]] bool declares_bounds(const Json& document, std::optional<uint32_t> old);
+
+/// Returns the lowest or the highest numbers [components] as an accessor of this type declares them.
+[[nodiscard]] Json declared_bound(ComponentType type, const std::vector<double>& numbers);
 
 /// Describes elements that take the place of those of the document's accessor `old`. Throws `Problem` mesh_not_gltf if
 /// there is no such accessor.

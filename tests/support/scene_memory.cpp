@@ -1,10 +1,12 @@
 #include "tests/support/scene_memory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
 
 #include "papilio/refine.h"
+#include "proto/gltf/accessor.h"
 #include "proto/gltf/scene_refinement.h"
 #include "tests/support/peak_memory.h"
 #include "tests/support/shapes.h"
@@ -31,6 +33,16 @@ std::string dressed_scene(const TriangleMesh& mesh, bool is_skinned) {
   GltfScene scene;
   scene.add_mesh(mesh);
   dress(scene, mesh, is_skinned);
+  return scene.glb();
+}
+
+/// Returns a skinned scene in which all attributes declare their bounds.
+std::string bounded_scene(const TriangleMesh& mesh) {
+  GltfScene scene;
+  scene.add_mesh(mesh);
+  dress(scene, mesh, true);
+  for (const auto& [semantic, accessor] : scene.primitive()["attributes"].items())
+    declare_bounds(scene, accessor.get<size_t>());
   return scene.glb();
 }
 
@@ -67,6 +79,26 @@ void dress(GltfScene& scene, const TriangleMesh& mesh, bool is_skinned, size_t n
   if (!is_skinned) return;
   attributes["JOINTS_0"] = scene.add_accessor(joints, "VEC4");
   attributes["WEIGHTS_0"] = scene.add_accessor(weights, "VEC4");
+}
+
+void declare_bounds(GltfScene& scene, size_t accessor) {
+  GltfScene::Json& json = scene.json["accessors"][accessor];
+  const GltfScene::Json& view = scene.json["bufferViews"][json["bufferView"].get<size_t>()];
+  const proto::gltf::Elements elements{
+      .format = proto::gltf::element_format(GltfScene::Json::parse(json.dump()), "an accessor"),  // unsigned numbers
+      .count = json["count"].get<uint64_t>(),
+      .bytes = scene.binary.substr(view["byteOffset"].get<size_t>(), view["byteLength"].get<size_t>())};
+  json["min"] = json["max"] = GltfScene::Json::array();
+  for (uint32_t c = 0; c < elements.format.components; ++c) {
+    double low = elements.number(0, c);
+    double high = low;
+    for (uint64_t i = 1; i < elements.count; ++i) {
+      low = std::min(low, elements.number(i, c));
+      high = std::max(high, elements.number(i, c));
+    }
+    json["min"].push_back(low);
+    json["max"].push_back(high);
+  }
 }
 
 SceneMemory measure_scene(const std::string& glb, const QueryFields& fields, const std::function<void()>& prepare) {
@@ -110,7 +142,8 @@ std::vector<MeasuredScene> measured_scenes(const TriangleMesh& mesh, const Trian
           {"to Draco, normals and texture, small", dressed_scene(small, false), fields_of("draco")},
           {"to Draco, normals and texture", dressed_scene(mesh, false), fields_of("draco")},
           {"to Draco, skin, small", dressed_scene(small, true), fields_of("draco")},
-          {"to Draco, skin", dressed_scene(mesh, true), fields_of("draco")}};
+          {"to Draco, skin", dressed_scene(mesh, true), fields_of("draco")},
+          {"to Draco, skin with bounds", bounded_scene(mesh), fields_of("draco")}};
 }
 
 }  // namespace papilio::test

@@ -15,6 +15,9 @@ namespace papilio::test {
 /// Gives the first primitive of a mesh normals and texture coordinates; `is_skinned`: joints and weights too.
 void dress(GltfScene& scene, const TriangleMesh& mesh, bool is_skinned, size_t number = 0);
 
+/// Declares the lowest and highest numbers of an accessor with a view of its own.
+void declare_bounds(GltfScene& scene, size_t accessor);
+
 /// MiB at their most.
 struct SceneMemory {
   double taken = 0;    ///< by the refinement, with the scene that comes
