@@ -39,13 +39,16 @@ std::vector<ReportRow> print() {
     rows.push_back({"memory/" + std::string(name) + "/" + std::to_string(levels), ours, peer, "MiB"});
     table.add({rows.back().name, fixed(ours, 1), fixed(peer, 1), fixed(ours / peer, 2)});
   }
-  for (const test::MeasuredScene& scene :
-       test::measured_scenes(test::real_mesh("elephant20k.drc"), test::real_mesh("elephant2k.drc"))) {
+  const auto add_scene = [&](const test::MeasuredScene& scene) {
     const test::SceneMemory memory = test::measure_scene(scene.glb, scene.fields);
     rows.push_back({"memory/scene/" + scene.name, memory.taken, memory.allowed, "MiB"});
     table.add(
         {rows.back().name, fixed(memory.taken, 1), fixed(memory.allowed, 1), fixed(memory.taken / memory.allowed, 2)});
-  }
+  };
+  const TriangleMesh mesh = test::real_mesh("elephant20k.drc");
+  for (const test::MeasuredScene& scene : test::measured_scenes(mesh, test::real_mesh("elephant2k.drc")))
+    add_scene(scene);
+  add_scene(test::measured_packed_model(mesh));
   table.print();
   return rows;
 }

@@ -8,6 +8,7 @@
 #include "papilio/refine.h"
 #include "proto/gltf/accessor.h"
 #include "proto/gltf/scene_refinement.h"
+#include "tests/support/packed_model.h"
 #include "tests/support/peak_memory.h"
 #include "tests/support/shapes.h"
 
@@ -144,6 +145,10 @@ std::vector<MeasuredScene> measured_scenes(const TriangleMesh& mesh, const Trian
           {"to Draco, skin, small", dressed_scene(small, true), fields_of("draco")},
           {"to Draco, skin", dressed_scene(mesh, true), fields_of("draco")},
           {"to Draco, skin with bounds", bounded_scene(mesh), fields_of("draco")}};
+}
+
+MeasuredScene measured_packed_model(const TriangleMesh& base) {
+  return {"packed model", packed_fixture(base, 2, 2 * base.triangles.size()).glb, fields_of()};
 }
 
 }  // namespace papilio::test

@@ -38,4 +38,7 @@ struct MeasuredScene {
 /// Returns scenes of each kind that is refined in a way of its own: of `mesh`, of `small`, and of 20 times `small`.
 [[nodiscard]] std::vector<MeasuredScene> measured_scenes(const TriangleMesh& mesh, const TriangleMesh& small);
 
+/// Returns a packed model with two levels of residuals.
+[[nodiscard]] MeasuredScene measured_packed_model(const TriangleMesh& base);
+
 }  // namespace papilio::test

@@ -29,5 +29,13 @@ TEST(SceneMemory, IsAtMostThatOfBothScenesAndTheCoreInAServer) {
   }
 }
 
+TEST(SceneMemory, OfAPackedModelIsAtMostThatOfBothScenesAndTheCore) {
+  if (server::is_sanitized) GTEST_SKIP() << "sanitizers keep what is freed";
+  const MeasuredScene scene = measured_packed_model(torus(100, 100));
+  const SceneMemory memory = measure_scene(scene.glb, scene.fields);
+  EXPECT_LE(memory.taken, memory.allowed + slack);
+  EXPECT_GT(memory.taken, 1);
+}
+
 }  // namespace
 }  // namespace papilio::test
