@@ -56,7 +56,6 @@ class Placement {
   struct Ends {
     uint32_t a, b;
     double length;
-    Vec3d middle;
     Vec3d expected;  ///< the lifted place, moved as far as both ends are from theirs
   };
   [[nodiscard]] Ends ends(uint32_t e) const {
@@ -65,8 +64,7 @@ class Placement {
     const uint32_t b = topology_->tip(h);
     const Vec3d pa = to_double(positions_[a]);
     const Vec3d pb = to_double(positions_[b]);
-    return {a, b, length(pb - pa), 0.5 * (pa + pb),
-            to_double(lifted(e).point) + 0.5 * (to_double(drift_[a]) + to_double(drift_[b]))};
+    return {a, b, length(pb - pa), to_double(lifted(e).point) + 0.5 * (to_double(drift_[a]) + to_double(drift_[b]))};
   }
   [[nodiscard]] bool is_on_curve(uint32_t e) const { return topology_->kind[e] != EdgeKind::smooth; }
   /// Zero at creases (no face), where there are two.
@@ -199,7 +197,8 @@ class Placement {
       const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
       for (int i = 0; i < 9; ++i) {
         const std::array<int32_t, 2> off{i % 3 - 1, is_on_curve(e) ? 0 : i / 3 - 1};
-        for (size_t k = 0; k < 2; ++k) made_.tangential[e][k] = rounded.tangential->at(k) + off[k];
+        for (size_t k = 0; k < 2; ++k)
+          made_.tangential[e][k] = std::clamp(rounded.tangential->at(k) + off[k], -largest_residual, largest_residual);
         const auto& parts = made_.tangential[e];
         positions_[v] = predicted_[v] + made_.step * (static_cast<float>(made_.along_normal[e]) * directions_[e] +
                                                       static_cast<float>(parts[0]) * tangents.along +
