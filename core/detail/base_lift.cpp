@@ -1,13 +1,13 @@
 #include "detail/base_lift.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 
 #include "detail/detail_level.h"
+#include "detail/seams.h"
 #include "mesh/crease.h"
 #include "mesh/curve.h"
 #include "papilio/error.h"
@@ -37,11 +37,6 @@ std::vector<uint32_t> nearest_points(const Buffer<Vec3f>& points, const Buffer<V
   }
   return found;
 }
-
-/// A face of the sequence, and which of its corners the first one of the base's face is.
-struct FaceMatch {
-  uint32_t face, turn;
-};
 
 std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>& number, const BaseMesh& base) {
   std::map<Triangle, FaceMatch> by_corners;
@@ -75,20 +70,6 @@ void mark_curves(Topology& topology, const std::vector<uint32_t>& number, const 
     if (curves.degree[v] == 2 && base.is_corner[number[v]]) topology.shape.corners.push_back(v);
 }
 
-using CornerWeights = std::vector<std::array<Vec3d, 3>>;  ///< of each face's corners, in the base's face above it
-
-CornerWeights split_weights(const CornerWeights& weights) {
-  CornerWeights below;
-  below.reserve(4 * weights.size());
-  for (const auto& [a, b, c] : weights) {
-    const Vec3d ab = 0.5 * (a + b);
-    const Vec3d bc = 0.5 * (b + c);
-    const Vec3d ca = 0.5 * (c + a);
-    below.insert(below.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  return below;
-}
-
 }  // namespace
 
 LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
@@ -96,31 +77,21 @@ LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, con
   LiftedBase lifted;
   lifted.mesh = build_mesh(decoded);
   const std::vector<uint32_t> number = nearest_points(lifted.mesh.positions, base.triangles.positions);
-  const std::vector<FaceMatch> matches = match_faces(lifted.mesh, number, base);
-  mark_curves(lifted.mesh.topology, number, matches, base);
+  lifted.faces = match_faces(lifted.mesh, number, base);
+  mark_curves(lifted.mesh.topology, number, lifted.faces, base);
   for (const uint32_t n : number) lifted.vertex.push_back(base.vertex[n]);
+  lifted.seams = seam_edges(lifted.mesh);
 
   DetailLevel level(lifted.mesh.topology);
-  CornerWeights weights(matches.size(), {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}});
-  std::vector<SurfacePlace> places;
+  EdgeMiddles middles(lifted.faces);
   for (int l = 0; l < levels; ++l) {
-    const Topology& t = level.topology();
-    places.clear();
-    for (const uint32_t h : t.half_edge) {
-      const auto& corner = weights[h / 3];
-      const Vec3d middle = 0.5 * (corner[h % 3] + corner[(h + 1) % 3]);
-      const FaceMatch& match = matches[(h / 3) >> (2 * l)];
-      const std::array<double, 3> in_base{middle.x, middle.y, middle.z};
-      std::array<double, 3> turned{};
-      for (uint32_t i = 0; i < 3; ++i) turned[(i + match.turn) % 3] = in_base[i];
-      places.push_back({match.face, {turned[0], turned[1], turned[2]}});
-    }
+    std::vector<SurfacePlace> places = middles.of(level.topology());
     sequence.lift(places, base, poll);
     auto& out = lifted.places.emplace_back();
     out.reserve(places.size());
     for (const SurfacePlace& place : places) out.push_back({place.face, to_float(original.point(place))});
     if (l + 1 == levels) break;
-    weights = split_weights(weights);
+    middles.next();
     level = level.next();
   }
   return lifted;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detail/collapse_sequence.h"
+#include "detail/edge_middles.h"
 #include "detail/original_surface.h"
 #include "papilio/mesh.h"
 
@@ -18,7 +19,9 @@ struct OriginalPlace {
 
 /// A base as its decoder has it, with the places on the original that its dyadic points correspond to.
 struct LiftedBase {
-  Mesh mesh;                                       ///< with edges, creases and corners
+  Mesh mesh;                                       ///< with edges, creases and corners, and attributes if any
+  std::vector<uint32_t> seams;                     ///< edges at which charts of the attributes meet
+  std::vector<FaceMatch> faces;                    ///< [F] in the sequence
   std::vector<uint32_t> vertex;                    ///< [V] number in the original
   std::vector<std::vector<OriginalPlace>> places;  ///< by level, of its new vertices [E]
 };

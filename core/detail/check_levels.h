@@ -16,9 +16,12 @@ inline void check_levels(uint64_t base_faces, std::span<const DetailStream> leve
                 "Detail has " + std::to_string(levels.size()) + " levels; at most " +
                     std::to_string(most_detail_levels) + " are decoded.",
                 "levels");
-  for (const DetailStream& level : levels)
+  for (const DetailStream& level : levels) {
     if (!(level.step > 0 && level.step <= coordinate_limit))
       throw Error(Fault::bad_option, "A level of detail has a step that is not above 0.", "step");
+    if (!(level.texcoords.step >= 0 && level.texcoords.step <= coordinate_limit))
+      throw Error(Fault::bad_option, "A level of detail has a negative step of texture coordinates.", "step");
+  }
   const uint64_t faces = base_faces << (2 * levels.size());
   if (faces > std::min(face_limit, face_count_limit))
     throw Error(Fault::result_too_large, "Detail of " + std::to_string(levels.size()) + " levels has " +

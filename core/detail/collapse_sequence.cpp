@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "detail/quadric.h"
+#include "detail/seams.h"
 #include "detail/sharp_curves.h"
 #include "detail/unfolding.h"
 
@@ -40,7 +41,9 @@ class CollapseSequence::Collapser {
   Collapser(const Mesh& original, std::vector<float> weight)
       : weight_(std::move(weight)),
         out_(original.positions.size(), none),
-        role_(curve_roles(original.topology)),
+        role_(curve_roles(original.topology, seam_edges(original))),
+        sharp_role_(curve_roles(original.topology)),
+        point_(original.attributes.point.begin(), original.attributes.point.end()),
         quadric_(original.positions.size()),
         age_(original.positions.size()),
         is_alive_(original.topology.face_count(), true),
@@ -49,8 +52,13 @@ class CollapseSequence::Collapser {
     for (const Vec3f p : original.positions) place_.push_back(to_double(p));
     origin_.assign(t.origin.begin(), t.origin.end());
     twin_.assign(t.twin.begin(), t.twin.end());
-    is_curve_.reserve(origin_.size());
-    for (uint32_t h = 0; h < origin_.size(); ++h) is_curve_.push_back(t.is_curve(h));
+    is_sharp_.reserve(origin_.size());
+    for (uint32_t h = 0; h < origin_.size(); ++h) is_sharp_.push_back(t.is_curve(h));
+    is_curve_ = is_sharp_;
+    for (const uint32_t e : seam_edges(original)) {
+      is_curve_[t.half_edge[e]] = true;
+      is_curve_[t.twin[t.half_edge[e]]] = true;
+    }
     for (uint32_t h = 0; h < origin_.size(); ++h)
       if (out_[origin_[h]] == none || twin_[h] == none) out_[origin_[h]] = h;
     for (uint32_t f = 0; f < faces_; ++f) add_quadrics(f);
@@ -80,14 +88,15 @@ class CollapseSequence::Collapser {
         if (number[v] == none) {
           number[v] = static_cast<uint32_t>(made.vertex.size());
           made.vertex.push_back(v);
-          made.is_corner.push_back(role_[v] == CurveRole::corner);
+          made.is_corner.push_back(sharp_role_[v] == CurveRole::corner);
           made.triangles.positions.push_back(to_float(place_[v]));
         }
         triangle[i] = number[v];
       }
       made.triangles.triangles.push_back(triangle);
       made.face.push_back(f);
-      const auto is_crease = [&](uint32_t h) { return is_curve_[h] && twin_[h] != none; };
+      if (!point_.empty()) made.point.push_back({point_[3 * f], point_[3 * f + 1], point_[3 * f + 2]});
+      const auto is_crease = [&](uint32_t h) { return is_sharp_[h] && twin_[h] != none; };
       made.is_crease.push_back({is_crease(3 * f), is_crease(3 * f + 1), is_crease(3 * f + 2)});
     }
     return made;
@@ -268,16 +277,20 @@ class CollapseSequence::Collapser {
   }
 
   /// Makes one edge of the outer sides of two sides of a face that goes; `none` is outside the surface.
-  void join(uint32_t a, uint32_t b, bool is_curve) {
-    if (a != none) twin_[a] = b, is_curve_[a] = is_curve;
-    if (b != none) twin_[b] = a, is_curve_[b] = is_curve;
+  void join(uint32_t a, uint32_t b, bool is_curve, bool is_sharp) {
+    for (const auto& [side, other] : {std::pair{a, b}, std::pair{b, a}}) {
+      if (side == none) continue;
+      twin_[side] = other;
+      is_curve_[side] = is_curve;
+      is_sharp_[side] = is_sharp;
+    }
   }
 
   /// Removes a face at the edge that is collapsed: its other two sides become one edge. Returns a half-edge at it.
   uint32_t remove_face(uint32_t side, uint32_t other_side) {
     const uint32_t a = twin_[side];
     const uint32_t b = twin_[other_side];
-    join(a, b, is_curve_[side] || is_curve_[other_side]);
+    join(a, b, is_curve_[side] || is_curve_[other_side], is_sharp_[side] || is_sharp_[other_side]);
     is_alive_[side / 3] = false;
     --faces_;
     return a != none ? a : b;
@@ -293,12 +306,26 @@ class CollapseSequence::Collapser {
     out_[origin_[h]] = h;
   }
 
+  /// Gives the corners of the faces round the vertex the points of ring(target): on the left of the edge to it that of
+  /// its face there, and beyond a seam through the vertex that of the face on the right.
+  void move_points(size_t target) {
+    const uint32_t first = spokes_[target];
+    const uint32_t last = spokes_[(target + ring_.size() - 1) % ring_.size()];
+    const uint32_t right = last == none ? none : point_[Topology::previous(last)];
+    uint32_t point = first == none ? right : point_[Topology::next(first)];
+    for (size_t k = 0; k < ring_.size(); ++k) {
+      if (k > 0 && is_curve_to(target + k) && right != none) point = right;
+      if (const uint32_t h = spoke(target + k); h != none) point_[h] = point;
+    }
+  }
+
   /// Moves the vertex onto ring(target); the faces at the edge between them go.
   void apply(uint32_t v, size_t target) {
     const size_t before = (target + ring_.size() - 1) % ring_.size();
     const uint32_t to = ring_[target];
     const uint32_t first = spokes_[target];  // v to `to`, the left apex opposite
     const uint32_t last = spokes_[before];   // v to the right apex, `to` opposite
+    if (!point_.empty()) move_points(target);
     for (const uint32_t h : spokes_)
       if (h != none) origin_[h] = to;
     for (const uint32_t h : {first != none ? remove_face(Topology::next(first), Topology::previous(first)) : none,
@@ -317,15 +344,18 @@ class CollapseSequence::Collapser {
   }
 
   std::vector<float> weight_;
-  std::vector<Vec3d> place_;      // [V]
-  std::vector<uint32_t> origin_;  // [H]
-  std::vector<uint32_t> twin_;    // [H]
-  std::vector<uint32_t> out_;     // [V] a half-edge that leaves the vertex; none once it is removed
-  std::vector<bool> is_curve_;    // [H]
-  std::vector<CurveRole> role_;   // [V]
-  std::vector<Quadric> quadric_;  // [V]
-  std::vector<uint32_t> age_;     // [V] changes round it
-  std::vector<bool> is_alive_;    // [F]
+  std::vector<Vec3d> place_;           // [V]
+  std::vector<uint32_t> origin_;       // [H]
+  std::vector<uint32_t> twin_;         // [H]
+  std::vector<uint32_t> out_;          // [V] a half-edge that leaves the vertex; none once it is removed
+  std::vector<bool> is_curve_;         // [H] boundary, crease or seam
+  std::vector<bool> is_sharp_;         // [H] boundary or crease
+  std::vector<CurveRole> role_;        // [V] to boundaries, creases and seams
+  std::vector<CurveRole> sharp_role_;  // [V] to boundaries and creases
+  std::vector<uint32_t> point_;        // [H] of the original's attributes; empty: there are none
+  std::vector<Quadric> quadric_;       // [V]
+  std::vector<uint32_t> age_;          // [V] changes round it
+  std::vector<bool> is_alive_;         // [F]
   uint32_t faces_;
   std::priority_queue<Candidate, std::vector<Candidate>, decltype(&is_later)> queue_{&is_later};
   UnfoldingSequence unfoldings_;

@@ -18,7 +18,8 @@ struct BaseMesh {
   std::vector<uint32_t> vertex;                ///< [V] number in the original
   std::vector<uint32_t> face;                  ///< [F] number in the sequence, whose corners are in the same order
   std::vector<std::array<bool, 3>> is_crease;  ///< [F] whether the side from each corner to the next is one
-  std::vector<bool> is_corner;                 ///< [V] whether curves end there
+  std::vector<bool> is_corner;                 ///< [V] whether boundaries and creases end there
+  std::vector<Triangle> point;                 ///< [F] points of the original's attributes; empty: there are none
   size_t collapses = 0;                        ///< of the sequence that led to it
 };
 
@@ -27,8 +28,8 @@ struct BaseMesh {
 /// polygon before and after. A place on the base is lifted to the original through these polygons, collapse by
 /// collapse: a bijection [Lee et al., "MAPS", 1998; Liu et al., "Neural Subdivision", 2020].
 ///
-/// Vertices on boundaries and creases move along them, and corners stay (sharp_curves.h). So curves of the base
-/// correspond to those of the original.
+/// Vertices on boundaries, creases and seams of attributes move along them, and corners stay (sharp_curves.h), as do
+/// vertices at which seams end or meet. So curves and seams of the base correspond to those of the original.
 ///
 /// Collapses are chosen by quadrics weighted by area [Garland, Heckbert 1997] and by the shape of the faces that they
 /// make. Those that change the topology, turn a face over or have no valid unfolding are refused.

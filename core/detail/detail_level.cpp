@@ -9,9 +9,14 @@
 
 namespace papilio {
 
-DetailLevel::DetailLevel(Topology base) : topology_(std::move(base)), features_(find_features(topology_)) {
-  for (uint32_t e = 0; e < topology_.edge_count(); ++e)
-    if (topology_.kind[e] != EdgeKind::smooth) curve_edges_.push_back(e);
+DetailLevel::DetailLevel(Topology base, const std::vector<uint32_t>& seams)
+    : topology_(std::move(base)), features_(find_features(topology_)) {
+  auto seam = seams.begin();
+  for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+    const bool is_seam = seam != seams.end() && *seam == e;
+    if (is_seam) ++seam;
+    if (is_seam || topology_.kind[e] != EdgeKind::smooth) curve_edges_.push_back(e);
+  }
 }
 
 DetailLevel DetailLevel::next() const {
@@ -53,6 +58,7 @@ ResidualContext DetailLevel::context(uint32_t e, std::span<const int32_t> residu
   add_parent(t.tip(h), 2);
   size_t i = 0;
   for (const uint32_t side : {h, t.twin[h]}) {
+    if (side == none) continue;
     for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
       if (other < e) {
         ++c.known;

@@ -13,14 +13,16 @@ namespace papilio {
 /// A level of the hierarchy whose edges are all split: what decoder and encoder compute alike.
 class DetailLevel {
  public:
-  /// The base, perhaps with curves; `number` 0.
-  explicit DetailLevel(Topology base);
+  /// The base, perhaps with curves; `number` 0. `seams`: edges on seams, in ascending order. Those that are smooth are
+  /// predicted as others, but have the residuals of curves, which keep the seam in its place.
+  explicit DetailLevel(Topology base, const std::vector<uint32_t>& seams = {});
   /// The next level.
   [[nodiscard]] DetailLevel next() const;
 
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] uint32_t number() const { return number_; }
-  /// Edges on boundaries and creases, in ascending order [C]. Those of the next level come from them, two from each.
+  /// Edges on boundaries, creases and seams, in ascending order [C]. Those of the next level come from them, two from
+  /// each.
   [[nodiscard]] std::span<const uint32_t> curve_edges() const { return curve_edges_; }
   /// Vertices of the level before; 0 for the base.
   [[nodiscard]] uint32_t vertices_before() const { return vertices_before_; }
@@ -28,7 +30,7 @@ class DetailLevel {
   /// Predicts the new vertices: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;
 
-  /// What is known of the residual of edge e, which is on no curve. `residual` [E] and `is_free` [E] of this level, of
+  /// What is known of the residual of edge e. `residual` [E] and `is_free` [E] of this level, of
   /// which those before e are coded; `at_vertex` [V] of the vertices; `positions` [V + E] hold the predictions.
   [[nodiscard]] ResidualContext context(uint32_t e, std::span<const int32_t> residual, std::span<const uint8_t> is_free,
                                         std::span<const int32_t> at_vertex, const Vec3f* positions, float step) const;

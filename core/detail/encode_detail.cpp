@@ -8,7 +8,9 @@
 
 #include "detail/base_curves.h"
 #include "detail/base_lift.h"
+#include "detail/base_points.h"
 #include "detail/collapse_sequence.h"
+#include "detail/encode_texcoords.h"
 #include "detail/error_weights.h"
 #include "detail/manifold_surface.h"
 #include "detail/original_surface.h"
@@ -16,6 +18,7 @@
 #include "detail/residual_fit.h"
 #include "detail/sharp_curves.h"
 #include "detail/surface_distance.h"
+#include "detail/texcoord_levels.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
 
@@ -55,6 +58,8 @@ constexpr double parting_share = 0.1;
 void check(const DetailOptions& options) {
   if (!(options.rms >= 1e-6 && options.rms <= 0.1))
     throw Error(Fault::bad_option, "The distance must be 1e-6 to 0.1 of the diagonal.", "rms");
+  if (!(options.texcoord_step > 0 && options.texcoord_step <= coordinate_limit))
+    throw Error(Fault::bad_option, "The step of texture coordinates must be above 0.", "texcoord_step");
 }
 
 /// What a base with its levels comes to.
@@ -77,6 +82,7 @@ bool is_better_result(const Outcome& a, const Outcome& b) {
 
 /// A base of one size with its levels.
 struct Trial {
+  const BaseMesh* base = nullptr;
   CodedBase coded;
   std::vector<uint8_t> curves;  ///< of the base, coded
   LiftedBase lifted;
@@ -212,7 +218,8 @@ class DetailEncoder {
     poll();
     const BaseMesh& base = bases_[size];
     Trial trial;
-    trial.coded = code_base_(base.triangles);
+    trial.base = &base;
+    trial.coded = code_base_(points_of_base(base, original_.mesh()));
     trial.most_levels = most_levels(base.face.size());
     trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, trial.most_levels, poller());
     trial.curves = encode_base_curves(trial.lifted.mesh.topology);
@@ -319,6 +326,7 @@ class DetailEncoder {
     encoded.parted = parted_;
     auto streams = fit.code();
     for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({fit.step(l), std::move(streams[l])});
+    add_texcoords(trial, fit, encoded);
     for (size_t l = 0; l <= encoded.levels.size(); ++l) {
       poll();
       const SurfaceTree surface(fit.surface(l));
@@ -328,6 +336,19 @@ class DetailEncoder {
       progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));
     }
     return encoded;
+  }
+
+  void add_texcoords(const Trial& trial, const ResidualFit& fit, EncodedDetail& encoded) const {
+    if (trial.lifted.mesh.attributes.empty()) return;
+    const size_t levels = fit.level_count();
+    std::vector<TexcoordStream> streams =
+        encode_texcoords(original_, trial.lifted, *sequence_, *trial.base, fit.surface(levels).positions, levels,
+                         static_cast<float>(options_.texcoord_step), poller());
+    for (size_t l = 0; l < levels; ++l) {
+      encoded.texcoord_bytes += streams[l].bytes.size();
+      encoded.levels[l].texcoords = std::move(streams[l]);
+    }
+    encoded.bytes += encoded.texcoord_bytes;
   }
 
   /// Faces turned against the original where their centres lie: against its face there and its smooth normal.
@@ -360,6 +381,7 @@ class DetailEncoder {
 
 EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options, const BaseCoder& code_base) {
   check(options);
+  require_texcoords(original.attributes);
   return DetailEncoder(original, options, code_base).run();
 }
 

@@ -6,6 +6,7 @@
 #include "detail/manifold_surface.h"
 #include "detail/residual_frames.h"
 #include "detail/residuals.h"
+#include "detail/seams.h"
 #include "papilio/error.h"
 
 namespace papilio {
@@ -20,14 +21,17 @@ void require_finite(const Buffer<Vec3f>& positions) {
 }  // namespace
 
 Mesh mesh_of_base(const DetailBase& base) {
+  require_texcoords(base.triangles.attributes);
   Mesh mesh = build_mesh(base.triangles);
   require_manifold(mesh);
   decode_base_curves(base.curves, mesh.topology);
   return mesh;
 }
 
-LevelDecoder::LevelDecoder(Mesh base)
-    : positions_(std::move(base.positions)), at_vertex_(positions_.size()), level_(std::move(base.topology)) {}
+LevelDecoder::LevelDecoder(const Mesh& base, bool has_texcoords)
+    : positions_(base.positions), at_vertex_(positions_.size()), level_(base.topology, seam_edges(base)) {
+  if (has_texcoords && !base.attributes.empty()) texcoords_.emplace(base, seam_edges(base));
+}
 
 const Topology& LevelDecoder::topology() {
   if (is_split_) level_ = level_.next();
@@ -42,8 +46,23 @@ void LevelDecoder::decode(const DetailStream& stream) {
   const Residuals residuals = decode_residuals(level_, stream.bytes, stream.step, at_vertex_, positions_, *models_);
   displace(level_, normals, residuals, positions_);
   require_finite(positions_);
+  if (texcoords_) {
+    texcoords_->predict(level_.topology(), positions_);
+    texcoords_->decode(stream.texcoords);
+  }
   at_vertex_.insert(at_vertex_.end(), residuals.along_normal.begin(), residuals.along_normal.end());
   is_split_ = true;
+}
+
+TriangleMesh LevelDecoder::take_mesh() {
+  if (texcoords_) return texcoords_->mesh(positions_);
+  const Topology& t = topology();
+  TriangleMesh made;
+  made.positions = std::move(positions_);
+  made.triangles.reserve(t.face_count());
+  for (uint32_t h = 0; h < t.half_edge_count(); h += 3)
+    made.triangles.push_back({t.origin[h], t.origin[h + 1], t.origin[h + 2]});
+  return made;
 }
 
 }  // namespace papilio

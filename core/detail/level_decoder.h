@@ -1,21 +1,24 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "detail/detail_level.h"
+#include "detail/texcoord_levels.h"
 #include "papilio/detail.h"
 
 namespace papilio {
 
-/// Builds the mesh of a base, with its curves. Throws `Error` bad_surface unless it is manifold.
+/// Builds the mesh of a base, with its curves. Throws `Error` bad_surface unless it is manifold, and bad_option for
+/// attributes that levels do not carry.
 [[nodiscard]] Mesh mesh_of_base(const DetailBase& base);
 
 /// Decoder of a base's levels, coarse first.
 class LevelDecoder {
  public:
-  /// Takes what mesh_of_base() returns.
-  explicit LevelDecoder(Mesh base);
+  /// Takes what mesh_of_base() returns. Texture coordinates are decoded if asked.
+  explicit LevelDecoder(const Mesh& base, bool has_texcoords = false);
 
   /// Decodes the next level: positions [V] grow to [V + E]. Throws `Error` not_finite.
   void decode(const DetailStream& stream);
@@ -24,13 +27,14 @@ class LevelDecoder {
   [[nodiscard]] const Buffer<Vec3f>& positions() const { return positions_; }
   /// The finest mesh decoded, which `decode` splits next. Stays as it is until the next call after that.
   [[nodiscard]] const Topology& topology();
-  /// Takes the positions; call last.
-  [[nodiscard]] Buffer<Vec3f> take_positions() { return std::move(positions_); }
+  /// Returns the finest mesh decoded, with texture coordinates if they are; call last.
+  [[nodiscard]] TriangleMesh take_mesh();
 
  private:
   Buffer<Vec3f> positions_;
   Buffer<int32_t> at_vertex_;  ///< [V] residuals along normals
   std::unique_ptr<ResidualModels> models_ = std::make_unique<ResidualModels>();
+  std::optional<TexcoordLevels> texcoords_;
   DetailLevel level_;
   bool is_split_ = false;  ///< whether `level_` is decoded: connectivity below it is made when it is needed
 };

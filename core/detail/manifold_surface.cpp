@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mesh/fan.h"
 #include "papilio/error.h"
@@ -23,8 +25,7 @@ class FanParter {
  public:
   FanParter(const Mesh& mesh, double distance)
       : mesh_(mesh), distance_(distance), fans_(mesh.topology.vertex_count, 0), visited_(mesh.topology.origin.size()) {
-    made_.positions = mesh.positions;
-    made_.triangles = mesh.triangles().triangles;
+    made_ = mesh.triangles();
   }
 
   TriangleMesh run() {
@@ -51,9 +52,23 @@ class FanParter {
     const Vec3d way = middle - place;
     const double size = length(way);
     const double share = size > 0 ? std::min(most_of_way, distance_ / size) * (1 - 1.0 / number) : 0;
+    std::vector<std::pair<uint32_t, uint32_t>> made;  // points of the fan, before and after
+    for (const uint32_t spoke : fan.spokes) {
+      uint32_t& point = made_.triangles[spoke / 3][spoke % 3];
+      auto known = std::ranges::find(made, point, &std::pair<uint32_t, uint32_t>::first);
+      if (known == made.end()) known = made.emplace(known, point, add_point(point, to_float(place + share * way)));
+      point = known->second;
+    }
+  }
+
+  /// Adds a point at this place with the values of another one.
+  uint32_t add_point(uint32_t other, Vec3f place) {
     const auto made = static_cast<uint32_t>(made_.positions.size());
-    made_.positions.push_back(to_float(place + share * way));
-    for (const uint32_t spoke : fan.spokes) made_.triangles[spoke / 3][spoke % 3] = made;
+    made_.positions.push_back(place);
+    for (Attribute& attribute : made_.attributes)
+      for (uint32_t i = 0; i < attribute.components; ++i)
+        attribute.values.push_back(attribute.values[size_t{other} * attribute.components + i]);
+    return made;
   }
 
   const Mesh& mesh_;

@@ -1,16 +1,26 @@
 #include "detail/original_curves.h"
 
-#include "detail/sharp_curves.h"
-
 namespace papilio {
+namespace {
 
-OriginalCurves::OriginalCurves(const Mesh& mesh) : positions_(mesh.positions) {
+std::vector<uint32_t> curve_edges(const Topology& t) {
+  std::vector<uint32_t> edges;
+  for (uint32_t e = 0; e < t.edge_count(); ++e)
+    if (t.kind[e] != EdgeKind::smooth) edges.push_back(e);
+  return edges;
+}
+
+}  // namespace
+
+OriginalCurves::OriginalCurves(const Mesh& mesh)
+    : OriginalCurves(mesh, curve_edges(mesh.topology), curve_roles(mesh.topology)) {}
+
+OriginalCurves::OriginalCurves(const Mesh& mesh, std::span<const uint32_t> edges, const std::vector<CurveRole>& roles)
+    : positions_(mesh.positions) {
   const Topology& t = mesh.topology;
-  const std::vector<CurveRole> roles = curve_roles(t);
   TriangleMesh faces;
   std::vector<uint32_t> first(t.vertex_count, none);  // segment at each vertex that curves go through
-  for (uint32_t e = 0; e < t.edge_count(); ++e) {
-    if (t.kind[e] == EdgeKind::smooth) continue;
+  for (const uint32_t e : edges) {
     const uint32_t h = t.half_edge[e];
     const auto number = static_cast<uint32_t>(segments_.size());
     segments_.push_back({.vertex = {t.origin[h], t.tip(h)}});

@@ -2,18 +2,22 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "detail/sharp_curves.h"
 #include "detail/surface_tree.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
 
-/// Boundaries and creases of an original, as polylines.
+/// Boundaries and creases of an original, or its seams, as polylines.
 class OriginalCurves {
  public:
-  /// The mesh must be manifold, with its edges and corners.
+  /// Boundaries and creases. The mesh must be manifold, with its edges and corners.
   explicit OriginalCurves(const Mesh& mesh);
+  /// Some edges. Polylines end at vertices whose role is not `CurveRole::inner`.
+  OriginalCurves(const Mesh& mesh, std::span<const uint32_t> edges, const std::vector<CurveRole>& roles);
 
   [[nodiscard]] bool empty() const { return segments_.empty(); }
   /// The nearest point of all curves; `face` is the number of its segment.

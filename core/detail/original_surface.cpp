@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
+#include "detail/seams.h"
+#include "detail/sharp_curves.h"
 #include "mesh/fan.h"
 
 namespace papilio {
@@ -37,12 +40,30 @@ Buffer<Vec3f> corner_normals(const Mesh& mesh) {
   return normals;
 }
 
+/// Positions and faces without attributes.
+TriangleMesh surface_of(const Mesh& mesh) {
+  TriangleMesh surface{.positions = mesh.positions, .triangles = {}};
+  surface.triangles.reserve(mesh.topology.face_count());
+  const Buffer<uint32_t>& origin = mesh.topology.origin;
+  for (size_t h = 0; h < origin.size(); h += 3) surface.triangles.push_back({origin[h], origin[h + 1], origin[h + 2]});
+  return surface;
+}
+
+OriginalCurves smooth_seams(const Mesh& mesh, const std::vector<uint32_t>& seams) {
+  std::vector<uint32_t> smooth;
+  std::ranges::copy_if(seams, std::back_inserter(smooth),
+                       [&](uint32_t e) { return mesh.topology.kind[e] == EdgeKind::smooth; });
+  return {mesh, smooth, curve_roles(mesh.topology, seams)};
+}
+
 }  // namespace
 
 OriginalSurface::OriginalSurface(Mesh mesh)
     : mesh_(std::move(mesh)),
-      tree_(mesh_.triangles()),
+      tree_(surface_of(mesh_)),
       curves_(mesh_),
+      seam_edges_(papilio::seam_edges(mesh_)),
+      seams_(smooth_seams(mesh_, seam_edges_)),
       normals_(corner_normals(mesh_)),
       face_at_(mesh_.positions.size()),
       diagonal_(bounding_box(mesh_.positions).diagonal()) {

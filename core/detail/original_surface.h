@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "detail/original_curves.h"
 #include "detail/surface_place.h"
@@ -21,6 +22,10 @@ class OriginalSurface {
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
   [[nodiscard]] const OriginalCurves& curves() const { return curves_; }
+  /// Edges at which charts of the mesh's attributes meet, in ascending order.
+  [[nodiscard]] const std::vector<uint32_t>& seam_edges() const { return seam_edges_; }
+  /// The seams that are smooth edges: others are among the curves.
+  [[nodiscard]] const OriginalCurves& seams() const { return seams_; }
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] Vec3d point(const SurfacePlace& place) const;
   /// Unit normal, interpolated from those of the corners, which are smooth but across creases; zero where they cancel
@@ -33,6 +38,8 @@ class OriginalSurface {
   Mesh mesh_;
   SurfaceTree tree_;
   OriginalCurves curves_;
+  std::vector<uint32_t> seam_edges_;
+  OriginalCurves seams_;
   Buffer<Vec3f> normals_;     // [H] of the faces from curve to curve round each corner
   Buffer<uint32_t> face_at_;  // [V]
   double diagonal_;

@@ -37,6 +37,8 @@ class Placement {
     made_ = {.step = step,
              .along_normal = Buffer<int32_t>(topology_->edge_count()),
              .across = Buffer<int32_t>(level.curve_edges().size())};
+    is_on_curve_.assign(topology_->edge_count(), false);
+    for (const uint32_t e : level.curve_edges()) is_on_curve_[e] = true;
     directions_ = residual_normals(level, positions_.data());
     level.predict(positions_);
     predicted_ = positions_;
@@ -66,7 +68,11 @@ class Placement {
     const Vec3d pb = to_double(positions_[b]);
     return {a, b, length(pb - pa), to_double(lifted(e).point) + 0.5 * (to_double(drift_[a]) + to_double(drift_[b]))};
   }
-  [[nodiscard]] bool is_on_curve(uint32_t e) const { return topology_->kind[e] != EdgeKind::smooth; }
+  [[nodiscard]] bool is_on_curve(uint32_t e) const { return is_on_curve_[e]; }
+  /// The curves, or seams, that an edge on one is on.
+  [[nodiscard]] const OriginalCurves& curves_of(uint32_t e) const {
+    return topology_->kind[e] == EdgeKind::smooth ? original_.seams() : original_.curves();
+  }
   /// Zero at creases (no face), where there are two.
   [[nodiscard]] Vec3f normal_at(uint32_t face, Vec3d point) const {
     return face == none ? Vec3f{} : to_float(original_.normal(face, point));
@@ -101,9 +107,9 @@ class Placement {
     const uint32_t e = level_->curve_edges()[c];
     const Ends edge = ends(e);
     const Vec3d point = to_double(predicted_[vertex(e)]);
-    const Nearest start = original_.curves().nearest(to_double(lifted(e).point));
+    const Nearest start = curves_of(e).nearest(to_double(lifted(e).point));
     const Tangents tangents = residual_tangents(*topology_, predicted_.data(), e, directions_[e]);
-    const auto met = original_.curves().meet(start.face, start.point, point, to_double(tangents.along), edge.length);
+    const auto met = curves_of(e).meet(start.face, start.point, point, to_double(tangents.along), edge.length);
     if (!met || length(*met - edge.expected) > reach * edge.length) return set_free_target(e, edge, edge.expected, {});
     set_target(e, *met, lifted(e).face, false);
     made_.across[c] = steps(*met - to_double(predicted_[vertex(e)]), tangents.across);
@@ -112,7 +118,7 @@ class Placement {
   /// Sets the place of the original nearest to a point, on a curve if the edge is on one, on a sheet with about this
   /// normal; else the lifted one.
   void set_free_target(uint32_t e, const Ends& edge, Vec3d near, Vec3d normal) {
-    if (is_on_curve(e)) return set_target(e, original_.curves().nearest(near).point, lifted(e).face, true);
+    if (is_on_curve(e)) return set_target(e, curves_of(e).nearest(near).point, lifted(e).face, true);
     const Nearest found = original_.tree().nearest(near, edge.length / 2, normal);
     if (found.face != none)
       set_target(e, found.point, found.face, true);
@@ -282,9 +288,10 @@ class Placement {
   const DetailLevel* level_ = nullptr;  // at hand
   const Topology* topology_ = nullptr;
   Residuals made_;
-  Buffer<Vec3f> directions_;  // [E]
-  Buffer<Vec3f> predicted_;   // [V + E]
-  std::vector<bool> is_bad_;  // [E] whether a face at the new vertex is turned over
+  Buffer<Vec3f> directions_;       // [E]
+  Buffer<Vec3f> predicted_;        // [V + E]
+  std::vector<bool> is_on_curve_;  // [E] on one, or on a seam
+  std::vector<bool> is_bad_;       // [E] whether a face at the new vertex is turned over
 };
 
 }  // namespace
@@ -297,7 +304,7 @@ PlacedLevels place_on_original(const OriginalSurface& original, const LiftedBase
                                const StepSchedule& steps, const std::function<void()>& poll) {
   PlacedLevels placed;
   Placement placement(original, base);
-  DetailLevel level(base.mesh.topology);
+  DetailLevel level(base.mesh.topology, base.seams);
   for (int l = 0; l < levels; ++l) {
     if (poll) poll();
     placed.residuals.push_back(placement.place(level, steps.of(l, levels)));

@@ -61,9 +61,14 @@ ResidualFit::ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, Pl
       base_vertices_(static_cast<uint32_t>(positions_.size())) {
   for (size_t l = 0; l < placed.levels.size(); ++l)
     levels_.push_back({std::move(placed.levels[l]), std::move(placed.residuals[l])});
-  is_on_curve_.resize(last_.vertex_count);
-  for (uint32_t h = 0; h < last_.half_edge_count(); ++h)
-    if (last_.is_curve(h)) is_on_curve_[last_.origin[h]] = is_on_curve_[last_.tip(h)] = true;
+  on_.resize(last_.vertex_count, On::surface);
+  for (const Level& level : levels_)
+    for (const uint32_t e : level.level.curve_edges()) {
+      const Topology& t = level.level.topology();
+      const On on = t.kind[e] == EdgeKind::smooth ? On::seam : On::curve;
+      for (const uint32_t v : {t.origin[t.half_edge[e]], t.tip(t.half_edge[e]), t.vertex_count + e})
+        on_[v] = std::max(on_[v], on);
+    }
   forward();
 }
 
@@ -117,13 +122,16 @@ void ResidualFit::find_forces() {
   for (uint32_t v = 0; v < count; ++v) {
     const Vec3d normal = to_double(force_[v]);
     const double size = length(normal);
-    force_[v] = is_on_curve_[v] ? force_to_curve(v) : size > 0 ? force_to_surface(v, (1 / size) * normal) : Vec3f{};
+    force_[v] = on_[v] != On::surface ? force_to_curve(v)
+                : size > 0            ? force_to_surface(v, (1 / size) * normal)
+                                      : Vec3f{};
   }
 }
 
 Vec3f ResidualFit::force_to_curve(uint32_t v) const {
   const Vec3d point = to_double(positions_[v]);
-  return to_float(area_[v] * (original_.curves().nearest(point).point - point));
+  const OriginalCurves& curves = on_[v] == On::seam ? original_.seams() : original_.curves();
+  return to_float(area_[v] * (curves.nearest(point).point - point));
 }
 
 /// A vertex that no face of about its normal is near is lost: it is pulled to the nearest point of all.

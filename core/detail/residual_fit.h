@@ -52,12 +52,13 @@ class ResidualFit {
   std::function<void()> poll_;
   std::vector<Level> levels_;
   Topology last_;
-  std::vector<bool> is_on_curve_;  // [V]
-  Buffer<Vec3f> positions_;        // [V] of the last level
-  Buffer<Vec3f> force_;            // [V] area times the way to the original
-  Buffer<float> area_;             // [V]
-  Buffer<float> distance_;         // [V] to the original when last looked; negative: not known
-  Buffer<uint32_t> face_;          // [V] of the original, nearest then
+  enum class On : uint8_t { surface, seam, curve };
+  std::vector<On> on_;       // [V] what a vertex keeps to
+  Buffer<Vec3f> positions_;  // [V] of the last level
+  Buffer<Vec3f> force_;      // [V] area times the way to the original
+  Buffer<float> area_;       // [V]
+  Buffer<float> distance_;   // [V] to the original when last looked; negative: not known
+  Buffer<uint32_t> face_;    // [V] of the original, nearest then
   uint32_t base_vertices_;
 };
 

@@ -10,14 +10,15 @@ Vec3f area_normal(const Topology& mesh, const Vec3f* positions, uint32_t face) {
   return cross(positions[corner[1]] - a, positions[corner[2]] - a);
 }
 
-/// Whether each vertex is on a curve [V]; empty where there are no curves.
+/// Whether each vertex is on a boundary or a crease [V]; empty where there are no curves.
 Buffer<uint8_t> vertices_on_curves(const DetailLevel& level) {
   Buffer<uint8_t> is_on_curve;
   if (level.curve_edges().empty()) return is_on_curve;
   const Topology& mesh = level.topology();
   is_on_curve.assign(mesh.vertex_count, 0);
   for (const uint32_t e : level.curve_edges())
-    is_on_curve[mesh.origin[mesh.half_edge[e]]] = is_on_curve[mesh.tip(mesh.half_edge[e])] = 1;
+    if (mesh.kind[e] != EdgeKind::smooth)
+      is_on_curve[mesh.origin[mesh.half_edge[e]]] = is_on_curve[mesh.tip(mesh.half_edge[e])] = 1;
   return is_on_curve;
 }
 

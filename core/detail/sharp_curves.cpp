@@ -140,8 +140,8 @@ class SharpEdges {
   std::vector<bool> on_boundary_;                 // [V]
 };
 
-VertexDegrees degrees_of(const Topology& t) {
-  return {t, [&](uint32_t e) { return t.kind[e] != EdgeKind::smooth; }};
+VertexDegrees degrees_of(const Topology& t, const std::vector<uint32_t>& seams = {}) {
+  return {t, [&](uint32_t e) { return t.kind[e] != EdgeKind::smooth || std::ranges::binary_search(seams, e); }};
 }
 
 }  // namespace
@@ -170,8 +170,8 @@ void mark_sharp_curves(Mesh& mesh) {
   mark_corners(mesh);
 }
 
-std::vector<CurveRole> curve_roles(const Topology& topology) {
-  const VertexDegrees curves = degrees_of(topology);
+std::vector<CurveRole> curve_roles(const Topology& topology, const std::vector<uint32_t>& seams) {
+  const VertexDegrees curves = degrees_of(topology, seams);
   std::vector<CurveRole> roles;
   roles.reserve(topology.vertex_count);
   for (const uint8_t degree : curves.degree)

@@ -21,7 +21,7 @@ void mark_sharp_curves(Mesh& mesh);
 /// Finds the corners of the curves that the mesh has.
 void mark_corners(Mesh& mesh);
 
-/// Roles of the vertices [V].
-[[nodiscard]] std::vector<CurveRole> curve_roles(const Topology& topology);
+/// Roles of the vertices [V]. `seams`: edges that are curves, too, in ascending order.
+[[nodiscard]] std::vector<CurveRole> curve_roles(const Topology& topology, const std::vector<uint32_t>& seams = {});
 
 }  // namespace papilio

@@ -21,16 +21,25 @@ inline constexpr int most_detail_levels = 10;
 
 /// Coarse mesh that levels refine.
 struct DetailBase {
-  TriangleMesh triangles;         ///< manifold; edges with one face are boundaries
+  /// Manifold; edges with one face are boundaries. Without attributes, or with texture coordinates alone: one attribute
+  /// of two components, which may have seams.
+  TriangleMesh triangles;
   std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
 
   friend bool operator==(const DetailBase&, const DetailBase&) = default;
+};
+
+/// Residuals of texture coordinates on one level.
+struct TexcoordStream {
+  float step = 0;                ///< quantization step, in the unit of the coordinates; 0: there are no residuals
+  std::vector<uint8_t> bytes{};  ///< entropy-coded residuals
 };
 
 /// Residuals of one level.
 struct DetailStream {
   float step = 0;              ///< quantization step, in the mesh's unit; > 0
   std::vector<uint8_t> bytes;  ///< entropy-coded residuals, in the order of the edges that are split
+  TexcoordStream texcoords{};  ///< where the base has texture coordinates
 };
 
 /// What a decoder of the levels up to one has, compared with the original.
@@ -39,10 +48,10 @@ struct DetailReach {
   double largest = 0;  ///< largest distance of either direction; share of the original's diagonal
 };
 
-/// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams.
-/// `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every processor. Throws
-/// `Error`: bad_option (no step, too many levels), not_finite, result_too_large beyond `face_limit`, cancelled, and
-/// what build_mesh() throws. O(result).
+/// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams, with
+/// the attributes of the base. `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every
+/// processor. Throws `Error`: bad_option (no step, too many levels, other attributes), not_finite, result_too_large
+/// beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
@@ -92,8 +101,9 @@ using BaseCoder = std::function<CodedBase(const TriangleMesh&)>;
 
 struct DetailOptions {
   double rms = 1e-4;  ///< wanted RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
-  uint64_t face_limit = 8'000'000;            ///< faces of the last level
-  std::function<bool()> cancelled{};          ///< asked between steps; true stops with `Fault::cancelled`
+  double texcoord_step = 1.0 / 2048;  ///< of texture coordinates, whose largest error at vertices is half of it; > 0
+  uint64_t face_limit = 8'000'000;    ///< faces of the last level
+  std::function<bool()> cancelled{};  ///< asked between steps; true stops with `Fault::cancelled`
   std::function<void(double)> on_progress{};  ///< share done, 0..1
 };
 
@@ -104,14 +114,15 @@ struct EncodedDetail {
   uint32_t folds = 0;              ///< faces of the last level turned against the original where they lie
   uint32_t parted = 0;             ///< vertices at which the original touches itself, which were parted
   uint64_t bytes = 0;              ///< of base, curves and streams
+  uint64_t texcoord_bytes = 0;     ///< of the streams of texture coordinates
 };
 
-/// Encodes an original without its attributes. Boundaries and sharp edges that form clean curves become curves of the
-/// base. Where the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of
-/// the wanted distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the
-/// fewest bytes for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`:
-/// bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what
-/// build_mesh() throws.
+/// Encodes an original without attributes or with texture coordinates alone: one attribute of two components, whose
+/// seams become seams of the base. Boundaries and sharp edges that form clean curves become curves of the base. Where
+/// the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of the wanted
+/// distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the fewest bytes
+/// for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`: bad_option,
+/// bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

@@ -1,0 +1,33 @@
+#include "detail/base_points.h"
+
+#include <map>
+
+namespace papilio {
+
+TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original) {
+  if (base.point.empty()) return base.triangles;
+  TriangleMesh made;
+  for (const Attribute& attribute : original.attributes.attributes)
+    made.attributes.push_back({.components = attribute.components, .values = {}});
+  std::map<uint32_t, uint32_t> number;  // of the original's points
+  made.triangles.reserve(base.point.size());
+  for (size_t f = 0; f < base.point.size(); ++f) {
+    Triangle triangle{};
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t point = base.point[f][i];
+      const auto [at, is_new] = number.try_emplace(point, static_cast<uint32_t>(made.positions.size()));
+      triangle[i] = at->second;
+      if (!is_new) continue;
+      made.positions.push_back(base.triangles.positions[base.triangles.triangles[f][i]]);
+      for (size_t a = 0; a < made.attributes.size(); ++a) {
+        const Attribute& of = original.attributes.attributes[a];
+        const double* value = &of.values[size_t{of.components} * point];
+        made.attributes[a].values.insert(made.attributes[a].values.end(), value, value + of.components);
+      }
+    }
+    made.triangles.push_back(triangle);
+  }
+  return made;
+}
+
+}  // namespace papilio

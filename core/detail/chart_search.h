@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detail/original_surface.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Finds texture coordinates of an original near points, within the chart where the search begins: no seam is crossed.
+class ChartSearch {
+ public:
+  /// The original must have texture coordinates, and outlive this.
+  explicit ChartSearch(const OriginalSurface& original);
+
+  struct Found {
+    uint32_t face;
+    Vec3f texcoord;  ///< (u, v, 0)
+  };
+  /// Looks from these faces on, the nearest first, for the face that is nearest to the point, until several in a row
+  /// are no nearer. Returns its texture coordinates at its point nearest to the point.
+  [[nodiscard]] Found nearest(std::span<const uint32_t> starts, Vec3d point);
+
+ private:
+  struct Candidate {
+    double squared_distance;
+    uint32_t face;
+  };
+  void push(uint32_t face, Vec3d point);
+  [[nodiscard]] Vec3f texcoord(uint32_t face, Vec3d point) const;
+
+  const OriginalSurface& original_;
+  std::vector<bool> is_seam_;     // [E]
+  std::vector<uint32_t> seen_;    // [F] search that saw a face last
+  uint32_t search_ = 0;           // at hand
+  std::vector<Candidate> queue_;  // heap
+};
+
+}  // namespace papilio

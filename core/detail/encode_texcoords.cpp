@@ -1,0 +1,50 @@
+#include "detail/encode_texcoords.h"
+
+#include <array>
+
+#include "detail/chart_search.h"
+#include "detail/edge_middles.h"
+#include "detail/texcoord_levels.h"
+#include "split/split_in_four.h"
+
+namespace papilio {
+namespace {
+
+/// Middles of edges at seams are looked up so far inside their charts: it takes no side of a seam to be the other.
+constexpr double inward = 1.0 / 64;
+
+}  // namespace
+
+std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
+                                             const CollapseSequence& sequence, const BaseMesh& base,
+                                             const Buffer<Vec3f>& positions, size_t levels, float step,
+                                             const std::function<void()>& poll) {
+  std::vector<TexcoordStream> streams;
+  TexcoordLevels texcoords(lifted.mesh, lifted.seams);
+  ChartSearch search(original);
+  EdgeMiddles middles(lifted.faces);
+  Topology whole = lifted.mesh.topology;
+  std::vector<uint32_t> face(texcoords.values().size(), none);  // [V] of the original, where a vertex was found
+  for (size_t l = 0; l < levels; ++l) {
+    const Topology& t = texcoords.level().topology();
+    std::vector<SurfacePlace> places = middles.of(t, inward);
+    sequence.lift(places, base, poll);
+    texcoords.predict(whole, positions);
+    Buffer<Vec3f> wanted;
+    wanted.reserve(t.edge_count());
+    for (uint32_t e = 0; e < t.edge_count(); ++e) {
+      const uint32_t h = t.half_edge[e];
+      const std::array<uint32_t, 3> starts{places[e].face, face[t.origin[h]], face[t.tip(h)]};
+      const ChartSearch::Found found =
+          search.nearest(starts, to_double(positions[texcoords.vertices()[t.vertex_count + e]]));
+      wanted.push_back(found.texcoord);
+      face.push_back(found.face);
+    }
+    streams.push_back(texcoords.encode(wanted, step));
+    whole = split_in_four(whole);
+    middles.next();
+  }
+  return streams;
+}
+
+}  // namespace papilio

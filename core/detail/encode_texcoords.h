@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "detail/base_lift.h"
+#include "detail/collapse_sequence.h"
+#include "detail/original_surface.h"
+#include "papilio/detail.h"
+
+namespace papilio {
+
+/// Encodes the texture coordinates of the levels of a base whose positions are chosen: those that the original has
+/// where the vertices came to lie, in the charts that they correspond to. `positions`: vertices of the base and of
+/// `levels` levels. `lifted` must have texture coordinates. One stream a level.
+[[nodiscard]] std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
+                                                           const CollapseSequence& sequence, const BaseMesh& base,
+                                                           const Buffer<Vec3f>& positions, size_t levels, float step,
+                                                           const std::function<void()>& poll);
+
+}  // namespace papilio

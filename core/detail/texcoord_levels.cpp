@@ -1,0 +1,154 @@
+#include "detail/texcoord_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "detail/seams.h"
+#include "papilio/error.h"
+
+namespace papilio {
+namespace {
+
+/// A face is no frame where the square of its area is a smaller share of that of the rectangle of its sides.
+constexpr float least_thickness = 1e-6F;
+
+void require_finite(const Buffer<Vec3f>& values) {
+  for (const Vec3f c : values)
+    if (!(std::abs(c.x) <= coordinate_limit && std::abs(c.y) <= coordinate_limit))
+      throw Error(Fault::not_finite, "Detail moves a texture coordinate beyond the largest number: it is damaged.");
+}
+
+/// Returns how much a linear function changes along `move`, or along as much of it as lies in the plane of three
+/// points. `value`: the function at these. At most the differences between them are added; zero where they are on a
+/// line.
+Vec3f change_along(Vec3f move, const Vec3f (&point)[3], const Vec3f (&value)[3]) {
+  const Vec3f one = point[1] - point[0];
+  const Vec3f two = point[2] - point[0];
+  const float a = dot(one, one);
+  const float b = dot(one, two);
+  const float c = dot(two, two);
+  const float area = a * c - b * b;
+  if (!(area > least_thickness * (a * c))) return {};
+  const float x = dot(one, move);
+  const float y = dot(two, move);
+  const float along_one = std::clamp((c * x - b * y) / area, -1.0F, 1.0F);
+  const float along_two = std::clamp((a * y - b * x) / area, -1.0F, 1.0F);
+  return along_one * (value[1] - value[0]) + along_two * (value[2] - value[0]);
+}
+
+DetailLevel cut_level(const Mesh& base, CutSurface cut, Buffer<Vec3f>& values, Buffer<uint32_t>& vertices) {
+  const std::vector<double>& of_points = base.attributes.attributes.at(0).values;
+  values.reserve(cut.half_edge.size());
+  vertices.reserve(cut.half_edge.size());
+  for (const uint32_t h : cut.half_edge) {
+    const double* value = &of_points[size_t{2} * base.attributes.point[h]];
+    for (const double v : {value[0], value[1]})
+      if (!(std::abs(v) <= coordinate_limit))
+        throw Error(Fault::not_finite, "A texture coordinate of the base is beyond 1e18.");
+    values.push_back({static_cast<float>(value[0]), static_cast<float>(value[1]), 0});
+    vertices.push_back(base.topology.origin[h]);
+  }
+  return DetailLevel(std::move(cut.topology));
+}
+
+}  // namespace
+
+void require_texcoords(const std::vector<Attribute>& attributes) {
+  if (attributes.empty()) return;
+  if (attributes.size() > 1 || attributes[0].components != 2)
+    throw Error(Fault::bad_option,
+                "Detail carries one attribute of two components, texture coordinates. Leave the others out.");
+}
+
+TexcoordLevels::TexcoordLevels(const Mesh& base, const std::vector<uint32_t>& seams)
+    : level_(cut_level(base, cut_at_seams(base, seams), values_, vertices_)), models_(values_.size()) {}
+
+void TexcoordLevels::predict(const Topology& whole, const Buffer<Vec3f>& positions) {
+  const Topology& t = level_.topology();
+  Buffer<Vec3f> cut;
+  cut.reserve(size_t{t.vertex_count} + t.edge_count());
+  for (const uint32_t v : vertices_) cut.push_back(positions[v]);
+  level_.predict(cut);
+  level_.predict(values_);
+  vertices_.reserve(values_.size());
+  for (uint32_t e = 0; e < t.edge_count(); ++e) {
+    vertices_.push_back(whole.vertex_count + whole.edge[t.half_edge[e]]);
+    correct(e, positions[vertices_.back()] - cut[t.vertex_count + e], positions);
+  }
+}
+
+/// Moves the coordinates of edge e's new vertex as far as its position is from what the rules within the chart give:
+/// by the mean over the edge's faces.
+void TexcoordLevels::correct(uint32_t e, Vec3f move, const Buffer<Vec3f>& positions) {
+  const Topology& t = level_.topology();
+  const uint32_t h = t.half_edge[e];
+  Vec3f sum;
+  for (const uint32_t side : {h, t.twin[h]}) {
+    if (side == none) continue;
+    const uint32_t* corner = &t.origin[size_t{3} * Topology::face(side)];
+    const Vec3f point[3]{positions[vertices_[corner[0]]], positions[vertices_[corner[1]]],
+                         positions[vertices_[corner[2]]]};
+    const Vec3f value[3]{values_[corner[0]], values_[corner[1]], values_[corner[2]]};
+    sum += change_along(move, point, value);
+  }
+  values_[t.vertex_count + e] += (t.twin[h] == none ? 1.0F : 0.5F) * sum;
+}
+
+void TexcoordLevels::decode(const TexcoordStream& stream) {
+  const uint32_t edges = level_.topology().edge_count();
+  finish(stream.step > 0 ? decode_texcoord_residuals(level_, stream.bytes, stream.step, values_, models_)
+                         : TexcoordResiduals{.u = Buffer<int32_t>(edges), .v = Buffer<int32_t>(edges)},
+         stream.step);
+}
+
+TexcoordStream TexcoordLevels::encode(const Buffer<Vec3f>& wanted, float step) {
+  const Topology& t = level_.topology();
+  TexcoordResiduals residuals{.u = Buffer<int32_t>(t.edge_count()), .v = Buffer<int32_t>(t.edge_count())};
+  const auto steps = [&](float move) {
+    const auto limit = static_cast<double>(largest_residual);
+    return static_cast<int32_t>(std::lround(std::clamp(double{move} / step, -limit, limit)));
+  };
+  bool is_needed = false;
+  for (uint32_t e = 0; e < t.edge_count(); ++e) {
+    const Vec3f move = wanted[e] - values_[t.vertex_count + e];
+    residuals.u[e] = steps(move.x);
+    residuals.v[e] = steps(move.y);
+    is_needed = is_needed || residuals.u[e] != 0 || residuals.v[e] != 0;
+  }
+  TexcoordStream stream;
+  if (is_needed) stream = {step, encode_texcoord_residuals(level_, residuals, step, values_, models_)};
+  finish(residuals, stream.step);
+  return stream;
+}
+
+void TexcoordLevels::finish(const TexcoordResiduals& residuals, float step) {
+  const Topology& t = level_.topology();
+  for (uint32_t e = 0; e < t.edge_count(); ++e) {
+    Vec3f& value = values_[t.vertex_count + e];
+    value.x += static_cast<float>(residuals.u[e]) * step;
+    value.y += static_cast<float>(residuals.v[e]) * step;
+  }
+  require_finite(values_);
+  models_.append(residuals);
+  level_ = level_.next();
+}
+
+TriangleMesh TexcoordLevels::mesh(const Buffer<Vec3f>& positions) const {
+  const Topology& t = level_.topology();
+  TriangleMesh made;
+  Attribute texcoords{.components = 2, .values = {}};
+  made.positions.reserve(vertices_.size());
+  texcoords.values.reserve(2 * vertices_.size());
+  for (size_t v = 0; v < vertices_.size(); ++v) {
+    made.positions.push_back(positions[vertices_[v]]);
+    texcoords.values.push_back(values_[v].x);
+    texcoords.values.push_back(values_[v].y);
+  }
+  made.triangles.reserve(t.face_count());
+  for (uint32_t h = 0; h < t.half_edge_count(); h += 3)
+    made.triangles.push_back({t.origin[h], t.origin[h + 1], t.origin[h + 2]});
+  made.attributes.push_back(std::move(texcoords));
+  return made;
+}
+
+}  // namespace papilio

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "detail/detail_level.h"
+#include "detail/texcoord_residuals.h"
+#include "papilio/detail.h"
+#include "papilio/mesh.h"
+
+namespace papilio {
+
+/// Throws `Error` bad_option unless the attributes are none, or texture coordinates alone: one of two components.
+void require_texcoords(const std::vector<Attribute>& attributes);
+
+/// Texture coordinates of the levels of a base, on the surface that is cut along its seams: what decoder and encoder
+/// compute alike. Each level predicts the coordinates of its new vertices by the rules of the positions within the
+/// charts, corrected for where the positions came to lie, and adds residuals.
+class TexcoordLevels {
+ public:
+  /// Of a base with texture coordinates, cut along these seams. Throws `Error` not_finite.
+  TexcoordLevels(const Mesh& base, const std::vector<uint32_t>& seams);
+
+  /// Predicts the coordinates of a level's new vertices: `whole` is the level as it is not cut, `positions` [V + E] and
+  /// more are its vertices with the new ones.
+  void predict(const Topology& whole, const Buffer<Vec3f>& positions);
+  /// Decodes the residuals of the level that is predicted, and goes on to the next one. Throws `Error` not_finite.
+  void decode(const TexcoordStream& stream);
+  /// Codes the residuals that lead nearest to `wanted` [E] for the level that is predicted, and goes on to the next
+  /// one.
+  [[nodiscard]] TexcoordStream encode(const Buffer<Vec3f>& wanted, float step);
+
+  /// The level that is cut: the one that is predicted, or is to be.
+  [[nodiscard]] const DetailLevel& level() const { return level_; }
+  /// Texture coordinates (u, v, 0) [V], and of a predicted level [V + E].
+  [[nodiscard]] const Buffer<Vec3f>& values() const { return values_; }
+  /// The vertex of the surface that is not cut at each one of it, as many.
+  [[nodiscard]] const Buffer<uint32_t>& vertices() const { return vertices_; }
+  /// Returns the mesh of all levels so far, points of `positions`, which are its vertices, at seams.
+  [[nodiscard]] TriangleMesh mesh(const Buffer<Vec3f>& positions) const;
+
+ private:
+  void correct(uint32_t e, Vec3f move, const Buffer<Vec3f>& positions);
+  void finish(const TexcoordResiduals& residuals, float step);
+
+  Buffer<Vec3f> values_;
+  Buffer<uint32_t> vertices_;
+  DetailLevel level_;
+  TexcoordModels models_;
+};
+
+}  // namespace papilio

@@ -1,0 +1,364 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "core/detail/base_curves.h"
+#include "core/detail/base_points.h"
+#include "core/detail/collapse_sequence.h"
+#include "core/detail/encode_texcoords.h"
+#include "core/detail/level_decoder.h"
+#include "core/detail/manifold_surface.h"
+#include "core/detail/residual_fit.h"
+#include "core/detail/seams.h"
+#include "core/detail/sharp_curves.h"
+#include "papilio/detail.h"
+#include "papilio/error.h"
+#include "tests/support/shapes.h"
+
+// Texture coordinates of packed originals: seams of the base, prediction, residuals.
+
+namespace papilio {
+namespace {
+
+using Texcoord = std::array<double, 2>;
+
+/// Gives each corner of each face the value of a function: points are as many as needed.
+TriangleMesh with_texcoords(const TriangleMesh& plain,
+                            const std::function<Texcoord(const Triangle&, size_t)>& texcoord_of) {
+  TriangleMesh made;
+  made.attributes.push_back({.components = 2, .values = {}});
+  for (const Triangle& triangle : plain.triangles) {
+    Triangle points{};
+    for (size_t i = 0; i < 3; ++i) {
+      points[i] = static_cast<uint32_t>(made.positions.size());
+      made.positions.push_back(plain.positions[triangle[i]]);
+      for (const double value : texcoord_of(triangle, i)) made.attributes[0].values.push_back(value);
+    }
+    made.triangles.push_back(points);
+  }
+  return build_mesh(made).triangles();
+}
+
+Texcoord texcoord_at(const TriangleMesh& mesh, uint32_t point) {
+  return {mesh.attributes[0].values[2 * point], mesh.attributes[0].values[2 * point + 1]};
+}
+
+Texcoord sheet_texcoord(Vec3d p) { return {0.1 + 0.7 * p.x - 0.2 * p.y, 0.3 + 0.6 * p.y}; }
+
+/// A flat sheet of a unit square whose inner vertices are moved at random, with coordinates that are linear.
+TriangleMesh flat_sheet(uint32_t n) {
+  TriangleMesh sheet = test::grid(n, n);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> noise(-0.3F, 0.3F);
+  const auto size = static_cast<float>(n);
+  for (Vec3f& p : sheet.positions) {
+    if (p.x > 0 && p.x < size && p.y > 0 && p.y < size) p = {p.x + noise(random), p.y + noise(random), 0};
+    p = (1 / size) * p;
+  }
+  return with_texcoords(sheet, [&](const Triangle& t, size_t i) {
+    const Vec3f p = sheet.positions[t[i]];
+    return sheet_texcoord(to_double(p));
+  });
+}
+
+/// A tube about the z axis of n by m cells, closed by nothing, whose coordinates are the angle's share of a turn and z.
+TriangleMesh textured_tube(uint32_t n, uint32_t m) {
+  TriangleMesh made;
+  for (uint32_t j = 0; j <= m; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      made.positions.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                                2 * static_cast<float>(j) / static_cast<float>(m)});
+    }
+  for (uint32_t j = 0; j < m; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t a = j * n + i;
+      const uint32_t b = j * n + (i + 1) % n;
+      made.triangles.push_back({a, b, b + n});
+      made.triangles.push_back({a, b + n, a + n});
+    }
+  return with_texcoords(made, [&](const Triangle& t, size_t i) {
+    const auto column = [&](uint32_t v) { return v % n; };
+    const bool is_last = std::ranges::any_of(t, [&](uint32_t v) { return column(v) == n - 1; });
+    const double turn = is_last && column(t[i]) == 0 ? 1 : static_cast<double>(column(t[i])) / n;
+    return Texcoord{turn, made.positions[t[i]].z / 2};
+  });
+}
+
+/// Texture coordinates of a place on a side of the unit cube with this normal.
+Texcoord box_texcoord(Vec3d normal, Vec3d p) {
+  const double side = normal.x + normal.y + normal.z > 0 ? 0.5 : 0;
+  if (std::abs(normal.x) > std::abs(normal.y) + std::abs(normal.z)) return {0.3 * p.y, side + 0.3 * p.z};
+  if (std::abs(normal.y) > std::abs(normal.z)) return {0.35 + 0.3 * p.x, side + 0.3 * p.z};
+  return {0.7 + 0.3 * p.x, side + 0.3 * p.y};
+}
+
+/// The unit cube with a chart for each side.
+TriangleMesh charted_box(uint32_t cells) {
+  const TriangleMesh box = test::box({cells, cells, cells}, {1, 1, 1});
+  return with_texcoords(box, [&](const Triangle& t, size_t i) {
+    const auto place = [&](size_t corner) { return to_double(box.positions[t[corner]]); };
+    return box_texcoord(cross(place(1) - place(0), place(2) - place(0)), place(i));
+  });
+}
+
+/// A base of about so many faces with levels whose positions have this step: what encode_detail() makes of its last
+/// trial, without the search.
+DetailSource pack_levels(const TriangleMesh& triangles, uint32_t faces, int levels, float step, float texcoord_step) {
+  Mesh mesh = build_mesh(triangles);
+  mark_sharp_curves(mesh);
+  const OriginalSurface original(std::move(mesh));
+  CollapseSequence sequence(original.mesh());
+  sequence.collapse_to(faces);
+  const BaseMesh base = sequence.base();
+  const LiftedBase lifted = lift_base(sequence, base, points_of_base(base, original.mesh()), original, levels, {});
+  ResidualFit fit(original, lifted.mesh.positions, place_on_original(original, lifted, levels, {.last = step}, {}), {});
+  DetailSource made{{lifted.mesh.triangles(), encode_base_curves(lifted.mesh.topology)}, {}};
+  const std::vector<std::vector<uint8_t>> streams = fit.code();
+  const auto count = static_cast<size_t>(levels);
+  std::vector<TexcoordStream> texcoords =
+      encode_texcoords(original, lifted, sequence, base, fit.surface(count).positions, count, texcoord_step, {});
+  for (size_t l = 0; l < count; ++l) made.levels.push_back({fit.step(l), streams[l], std::move(texcoords[l])});
+  return made;
+}
+
+constexpr float usual_step = 1.0F / 2048;
+constexpr double half_step = 0.5 / 2048;
+
+DetailSource pack_levels(const TriangleMesh& triangles) { return pack_levels(triangles, 60, 4, 1e-4F, usual_step); }
+TriangleMesh decode_all(const DetailSource& source) { return decode_detail(source.base, source.levels); }
+size_t texcoord_bytes(const DetailSource& source) {
+  size_t bytes = 0;
+  for (const DetailStream& level : source.levels) bytes += level.texcoords.bytes.size();
+  return bytes;
+}
+
+/// Largest error of texture coordinates at the points of a mesh and at the centres of its faces. `error(place,
+/// texcoord, normal)`: of one; the normal is that of a face there.
+double largest_error(const TriangleMesh& mesh, const std::function<double(Vec3d, Texcoord, Vec3d)>& error) {
+  double largest = 0;
+  for (const Triangle& t : mesh.triangles) {
+    std::array<Vec3d, 3> p{};
+    std::array<Texcoord, 3> c{};
+    for (size_t i = 0; i < 3; ++i) p[i] = to_double(mesh.positions[t[i]]), c[i] = texcoord_at(mesh, t[i]);
+    const Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
+    for (size_t i = 0; i < 3; ++i) largest = std::max(largest, error(p[i], c[i], normal));
+    const Texcoord middle{(c[0][0] + c[1][0] + c[2][0]) / 3, (c[0][1] + c[1][1] + c[2][1]) / 3};
+    largest = std::max(largest, error((1 / 3.0) * (p[0] + p[1] + p[2]), middle, normal));
+  }
+  return largest;
+}
+
+double texcoord_distance(Texcoord a, Texcoord b) { return std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])); }
+
+double error_on_tube(Vec3d p, Texcoord c, Vec3d /*normal*/) {
+  const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
+  const double off = c[0] - turn;  // a whole number if it is right
+  return std::max(std::abs(off - std::round(off)), std::abs(c[1] - std::clamp(p.z / 2, 0.0, 1.0)));
+}
+
+/// Of places on the sides of the box. Faces may be folded, so that the normal may have either direction.
+double error_on_box(Vec3d p, Texcoord c, Vec3d normal) {
+  return std::min(texcoord_distance(c, box_texcoord(normal, p)), texcoord_distance(c, box_texcoord(-1.0 * normal, p)));
+}
+
+int64_t euler_characteristic_of_charts(const Mesh& mesh) {
+  return cut_at_seams(mesh, seam_edges(mesh)).topology.euler_characteristic();
+}
+
+TEST(Seams, OfATubeAreItsCut) {
+  const Mesh mesh = build_mesh(textured_tube(20, 7));
+  EXPECT_EQ(seam_edges(mesh).size(), 7U);
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 0);
+  EXPECT_EQ(euler_characteristic_of_charts(mesh), 1) << "a disc";
+}
+
+TEST(Seams, OfABoxPartItsSides) {
+  const Mesh mesh = build_mesh(charted_box(4));
+  EXPECT_EQ(seam_edges(mesh).size(), 12U * 4);
+  const CutSurface cut = cut_at_seams(mesh, seam_edges(mesh));
+  EXPECT_EQ(cut.topology.vertex_count, 6U * 25);
+  EXPECT_EQ(cut.topology.euler_characteristic(), 6);
+  EXPECT_EQ(cut.topology.shape.corners.size(), 6U * 4);
+  for (uint32_t h = 0; h < cut.topology.half_edge_count(); ++h) {
+    const uint32_t first = cut.half_edge[cut.topology.origin[h]];
+    EXPECT_EQ(mesh.topology.origin[h], mesh.topology.origin[first]);
+    EXPECT_EQ(mesh.attributes.point[h], mesh.attributes.point[first]);
+  }
+}
+
+TEST(Seams, WithoutAttributesThereAreNone) { EXPECT_TRUE(seam_edges(build_mesh(test::cube())).empty()); }
+
+TEST(Seams, ASeamThatEndsInsideTheSurfaceLeavesOneVertexThere) {
+  // A closed fan of six, cut along one spoke: the rim vertex there is two points, the centre one.
+  const TriangleMesh fan = test::fan(6, true);
+  const Mesh mesh = build_mesh(with_texcoords(fan, [&](const Triangle& t, size_t i) {
+    const bool is_first = t == fan.triangles[0];
+    const Vec3f p = fan.positions[t[i]];
+    const bool is_cut = is_first && p.x > 0.99F;
+    return Texcoord{p.x + (is_cut ? 1.0 : 0.0), p.y};
+  }));
+  EXPECT_EQ(seam_edges(mesh).size(), 1U);
+  const CutSurface cut = cut_at_seams(mesh, seam_edges(mesh));
+  EXPECT_EQ(cut.topology.vertex_count, 8U);
+  EXPECT_EQ(cut.topology.shape.corners.size(), 3U) << "both ends of the cut, one of them twice";
+}
+
+TEST(CollapseSequence, KeepsSeamsAndTheirTexcoords) {
+  for (const bool is_box : {true, false}) {
+    const Mesh original = build_mesh(is_box ? charted_box(10) : textured_tube(40, 20));
+    CollapseSequence sequence(original);
+    for (const uint32_t faces : {300U, 100U, 0U}) {
+      sequence.collapse_to(faces);
+      const BaseMesh base = sequence.base();
+      const TriangleMesh points = points_of_base(base, original);
+      const Mesh mesh = build_mesh(points);
+      EXPECT_LE(mesh.topology.face_count(), std::max(faces, 60U));
+      EXPECT_NO_THROW(require_manifold(mesh));
+      EXPECT_EQ(euler_characteristic_of_charts(mesh), euler_characteristic_of_charts(original));
+      for (uint32_t p = 0; p < points.positions.size(); ++p) {
+        const Texcoord texcoord = texcoord_at(points, p);
+        const Vec3f at = points.positions[p];
+        bool is_known = false;
+        for (uint32_t h = 0; h < original.topology.half_edge_count() && !is_known; ++h) {
+          const double* value = &original.attributes.attributes[0].values[size_t{2} * original.attributes.point[h]];
+          is_known = original.positions[original.topology.origin[h]] == at &&
+                     texcoord_distance(texcoord, {value[0], value[1]}) == 0;
+        }
+        EXPECT_TRUE(is_known);
+      }
+    }
+  }
+}
+
+TEST(DetailTexcoords, OfAFlatSheetTakeNoBytes) {
+  const DetailSource made = pack_levels(flat_sheet(20));
+  EXPECT_EQ(texcoord_bytes(made), 0U);
+  EXPECT_LT(largest_error(decode_all(made),
+                          [](Vec3d p, Texcoord c, Vec3d) { return texcoord_distance(c, sheet_texcoord(p)); }),
+            1e-6);
+}
+
+TEST(DetailTexcoords, OfABoxAreThoseOfItsSides) {
+  const DetailSource made = pack_levels(charted_box(8));
+  EXPECT_EQ(texcoord_bytes(made), 0U);
+  const TriangleMesh fine = decode_all(made);
+  EXPECT_LT(largest_error(fine, error_on_box), half_step);
+  const Mesh mesh = build_mesh(fine);
+  EXPECT_NO_THROW(require_manifold(mesh));
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 2) << "closed at its seams";
+  EXPECT_EQ(euler_characteristic_of_charts(mesh), 6);
+}
+
+TEST(DetailTexcoords, OfATubeAreRightOnBothSidesOfItsCut) {
+  const DetailSource made = pack_levels(textured_tube(48, 16));
+  const TriangleMesh fine = decode_all(made);
+  EXPECT_LT(largest_error(fine, error_on_tube), 2 * half_step);
+  for (const Triangle& t : fine.triangles)
+    for (size_t i = 0; i < 3; ++i)
+      EXPECT_LT(std::abs(texcoord_at(fine, t[i])[0] - texcoord_at(fine, t[(i + 1) % 3])[0]), 0.2)
+          << "no face spans the cut";
+  const Mesh mesh = build_mesh(fine);
+  EXPECT_NO_THROW(require_manifold(mesh));
+  EXPECT_EQ(mesh.topology.euler_characteristic(), 0);
+  EXPECT_EQ(euler_characteristic_of_charts(mesh), 1);
+}
+
+TEST(DetailTexcoords, AreFinerWithASmallerStep) {
+  const TriangleMesh original = textured_tube(48, 16);
+  double before = 1;
+  for (const float step : {1.0F / 128, 1.0F / 512, 1.0F / 2048}) {
+    const double error = largest_error(decode_all(pack_levels(original, 60, 4, 1e-4F, step)), error_on_tube);
+    EXPECT_LT(error, 0.5 * before);
+    EXPECT_GT(error, 0.1 * step);
+    before = error;
+  }
+}
+
+TEST(DetailTexcoords, ASmoothSeamIsNoCrease) {
+  EXPECT_EQ(std::ranges::count(mesh_of_base(pack_levels(textured_tube(48, 16)).base).topology.kind, EdgeKind::crease),
+            0);
+}
+
+TEST(DetailTexcoords, MayBeSkipped) {
+  DetailSource made = pack_levels(textured_tube(48, 16));
+  const TriangleMesh whole = decode_all(made);
+  ASSERT_GT(texcoord_bytes(made), 0U);
+  for (DetailStream& level : made.levels) level.texcoords = {};
+  const TriangleMesh skipped = decode_all(made);
+  EXPECT_EQ(skipped.positions, whole.positions);
+  EXPECT_EQ(skipped.triangles, whole.triangles);
+  EXPECT_NE(skipped.attributes, whole.attributes);
+  EXPECT_LT(largest_error(skipped, error_on_tube), 0.05);
+}
+
+TEST(DetailTexcoords, OfAnyBytesAreDecodedTheSame) {
+  DetailSource made = pack_levels(charted_box(6), 60, 3, 1e-3F, usual_step);
+  std::mt19937 random(9);
+  for (int round = 0; round < 20; ++round) {
+    for (DetailStream& level : made.levels) {
+      level.texcoords.step = 0.01F;
+      level.texcoords.bytes.resize(random() % 60);
+      for (uint8_t& byte : level.texcoords.bytes) byte = static_cast<uint8_t>(random());
+    }
+    const TriangleMesh fine = decode_all(made);
+    EXPECT_EQ(fine, decode_all(made));
+    for (const double value : fine.attributes.at(0).values) EXPECT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST(DetailTexcoords, BeyondTheLargestNumberAreRefused) {
+  DetailSource made = pack_levels(charted_box(6), 60, 2, 1e-3F, usual_step);
+  for (DetailStream& level : made.levels) level.texcoords = {1e18F, {}};  // bits that are all 1
+  EXPECT_THROW((void)decode_all(made), Error);
+  for (DetailStream& level : made.levels) level.texcoords = {-1, {}};
+  EXPECT_THROW((void)decode_all(made), Error);
+}
+
+TEST(DetailTexcoords, AreEncodedWithTheirSurface) {
+  const DetailOptions options{.rms = 5e-3, .face_limit = 2000};
+  const EncodedDetail made = encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base) {
+    return CodedBase{base, 9 * base.positions.size()};
+  });
+  EXPECT_EQ(made.base.triangles.attributes.size(), 1U);
+  uint64_t bytes = 0;
+  for (const DetailStream& level : made.levels) bytes += level.texcoords.bytes.size();
+  EXPECT_EQ(made.texcoord_bytes, bytes);
+  EXPECT_LT(largest_error(decode_detail(made.base, made.levels), error_on_tube), 0.01);
+}
+
+TEST(DetailTexcoords, OtherAttributesAreRefused) {
+  TriangleMesh mesh = charted_box(3);
+  mesh.attributes[0].components = 1;
+  mesh.attributes[0].values.resize(mesh.positions.size());
+  EXPECT_THROW((void)encode_detail(mesh, {}, [](const TriangleMesh& base) { return CodedBase{base, 1}; }), Error);
+  EXPECT_THROW((void)decode_detail({mesh}, {}), Error);
+}
+
+TEST(ManifoldSurface, PartsAttributesToo) {
+  // Two boxes that touch at an edge.
+  TriangleMesh one = charted_box(2);
+  TriangleMesh two = one;
+  for (Vec3f& p : two.positions) p = {1 + p.x, 1 + p.y, p.z};
+  const auto points = static_cast<uint32_t>(one.positions.size());
+  one.positions.insert(one.positions.end(), two.positions.begin(), two.positions.end());
+  for (const Triangle& t : two.triangles) one.triangles.push_back({t[0] + points, t[1] + points, t[2] + points});
+  one.attributes[0].values.insert(one.attributes[0].values.end(), two.attributes[0].values.begin(),
+                                  two.attributes[0].values.end());
+  const ManifoldSurface parted = manifold_surface(one, 1e-4);
+  EXPECT_EQ(parted.parted, 3U);
+  EXPECT_EQ(euler_characteristic_of_charts(parted.mesh), 12);
+  EXPECT_LT(largest_error(parted.mesh.triangles(),
+                          [](Vec3d p, Texcoord c, Vec3d normal) {
+                            return std::min(error_on_box(p, c, normal), error_on_box(p - Vec3d{1, 1, 0}, c, normal));
+                          }),
+            1e-3);
+}
+
+}  // namespace
+}  // namespace papilio
