@@ -3,17 +3,33 @@
 #include <utility>
 
 #include "proto/detail/find_packed.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/error_translation.h"
 
 namespace papilio::proto {
+namespace {
+
+/// Levels of detail may have values beyond those of the base, at most by this share of their range.
+constexpr float beyond_base = 0.25F;
+
+void widen(AttributeEncoding::Grid& grid) {
+  for (float& lowest : grid.origin) lowest -= beyond_base * grid.range;
+  grid.range *= 1 + 2 * beyond_base;
+}
+
+}  // namespace
 
 DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits) {
   DecodedMesh decoded;
   translate_errors([&] {
     if (auto model = detail::find_packed(bytes, limits)) {
-      decoded.mesh = build_mesh(model->base.triangles, &decoded.found);
-      detail::attach_levels(decoded.mesh, std::move(*model));
+      TriangleMesh base = model->base.triangles;
+      for (Attribute& texcoords : base.attributes) detail::turn_over(texcoords);
+      decoded.mesh = build_mesh(base, &decoded.found);
+      decoded.attributes = attribute_encoding(decoded.mesh, detail::base_format(base));
+      for (AttributeEncoding::Grid& grid : decoded.attributes.grids) widen(grid);
+      detail::attach_levels_turned_over(decoded.mesh, std::move(*model));
     } else {
       FormattedMesh input = read_draco(bytes, limits);
       decoded.mesh = build_mesh(input, &decoded.found, rounding_gap);

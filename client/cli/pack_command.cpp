@@ -5,7 +5,10 @@
 #include "client/cli/interruption.h"
 #include "client/cli/progress.h"
 #include "client/lib/file_words.h"
+#include "client/lib/read_materials.h"
+#include "proto/detail/only_material.h"
 #include "proto/detail/pack.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/gltf/document.h"
 #include "proto/text.h"
 
@@ -16,13 +19,17 @@ using proto::format_rounded;
 using proto::detail::Packed;
 
 /// Says what a packed model does not hold.
-void warn_of_losses(const MeshBytes& file, const TriangleMesh& triangles) {
+void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& model) {
   std::vector<std::string> warnings;
-  if (!triangles.attributes.empty())
-    warnings.push_back(file.name + ": texture coordinates, normals and other attributes are left out.");
+  const size_t packed = proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0;
+  if (model.mesh.attributes.size() > packed)
+    warnings.push_back(file.name + (packed > 0 ? ": normals and other attributes than texture coordinates are left out."
+                                               : ": normals and other attributes are left out."));
+  if (!model.materials.empty() && !proto::detail::only_material(model.materials))
+    warnings.push_back(file.name + ": its faces have several materials, or some have none: materials are left out.");
   if (is_scene(file.format)) {
     const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
-    for (const char* part : {"materials", "skins", "animations"})
+    for (const char* part : {"skins", "animations"})
       if (json.contains(part)) warnings.push_back(file.name + ": the scene's " + part + " are left out.");
   }
   print_warnings(warnings);
@@ -34,16 +41,20 @@ std::string reach_text(const DetailReach& reach) {
 
 void print_packed(std::ostream& out, const Packed& packed) {
   const proto::detail::PackedModel& model = *packed.model;
-  uint64_t bytes = model.base_bytes;
+  uint64_t bytes = model.base_bytes, texcoord_bytes = 0;
   out << "base      " << model.base.triangles.triangles.size() << " faces, " << bytes
       << " bytes: " << reach_text(model.base_reach) << '\n';
   for (size_t l = 0; l < model.levels.size(); ++l) {
     const auto& level = model.levels[l];
     bytes += level.stream.bytes.size();
+    texcoord_bytes += level.stream.texcoords.bytes.size();
     out << "level " << l + 1 << (l < 9 ? "   " : "  ") << level.faces << " faces, " << level.stream.bytes.size()
         << " bytes: " << reach_text(level.reach) << '\n';
   }
-  out << "container " << packed.glb.size() - bytes << " bytes\n"
+  if (!model.base.triangles.attributes.empty())
+    out << "texture coordinates of the levels " << texcoord_bytes << " bytes\n";
+  if (packed.image_bytes > 0) out << "images of the material " << packed.image_bytes << " bytes\n";
+  out << "container " << packed.glb.size() - bytes - texcoord_bytes - packed.image_bytes << " bytes\n"
       << "distances are shares of the diagonal; " << packed.folds << " folded faces";
   if (packed.parted > 0) out << "; parted at " << packed.parted << " vertices where the surface touches itself";
   out << '\n';
@@ -99,18 +110,19 @@ void pack_command(const PackFlags& flags) {
   check_output(output);
   if (output_format(output) != Format::glb) throw UsageError("A packed model is a .glb file. Name one with -o.");
   const MeshBytes file = read_mesh(flags.input);
-  const proto::FormattedMesh original = triangles_of(file);
-  warn_of_losses(file, original);
+  const MaterialRead original = read_with_materials(flags.input, file);
+  print_warnings(original.warnings);
+  warn_of_losses(file, original.model);
   const Interruption interruption;
   const Packed packed = in_words_of_the_file(file.name, [&] {
     ShareProgress progress;
-    return proto::detail::pack(original, {.rms = flags.rms.value_or(proto::detail::PackOptions{}.rms),
-                                          .largest = flags.largest.value_or(0),
-                                          .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
-                                          .jobs = flags.jobs,
-                                          .simplifies = flags.simplify,
-                                          .cancelled = [] { return Interruption::is_asked(); },
-                                          .on_progress = [&](double share) { progress.show(share); }});
+    return proto::detail::pack(original.model, {.rms = flags.rms.value_or(proto::detail::PackOptions{}.rms),
+                                                .largest = flags.largest.value_or(0),
+                                                .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
+                                                .jobs = flags.jobs,
+                                                .simplifies = flags.simplify,
+                                                .cancelled = [] { return Interruption::is_asked(); },
+                                                .on_progress = [&](double share) { progress.show(share); }});
   });
   save_bytes(output, packed.glb);
   print_report(output.is_standard() ? std::cerr : std::cout, flags, packed);

@@ -62,7 +62,11 @@ bool stays_scene(const MeshBytes& file, const MeshPlace& output) {
 /// the output can hold any.
 std::string mesh_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
                            proto::gltf::Materials& materials) {
-  if (is_scene(file.format) && proto::detail::find_packed(file.bytes, own_limits)) return std::move(file.bytes);
+  if (is_scene(file.format) && proto::detail::find_packed(file.bytes, own_limits)) {
+    if (holds_materials(output))
+      materials = in_words_of_the_file(file.name, [&] { return material_of_packed(file.bytes, 0); });
+    return std::move(file.bytes);
+  }
   const bool has_materials = file.format == Format::obj || is_scene(file.format);
   if (!has_materials || !holds_materials(output)) return draco_of(std::move(file));
   MaterialRead read = read_with_materials(input, file);

@@ -3,7 +3,9 @@
 #include "client/cli/commands.h"
 #include "client/cli/interruption.h"
 #include "client/lib/file_words.h"
+#include "client/lib/read_materials.h"
 #include "proto/detail/packed_reader.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/detail/plain_draco.h"
 #include "proto/draco_writer.h"
 #include "proto/text.h"
@@ -13,9 +15,22 @@ namespace {
 
 using proto::detail::PackedModel;
 
-void save_triangles(const MeshPlace& output, const proto::FormattedMesh& mesh) {
-  if (output_format(output) == Format::drc) return save_bytes(output, proto::write_draco_exact(mesh));
-  save_mesh(output, {.mesh = mesh});
+void save_triangles(const MeshPlace& output, const proto::gltf::MaterialMesh& model) {
+  if (output_format(output) == Format::drc)
+    return save_bytes(output, proto::write_draco_exact(model.mesh, model.mesh.format));
+  save_mesh(output, model);
+}
+
+/// Returns the material of a scene whose mesh is decoded, for all triangles, where the output holds any. A file that is
+/// cut lacks what lies behind its levels.
+proto::gltf::Materials material_of(const UnpackFlags& flags, const MeshBytes& file, const TriangleMesh& mesh) {
+  if (!holds_materials(flags.output)) return {};
+  try {
+    return material_of_packed(file.bytes, mesh.triangles.size());
+  } catch (const proto::Problem&) {
+    if (!flags.may_be_cut) throw;
+    return {};
+  }
 }
 
 std::ostream& begin_report(const UnpackFlags& flags, const TriangleMesh& mesh) {
@@ -38,9 +53,9 @@ bool unpack_plain(const UnpackFlags& flags, const MeshBytes& file) {
       in_words_of_the_file(file.name, [&] { return proto::detail::read_plain_draco(file.bytes, own_limits); });
   if (!mesh) return false;
   if (flags.levels.value_or(0) > 0) print_warnings({file.name + " is plain Draco and has no levels."});
-  proto::FormattedMesh formatted;
-  static_cast<TriangleMesh&>(formatted) = *mesh;
-  save_triangles(flags.output, formatted);
+  save_triangles(
+      flags.output,
+      {.mesh = *mesh, .materials = in_words_of_the_file(file.name, [&] { return material_of(flags, file, *mesh); })});
   begin_report(flags, *mesh) << "plain Draco without levels\n";
   return true;
 }
@@ -54,20 +69,20 @@ void unpack_command(const UnpackFlags& flags) {
   const auto levels = static_cast<size_t>(flags.levels.value_or(most_detail_levels));
   const Interruption interruption;
   PackedModel model;
-  proto::FormattedMesh mesh;
+  proto::gltf::MaterialMesh decoded;
   in_words_of_the_file(file.name, [&] {
     model = proto::detail::read_packed(file.bytes,
                                        {.limits = own_limits, .levels = levels, .may_be_cut = flags.may_be_cut});
-    static_cast<TriangleMesh&>(mesh) =
-        decode_detail(model.base, model.streams(), face_count_limit, [] { return Interruption::is_asked(); });
+    decoded.mesh = proto::detail::decode_packed(model, face_count_limit, [] { return Interruption::is_asked(); });
+    decoded.materials = material_of(flags, file, decoded.mesh);
   });
   if (flags.levels && levels > model.declared_levels)
     print_warnings({file.name + " has " + std::to_string(model.declared_levels) + " levels."});
   else if (model.levels.size() < std::min(levels, model.declared_levels))
     print_warnings({file.name + " is cut: " + std::to_string(model.levels.size()) + " of " +
                     std::to_string(model.declared_levels) + " levels are whole."});
-  save_triangles(flags.output, mesh);
-  report(flags, model, mesh);
+  save_triangles(flags.output, decoded);
+  report(flags, model, decoded.mesh);
 }
 
 }  // namespace papilio::client

@@ -33,7 +33,15 @@ std::vector<uint32_t> divide_points(proto::FormattedMesh& mesh, const std::vecto
   return owner;
 }
 
+bool is_material(const proto::AttributeFormat& format) {
+  return format.kind == proto::AttributeKind::generic && format.name == material_attribute_name;
+}
+
 }  // namespace
+
+bool has_material_attribute(const proto::FormattedMesh& mesh) {
+  return std::ranges::any_of(mesh.format.attributes, is_material);
+}
 
 void add_material_attribute(proto::gltf::MaterialMesh& model) {
   const std::vector<uint32_t> owner = divide_points(model.mesh, model.materials.of_triangle);
@@ -51,9 +59,7 @@ void add_material_attribute(proto::gltf::MaterialMesh& model) {
 
 std::vector<uint32_t> take_material_attribute(proto::FormattedMesh& mesh, size_t count) {
   std::vector<uint32_t> of_triangle(mesh.triangles.size(), none);
-  const auto format = std::ranges::find_if(mesh.format.attributes, [](const proto::AttributeFormat& other) {
-    return other.kind == proto::AttributeKind::generic && other.name == material_attribute_name;
-  });
+  const auto format = std::ranges::find_if(mesh.format.attributes, is_material);
   if (format == mesh.format.attributes.end()) return of_triangle;
   const auto attribute = mesh.attributes.begin() + (format - mesh.format.attributes.begin());
   for (size_t t = 0; t < of_triangle.size(); ++t) {

@@ -15,6 +15,9 @@ inline constexpr const char* material_attribute_name = "material";
 /// Adds the attribute as the last one; divides points between materials.
 void add_material_attribute(proto::gltf::MaterialMesh& model);
 
+/// Returns whether the mesh has the attribute.
+[[nodiscard]] bool has_material_attribute(const proto::FormattedMesh& mesh);
+
 /// Takes the attribute out of a mesh; returns each triangle's material as `Materials::of_triangle` has it. Numbers of
 /// `count` and more, and a mesh without the attribute, give `none`.
 [[nodiscard]] std::vector<uint32_t> take_material_attribute(proto::FormattedMesh& mesh, size_t count);

@@ -7,6 +7,7 @@
 #include "client/lib/read_beside.h"
 #include "client/lib/save_obj.h"
 #include "proto/detail/find_packed.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
@@ -34,12 +35,6 @@ std::string packed(const MeshPlace& place, MeshBytes& file) {
   return in_words_of_the_file(file.name, [&] { return proto::gltf::pack_scene(file.bytes, read, find_image); });
 }
 
-proto::FormattedMesh finest_of(const proto::detail::PackedModel& model) {
-  proto::FormattedMesh mesh;
-  static_cast<TriangleMesh&>(mesh) = decode_detail(model.base, model.streams(), own_limits.max_output_faces);
-  return mesh;
-}
-
 }  // namespace
 
 MeshBytes read_mesh(const MeshPlace& place) {
@@ -56,7 +51,8 @@ proto::FormattedMesh triangles_of(const MeshBytes& file) {
   if (is_scene(file.format)) {
     return in_words_of_the_file(file.name, [&] {
       const auto packed = proto::detail::find_packed(file.bytes, own_limits);
-      return packed ? finest_of(*packed) : proto::gltf::flatten_scene(file.bytes, own_limits);
+      return packed ? proto::detail::decode_packed(*packed, own_limits.max_output_faces)
+                    : proto::gltf::flatten_scene(file.bytes, own_limits);
     });
   }
   if (file.format != Format::drc) return parse_triangles(file.name, file.format, file.bytes);
@@ -98,7 +94,10 @@ void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model) {
 void save_draco(const MeshPlace& place, std::string_view draco, const proto::gltf::Materials& materials) {
   if (output_format(place) == Format::drc) return save_bytes(place, draco);
   proto::gltf::MaterialMesh model{.mesh = proto::read_draco(draco, own_limits), .materials = materials};
-  if (!materials.empty()) model.materials.of_triangle = take_material_attribute(model.mesh, materials.materials.size());
+  if (!materials.empty() && has_material_attribute(model.mesh))
+    model.materials.of_triangle = take_material_attribute(model.mesh, materials.materials.size());
+  else if (!materials.empty())  // of a packed model, whose faces all have it
+    model.materials.of_triangle.assign(model.mesh.triangles.size(), 0);
   save_mesh(place, model);
 }
 

@@ -61,7 +61,8 @@ struct MeshBytes {
 /// materials where `holds_materials`. Throws `FileError`.
 void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model);
 
-/// Writes a Draco stream as `save_mesh`. `materials`: those that the stream's faces name by `draco_of`.
+/// Writes a Draco stream as `save_mesh`. `materials`: those that the stream's faces name by `draco_of`; of a
+/// stream whose faces name none the first one is that of all.
 void save_draco(const MeshPlace& place, std::string_view draco, const proto::gltf::Materials& materials = {});
 
 /// Writes a .glb scene in the format of the place; beside NAME.gltf goes NAME.bin. Throws `FileError`.

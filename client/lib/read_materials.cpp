@@ -34,8 +34,16 @@ MaterialRead read_obj(const MeshPlace& place, const MeshBytes& file) {
   return read;
 }
 
+/// Reads a packed model with all its levels, and its material.
+MaterialRead read_packed_scene(const MeshBytes& file) {
+  MaterialRead read{.model = {.mesh = triangles_of(file)}};
+  read.model.materials =
+      in_words_of_the_file(file.name, [&] { return material_of_packed(file.bytes, read.model.mesh.triangles.size()); });
+  return read;
+}
+
 MaterialRead read_scene(const MeshPlace& place, const MeshBytes& file) {
-  if (proto::detail::find_packed(file.bytes, own_limits)) return {.model = {.mesh = triangles_of(file)}};
+  if (proto::detail::find_packed(file.bytes, own_limits)) return read_packed_scene(file);
   MaterialRead read{.model = in_words_of_the_file(
                         file.name, [&] { return proto::gltf::flatten_with_materials(file.bytes, own_limits); })};
   for (proto::gltf::Image& image : read.model.materials.images) {
@@ -56,6 +64,12 @@ MaterialRead read_scene(const MeshPlace& place, const MeshBytes& file) {
 }
 
 }  // namespace
+
+proto::gltf::Materials material_of_packed(std::string_view glb, size_t triangles) {
+  proto::gltf::Materials materials = proto::gltf::flatten_with_materials(glb, own_limits).materials;
+  if (!materials.empty()) materials.of_triangle.assign(triangles, 0);
+  return materials;
+}
 
 MaterialRead read_with_materials(const MeshPlace& place, const MeshBytes& file) {
   if (file.format == Format::obj) return read_obj(place, file);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/lib/mesh_stream.h"
@@ -19,5 +20,9 @@ struct MaterialRead {
 /// folder. What is missing there, and images that are neither PNG nor JPEG, are left out with a warning. Throws
 /// `FileError`, also where a material library is damaged or images exceed `kMaxFileBytes` together.
 [[nodiscard]] MaterialRead read_with_materials(const MeshPlace& place, const MeshBytes& file);
+
+/// Returns the materials of a .glb file whose only mesh is a packed model, or its plain Draco, for so many triangles
+/// that its levels have. Throws `Problem`.
+[[nodiscard]] proto::gltf::Materials material_of_packed(std::string_view glb, size_t triangles);
 
 }  // namespace papilio::client

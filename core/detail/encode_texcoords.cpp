@@ -1,6 +1,7 @@
 #include "detail/encode_texcoords.h"
 
 #include <array>
+#include <cmath>
 
 #include "detail/chart_search.h"
 #include "detail/edge_middles.h"
@@ -12,6 +13,9 @@ namespace {
 
 /// Middles of edges at seams are looked up so far inside their charts: it takes no side of a seam to be the other.
 constexpr double inward = 1.0 / 64;
+/// Step of a level, as a share of that of the next one. On a subdivided duck the same error took 57 % more bytes
+/// with 1.
+constexpr float ratio_of_steps = 0.6F;
 
 }  // namespace
 
@@ -40,7 +44,7 @@ std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, co
       wanted.push_back(found.texcoord);
       face.push_back(found.face);
     }
-    streams.push_back(texcoords.encode(wanted, step));
+    streams.push_back(texcoords.encode(wanted, step * std::pow(ratio_of_steps, static_cast<float>(levels - 1 - l))));
     whole = split_in_four(whole);
     middles.next();
   }

@@ -12,7 +12,8 @@ namespace papilio {
 
 /// Encodes the texture coordinates of the levels of a base whose positions are chosen: those that the original has
 /// where the vertices came to lie, in the charts that they correspond to. `positions`: vertices of the base and of
-/// `levels` levels. `lifted` must have texture coordinates. One stream a level.
+/// `levels` levels. `lifted` must have texture coordinates. `step`: of the last level; coarser ones have smaller ones.
+/// One stream a level.
 [[nodiscard]] std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
                                                            const CollapseSequence& sequence, const BaseMesh& base,
                                                            const Buffer<Vec3f>& positions, size_t levels, float step,

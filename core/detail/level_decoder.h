@@ -25,6 +25,8 @@ class LevelDecoder {
 
   /// Vertices decoded so far.
   [[nodiscard]] const Buffer<Vec3f>& positions() const { return positions_; }
+  /// Texture coordinates of what was decoded; null where none are.
+  [[nodiscard]] const TexcoordLevels* texcoords() const { return texcoords_ ? &*texcoords_ : nullptr; }
   /// The finest mesh decoded, which `decode` splits next. Stays as it is until the next call after that.
   [[nodiscard]] const Topology& topology();
   /// Returns the finest mesh decoded, with texture coordinates if they are; call last.

@@ -12,6 +12,9 @@ namespace {
 /// A face is no frame where the square of its area is a smaller share of that of the rectangle of its sides.
 constexpr float least_thickness = 1e-6F;
 
+/// Moves of fewer steps are not coded. On a subdivided duck 24 % fewer bytes than with 0.5 had 16 % more error.
+constexpr double least_coded = 0.75;
+
 void require_finite(const Buffer<Vec3f>& values) {
   for (const Vec3f c : values)
     if (!(std::abs(c.x) <= coordinate_limit && std::abs(c.y) <= coordinate_limit))
@@ -64,7 +67,7 @@ TexcoordLevels::TexcoordLevels(const Mesh& base, const std::vector<uint32_t>& se
     : level_(cut_level(base, cut_at_seams(base, seams), values_, vertices_)), models_(values_.size()) {}
 
 void TexcoordLevels::predict(const Topology& whole, const Buffer<Vec3f>& positions) {
-  const Topology& t = level_.topology();
+  const Topology& t = level().topology();
   Buffer<Vec3f> cut;
   cut.reserve(size_t{t.vertex_count} + t.edge_count());
   for (const uint32_t v : vertices_) cut.push_back(positions[v]);
@@ -106,7 +109,8 @@ TexcoordStream TexcoordLevels::encode(const Buffer<Vec3f>& wanted, float step) {
   TexcoordResiduals residuals{.u = Buffer<int32_t>(t.edge_count()), .v = Buffer<int32_t>(t.edge_count())};
   const auto steps = [&](float move) {
     const auto limit = static_cast<double>(largest_residual);
-    return static_cast<int32_t>(std::lround(std::clamp(double{move} / step, -limit, limit)));
+    const double way = std::clamp(double{move} / step, -limit, limit);
+    return std::abs(way) < least_coded ? 0 : static_cast<int32_t>(std::lround(way));
   };
   bool is_needed = false;
   for (uint32_t e = 0; e < t.edge_count(); ++e) {
@@ -130,11 +134,31 @@ void TexcoordLevels::finish(const TexcoordResiduals& residuals, float step) {
   }
   require_finite(values_);
   models_.append(residuals);
-  level_ = level_.next();
+  is_split_ = true;
 }
 
-TriangleMesh TexcoordLevels::mesh(const Buffer<Vec3f>& positions) const {
+const DetailLevel& TexcoordLevels::level() {
+  if (is_split_) level_ = level_.next();
+  is_split_ = false;
+  return level_;
+}
+
+Buffer<Texcoord> TexcoordLevels::on_half_edges() const {
   const Topology& t = level_.topology();
+  Buffer<Texcoord> made;
+  made.reserve(t.half_edge_count());
+  for (const uint32_t e : t.edge) made.push_back({values_[t.vertex_count + e].x, values_[t.vertex_count + e].y});
+  return made;
+}
+
+uint64_t TexcoordLevels::bytes() const {
+  const Topology& t = level_.topology();
+  return t.half_edge_count() * 3 * sizeof(uint32_t) + t.edge_count() * (sizeof(uint32_t) + sizeof(EdgeKind)) +
+         values_.size() * (sizeof(Vec3f) + 3 * sizeof(uint32_t));
+}
+
+TriangleMesh TexcoordLevels::mesh(const Buffer<Vec3f>& positions) {
+  const Topology& t = level().topology();
   TriangleMesh made;
   Attribute texcoords{.components = 2, .values = {}};
   made.positions.reserve(vertices_.size());

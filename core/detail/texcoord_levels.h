@@ -27,18 +27,24 @@ class TexcoordLevels {
   void predict(const Topology& whole, const Buffer<Vec3f>& positions);
   /// Decodes the residuals of the level that is predicted, and goes on to the next one. Throws `Error` not_finite.
   void decode(const TexcoordStream& stream);
-  /// Codes the residuals that lead nearest to `wanted` [E] for the level that is predicted, and goes on to the next
-  /// one.
+  /// Codes the residuals that lead to `wanted` [E], or to within 3/4 of a step, for the level that is predicted, and
+  /// goes on to the next one.
   [[nodiscard]] TexcoordStream encode(const Buffer<Vec3f>& wanted, float step);
 
-  /// The level that is cut: the one that is predicted, or is to be.
-  [[nodiscard]] const DetailLevel& level() const { return level_; }
+  /// The level that is cut: the one that is predicted, or is to be. Stays as it is until the next call after `decode`
+  /// or `encode`.
+  [[nodiscard]] const DetailLevel& level();
   /// Texture coordinates (u, v, 0) [V], and of a predicted level [V + E].
   [[nodiscard]] const Buffer<Vec3f>& values() const { return values_; }
   /// The vertex of the surface that is not cut at each one of it, as many.
   [[nodiscard]] const Buffer<uint32_t>& vertices() const { return vertices_; }
+  /// Returns the texture coordinates of the points on the half-edges of the level that was decoded last [H]; before
+  /// level() is called again.
+  [[nodiscard]] Buffer<Texcoord> on_half_edges() const;
   /// Returns the mesh of all levels so far, points of `positions`, which are its vertices, at seams.
-  [[nodiscard]] TriangleMesh mesh(const Buffer<Vec3f>& positions) const;
+  [[nodiscard]] TriangleMesh mesh(const Buffer<Vec3f>& positions);
+  /// Bytes in memory, about.
+  [[nodiscard]] uint64_t bytes() const;
 
  private:
   void correct(uint32_t e, Vec3f move, const Buffer<Vec3f>& positions);
@@ -47,6 +53,7 @@ class TexcoordLevels {
   Buffer<Vec3f> values_;
   Buffer<uint32_t> vertices_;
   DetailLevel level_;
+  bool is_split_ = false;  ///< whether `level_` is decoded: connectivity below it is made when it is needed
   TexcoordModels models_;
 };
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "papilio/error.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/problem.h"
@@ -31,16 +32,16 @@ double shortest_edge(const Mesh& mesh) {
 
 /// Whether a decoded base has the vertices and faces of the original one, no two in one place.
 bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
-  if (decoded.positions.size() != base.topology.vertex_count) return false;
   if (decoded.triangles.size() != base.topology.face_count()) return false;
   BuildReport found;
   try {
-    (void)build_mesh(decoded, &found);
+    if (build_mesh(decoded, &found).topology.vertex_count != base.topology.vertex_count) return false;
   } catch (const Error& error) {
     if (error.fault() != Fault::no_faces) throw;
     return false;
   }
-  return found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
+  const uint32_t welded = decoded.attributes.empty() ? found.welded_points : 0;  // at seams points are
+  return welded + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
 }
 
 }  // namespace
@@ -64,7 +65,8 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
   int bits = fewest_position_bits;
   while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
   for (;; ++bits) {
-    std::string stream = write_draco(mesh, grid, {.position_bits = bits, .speed = 0});
+    std::string stream =
+        write_draco(mesh, grid, {.position_bits = bits, .speed = 0}, attribute_encoding(mesh, base_format(base)));
     TriangleMesh decoded = read_draco(stream, no_limits);
     const bool is_sound = keeps_surface(mesh, decoded);
     if (!is_sound && bits < most_position_bits) continue;

@@ -4,11 +4,22 @@
 #include <utility>
 
 #include "proto/detail/packed_reader.h"
+#include "proto/detail/turned_detail.h"
 #include "proto/gltf/container.h"
 #include "proto/gltf/scene_description.h"
 #include "proto/problem.h"
 
 namespace papilio::proto::detail {
+namespace {
+
+std::shared_ptr<const Detail> detail_of(PackedModel model) {
+  std::vector<DetailStream> streams;
+  streams.reserve(model.levels.size());
+  for (PackedLevel& level : model.levels) streams.push_back(std::move(level.stream));
+  return stream_detail({std::move(model.base), std::move(streams)});
+}
+
+}  // namespace
 
 std::optional<PackedModel> find_packed(std::string_view bytes, const Limits& limits) {
   if (!gltf::is_glb(bytes) || !is_packed(bytes)) return std::nullopt;
@@ -24,11 +35,10 @@ std::optional<PackedModel> find_packed(std::string_view bytes, const Limits& lim
   }
 }
 
-void attach_levels(Mesh& base, PackedModel model) {
-  std::vector<DetailStream> streams;
-  streams.reserve(model.levels.size());
-  for (PackedLevel& level : model.levels) streams.push_back(std::move(level.stream));
-  base.attach_detail(stream_detail({std::move(model.base), std::move(streams)}));
+void attach_levels(Mesh& base, PackedModel model) { base.attach_detail(detail_of(std::move(model))); }
+
+void attach_levels_turned_over(Mesh& base, PackedModel model) {
+  base.attach_detail(turned_over(detail_of(std::move(model))));
 }
 
 void end_with_detail(Options& options, const Mesh& mesh) {

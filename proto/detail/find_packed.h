@@ -17,8 +17,11 @@ namespace papilio::proto::detail {
 /// Throws `Problem` as `read_packed`.
 [[nodiscard]] std::optional<PackedModel> find_packed(std::string_view bytes, const Limits& limits);
 
-/// Attaches the levels of a packed model to its base. Throws `Error` as `Mesh::attach_detail`.
+/// Attaches the levels of a packed model to its base, whose texture coordinates count downwards. Throws `Error` as
+/// `Mesh::attach_detail`.
 void attach_levels(Mesh& base, PackedModel model);
+/// Attaches them to a base whose texture coordinates are turned over (packed_texcoords.h).
+void attach_levels_turned_over(Mesh& base, PackedModel model);
 
 /// Where levels follow from a target (`Options::stop_at_limits`), ends them with those of the mesh's detail: the finest
 /// is the surface against which the target is held.

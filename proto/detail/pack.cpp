@@ -8,6 +8,8 @@
 #include "proto/detail/base_coder.h"
 #include "proto/detail/distance_search.h"
 #include "proto/detail/encodings.h"
+#include "proto/detail/only_material.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/error_translation.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -22,11 +24,14 @@ constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
 class Packer {
  public:
-  Packer(const TriangleMesh& original, const PackOptions& options)
-      : options_(options), mesh_(build_mesh({original.positions, original.triangles}, nullptr, rounding_gap)) {}
+  Packer(const TriangleMesh& original, std::optional<gltf::Materials> material, const PackOptions& options)
+      : options_(options),
+        mesh_(build_mesh(original, nullptr, rounding_gap)),
+        material_(material ? std::move(*material) : gltf::Materials()) {}
 
   Packed run() {
     packed_.wanted_rms = has_other_goal() ? 0 : options_.rms;
+    for (const gltf::Image& image : material_.images) packed_.image_bytes += image.bytes.size();
     try {
       encode();
     } catch (const Error& error) {
@@ -52,7 +57,7 @@ class Packer {
   /// Encodes for the goal, and keeps the best encoding.
   void encode() {
     const TriangleMesh surface = mesh_.triangles();
-    Encodings encodings(surface, options_, has_other_goal() ? most_probes : 1);
+    Encodings encodings(surface, material_, options_, has_other_goal() ? most_probes : 1);
     const auto encode_round = [&](std::span<const double> distances) {
       std::vector<double> values;
       for (Encoding& made : encodings.encode(distances)) {
@@ -92,7 +97,7 @@ class Packer {
   void choose_at_rms() {
     const double reached = best_ ? reach_of(best_->model).rms : 0;
     PlainDraco plain = plain_at(std::max(options_.rms, reached));
-    if (options_.simplifies) {
+    if (options_.simplifies && mesh_.attributes.empty()) {
       packed_.simplified = write_simplified_draco(mesh_.triangles(), options_.rms, options_.cancelled);
       if (packed_.simplified && is_smallest(*packed_.simplified, plain)) return take_simplified(plain);
     }
@@ -177,10 +182,12 @@ class Packer {
   }
 
   [[nodiscard]] PlainDraco plain_at(double rms) const {
-    return write_plain_draco(mesh_, rms, [this] { poll(); });
+    return write_plain_draco(
+        mesh_, rms, [this] { poll(); }, material_);
   }
   [[nodiscard]] PlainDraco plain_of(int bits) const {
-    return write_plain_grid(mesh_, bits, [this] { poll(); });
+    return write_plain_grid(
+        mesh_, bits, [this] { poll(); }, material_);
   }
   /// Returns the file with the fewest bits that move no position by more than this share of the diagonal.
   [[nodiscard]] PlainDraco plain_within(double largest) const {
@@ -207,14 +214,23 @@ class Packer {
 
   const PackOptions& options_;
   Mesh mesh_;
+  gltf::Materials material_;
   std::optional<Encoding> best_;
   Packed packed_;
 };
 
 }  // namespace
 
+Packed pack(const gltf::MaterialMesh& original, const PackOptions& options) {
+  TriangleMesh surface{original.mesh.positions, original.mesh.triangles};
+  if (std::optional<Attribute> texcoords = texcoords_to_pack(original.mesh))
+    surface.attributes.push_back(std::move(*texcoords));
+  return translate_errors([&] { return Packer(surface, only_material(original.materials), options).run(); });
+}
+
 Packed pack(const TriangleMesh& original, const PackOptions& options) {
-  return translate_errors([&] { return Packer(original, options).run(); });
+  const TriangleMesh surface{original.positions, original.triangles};
+  return translate_errors([&] { return Packer(surface, std::nullopt, options).run(); });
 }
 
 }  // namespace papilio::proto::detail

@@ -15,12 +15,15 @@ void add_reach(Json& json, const DetailReach& reach) {
 Json json_of(const PackedModel& model) {
   Json base{{"vertices", model.base.triangles.positions.size()}, {"faces", model.base.triangles.triangles.size()}};
   base["bytes"] = model.base_bytes;
+  if (!model.base.triangles.attributes.empty()) base["texcoords"] = true;
   add_reach(base, model.base_reach);
   Json levels = Json::array();
   for (const PackedLevel& level : model.levels) {
     Json& json = levels.emplace_back();
     json = {{"new_vertices", level.vertices}, {"faces", level.faces}, {"bytes", level.stream.bytes.size()}};
     json["step"] = level.stream.step;
+    if (level.stream.texcoords.step > 0)
+      json["texcoords"] = {{"bytes", level.stream.texcoords.bytes.size()}, {"step", level.stream.texcoords.step}};
     add_reach(json, level.reach);
   }
   return {{"version", detail_version}, {"base", std::move(base)}, {"levels", std::move(levels)}};
@@ -36,6 +39,7 @@ std::string pack_report(const Packed& packed) {
   out["bytes"] = packed.glb.size();
   if (packed.wanted_rms > 0) out["wanted_rms"] = packed.wanted_rms;
   out["encodings"] = packed.encodings;
+  if (packed.image_bytes > 0) out["image_bytes"] = packed.image_bytes;
   if (packed.model) {
     out["folds"] = packed.folds;
     out["parted"] = packed.parted;

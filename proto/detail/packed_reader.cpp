@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/error_translation.h"
 #include "proto/gltf/document.h"
@@ -167,7 +168,8 @@ class PackedReader {
     const Json* draco = gltf::find_extension(*primitive_, gltf::draco_extension, primitive_place);
     if (attributes == nullptr || draco == nullptr || !attributes->is_object())
       refuse_document(primitive_place, "has no base compressed by " + std::string(gltf::draco_extension));
-    if (attributes->size() != 1) refuse_scene("other attributes than POSITION");
+    has_texcoords_ = attributes->contains("TEXCOORD_0");
+    if (attributes->size() != (has_texcoords_ ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
     const uint64_t vertices = declared_count(gltf::index_member(*attributes, "POSITION", primitive_place));
     const std::optional<std::string_view> stream = bytes_of(*draco, primitive_place);
     if (!stream)
@@ -176,18 +178,27 @@ class PackedReader {
     FormattedMesh base = read_draco(*stream, options_.limits);
     if (base.positions.size() != vertices || base.triangles.size() != faces)
       refuse_document(primitive_place, "declares other counts than its Draco stream has");
-    if (!base.attributes.empty()) refuse_scene("other attributes than POSITION");
+    if (base.format.attributes != (has_texcoords_ ? one_texcoord(base) : std::vector<AttributeFormat>{}))
+      refuse_scene("a base with other attributes than it declares");
     edges_ = edges_of(base);
     model.base_bytes = stream->size();
     model.base.triangles = std::move(base);
+  }
+
+  /// Returns the format of a base's attributes if they are texture coordinates as packed models have them.
+  static std::vector<AttributeFormat> one_texcoord(const FormattedMesh& base) {
+    if (base.attributes.size() != 1 || base.attributes[0].components != 2) refuse_scene("no texture coordinates");
+    std::vector<AttributeFormat> expected = base_format(base).attributes;
+    expected[0].id = base.format.attributes[0].id;
+    return expected;
   }
 
   /// Returns the edges of a base. Refuses one that is not manifold.
   static uint64_t edges_of(const TriangleMesh& base) {
     BuildReport found;
     const Mesh mesh = translate_errors([&] { return build_mesh(base, &found); });
-    const uint32_t changed =
-        found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+    const uint32_t welded = base.attributes.empty() ? found.welded_points : 0;  // at seams points are
+    const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
     if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
       throw Problem(Code::mesh_unusable, "The base is not a manifold surface. Pack the original again.");
     return mesh.topology.edge_count();
@@ -218,15 +229,29 @@ class PackedReader {
       edges = 2 * edges + 3 * faces;
       faces *= 4;
       const std::optional<std::string_view> bytes = bytes_of(levels[l], where);
-      if (!bytes || l != model.levels.size() || l >= options_.levels) continue;
-      level.stream.bytes.assign(bytes->begin(), bytes->end());
+      if (bytes) level.stream.bytes.assign(bytes->begin(), bytes->end());
+      const bool is_whole = read_texcoords(levels[l], where, level.stream.texcoords) && bytes.has_value();
+      if (!is_whole || l != model.levels.size() || l >= options_.levels) continue;
       model.levels.push_back(std::move(level));
     }
+  }
+
+  /// Reads the texture coordinates of a level. Returns whether the file was not cut before their end.
+  bool read_texcoords(const Json& level, const std::string& level_place, TexcoordStream& stream) {
+    const Json* texcoords = gltf::find_member(level, "texcoords", level_place);
+    if (texcoords == nullptr) return true;
+    const std::string where = level_place + ".texcoords";
+    if (!has_texcoords_) refuse_document(where, "is there, and the base has no TEXCOORD_0");
+    stream.step = step_member(*texcoords, where);
+    const std::optional<std::string_view> bytes = bytes_of(*texcoords, where);
+    if (bytes) stream.bytes.assign(bytes->begin(), bytes->end());
+    return bytes.has_value();
   }
 
   const ReadOptions& options_;
   gltf::Document document_;
   const Json* primitive_ = nullptr;
+  bool has_texcoords_ = false;               ///< of the base
   uint64_t edges_ = 0;                       ///< of the base
   uint64_t end_ = 0;                         ///< of the last view, in the binary chunk
   std::string before_ = "the binary chunk";  ///< name of the last view

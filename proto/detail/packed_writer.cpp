@@ -7,10 +7,12 @@
 #include <stdexcept>
 
 #include "proto/detail/packed_model.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/gltf/accessor.h"
 #include "proto/gltf/container.h"
 #include "proto/gltf/extensions.h"
 #include "proto/gltf/json.h"
+#include "proto/gltf/material_writer.h"
 #include "proto/text.h"
 
 namespace papilio::proto::detail {
@@ -56,6 +58,13 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
     return views.size() - 1;
   }
   Json& primitive() { return json["meshes"][0]["primitives"][0]; }
+  /// Adds a material that the primitive has, behind all other views.
+  void add_material(const gltf::Materials& material) {
+    if (material.empty()) return;
+    gltf::add_materials(json, material, primitive()["attributes"].contains("TEXCOORD_0"),
+                        [this](std::string_view bytes) { return add_view(bytes); });
+    primitive()["material"] = 0;
+  }
   [[nodiscard]] std::string write() && {
     json["buffers"][0]["byteLength"] = binary.size();
     std::vector<gltf::Piece> pieces;
@@ -86,7 +95,15 @@ Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
   scene.json["accessors"].push_back(
       {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
   Json extension{{"bufferView", scene.add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
-  scene.primitive() = {{"attributes", {{"POSITION", 0}}},
+  Json attributes{{"POSITION", 0}};
+  for (const AttributeFormat& texcoords : base_format(mesh).attributes) {
+    attributes["TEXCOORD_0"] = scene.json["accessors"].size();
+    extension["attributes"]["TEXCOORD_0"] = texcoords.id;
+    scene.json["accessors"].push_back({{"componentType", static_cast<uint32_t>(ComponentType::float32)},
+                                       {"count", mesh.positions.size()},
+                                       {"type", "VEC2"}});
+  }
+  scene.primitive() = {{"attributes", std::move(attributes)},
                        {"indices", 1},
                        {"extensions", {{gltf::draco_extension, std::move(extension)}}}};
   return scene;
@@ -99,7 +116,7 @@ void put_reach(Json& json, const DetailReach& reach) {
 
 }  // namespace
 
-std::string write_packed(const EncodedDetail& detail, std::string_view base_stream) {
+std::string write_packed(const EncodedDetail& detail, std::string_view base_stream, const gltf::Materials& material) {
   if (detail.reach.size() != detail.levels.size() + 1 || detail.levels.size() > most_detail_levels)
     throw std::invalid_argument("write_packed: levels and distances disagree");
   const TriangleMesh& base = detail.base.triangles;
@@ -122,16 +139,25 @@ std::string write_packed(const EncodedDetail& detail, std::string_view base_stre
     level["step"] = shortest(stream.step);
     level["vertices"] = edges;
     put_reach(level, detail.reach[l + 1]);
+    if (stream.texcoords.step > 0) {
+      Json texcoords = Json::object();
+      if (!stream.texcoords.bytes.empty()) texcoords["bufferView"] = scene.add_view(text_of(stream.texcoords.bytes));
+      texcoords["step"] = shortest(stream.texcoords.step);
+      level["texcoords"] = std::move(texcoords);
+    }
     extension["levels"].push_back(std::move(level));
     edges = 2 * edges + 3 * faces;
     faces *= 4;
   }
   scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
+  scene.add_material(material);
   return std::move(scene).write();
 }
 
-std::string write_plain(const TriangleMesh& decoded, std::string_view stream) {
-  return scene_of(decoded, stream).write();
+std::string write_plain(const TriangleMesh& decoded, std::string_view stream, const gltf::Materials& material) {
+  Scene scene = scene_of(decoded, stream);
+  scene.add_material(material);
+  return std::move(scene).write();
 }
 
 }  // namespace papilio::proto::detail

@@ -4,15 +4,20 @@
 #include <string_view>
 
 #include "papilio/detail.h"
+#include "proto/gltf/materials.h"
 
 namespace papilio::proto::detail {
 
-/// Writes a packed model (proto/detail.md). `base_stream`: Draco stream that decodes to `detail.base`. Distances are
+/// Writes a packed model (proto/detail.md). `base_stream`: Draco stream that decodes to `detail.base`. `material`: that
+/// of all faces, with its images; or none. Distances are
 /// rounded up to four digits; all else is read back to the bit. Throws `Problem` result_too_large beyond 4 GiB, and
 /// `std::invalid_argument` for a step or a distance that no reader takes.
-[[nodiscard]] std::string write_packed(const EncodedDetail& detail, std::string_view base_stream);
+[[nodiscard]] std::string write_packed(const EncodedDetail& detail, std::string_view base_stream,
+                                       const gltf::Materials& material = {});
 
-/// Writes a .glb scene of one mesh without levels. `stream`: Draco stream that decodes to `decoded`.
-[[nodiscard]] std::string write_plain(const TriangleMesh& decoded, std::string_view stream);
+/// Writes a .glb scene of one mesh without levels. `stream`: Draco stream that decodes to `decoded`. `material` as
+/// above.
+[[nodiscard]] std::string write_plain(const TriangleMesh& decoded, std::string_view stream,
+                                      const gltf::Materials& material = {});
 
 }  // namespace papilio::proto::detail

@@ -1,8 +1,10 @@
 #include "proto/detail/plain_draco.h"
 
 #include <cmath>
+#include <utility>
 
 #include "proto/detail/base_coder.h"
+#include "proto/detail/packed_texcoords.h"
 #include "proto/detail/packed_writer.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
@@ -49,25 +51,30 @@ double grid_rms(const Mesh& mesh, int position_bits) {
   return doubled_area > 0 ? std::sqrt(sum / doubled_area) / box.diagonal() : 0;
 }
 
-PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll) {
+PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll,
+                             const gltf::Materials& material) {
   int bits = fewest_position_bits;
   while (bits < most_position_bits && grid_rms(mesh, bits) > rms) {
     if (poll) poll();
     ++bits;
   }
-  return write_plain_grid(mesh, bits, poll);
+  return write_plain_grid(mesh, bits, poll, material);
 }
 
-PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll) {
+PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll,
+                            const gltf::Materials& material) {
   PlainDraco plain{.position_bits = position_bits, .rms = grid_rms(mesh, position_bits)};
   const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
-  const std::string stream = write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0}, {}, poll);
+  MeshFormat format;
+  if (!mesh.attributes.empty()) format = base_format(mesh.triangles());
+  const std::string stream = write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0},
+                                         attribute_encoding(mesh, std::move(format)), poll);
   constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
-  plain.glb = write_plain(read_draco(stream, no_limits), stream);
+  plain.glb = write_plain(read_draco(stream, no_limits), stream, material);
   return plain;
 }
 
-std::optional<TriangleMesh> read_plain_draco(std::string_view glb, const Limits& limits) {
+std::optional<FormattedMesh> read_plain_draco(std::string_view glb, const Limits& limits) {
   if (!gltf::is_glb(glb)) return std::nullopt;
   const gltf::Json json = gltf::read_document(glb).json;
   const gltf::Json& meshes = gltf::array_of(json, "meshes");
@@ -79,7 +86,8 @@ std::optional<TriangleMesh> read_plain_draco(std::string_view glb, const Limits&
       gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr)
     return std::nullopt;
   const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
-  if (attributes == nullptr || !attributes->is_object() || attributes->size() != 1) return std::nullopt;
+  if (attributes == nullptr || !attributes->is_object()) return std::nullopt;
+  if (attributes->size() != (attributes->contains("TEXCOORD_0") ? 2 : 1)) return std::nullopt;
   return gltf::find_only_mesh(glb, limits);
 }
 

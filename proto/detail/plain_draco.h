@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "papilio/mesh.h"
+#include "proto/gltf/materials.h"
 #include "proto/limits.h"
+#include "proto/mesh_format.h"
 
 namespace papilio::proto::detail {
 
@@ -23,14 +25,18 @@ struct PlainDraco {
 [[nodiscard]] double grid_rms(const Mesh& mesh, int position_bits);
 
 /// Writes the mesh as Draco at speed 0 with the fewest bits, from 6 to 20, whose `grid_rms` is at most `rms`; with 20
-/// where none is. Attributes are left out. Calls `poll`, unless empty; it may throw to stop. Throws `Problem`.
-[[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll = {});
+/// where none is. Of attributes, texture coordinates as packed models have them may be there. `material` as of
+/// write_packed(). Calls `poll`, unless empty; it may throw to stop. Throws `Problem`.
+[[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll = {},
+                                           const gltf::Materials& material = {});
 
 /// Writes the mesh as write_plain_draco() does, with so many bits of a coordinate.
-[[nodiscard]] PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll = {});
+[[nodiscard]] PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll = {},
+                                          const gltf::Materials& material = {});
 
-/// Reads the mesh of a file without levels: a .glb scene that shows one primitive once, of positions alone, compressed
-/// by Draco. Nothing for other files. Throws `Problem` for a damaged one, and mesh_too_large.
-[[nodiscard]] std::optional<TriangleMesh> read_plain_draco(std::string_view glb, const Limits& limits);
+/// Reads the mesh of a file without levels: a .glb scene that shows one primitive once, of positions and perhaps
+/// texture coordinates, compressed by Draco. Nothing for other files. Throws `Problem` for a damaged one, and
+/// mesh_too_large.
+[[nodiscard]] std::optional<FormattedMesh> read_plain_draco(std::string_view glb, const Limits& limits);
 
 }  // namespace papilio::proto::detail

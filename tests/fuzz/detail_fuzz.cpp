@@ -36,6 +36,7 @@ void read_and_decode(uint8_t choice, std::string_view text) {
   const TriangleMesh fine = decode_detail(model.base, model.streams(), limits.max_output_faces);
   const uint64_t faces = model.levels.empty() ? model.base.triangles.triangles.size() : model.levels.back().faces;
   fuzz::require(fine.triangles.size() == faces, "the faces are those declared");
+  fuzz::require(fine.attributes.size() == model.base.triangles.attributes.size(), "texture coordinates are kept");
 }
 
 }  // namespace

@@ -143,7 +143,9 @@ void add_scenes(Seeds& seeds) {
 
 /// Packed models whose residuals are random, with the byte that chooses how they are read.
 void add_packed_models(Seeds& seeds) {
-  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron()})
+  TriangleMesh charted = test::charted_cube();
+  charted.attributes.erase(charted.attributes.begin());  // texture coordinates are left
+  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted})
     for (const char choice : {'\x20', '\x21', '\x33'}) {
       const std::string glb = test::packed_fixture(shape, 3).glb;
       seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
@@ -171,6 +173,7 @@ void add_parameters(Seeds& seeds) {
                                  "normalized",
                                  "TEXCOORD_0",
                                  "PAPILIO_detail",
+                                 "texcoords",
                                  "vertices",
                                  "largest"};
   for (const proto::ParameterInfo& info : proto::parameter_table()) {

@@ -242,11 +242,51 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 }
 
 @test "what a packed model does not hold is said" {
-  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 0 0 1' 'vt 0 0' 'f 1/1 3/1 2/1' 'f 1/1 2/1 4/1' 'f 2/1 3/1 4/1' \
-    'f 3/1 1/1 4/1' >textured.obj
-  run --separate-stderr "$papilio" pack textured.obj -o textured.glb
+  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 0 0 1' 'vn 0 0 1' 'f 1//1 3//1 2//1' 'f 1//1 2//1 4//1' \
+    'f 2//1 3//1 4//1' 'f 3//1 1//1 4//1' >smooth.obj
+  run --separate-stderr "$papilio" pack smooth.obj -o smooth.glb
   [ "$status" = 0 ]
-  [[ $stderr == *"texture coordinates, normals and other attributes are left out"* ]]
+  [[ $stderr == *"normals and other attributes are left out"* ]]
+  printf '%s\n' 'newmtl red' 'newmtl blue' >two.mtl
+  sed -e '1i mtllib two.mtl' -e 's/f 2/usemtl red\nf 2/; s/f 3/usemtl blue\nf 3/; s,//1,,g; /vn/d' smooth.obj >two.obj
+  run --separate-stderr "$papilio" pack two.obj -o two.glb
+  [ "$status" = 0 ]
+  [[ $stderr == *"materials are left out"* ]]
+}
+
+# textured_ball: a small surface with a texture, whose charts meet at seams.
+textured_ball() {
+  printf '\x89PNG\r\n\x1a\n' >wood.png
+  printf '%s\n' 'newmtl wood' 'Kd 0.8 0.6 0.4' 'map_Kd wood.png' >cube.mtl
+  printf '%s\n' 'mtllib cube.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 0 0 1' 'v 1 0 1' 'v 1 1 1' 'v 0 1 1' \
+    'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 0 1' 'usemtl wood' 'f 4/1 3/2 2/3 1/4' 'f 5/1 6/2 7/3 8/4' 'f 1/1 2/2 6/3 5/4' \
+    'f 3/1 4/2 8/3 7/4' 'f 2/1 3/2 7/3 6/4' 'f 4/1 1/2 5/3 8/4' >cube.obj
+  "$papilio" refine cube.obj -o ball.obj --levels 5 --tension off
+}
+
+@test "a textured model stays textured, as base and unpacked" {
+  textured_ball
+  run --separate-stderr "$papilio" pack ball.obj -o ball.glb --rms 0.001 --json
+  [ "$status" = 0 ]
+  [ "$stderr" = "" ]
+  [ "$(jq -r .format <<<"$output")" = packed ]
+  [ "$(jq .image_bytes <<<"$output")" = 8 ]
+  "$papilio" info --json ball.glb >info.json
+  [ "$(jq -c '[.materials, .images, .meshes[0].attributes, .detail.base.texcoords]' info.json)" = \
+    '[1,1,["POSITION","TEXCOORD_0"],true]' ]
+  for command in unpack convert; do
+    if [ $command = unpack ]; then "$papilio" unpack ball.glb -o out.obj; else "$papilio" convert ball.glb out.obj; fi
+    is_within "$(distance ball.obj out.obj rms)" 0.0011
+    grep -qx 'usemtl wood' out.obj
+    grep -q '^vt ' out.obj
+    image=$(sed -n 's/^map_Kd //p' out.mtl)
+    cmp "$image" wood.png
+    mv out.obj $command.obj
+  done
+  cmp unpack.obj convert.obj
+  "$papilio" unpack ball.glb -o out.glb
+  [ "$("$papilio" info --json out.glb | jq -c '[.materials, .images, .meshes[0].attributes]')" = \
+    '[1,1,["POSITION","TEXCOORD_0"]]' ]
 }
 
 @test "a signal ends a search without a file" {

@@ -15,7 +15,8 @@ struct PackedFixture {
   std::string glb;
 };
 
-/// Packs a closed base with so many levels of `bytes_per_level` random bytes each.
+/// Packs a base with so many levels of `bytes_per_level` random bytes each, and as many of its texture coordinates if
+/// it has any.
 inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, size_t bytes_per_level = 40) {
   std::mt19937 random(7);
   PackedFixture made;
@@ -26,7 +27,14 @@ inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, siz
   for (size_t l = 0; l < levels; ++l) {
     DetailStream& stream = made.detail.levels.emplace_back();
     stream.step = 0.1F / static_cast<float>(l + 1);
-    for (size_t i = 0; i < bytes_per_level; ++i) stream.bytes.push_back(static_cast<uint8_t>(random()));
+    const auto add_bytes = [&](std::vector<uint8_t>& bytes) {
+      for (size_t i = 0; i < bytes_per_level; ++i) bytes.push_back(static_cast<uint8_t>(random()));
+    };
+    add_bytes(stream.bytes);
+    if (!base.attributes.empty()) {
+      stream.texcoords.step = 0.01F;
+      add_bytes(stream.texcoords.bytes);
+    }
     made.detail.reach.push_back({0.00123456 / static_cast<double>(l + 1), 0.02 / static_cast<double>(l + 1)});
   }
   made.glb = proto::detail::write_packed(made.detail, made.base_stream);

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "proto/detail/only_material.h"
+#include "proto/detail/pack.h"
+#include "proto/detail/packed_reader.h"
+#include "proto/detail/packed_texcoords.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/flattening.h"
+#include "proto/problem.h"
+#include "tests/support/charts.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/packed_model.h"
+#include "tests/support/shapes.h"
+
+// Texture coordinates and materials of packed models.
+
+namespace papilio::proto::detail {
+namespace {
+
+using TexturedJson = test::GltfScene::Json;
+
+/// A cube of six charts, with its texture coordinates alone.
+FormattedMesh textured_cube() {
+  FormattedMesh cube = test::charted_cube();
+  cube.attributes.erase(cube.attributes.begin());
+  cube.format.attributes.erase(cube.format.attributes.begin());
+  return cube;
+}
+
+test::PackedFixture textured_fixture() { return test::packed_fixture(textured_cube(), 2); }
+
+gltf::Materials one_material() {
+  gltf::Materials made;
+  made.images.push_back({.name = "bark", .media_type = "image/png", .bytes = "the image's bytes"});
+  made.materials.push_back({.name = "tree", .roughness = 0.5});
+  made.materials[0].image(gltf::ImageUse::base_color) = 0;
+  return made;
+}
+
+std::string refusal_of(const std::string& glb, const std::function<void(TexturedJson&)>& change) {
+  TexturedJson json = test::json_of_glb(glb);
+  change(json);
+  std::vector<gltf::Piece> pieces;
+  pieces.push_back({{}, test::binary_of_glb(glb)});
+  try {
+    (void)read_packed(gltf::write_glb(json.dump(), std::move(pieces), {}));
+    return "read";
+  } catch (const Problem& problem) {
+    return std::string(problem_kind(problem.code()).name);
+  }
+}
+
+TexturedJson& first_level(TexturedJson& json) {
+  return json["meshes"][0]["primitives"][0]["extensions"]["PAPILIO_detail"]["levels"][0];
+}
+
+TEST(PackedTexcoords, ComeBackToTheBit) {
+  const test::PackedFixture made = textured_fixture();
+  const PackedModel model = read_packed(made.glb);
+  EXPECT_EQ(model.base, made.detail.base);
+  ASSERT_EQ(model.base.triangles.attributes.size(), 1U);
+  EXPECT_EQ(model.base.triangles.positions.size(), 24U) << "three points at each corner";
+  ASSERT_EQ(model.levels.size(), 2U);
+  for (size_t l = 0; l < 2; ++l) {
+    EXPECT_EQ(model.levels[l].stream.bytes, made.detail.levels[l].bytes);
+    EXPECT_EQ(model.levels[l].stream.texcoords.bytes, made.detail.levels[l].texcoords.bytes);
+    EXPECT_EQ(model.levels[l].stream.texcoords.step, made.detail.levels[l].texcoords.step);
+  }
+  EXPECT_EQ(model.levels[0].vertices, 18U) << "seams do not open the surface";
+}
+
+TEST(PackedTexcoords, AreThoseOfTheBaseInAnyViewer) {
+  const FormattedMesh base = gltf::flatten_scene(textured_fixture().glb, {});
+  ASSERT_EQ(base.format.attributes.size(), 1U);
+  EXPECT_EQ(base.format.attributes[0].kind, AttributeKind::tex_coord);
+  EXPECT_EQ(base.positions.size(), 24U);
+}
+
+TEST(PackedTexcoords, AreTurnedOverOnTheWayInAndOut) {
+  const FormattedMesh cube = textured_cube();
+  const std::optional<Attribute> taken = texcoords_to_pack(cube);
+  ASSERT_TRUE(taken);
+  for (size_t i = 0; i < taken->values.size(); ++i) {
+    const double value = cube.attributes[0].values[i];
+    EXPECT_EQ(taken->values[i], i % 2 == 0 ? value : 1 - value);
+  }
+  PackedModel model;
+  model.base.triangles = {cube.positions, cube.triangles, {*taken}};
+  const FormattedMesh back = decode_packed(model);
+  EXPECT_EQ(back.format.attributes.at(0).kind, AttributeKind::tex_coord);
+  for (const Attribute& texcoords : back.attributes)
+    for (const double value : texcoords.values) EXPECT_TRUE(value == std::round(value) && value >= 0);
+}
+
+TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
+  const test::PackedFixture made = textured_fixture();
+  const size_t end = made.glb.size() - made.glb.size() % 4;
+  const size_t levels_end = end - (made.base_stream.size() + 160 + 3) / 4 * 4 + made.base_stream.size() + 160;
+  EXPECT_EQ(read_packed(made.glb.substr(0, levels_end), {.may_be_cut = true}).levels.size(), 2U);
+  EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 1), {.may_be_cut = true}).levels.size(), 1U);
+  EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 80), {.may_be_cut = true}).levels.size(), 1U);
+  EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 81), {.may_be_cut = true}).levels.size(), 0U);
+}
+
+TEST(PackedTexcoords, OfALevelMayBeAbsent) {
+  test::PackedFixture made = textured_fixture();
+  made.detail.levels[0].texcoords = {};
+  const std::string glb = write_packed(made.detail, made.base_stream);
+  TexturedJson json = test::json_of_glb(glb);
+  EXPECT_FALSE(first_level(json).contains("texcoords"));
+  EXPECT_EQ(read_packed(glb).levels[0].stream.texcoords.step, 0);
+}
+
+TEST(PackedTexcoords, ThatAreNoneAreRefused) {
+  const std::string glb = textured_fixture().glb;
+  const auto expect = [&](const char* code, const std::function<void(TexturedJson&)>& change) {
+    EXPECT_EQ(refusal_of(glb, change), code);
+  };
+  expect("read", [](TexturedJson&) {});
+  for (const TexturedJson& step : {TexturedJson(0), TexturedJson(-1), TexturedJson("1"), TexturedJson(1e39)})
+    expect("mesh_not_gltf", [&](TexturedJson& json) { first_level(json)["texcoords"]["step"] = step; });
+  expect("mesh_not_gltf", [](TexturedJson& json) { first_level(json)["texcoords"] = 3; });
+  expect("mesh_not_gltf", [](TexturedJson& json) { first_level(json)["texcoords"]["bufferView"] = 1; });
+  expect("mesh_unsupported",
+         [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0"); });
+  expect("mesh_unsupported",
+         [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0; });
+  const std::string plain = test::packed_fixture(test::cube(), 1).glb;
+  EXPECT_EQ(refusal_of(plain,
+                       [](TexturedJson& json) {
+                         first_level(json)["texcoords"] = {{"step", 0.1}};
+                       }),
+            "mesh_not_gltf");
+  EXPECT_EQ(
+      refusal_of(plain, [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 0; }),
+      "mesh_unsupported");
+}
+
+TEST(PackedMaterial, IsThatOfAllTriangles) {
+  gltf::Materials several = one_material();
+  several.materials.push_back({.name = "other"});
+  several.images.insert(several.images.begin(), {.name = "unused", .bytes = "x"});
+  several.materials[0].image(gltf::ImageUse::base_color) = 1;
+  several.materials[0].image(gltf::ImageUse::emissive) = 1;
+  several.of_triangle = {0, 0, 0};
+  const std::optional<gltf::Materials> only = only_material(several);
+  ASSERT_TRUE(only);
+  gltf::Materials expected = one_material();
+  expected.materials[0].image(gltf::ImageUse::emissive) = 0;
+  EXPECT_EQ(only->materials, expected.materials);
+  EXPECT_EQ(only->images, expected.images);
+  several.of_triangle = {0, 1, 0};
+  EXPECT_FALSE(only_material(several));
+  several.of_triangle = {0, none, 0};
+  EXPECT_FALSE(only_material(several));
+  EXPECT_FALSE(only_material({}));
+}
+
+TEST(PackedMaterial, KeepsItsImagesToTheByteBehindTheLevels) {
+  const test::PackedFixture made = textured_fixture();
+  const std::string glb = write_packed(made.detail, made.base_stream, one_material());
+  const gltf::MaterialMesh read = gltf::flatten_with_materials(glb, {});
+  EXPECT_EQ(read.materials.images, one_material().images);
+  EXPECT_EQ(read.materials.materials, one_material().materials);
+  EXPECT_EQ(read.materials.of_triangle, std::vector<uint32_t>(12, 0));
+  EXPECT_EQ(read_packed(glb).levels.size(), 2U);
+  const std::string binary = test::binary_of_glb(glb);
+  EXPECT_EQ(binary.find("the image's bytes"), made.base_stream.size() + 160);
+}
+
+TEST(PackedMaterial, IsKeptWhereTheFileIsPlainDraco) {
+  const FormattedMesh cube = textured_cube();
+  gltf::MaterialMesh model{.mesh = cube, .materials = one_material()};
+  model.materials.of_triangle.assign(cube.triangles.size(), 0);
+  const Packed packed = pack(model, {.rms = 1e-2, .face_limit = 500});
+  ASSERT_FALSE(packed.model);
+  EXPECT_EQ(packed.image_bytes, 17U);
+  const std::optional<FormattedMesh> read = read_plain_draco(packed.glb, {});
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->positions.size(), 24U);
+  for (const double value : read->attributes.at(0).values) EXPECT_NEAR(value, std::round(value), 11.0 / (1 << 14));
+  const gltf::MaterialMesh scene = gltf::flatten_with_materials(packed.glb, {});
+  EXPECT_EQ(scene.materials.images, one_material().images);
+}
+
+}  // namespace
+}  // namespace papilio::proto::detail
