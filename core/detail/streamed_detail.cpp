@@ -32,9 +32,9 @@ class StreamedDetail final : public Detail {
  public:
   explicit StreamedDetail(DetailSource source) : base_(mesh_of_base(source.base)), streams_(std::move(source.levels)) {
     check_levels(base_.topology.face_count(), streams_, face_count_limit);
-    decoder_.emplace(base_);
-    fixed_bytes_ = bytes_while_decoding(base_.topology, base_.topology.vertex_count);
-    for (const DetailStream& stream : streams_) fixed_bytes_ += stream.bytes.size();
+    decoder_.emplace(base_, true);
+    fixed_bytes_ = bytes_while_decoding(*decoder_, base_.topology, base_.topology.vertex_count);
+    for (const DetailStream& stream : streams_) fixed_bytes_ += stream.bytes.size() + stream.texcoords.bytes.size();
     bytes_ = fixed_bytes_;
   }
 
@@ -47,6 +47,11 @@ class StreamedDetail final : public Detail {
     const Level& decoded = decoded_to(level, cancelled);
     return {decoded.vertices.data(), decoded.vertices.size()};
   }
+  [[nodiscard]] std::span<const Texcoord> new_texcoords(int level,
+                                                        const std::function<bool()>& cancelled) const override {
+    const Level& decoded = decoded_to(level, cancelled);
+    return {decoded.texcoords.data(), decoded.texcoords.size()};
+  }
   [[nodiscard]] double largest_move(int level, const std::function<bool()>& cancelled) const override {
     return decoded_to(level, cancelled).largest_move;
   }
@@ -55,12 +60,14 @@ class StreamedDetail final : public Detail {
  private:
   struct Level {
     Buffer<Vec3f> vertices;
+    Buffer<Texcoord> texcoords;  ///< [H] of the mesh that is split, or none
     double largest_move = 0;
   };
 
-  static uint64_t bytes_while_decoding(const Topology& t, size_t vertices) {
-    return t.half_edge_count() * 3 * sizeof(uint32_t) + t.edge_count() * (sizeof(uint32_t) + sizeof(EdgeKind)) +
-           vertices * (sizeof(Vec3f) + sizeof(int32_t));
+  static uint64_t bytes_while_decoding(const LevelDecoder& decoder, const Topology& t, size_t vertices) {
+    const TexcoordLevels* texcoords = decoder.texcoords();
+    return (texcoords != nullptr ? texcoords->bytes() : 0) + t.half_edge_count() * 3 * sizeof(uint32_t) +
+           t.edge_count() * (sizeof(uint32_t) + sizeof(EdgeKind)) + vertices * (sizeof(Vec3f) + sizeof(int32_t));
   }
 
   /// Decodes the levels up to this one that are not decoded yet.
@@ -76,7 +83,7 @@ class StreamedDetail final : public Detail {
   void decode_next() const {
     std::optional<LevelDecoder> decoder = std::exchange(decoder_, std::nullopt);  // lost where decoding fails
     if (!decoder) {
-      decoder.emplace(base_);
+      decoder.emplace(base_, true);
       for (size_t l = 0; l < count_; ++l) decoder->decode(streams_[l]);
     }
     const Topology& t = decoder->topology();
@@ -84,11 +91,13 @@ class StreamedDetail final : public Detail {
     const Buffer<Vec3f>& positions = decoder->positions();
     Level& made = levels_[count_];
     made.largest_move = largest_move_of(t, positions);
+    if (const TexcoordLevels* texcoords = decoder->texcoords()) made.texcoords = texcoords->on_half_edges();
     made.vertices.assign(positions.begin() + t.vertex_count, positions.end());
     ++count_;
     const bool is_done = count_ == streams_.size();
-    bytes_ =
-        fixed_bytes_ + positions.size() * sizeof(Vec3f) + (is_done ? 0 : bytes_while_decoding(t, positions.size()));
+    bytes_ = fixed_bytes_ + positions.size() * sizeof(Vec3f) +
+             (is_done ? 0 : bytes_while_decoding(*decoder, t, positions.size()));
+    for (const Level& level : levels_) bytes_ += level.texcoords.size() * sizeof(Texcoord);
     if (!is_done) decoder_ = std::move(decoder);
   }
 

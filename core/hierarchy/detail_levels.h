@@ -1,11 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "criteria/selection.h"
 #include "hierarchy/hierarchy.h"
 #include "hierarchy/memory_plan.h"
 #include "hierarchy/progress.h"
+#include "mesh/displacement.h"
+#include "papilio/detail.h"
 
 namespace papilio {
 
@@ -13,6 +16,14 @@ namespace papilio {
 /// the rules (try_split). Throws `Error` cancelled, and what Detail::new_vertices() throws.
 [[nodiscard]] Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& options,
                               const TrialContext& context, const std::function<bool()>& cancelled = {});
+
+/// Returns the texture coordinates that the detail of `coarse` gives the points on the half-edges of a level of its
+/// hierarchy, as `Displacement::on_half_edges`; nothing where it gives none. Throws `Error` as Detail::new_texcoords().
+[[nodiscard]] std::optional<Displacement> texcoords_of_detail(const HierarchyLevel& level, const Mesh& coarse,
+                                                              const std::function<bool()>& cancelled = {});
+/// Returns those of the whole level that `number` levels give.
+[[nodiscard]] std::optional<Displacement> texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number,
+                                                              const std::function<bool()>& cancelled = {});
 
 /// Whole level of a mesh with detail.
 struct DecodedSize {

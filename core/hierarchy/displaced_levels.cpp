@@ -1,5 +1,9 @@
 #include "hierarchy/displaced_levels.h"
 
+#include <optional>
+#include <utility>
+
+#include "hierarchy/detail_levels.h"
 #include "rules/split_displacements.h"
 
 namespace papilio {
@@ -29,9 +33,7 @@ Displacements at_vertices_below(const HierarchyLevel& above, const HierarchyLeve
   return out;
 }
 
-}  // namespace
-
-std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels, const Options& options) {
+std::vector<Displacements> rule_displacements_of(std::span<const LevelChoice> levels, const Options& options) {
   const Mesh& coarse = levels[0].level->mesh;
   std::vector<Displacements> of_levels;
   if (!has_displacements(coarse.attributes)) return of_levels;
@@ -41,6 +43,20 @@ std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels,
     of_levels.push_back(split_displacements(at_vertices, level.mesh, options, SplitPlan(complete_edges(level))));
     if (k + 1 < levels.size())
       at_vertices = at_vertices_below(level, *levels[k + 1].level, at_vertices, of_levels.back());
+  }
+  return of_levels;
+}
+
+}  // namespace
+
+std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels, const Options& options) {
+  const Mesh& coarse = levels[0].level->mesh;
+  std::vector<Displacements> of_levels = rule_displacements_of(levels, options);
+  for (size_t k = 0; k < levels.size(); ++k) {
+    std::optional<Displacement> texcoords = texcoords_of_detail(*levels[k].level, coarse);
+    if (!texcoords) break;  // nor below
+    of_levels.resize(levels.size());
+    of_levels[k].push_back(std::move(*texcoords));
   }
   return of_levels;
 }

@@ -10,8 +10,8 @@
 namespace papilio {
 
 /// For each level, what the coarse mesh's displacements are at the new vertices of its edges [level], as the rules make
-/// it (split_displacements.h); empty where the mesh has none. None of the levels may be one of refine_last_level().
-/// O(faces held) for each displacement.
+/// it (split_displacements.h), and the texture coordinates that its detail gives; empty where the mesh has neither.
+/// None of the levels may be one of refine_last_level(). O(faces held) for each displacement.
 [[nodiscard]] std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels, const Options& options);
 
 }  // namespace papilio

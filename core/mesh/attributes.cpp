@@ -123,9 +123,13 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
     }
     made[h] = attributes.point_count++;
     for (Attribute& attribute : attributes.attributes) append_mean(attribute, p, q);
-    for (const Displacement& displacement : displaced)
-      if (const Vec3d at = displacement.at[mesh.edge[h]]; is_known(at))
-        std::ranges::copy(std::array{at.x, at.y, at.z}, attributes.attributes[displacement.attribute].values.end() - 3);
+    for (const Displacement& displacement : displaced) {
+      std::vector<double>& values = attributes.attributes[displacement.attribute].values;
+      if (!displacement.on_half_edges.empty())
+        std::ranges::copy(displacement.on_half_edges[h], values.end() - 2);
+      else if (const Vec3d at = displacement.at[mesh.edge[h]]; is_known(at))
+        std::ranges::copy(std::array{at.x, at.y, at.z}, values.end() - 3);
+    }
   };
   for (uint32_t f : faces)
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) split_half_edge(h);

@@ -20,7 +20,7 @@ void check_attributes(const TriangleMesh& input);
 /// Makes the points on the split edges: each the mean of the two at its ends, one for both faces where they agree on
 /// both, else (on a seam) one for each face. Returns [H] the new point on each half-edge of a split edge; `none`
 /// elsewhere, and on faces that are not among `faces`, which are in ascending order. `displaced`: displacements at the
-/// new vertices, in place of the means where they are known.
+/// new vertices, and given texture coordinates, in place of the means where they are known.
 [[nodiscard]] Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const Buffer<uint32_t>& faces,
                                             PointAttributes& attributes, const Displacements& displaced = {});
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace papilio {
 struct Displacement {
   uint32_t attribute;  ///< number in the mesh
   Buffer<Vec3d> at;    ///< [V] at the vertices; or [E] at the new vertices of the edges
+  /// In place of `at`: given texture coordinates of the points on the half-edges [H] of a level. The attribute is no
+  /// displacement, and has two components.
+  Buffer<std::array<float, 2>> on_half_edges{};
 };
 using Displacements = std::vector<Displacement>;
 

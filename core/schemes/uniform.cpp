@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hierarchy/detail_levels.h"
 #include "hierarchy/memory_plan.h"
 #include "mesh/attributes.h"
 #include "mesh/normals.h"
@@ -80,7 +81,10 @@ class Uniform {
     if (!is_last()) descend(features_, topology.vertex_count);
     if (!mesh_.attributes.empty()) {
       const SplitPlan plan = everything();
-      const Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
+      Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
+      if (detail_ && level_ <= detail_->level_count())
+        if (auto texcoords = texcoords_of_detail(mesh_, *detail_, level_ - 1, progress_.cancelled()))
+          displaced.push_back(std::move(*texcoords));
       Topology below = papilio::split(topology, plan, mesh_.positions, mesh_.attributes, displaced);
       append_new_vertices(displacements_, displaced, plan);
       keep_parents(std::exchange(topology, std::move(below)));

@@ -23,7 +23,9 @@ void attach_detail(std::string_view bytes, const Limits& limits, DecodedScene& d
   if (!uses_extension(decoded.document.json, detail_extension)) return;
   auto model = detail::find_packed(bytes, limits);
   if (!model) return;
-  detail::attach_levels(decoded.scene.meshes.at(0).surface.mesh, std::move(*model));
+  SceneMesh& mesh = decoded.scene.meshes.at(0);
+  if (!model->base.triangles.attributes.empty()) add_texcoords(mesh.geometry, mesh.surface);
+  detail::attach_levels(mesh.surface.mesh, std::move(*model));
   decoded.is_packed = true;
 }
 

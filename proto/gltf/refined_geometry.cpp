@@ -11,6 +11,19 @@
 
 namespace papilio::proto::gltf {
 
+namespace {
+
+/// Gives vertices the texture coordinates of levels of detail, in place of the interpolated ones.
+void put_texcoords(const RefinedVertices& vertices, const Attribute& texcoords, VertexSet& set) {
+  const auto stream = std::ranges::find(set.attributes, "TEXCOORD_0", &VertexStream::semantic);
+  if (stream == set.attributes.end()) return;
+  for (size_t i = 0; i < vertices.size(); ++i)
+    for (uint32_t c = 0; c < 2; ++c)
+      stream->elements.set_number(i, c, texcoords.values[size_t{2} * vertices.numbers[i] + c]);
+}
+
+}  // namespace
+
 NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_normals,
                              const std::function<void()>& poll) {
   Mesh refined = std::move(result.mesh);
@@ -32,9 +45,12 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
   RefinedPrimitives parts = part_primitives(mesh.geometry, points, refined);
   poll();
   NewGeometry made{mesh.number, {}, quantization_box(mesh.surface.mesh.positions)};
-  for (size_t s = 0; s < mesh.geometry.sets.size(); ++s)
-    made.geometry.sets.push_back(
-        interpolate_vertices(mesh.geometry.sets[s], std::exchange(parts.sets[s], {}), targets, adds_normals));
+  for (size_t s = 0; s < mesh.geometry.sets.size(); ++s) {
+    const RefinedVertices vertices = std::exchange(parts.sets[s], {});
+    made.geometry.sets.push_back(interpolate_vertices(mesh.geometry.sets[s], vertices, targets, adds_normals));
+    if (const auto texcoords = mesh.surface.texcoords)
+      put_texcoords(vertices, refined.attributes.attributes[*texcoords], made.geometry.sets.back());
+  }
   for (size_t p = 0; p < mesh.geometry.primitives.size(); ++p)
     if (!parts.triangles[p].empty())
       made.geometry.primitives.push_back(

@@ -22,13 +22,19 @@ struct Surface {
       primitive_of;              ///< of the input's triangles, all primitives in order: in MeshGeometry::primitives
   Buffer<Triangle> vertices_of;  ///< of them: in the set of the primitive; equal vertices are one
   bool has_normals = false;      ///< whether any set has them: the second attribute
-  size_t target_count = 0;       ///< of morph targets: the last attributes are their displacements
+  size_t target_count = 0;       ///< of morph targets: the attributes behind are their displacements
+  /// Number of the attribute with the texture coordinates of a packed model, the last one, which its levels give.
+  std::optional<size_t> texcoords{};
 
   [[nodiscard]] size_t first_displacement() const { return has_normals ? 2 : 1; }
 };
 
 /// Joins the triangles of all primitives by position. Throws `Error`: not_finite, no_faces, out_of_memory.
 [[nodiscard]] Surface join_primitives(const MeshGeometry& geometry);
+
+/// Adds the texture coordinates of a surface of one set, TEXCOORD_0, as an attribute of the mesh. Leaves a surface
+/// without them, or with others than two floats each, as it is.
+void add_texcoords(const MeshGeometry& geometry, Surface& surface);
 
 /// A vertex of the result as a mean of up to three of the input, in ascending order; unused ones have no weight.
 struct Combination {

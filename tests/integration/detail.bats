@@ -287,6 +287,16 @@ textured_ball() {
   "$papilio" unpack ball.glb -o out.glb
   [ "$("$papilio" info --json out.glb | jq -c '[.materials, .images, .meshes[0].attributes]')" = \
     '[1,1,["POSITION","TEXCOORD_0"]]' ]
+  # What refine makes of all levels, as a scene and as a mesh.
+  levels=$("$papilio" info --json ball.glb | jq '.detail.levels | length')
+  "$papilio" refine ball.glb -o refined.glb --levels "$levels" --compress none
+  "$papilio" convert refined.glb refined.obj
+  for file in unpack.obj refined.obj; do grep '^vt ' $file | sort -u | head -c 100000 >$file.vt; done
+  cmp unpack.obj.vt refined.obj.vt
+  "$papilio" refine ball.glb -o mesh.obj --levels "$levels"
+  grep -qx 'usemtl wood' mesh.obj
+  [ "$(grep -c '^f ' mesh.obj)" = "$(grep -c '^f ' unpack.obj)" ]
+  cmp "$(sed -n 's/^map_Kd //p' mesh.mtl)" wood.png
 }
 
 @test "a signal ends a search without a file" {

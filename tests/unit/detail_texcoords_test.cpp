@@ -6,6 +6,9 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <set>
+#include <span>
+#include <tuple>
 
 #include "core/detail/base_curves.h"
 #include "core/detail/base_points.h"
@@ -18,6 +21,7 @@
 #include "core/detail/sharp_curves.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
+#include "papilio/refine.h"
 #include "tests/support/shapes.h"
 
 // Texture coordinates of packed originals: seams of the base, prediction, residuals.
@@ -330,6 +334,55 @@ TEST(DetailTexcoords, AreEncodedWithTheirSurface) {
   for (const DetailStream& level : made.levels) bytes += level.texcoords.bytes.size();
   EXPECT_EQ(made.texcoord_bytes, bytes);
   EXPECT_LT(largest_error(decode_detail(made.base, made.levels), error_on_tube), 0.01);
+}
+
+/// Texture coordinates of all points, with their positions.
+std::set<std::tuple<float, float, float, float, float>> texcoords_at_places(const TriangleMesh& mesh) {
+  std::set<std::tuple<float, float, float, float, float>> found;
+  for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+    const auto [u, v] = texcoord_at(mesh, p);
+    const Vec3f at = mesh.positions[p];
+    found.emplace(at.x, at.y, at.z, static_cast<float>(u), static_cast<float>(v));
+  }
+  return found;
+}
+
+Mesh with_levels(const DetailSource& source) {
+  Mesh mesh = build_mesh(source.base.triangles);
+  mesh.attach_detail(stream_detail(source));
+  return mesh;
+}
+
+TEST(DetailTexcoords, OfRefinedLevelsAreThoseOfTheDecoder) {
+  for (const bool is_box : {true, false}) {
+    const DetailSource source = pack_levels(is_box ? charted_box(8) : textured_tube(48, 16));
+    Options options;
+    for (options.levels = 0; options.levels <= 4; ++options.levels) {
+      const auto levels = std::span(source.levels).first(static_cast<size_t>(options.levels));
+      EXPECT_EQ(texcoords_at_places(refine(with_levels(source), options).mesh.triangles()),
+                texcoords_at_places(decode_detail(source.base, levels)));
+    }
+  }
+}
+
+TEST(DetailTexcoords, OfChosenFacesAreThoseOfTheDecoder) {
+  const DetailSource source = pack_levels(textured_tube(48, 16));
+  const auto whole = texcoords_at_places(decode_all(source));
+  for (const uint64_t faces : {300U, 1500U}) {
+    Options options;
+    options.levels = 4;
+    options.max_faces = faces;
+    const TriangleMesh chosen = refine(with_levels(source), options).mesh.triangles();
+    ASSERT_GT(chosen.triangles.size(), faces / 2);
+    for (const auto& point : texcoords_at_places(chosen)) EXPECT_TRUE(whole.contains(point));
+  }
+}
+
+TEST(DetailTexcoords, BelowTheLastLevelAreInterpolated) {
+  const DetailSource source = pack_levels(textured_tube(48, 16), 60, 3, 1e-4F, usual_step);
+  Options options;
+  options.levels = 4;
+  EXPECT_LT(largest_error(refine(with_levels(source), options).mesh.triangles(), error_on_tube), 0.01);
 }
 
 TEST(DetailTexcoords, OtherAttributesAreRefused) {
