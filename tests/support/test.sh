@@ -19,8 +19,8 @@ failed=0
 unit=(ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)")
 if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); fi
 # Long tests of what runs in one thread, in which this sanitizer has nothing to find.
-one_thread='Detail\.|DetailBaseline|Edgebreaker|EveryRealMesh|Growth|mesh_file|OptimalCollapse|Pack\.|SimplifiedDraco'
-[[ $preset != tsan ]] || unit+=(-E "^($one_thread|.*CurvedCollapses|.*SimplifyRealMesh)")
+one_thread='Detail\.|DetailBaseline|Edgebreaker|EveryRealMesh|Growth|mesh_file|OptimalCollapse|Pack\.|Reference|SimplifiedDraco'
+[[ $preset != tsan ]] || unit+=(-E "^($one_thread|.*CurvedCollapses|.*(RedGreen|Shape|Simplify)(OnReal|Real)Mesh)")
 "${unit[@]}" || failed=1
 
 integration='bats --tap'
