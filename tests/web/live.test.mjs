@@ -93,6 +93,36 @@ test('it refines while the camera moves, and asks the server for nothing', async
   assert.deepEqual(faults, []);
 });
 
+test('figures and the camera in the form follow what is turned, in the elements that are there', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await quiet(page);
+  const texts = () =>
+    page.evaluate(() => [
+      document.querySelector('#figures table').innerText.match(/^faces.*$/m)[0],
+      document.getElementById('parameter-view.eye').placeholder,
+    ]);
+  const before = await texts();
+  assert.equal(before[0].split('\t').at(-1), (await facesOf(page, 'view')).toLocaleString('en'));
+  await page.evaluate(() => (window.table = document.querySelector('#figures table')));
+  await drag(page, 200, 40);
+  await madeHere(page);
+  await quiet(page);
+  const after = await texts();
+  assert.equal(after[0].split('\t').at(-1), (await facesOf(page, 'view')).toLocaleString('en'));
+  assert.ok(
+    after.every((text, i) => text !== before[i]),
+    `${before} ${after}`,
+  );
+  assert.ok(await page.evaluate(() => window.table.isConnected));
+  // A panel more is a column more.
+  await page.locator('#modes input[value=uniform]').check();
+  await done(page, ['uniform']);
+  await quiet(page);
+  assert.equal(await page.locator('#figures thead th').count(), await page.locator('.panel').count());
+  assert.deepEqual(faults, []);
+});
+
 test('a frozen view keeps its refinement here too', async () => {
   const { page } = await open();
   await madeHere(page);

@@ -38,3 +38,40 @@ export function addChoice(
 export function find<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
+
+/// Gives an element these children, which have no listeners. What is equal to a child at the same place stays, and of
+/// the others the texts and attributes that differ are set: new elements cost the layout of the page much more.
+export function setChildren(parent: Element, wanted: Iterable<Node>): void {
+  let own = parent.firstChild;
+  for (const node of wanted) {
+    const next: ChildNode | null = own && own.nextSibling;
+    if (own === null) parent.append(node);
+    else change(own, node);
+    own = next;
+  }
+  while (own !== null) {
+    const next = own.nextSibling;
+    own.remove();
+    own = next;
+  }
+}
+
+function change(own: ChildNode, wanted: Node): void {
+  if (own.isEqualNode(wanted)) return;
+  if (own instanceof Text && wanted instanceof Text) own.data = wanted.data;
+  else if (own instanceof HTMLElement && wanted instanceof HTMLElement && own.tagName === wanted.tagName) {
+    setAttributes(own, wanted);
+    setChildren(own, [...wanted.childNodes]);
+  } else own.replaceWith(wanted);
+}
+
+function setAttributes(own: HTMLElement, wanted: HTMLElement): void {
+  for (const name of own.getAttributeNames()) if (!wanted.hasAttribute(name)) own.removeAttribute(name);
+  for (const name of wanted.getAttributeNames()) {
+    const value = wanted.getAttribute(name)!;
+    if (own.getAttribute(name) === value) continue;
+    if (name === 'style')
+      own.style.cssText = value; // a policy may forbid the attribute
+    else own.setAttribute(name, value);
+  }
+}

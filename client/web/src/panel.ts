@@ -258,7 +258,8 @@ export class Panel {
   }
 
   #showNote(): void {
-    this.#note.textContent = [this.#givenNote, this.shown?.summary?.unreached ?? ''].join(' ').trim();
+    const note = [this.#givenNote, this.shown?.summary?.unreached ?? ''].join(' ').trim();
+    if (note !== this.#note.textContent) this.#note.textContent = note; // the same again costs a layout
   }
 
   #tell(state: 'idle' | 'busy' | 'done' | 'failed', doing = ''): void {

@@ -10,6 +10,8 @@ export class ParameterForm {
   onChange: (name: string, value: string | null) => void = () => {};
   #form: HTMLFormElement;
   #rows = new Map<string, { kind: ParameterKind; input: HTMLInputElement | HTMLSelectElement; fault: HTMLElement }>();
+  #placeholders = new Map<string, string>();
+  #placeholdersDue: ReturnType<typeof setTimeout> | undefined;
 
   constructor(form: HTMLFormElement) {
     this.#form = form;
@@ -39,10 +41,12 @@ export class ParameterForm {
     }
   }
 
-  /// What a parameter is that has not been set, where that is not its default.
+  /// Shows what a parameter is that has not been set, where that is not its default. The form waits until no other text
+  /// has come for 100 ms: the camera's come with each picture, and each costs a layout of the page.
   setPlaceholder(name: string, text: string): void {
-    const input = this.#rows.get(name)?.input;
-    if (input instanceof HTMLInputElement) input.placeholder = text;
+    this.#placeholders.set(name, text);
+    clearTimeout(this.#placeholdersDue);
+    this.#placeholdersDue = setTimeout(() => this.#showPlaceholders(), 100);
   }
 
   /// Says at a parameter what is wrong with it; null: nothing.
@@ -51,6 +55,14 @@ export class ParameterForm {
     if (row === undefined) return;
     row.fault.textContent = fault ?? '';
     row.input.setAttribute('aria-invalid', String(fault !== null));
+  }
+
+  #showPlaceholders(): void {
+    for (const [name, text] of this.#placeholders) {
+      const input = this.#rows.get(name)?.input;
+      if (input instanceof HTMLInputElement) input.placeholder = text;
+    }
+    this.#placeholders.clear();
   }
 
   #row(kind: ParameterKind): HTMLElement {

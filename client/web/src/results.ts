@@ -1,6 +1,6 @@
 // Pictures and figures of what has come.
 
-import { find } from './elements';
+import { find, setChildren } from './elements';
 import { figures } from './figures';
 import type { Look } from './link';
 import type { OpenMesh } from './mesh';
@@ -23,12 +23,12 @@ export class Results {
     if (mesh !== null) {
       const current = panels.filter((panel) => panel.shown?.mesh === mesh);
       const refined = current.filter(({ mode }) => mode !== 'coarse').at(-1)?.shown;
-      find('cost').replaceChildren(...(refined ? costOf(refined, mesh.decoded.faces) : []));
+      setChildren(find('cost'), refined ? costOf(refined, mesh.decoded.faces) : []);
       // While the camera moves there is something new with each picture: tables can wait.
       clearTimeout(this.#figuresDue);
       this.#figuresDue = setTimeout(() => {
         const faces = reference?.faces ?? mesh.decoded.faces * 4 ** levels;
-        find('figures').replaceChildren(...figures(current, faces, reference?.encoded?.bytes.length ?? null));
+        setChildren(find('figures'), figures(current, faces, reference?.encoded?.bytes.length ?? null));
       }, 100);
     }
     await this.pictures.draw(panels, look, levels, reference ?? missing);
