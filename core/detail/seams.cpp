@@ -11,7 +11,7 @@ namespace {
 /// Gives each fan of faces a vertex, in the order of their lowest half-edges. Fans end where there is no twin.
 void part_vertices(CutSurface& cut) {
   Topology& t = cut.topology;
-  const uint32_t count = static_cast<uint32_t>(t.twin.size());
+  const auto count = static_cast<uint32_t>(t.twin.size());
   t.origin.assign(count, none);
   for (uint32_t h = 0; h < count; ++h) {
     if (t.origin[h] != none) continue;

@@ -276,6 +276,7 @@ test('packed models are told from other files', () => {
   const file = bytesOf(torus);
   assert.ok(isPacked(file));
   assert.ok(!isPacked(edited(file, ({ primitive }) => delete primitive.extensions.PAPILIO_detail)));
+  assert.ok(!isPacked(edited(file, ({ primitive }) => (primitive.attributes.TEXCOORD_0 = 0))));
   for (const bytes of [new Uint8Array(), file.slice(1), file.slice(0, 30), readFileSync(`${torus}.ply`)])
     assert.ok(!isPacked(new Uint8Array(bytes)));
 });

@@ -63,15 +63,18 @@ const version = 1;
 const mostLevels = 10;
 const mostCoordinate = 1e18;
 
-/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads the JSON alone.
+/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive, and without texture coordinates there: their
+/// residuals are not decoded here, so that such a model is a scene, which shows its textured base. Reads the JSON alone.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   if (!isGlb(bytes)) return false;
   try {
     const json = objectOf(readContainer(bytes, true).json, 'the JSON');
     return arrayOf(json, 'meshes').some((mesh) =>
-      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some(
-        (primitive) => extensionOf(objectOf(primitive, 'a primitive'), detailExtension, 'a primitive') !== null,
-      ),
+      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some((primitive) => {
+        const of = objectOf(primitive, 'a primitive');
+        if (extensionOf(of, detailExtension, 'a primitive') === null) return false;
+        return objectOf(of.attributes ?? {}, 'attributes').TEXCOORD_0 === undefined;
+      }),
     );
   } catch {
     return false;
