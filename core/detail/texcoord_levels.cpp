@@ -10,7 +10,7 @@ namespace papilio {
 namespace {
 
 /// A face is no frame where the square of its area is a smaller share of that of the rectangle of its sides.
-constexpr float least_thickness = 1e-6F;
+constexpr float least_relative_area = 1e-6F;
 
 /// Moves of fewer steps are not coded. On a subdivided duck 24 % fewer bytes than with 0.5 had 16 % more error.
 constexpr double least_coded = 0.75;
@@ -31,7 +31,7 @@ Vec3f change_along(Vec3f move, const Vec3f (&point)[3], const Vec3f (&value)[3])
   const float b = dot(one, two);
   const float c = dot(two, two);
   const float area = a * c - b * b;
-  if (!(area > least_thickness * (a * c))) return {};
+  if (!(area > least_relative_area * (a * c))) return {};
   const float x = dot(one, move);
   const float y = dot(two, move);
   const float along_one = std::clamp((c * x - b * y) / area, -1.0F, 1.0F);

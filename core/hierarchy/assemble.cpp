@@ -335,10 +335,11 @@ class Assembler {
   void make_points(std::span<const Displacements> displaced) {
     out_.attributes = coarse_.attributes;
     auto result = Buffer<uint32_t>::for_overwrite(half_edge_count_);
+    const Displacements nothing;
     for (size_t k = 0; k < levels_.size(); ++k) {
       const AssembledLevel& level = levels_[k];
       const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes,
-                                                 displaced.empty() ? Displacements{} : displaced[k]);
+                                                 displaced.empty() ? nothing : displaced[k]);
       const Buffer<uint32_t> corners = std::move(out_.attributes.point);
       const auto point = [&](uint32_t f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];

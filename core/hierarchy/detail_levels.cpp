@@ -22,30 +22,15 @@ Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& 
   return trial;
 }
 
-std::optional<Displacement> texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number,
-                                                const std::function<bool()>& cancelled) {
+void add_texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
+                             Displacements& displaced, const std::function<bool()>& cancelled) {
   const std::vector<Attribute>& attributes = mesh.attributes.attributes;
-  const auto attribute = std::ranges::find_if(
-      attributes, [](const Attribute& other) { return other.components == 2 && !other.is_displacement; });
-  if (attribute == attributes.end()) return std::nullopt;
-  const std::span<const Texcoord> given = detail.new_texcoords(number, cancelled);
-  if (given.empty()) return std::nullopt;
-  Displacement made{.attribute = static_cast<uint32_t>(attribute - attributes.begin()), .at = {}};
-  made.on_half_edges.assign(given.begin(), given.end());
-  return made;
-}
-
-std::optional<Displacement> texcoords_of_detail(const HierarchyLevel& level, const Mesh& coarse,
-                                                const std::function<bool()>& cancelled) {
-  if (level.detail_levels == 0) return std::nullopt;
-  auto made =
-      texcoords_of_detail(coarse, *coarse.detail, coarse.detail->level_count() - level.detail_levels, cancelled);
-  if (!made || level.is_whole) return made;
-  Buffer<Texcoord> held(level.mesh.topology.half_edge_count());
-  for (uint32_t i = 0; i < level.in_whole.parent.size(); ++i)  // twelve half-edges of the children of a face
-    std::copy_n(made->on_half_edges.begin() + size_t{12} * level.in_whole.parent[i], 12, held.begin() + size_t{12} * i);
-  made->on_half_edges = std::move(held);
-  return made;
+  for (uint32_t a = 0; a < attributes.size(); ++a) {
+    if (attributes[a].components != 2) continue;
+    const std::span<const Texcoord> given = detail.new_texcoords(number, cancelled);
+    if (!given.empty()) displaced.push_back({a, {}, given, parent});
+    return;
+  }
 }
 
 DecodedSize decoded_size(const Mesh& coarse, int level, const MemoryPlan& plan) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <span>
 
 #include "criteria/selection.h"
 #include "hierarchy/hierarchy.h"
@@ -17,13 +17,11 @@ namespace papilio {
 [[nodiscard]] Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& options,
                               const TrialContext& context, const std::function<bool()>& cancelled = {});
 
-/// Returns the texture coordinates that the detail of `coarse` gives the points on the half-edges of a level of its
-/// hierarchy, as `Displacement::on_half_edges`; nothing where it gives none. Throws `Error` as Detail::new_texcoords().
-[[nodiscard]] std::optional<Displacement> texcoords_of_detail(const HierarchyLevel& level, const Mesh& coarse,
-                                                              const std::function<bool()>& cancelled = {});
-/// Returns those of the whole level that `number` levels give.
-[[nodiscard]] std::optional<Displacement> texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number,
-                                                              const std::function<bool()>& cancelled = {});
+/// Adds the texture coordinates that a detail gives the points on the half-edges of the whole level that `number`
+/// levels give, if it does and the mesh has such an attribute. `parent`: as of Displacement. Throws `Error` as
+/// Detail::new_texcoords().
+void add_texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
+                             Displacements& displaced, const std::function<bool()>& cancelled = {});
 
 /// Whole level of a mesh with detail.
 struct DecodedSize {

@@ -1,8 +1,5 @@
 #include "hierarchy/displaced_levels.h"
 
-#include <optional>
-#include <utility>
-
 #include "hierarchy/detail_levels.h"
 #include "rules/split_displacements.h"
 
@@ -52,11 +49,13 @@ std::vector<Displacements> rule_displacements_of(std::span<const LevelChoice> le
 std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels, const Options& options) {
   const Mesh& coarse = levels[0].level->mesh;
   std::vector<Displacements> of_levels = rule_displacements_of(levels, options);
+  if (!coarse.detail) return of_levels;
+  of_levels.resize(levels.size());
   for (size_t k = 0; k < levels.size(); ++k) {
-    std::optional<Displacement> texcoords = texcoords_of_detail(*levels[k].level, coarse);
-    if (!texcoords) break;  // nor below
-    of_levels.resize(levels.size());
-    of_levels[k].push_back(std::move(*texcoords));
+    const HierarchyLevel& level = *levels[k].level;
+    if (level.detail_levels > 0)
+      add_texcoords_of_detail(coarse, *coarse.detail, coarse.detail->level_count() - level.detail_levels,
+                              level.in_whole.parent, of_levels[k]);
   }
   return of_levels;
 }

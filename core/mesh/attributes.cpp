@@ -125,8 +125,8 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
     for (Attribute& attribute : attributes.attributes) append_mean(attribute, p, q);
     for (const Displacement& displacement : displaced) {
       std::vector<double>& values = attributes.attributes[displacement.attribute].values;
-      if (!displacement.on_half_edges.empty())
-        std::ranges::copy(displacement.on_half_edges[h], values.end() - 2);
+      if (!displacement.given.empty())
+        std::ranges::copy(displacement.given_at(h), values.end() - 2);
       else if (const Vec3d at = displacement.at[mesh.edge[h]]; is_known(at))
         std::ranges::copy(std::array{at.x, at.y, at.z}, values.end() - 3);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "mesh/split_plan.h"
@@ -14,9 +15,16 @@ namespace papilio {
 struct Displacement {
   uint32_t attribute;  ///< number in the mesh
   Buffer<Vec3d> at;    ///< [V] at the vertices; or [E] at the new vertices of the edges
-  /// In place of `at`: given texture coordinates of the points on the half-edges [H] of a level. The attribute is no
-  /// displacement, and has two components.
-  Buffer<std::array<float, 2>> on_half_edges{};
+  /// In place of `at`: texture coordinates of the points on the half-edges [H] of a whole level, which must outlive
+  /// this. The attribute is no displacement, and has two components.
+  std::span<const std::array<float, 2>> given{};
+  /// Where not all of the level is at hand: the faces above, in the whole level, of every twelve half-edges.
+  std::span<const uint32_t> parent{};
+
+  /// Returns what is given on a half-edge of the level at hand.
+  [[nodiscard]] const std::array<float, 2>& given_at(uint32_t half_edge) const {
+    return given[parent.empty() ? half_edge : 12 * parent[half_edge / 12] + half_edge % 12];
+  }
 };
 using Displacements = std::vector<Displacement>;
 
