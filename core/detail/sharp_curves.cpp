@@ -174,8 +174,8 @@ std::vector<CurveRole> curve_roles(const Topology& topology, const std::vector<u
   const VertexDegrees curves = degrees_of(topology, seams);
   std::vector<CurveRole> roles;
   roles.reserve(topology.vertex_count);
-  for (const uint8_t degree : curves.degree)
-    roles.push_back(degree == 0 ? CurveRole::smooth : degree == 2 ? CurveRole::inner : CurveRole::corner);
+  for (const uint8_t count : curves.degree)
+    roles.push_back(count == 0 ? CurveRole::smooth : count == 2 ? CurveRole::inner : CurveRole::corner);
   for (const uint32_t v : topology.shape.corners) roles[v] = CurveRole::corner;
   return roles;
 }

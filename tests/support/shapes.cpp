@@ -138,14 +138,43 @@ TriangleMesh square_ring(uint32_t n, float inner, float outer, float height) {
   return mesh;
 }
 
-TriangleMesh torus(uint32_t n, uint32_t m, float radius, float tube) {
+TriangleMesh tube(uint32_t n, uint32_t m, float height, bool has_lids) {
+  TriangleMesh made;
+  for (uint32_t j = 0; j <= m; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const double angle = 2 * pi * i / n;
+      made.positions.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                                height * static_cast<float>(j) / static_cast<float>(m)});
+    }
+  for (uint32_t j = 0; j < m; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t a = j * n + i;
+      const uint32_t b = j * n + (i + 1) % n;
+      made.triangles.push_back({a, b, b + n});
+      made.triangles.push_back({a, b + n, a + n});
+    }
+  if (!has_lids) return made;
+  for (const bool is_top : {false, true}) {
+    const auto centre = static_cast<uint32_t>(made.positions.size());
+    made.positions.push_back({0, 0, is_top ? height : 0});
+    const uint32_t first = is_top ? m * n : 0;
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t a = first + i;
+      const uint32_t b = first + (i + 1) % n;
+      made.triangles.push_back(is_top ? Triangle{a, b, centre} : Triangle{b, a, centre});
+    }
+  }
+  return made;
+}
+
+TriangleMesh torus(uint32_t n, uint32_t m, float radius, float tube_radius) {
   TriangleMesh mesh;
   for (uint32_t i = 0; i < n; ++i) {
     for (uint32_t j = 0; j < m; ++j) {
       const double u = 2 * pi * i / n;
       const double v = 2 * pi * j / m;
-      const double r = radius + tube * std::cos(v);
-      mesh.positions.push_back(to_float({r * std::cos(u), r * std::sin(u), tube * std::sin(v)}));
+      const double r = radius + tube_radius * std::cos(v);
+      mesh.positions.push_back(to_float({r * std::cos(u), r * std::sin(u), tube_radius * std::sin(v)}));
       const auto at = [&](uint32_t a, uint32_t b) { return (i + a) % n * m + (j + b) % m; };
       mesh.triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
       mesh.triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});

@@ -18,8 +18,10 @@ namespace papilio::test {
 [[nodiscard]] TriangleMesh box(std::array<uint32_t, 3> cells, Vec3f size);
 /// A ring of square section round the z axis, with n corners: radii from inner to outer, z from 0 to height.
 [[nodiscard]] TriangleMesh square_ring(uint32_t n, float inner, float outer, float height);
+/// A cylinder of radius 1 about the z axis from 0 to `height`, of n by m cells; closed by flat lids if asked.
+[[nodiscard]] TriangleMesh tube(uint32_t n, uint32_t m, float height, bool has_lids = false);
 /// n by m quadrangles in two triangles each: every vertex has valence 6.
-[[nodiscard]] TriangleMesh torus(uint32_t n, uint32_t m, float radius = 1, float tube = 0.4F);
+[[nodiscard]] TriangleMesh torus(uint32_t n, uint32_t m, float radius = 1, float tube_radius = 0.4F);
 /// The square 0..n by 0..m in the plane z = 0, two triangles a cell.
 [[nodiscard]] TriangleMesh grid(uint32_t n, uint32_t m);
 /// A closed fan of K triangles round the origin, the ring at radius 1; `closed` false leaves out the last

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "tests/support/shapes.h"
@@ -47,20 +46,7 @@ TriangleMesh flat_sheet(uint32_t n) {
 }
 
 TriangleMesh textured_tube(uint32_t n, uint32_t m) {
-  TriangleMesh made;
-  for (uint32_t j = 0; j <= m; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const double angle = 2 * std::numbers::pi * i / n;
-      made.positions.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
-                                2 * static_cast<float>(j) / static_cast<float>(m)});
-    }
-  for (uint32_t j = 0; j < m; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const uint32_t a = j * n + i;
-      const uint32_t b = j * n + (i + 1) % n;
-      made.triangles.push_back({a, b, b + n});
-      made.triangles.push_back({a, b + n, a + n});
-    }
+  const TriangleMesh made = tube(n, m, 2);
   return with_texcoords(made, [&](const Triangle& t, size_t i) {
     const auto column = [&](uint32_t v) { return v % n; };
     const bool is_last = std::ranges::any_of(t, [&](uint32_t v) { return column(v) == n - 1; });

@@ -28,36 +28,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A cylinder of radius 1 about the z axis from 0 to `height`, of n by m cells; closed by flat lids if asked.
-TriangleMesh tube(uint32_t n, uint32_t m, float height, bool has_lids) {
-  TriangleMesh made;
-  for (uint32_t j = 0; j <= m; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const double angle = 2 * pi * i / n;
-      made.positions.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
-                                height * static_cast<float>(j) / static_cast<float>(m)});
-    }
-  for (uint32_t j = 0; j < m; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const uint32_t a = j * n + i;
-      const uint32_t b = j * n + (i + 1) % n;
-      made.triangles.push_back({a, b, b + n});
-      made.triangles.push_back({a, b + n, a + n});
-    }
-  if (!has_lids) return made;
-  for (const bool is_top : {false, true}) {
-    const auto centre = static_cast<uint32_t>(made.positions.size());
-    made.positions.push_back({0, 0, is_top ? height : 0});
-    const uint32_t first = is_top ? m * n : 0;
-    for (uint32_t i = 0; i < n; ++i) {
-      const uint32_t a = first + i;
-      const uint32_t b = first + (i + 1) % n;
-      made.triangles.push_back(is_top ? Triangle{a, b, centre} : Triangle{b, a, centre});
-    }
-  }
-  return made;
-}
-
 /// A square sheet with waves.
 TriangleMesh sheet(uint32_t n) {
   TriangleMesh made = test::grid(n, n);
@@ -114,7 +84,7 @@ TEST(SharpCurves, OfABoxAreItsEdgesAndCorners) {
 }
 
 TEST(SharpCurves, OfATubeWithLidsAreItsRims) {
-  Mesh mesh = build_mesh(tube(48, 10, 2, true));
+  Mesh mesh = build_mesh(test::tube(48, 10, 2, true));
   mark_sharp_curves(mesh);
   EXPECT_EQ(count(mesh.topology, EdgeKind::crease), 2U * 48);
   EXPECT_TRUE(mesh.topology.shape.corners.empty());
@@ -150,7 +120,7 @@ TEST(SharpCurves, BoundariesOfASquareHaveItsCorners) {
 }
 
 TEST(OriginalCurves, MeetAPlaneWhereTheCurveDoes) {
-  Mesh mesh = build_mesh(tube(64, 8, 1, false));
+  Mesh mesh = build_mesh(test::tube(64, 8, 1, false));
   mark_sharp_curves(mesh);
   const OriginalCurves curves(mesh);
   const Nearest start = curves.nearest({2, 0, 0.1});
@@ -207,8 +177,8 @@ class CurvedCollapses : public ::testing::TestWithParam<const char*> {
  protected:
   [[nodiscard]] static Mesh original() {
     const std::string name = GetParam();
-    Mesh mesh = build_mesh(name == "tube"    ? tube(60, 20, 2, false)
-                           : name == "can"   ? tube(60, 20, 2, true)
+    Mesh mesh = build_mesh(name == "tube"    ? test::tube(60, 20, 2, false)
+                           : name == "can"   ? test::tube(60, 20, 2, true)
                            : name == "sheet" ? sheet(40)
                                              : test::box({10, 10, 10}, {1, 2, 3}));
     mark_sharp_curves(mesh);
