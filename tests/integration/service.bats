@@ -145,24 +145,22 @@ leave() {
   start_server --slots 2 --max-compute-seconds 0
   large=()
   for number in {1..6}; do
-    curl -sS --noproxy '*' -o /dev/null -w '%{http_code} %{time_total}\n' -H "$draco" --data-binary @"$coarse" \
+    curl -sS --noproxy '*' -o /dev/null -w '%{http_code}\n' -H "$draco" --data-binary @"$coarse" \
       "$url/v1/refine?levels=6&flatness=1&growth=2&w=0.0$number" >"$BATS_TEST_TMPDIR/large$number" 3>&- &
     large+=($!)
   done
   all_in() { request "$url/metrics" && (($(awk '/^papilio_(slots_busy|queue_length) / { n += $2 } END { print n }' "$body") >= 6)); }
   eventually all_in
   for query in 'levels=2' 'levels=8&tolerance=0.01'; do
-    curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code} %{time_total}\n' -H "$draco" \
+    curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code}\n' -H "$draco" \
       --data-binary @"$coarse" "$url/v1/refine?$query&crease_angle=[101-125]" >>"$BATS_TEST_TMPDIR/small"
+    # How many of the large ones were through when these were; under sanitizers, whose steps take seconds, all may be.
+    large_ones_done=$(cat "$BATS_TEST_TMPDIR"/large* | wc -l)
+    [[ $PAPILIO_BUILD != */release ]] || ((large_ones_done < 6))
   done
   wait "${large[@]}"
-  [ "$(grep -c '^200 ' "$BATS_TEST_TMPDIR/small")" = 50 ]
-  [ "$(cat "$BATS_TEST_TMPDIR"/large* | grep -c '^200 ')" = 6 ]
-  slowest_small=$(sort -k2 -n "$BATS_TEST_TMPDIR/small" | tail -1 | cut -d' ' -f2)
-  slowest_large=$(cat "$BATS_TEST_TMPDIR"/large* | sort -k2 -n | tail -1 | cut -d' ' -f2)
-  echo "small $slowest_small s, large $slowest_large s"
-  # Under the thread sanitizer the steps between two turns take seconds: nothing to be told from times.
-  [[ $PAPILIO_BUILD == */tsan ]] || awk "BEGIN { exit !($slowest_small < $slowest_large / 2) }"
+  [ "$(grep -c '^200' "$BATS_TEST_TMPDIR/small")" = 50 ]
+  [ "$(cat "$BATS_TEST_TMPDIR"/large* | grep -c '^200')" = 6 ]
 }
 
 @test "2,000 silent connections do not keep others waiting" {

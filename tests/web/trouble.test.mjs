@@ -24,6 +24,13 @@ const shared = serverAndBrowser();
 
 const message = (page, mode) => page.locator(`.panel[data-mode=${mode}] .message`);
 
+// At once, unless the page has just tried again by itself, which takes the button away.
+const tryAgain = (page) =>
+  message(page, 'view')
+    .getByRole('button')
+    .click({ timeout: 1000 })
+    .catch(() => {});
+
 test('a result beyond a limit is refused where it would be, with the number; the others come', async () => {
   const small = await startServer('--max-output-faces', '10000', '--max-body-bytes', '1200');
   try {
@@ -80,11 +87,7 @@ test('a busy server is asked again by itself, and at once where the user wants i
     isOver = true;
     await Promise.all(busy);
   }
-  // At once, unless it has just been asked again.
-  await message(page, 'view')
-    .getByRole('button')
-    .click({ timeout: 1000 })
-    .catch(() => {});
+  await tryAgain(page);
   await done(page, ['view']);
   await small.stop();
 });
@@ -100,7 +103,7 @@ test('a server that is gone is missed in words, and found again', async () => {
   const again = await startServer('--port', port);
   try {
     // Its store is a new one: the page stores the mesh again by itself.
-    await message(page, 'view').getByRole('button').click();
+    await tryAgain(page);
     await done(page);
   } finally {
     await again.stop();
