@@ -1,9 +1,10 @@
 #include "proto/detail/packed_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
 
+#include "proto/detail/level_table.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/error_translation.h"
@@ -32,29 +33,9 @@ const Json& only(const Json& array, const char* what) {
   return array[0];
 }
 
-double number_member(const Json& of, const char* key, const std::string& where) {
-  const Json* value = gltf::find_member(of, key, where);
-  if (value == nullptr) refuse_document(where, "has no " + std::string(key));
-  const double number = value->is_number() ? value->get<double>() : std::nan("");
-  if (!std::isfinite(number)) refuse_document(where + "." + key, "must be a finite number");
-  return number;
-}
-
-double distance_member(const Json& of, const char* key, const std::string& where) {
-  const double number = number_member(of, key, where);
-  if (number < 0) refuse_document(where + "." + key, "must not be negative");
-  return number;
-}
-
-float step_member(const Json& of, const std::string& where) {
-  const double number = number_member(of, "step", where);
-  const auto step = static_cast<float>(number);  // the nearest
-  if (!(step > 0 && step <= coordinate_limit)) refuse_document(where + ".step", "must be above 0, and at most 1e18");
-  return step;
-}
-
-DetailReach reach_member(const Json& of, const std::string& where) {
-  return {distance_member(of, "rms", where), distance_member(of, "largest", where)};
+[[noreturn]] void refuse_cut(const std::string& where) {
+  throw Problem(Code::mesh_not_gltf,
+                "The file is cut inside " + where + ", so no level can be read. Provide more of it.");
 }
 
 /// Reader of one file.
@@ -69,15 +50,16 @@ class PackedReader {
   PackedModel read() {
     const Json& extension = *gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place);
     require_version(extension);
+    const std::string_view base = base_stream();
+    const View detail = view_at(gltf::index_member(extension, "bufferView", detail_place), detail_place);
+    const LevelTable table = table_of(detail);
     PackedModel model;
-    model.base_reach = reach_member(extension, detail_place);
-    const Json& levels = levels_of(extension);
-    model.declared_levels = levels.size();
+    model.base_reach = table.base_reach;
+    model.declared_levels = table.rows.size();
     const uint64_t faces = declared_faces();
-    require_room(faces, std::min(options_.levels, levels.size()));
-    read_base(faces, model);
-    read_curves(extension, model);
-    read_levels(levels, model);
+    require_room(faces, std::min(options_.levels, table.rows.size()));
+    read_base(base, faces, table, model);
+    read_streams(table, detail.bytes.substr(table.size()), model);
     return model;
   }
 
@@ -107,15 +89,6 @@ class PackedReader {
                         std::to_string(detail_version) + " is supported. Update papilio, or pack the model again.");
   }
 
-  static const Json& levels_of(const Json& extension) {
-    const Json* levels = gltf::find_member(extension, "levels", detail_place);
-    if (levels == nullptr || !levels->is_array()) refuse_document(detail_place, "has no array of levels");
-    if (levels->size() > most_detail_levels)
-      refuse_document(detail_place, "has " + std::to_string(levels->size()) + " levels; at most " +
-                                        std::to_string(most_detail_levels) + " are allowed");
-    return *levels;
-  }
-
   /// Returns the faces that the accessor of the indices declares.
   [[nodiscard]] uint64_t declared_faces() const {
     const uint64_t corners = declared_count(gltf::index_member(*primitive_, "indices", primitive_place));
@@ -140,48 +113,71 @@ class PackedReader {
                                                 std::to_string(levels) + ", the limit. Request fewer levels.");
   }
 
-  /// Returns the bytes of a view, which begins at or after the end of the view before; nothing if the file was cut
-  /// before its end.
-  std::optional<std::string_view> bytes_of(const Json& of, const std::string& where) {
-    const auto number = gltf::index_member(of, "bufferView", where);
-    if (!number) return std::string_view();
-    return bytes_of_view(*number, where);
-  }
-  std::optional<std::string_view> bytes_of_view(uint32_t number, const std::string& where) {
-    const gltf::ViewRange range = gltf::view_range(document_, number, where);
-    const std::string view = gltf::place("bufferViews", number);
+  /// A view, of whose bytes a file that is cut has the first ones.
+  struct View {
+    std::string place;
+    uint64_t length = 0;
+    std::string_view bytes;
+  };
+
+  /// Returns a view, which begins at or after the end of the view before.
+  View view_at(std::optional<uint32_t> number, const std::string& where) {
+    if (!number) refuse_document(where, "has no bufferView");
+    const gltf::ViewRange range = gltf::view_range(document_, *number, where);
+    View view{.place = gltf::place("bufferViews", *number), .length = range.length, .bytes = {}};
     for (const char* key : {"byteStride", "extensions"})
-      if (gltf::element_of(document_.json, "bufferViews", number, where).contains(key))
-        refuse_document(view, "holds a stream and has " + std::string(key));
+      if (gltf::element_of(document_.json, "bufferViews", *number, where).contains(key))
+        refuse_document(view.place, "holds a stream and has " + std::string(key));
     if (range.offset < end_)
-      refuse_document(view, "begins at byte " + std::to_string(range.offset) + ", before the end of " + before_ +
-                                " at byte " + std::to_string(end_));
+      refuse_document(view.place, "begins at byte " + std::to_string(range.offset) +
+                                      ", before the end of the base at byte " + std::to_string(end_));
     end_ = range.offset + range.length;
-    before_ = view;
     const std::string_view bytes = document_.buffers[0].bytes();
-    if (end_ > bytes.size()) return std::nullopt;
-    return bytes.substr(range.offset, range.length);
+    view.bytes = bytes.substr(std::min<uint64_t>(range.offset, bytes.size()), range.length);
+    return view;
   }
 
-  void read_base(uint64_t faces, PackedModel& model) {
-    const Json* attributes = gltf::find_member(*primitive_, "attributes", primitive_place);
+  /// Returns the Draco stream of the base.
+  std::string_view base_stream() {
     const Json* draco = gltf::find_extension(*primitive_, gltf::draco_extension, primitive_place);
-    if (attributes == nullptr || draco == nullptr || !attributes->is_object())
+    if (draco == nullptr)
       refuse_document(primitive_place, "has no base compressed by " + std::string(gltf::draco_extension));
-    has_texcoords_ = attributes->contains("TEXCOORD_0");
-    if (attributes->size() != (has_texcoords_ ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
+    const View view = view_at(gltf::index_member(*draco, "bufferView", primitive_place), primitive_place);
+    if (view.bytes.size() < view.length) refuse_cut("its base");
+    return view.bytes;
+  }
+
+  /// Returns the table at the begin of a view, which it and its streams fill.
+  static LevelTable table_of(const View& view) {
+    if (view.length < least_table_bytes) refuse_document(view.place, "is too short for a table of levels");
+    if (view.bytes.size() < least_table_bytes) refuse_cut("the table of its levels");
+    const uint64_t size = size_of_table(view.bytes);
+    if (view.length < size) refuse_document(view.place, "is too short for its table of levels");
+    if (view.bytes.size() < size) refuse_cut("the table of its levels");
+    LevelTable table = read_table(view.bytes.substr(0, size));
+    if (view.length != table.total())
+      refuse_document(view.place, "has " + std::to_string(view.length) + " bytes, and its table declares " +
+                                      std::to_string(table.total()));
+    return table;
+  }
+
+  void read_base(std::string_view stream, uint64_t faces, const LevelTable& table, PackedModel& model) {
+    const Json* attributes = gltf::find_member(*primitive_, "attributes", primitive_place);
+    if (attributes == nullptr || !attributes->is_object()) refuse_document(primitive_place, "has no attributes");
+    const bool has_texcoords = attributes->contains("TEXCOORD_0");
+    if (attributes->size() != (has_texcoords ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
+    if (table.has_texcoords && !has_texcoords)
+      refuse_document("the table of levels", "has texture coordinates, and the base has no TEXCOORD_0");
     const uint64_t vertices = declared_count(gltf::index_member(*attributes, "POSITION", primitive_place));
-    const std::optional<std::string_view> stream = bytes_of(*draco, primitive_place);
-    if (!stream)
-      throw Problem(Code::mesh_not_gltf,
-                    "The file is cut inside its base, so no level can be read. Provide more of it.");
-    FormattedMesh base = read_draco(*stream, options_.limits);
+    FormattedMesh base = read_draco(stream, options_.limits);
     if (base.positions.size() != vertices || base.triangles.size() != faces)
       refuse_document(primitive_place, "declares other counts than its Draco stream has");
-    if (base.format.attributes != (has_texcoords_ ? one_texcoord(base) : std::vector<AttributeFormat>{}))
+    if (base.format.attributes != (has_texcoords ? one_texcoord(base) : std::vector<AttributeFormat>{}))
       refuse_scene("a base with other attributes than it declares");
-    edges_ = edges_of(base);
-    model.base_bytes = stream->size();
+    if (const uint64_t edges = edges_of(base); table.edges != edges)
+      refuse_document("the table of levels",
+                      "declares " + std::to_string(table.edges) + " edges, and the base has " + std::to_string(edges));
+    model.base_bytes = stream.size();
     model.base.triangles = std::move(base);
   }
 
@@ -204,57 +200,37 @@ class PackedReader {
     return mesh.topology.edge_count();
   }
 
-  void read_curves(const Json& extension, PackedModel& model) {
-    const auto number = gltf::index_member(extension, "curves", detail_place);
-    if (!number) return;
-    const std::optional<std::string_view> bytes = bytes_of_view(*number, detail_place);
-    if (!bytes)
-      throw Problem(Code::mesh_not_gltf,
-                    "The file is cut inside the curves of its base, so no level can be read. Provide more of it.");
-    model.base.curves.assign(bytes->begin(), bytes->end());
-  }
-
-  void read_levels(const Json& levels, PackedModel& model) {
+  /// Reads the curves and the whole levels of streams that may be cut.
+  void read_streams(const LevelTable& table, std::string_view streams, PackedModel& model) const {
+    const auto take = [&](uint32_t bytes) -> std::optional<std::vector<uint8_t>> {
+      if (bytes > streams.size()) return std::nullopt;
+      std::vector<uint8_t> taken(streams.begin(), streams.begin() + bytes);
+      streams.remove_prefix(bytes);
+      return taken;
+    };
+    std::optional<std::vector<uint8_t>> curves = take(table.curve_bytes);
+    if (!curves) refuse_cut("the curves of its base");
+    model.base.curves = *std::move(curves);
     uint64_t faces = model.base.triangles.triangles.size();
-    uint64_t edges = edges_;
-    for (size_t l = 0; l < levels.size(); ++l) {
-      const std::string where = detail_place + ".levels[" + std::to_string(l) + "]";
-      PackedLevel level{.stream = {step_member(levels[l], where), {}},
-                        .reach = reach_member(levels[l], where),
-                        .vertices = gltf::whole_number(levels[l], "vertices", where),
-                        .faces = 4 * faces};
-      if (level.vertices != edges)
-        refuse_document(where + ".vertices",
-                        "is " + std::to_string(level.vertices) + ", and the base gives " + std::to_string(edges));
+    uint64_t edges = table.edges;
+    for (size_t l = 0; l < std::min(options_.levels, table.rows.size()); ++l) {
+      const LevelRow& row = table.rows[l];
+      std::optional<std::vector<uint8_t>> residuals = take(row.bytes);
+      std::optional<std::vector<uint8_t>> texcoords = take(row.texcoord_bytes);
+      if (!residuals || !texcoords) break;
+      model.levels.push_back({.stream = {row.step, *std::move(residuals), {row.texcoord_step, *std::move(texcoords)}},
+                              .reach = row.reach,
+                              .vertices = edges,
+                              .faces = 4 * faces});
       edges = 2 * edges + 3 * faces;
       faces *= 4;
-      const std::optional<std::string_view> bytes = bytes_of(levels[l], where);
-      if (bytes) level.stream.bytes.assign(bytes->begin(), bytes->end());
-      const bool is_whole = read_texcoords(levels[l], where, level.stream.texcoords) && bytes.has_value();
-      if (!is_whole || l != model.levels.size() || l >= options_.levels) continue;
-      model.levels.push_back(std::move(level));
     }
-  }
-
-  /// Reads the texture coordinates of a level. Returns whether the file was not cut before their end.
-  bool read_texcoords(const Json& level, const std::string& level_place, TexcoordStream& stream) {
-    const Json* texcoords = gltf::find_member(level, "texcoords", level_place);
-    if (texcoords == nullptr) return true;
-    const std::string where = level_place + ".texcoords";
-    if (!has_texcoords_) refuse_document(where, "is there, and the base has no TEXCOORD_0");
-    stream.step = step_member(*texcoords, where);
-    const std::optional<std::string_view> bytes = bytes_of(*texcoords, where);
-    if (bytes) stream.bytes.assign(bytes->begin(), bytes->end());
-    return bytes.has_value();
   }
 
   const ReadOptions& options_;
   gltf::Document document_;
   const Json* primitive_ = nullptr;
-  bool has_texcoords_ = false;               ///< of the base
-  uint64_t edges_ = 0;                       ///< of the base
-  uint64_t end_ = 0;                         ///< of the last view, in the binary chunk
-  std::string before_ = "the binary chunk";  ///< name of the last view
+  uint64_t end_ = 0;  ///< of the last view, in the binary chunk
 };
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "proto/detail/level_table.h"
 #include "proto/detail/packed_model.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/gltf/accessor.h"
@@ -23,14 +23,6 @@ using gltf::Json;
 
 /// Smallest index that restarts primitives where indices have 16 bits.
 constexpr size_t restart_index_16 = 65535;
-
-/// Returns a distance rounded up to four significant digits.
-double rounded_up(double value) {
-  if (!(value >= 0) || !std::isfinite(value)) throw std::invalid_argument("write_packed: a distance is not finite");
-  constexpr double next = 1.0001;  // at most to the next of four digits
-  for (double raised = value;; raised *= next)
-    if (const double rounded = parse_number(format_rounded(raised)).value(); rounded >= value) return rounded;
-}
 
 /// Returns the number with the fewest digits whose nearest float is this one.
 double shortest(float value) {
@@ -109,9 +101,33 @@ Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
   return scene;
 }
 
-void put_reach(Json& json, const DetailReach& reach) {
-  json["rms"] = rounded_up(reach.rms);
-  json["largest"] = rounded_up(reach.largest);
+LevelTable table_of(const EncodedDetail& detail) {
+  LevelTable table{.edges = build_mesh(detail.base.triangles).topology.edge_count(),
+                   .curve_bytes = static_cast<uint32_t>(detail.base.curves.size()),
+                   .base_reach = detail.reach[0],
+                   .rows = {}};
+  for (size_t l = 0; l < detail.levels.size(); ++l) {
+    const DetailStream& stream = detail.levels[l];
+    table.rows.push_back({.step = stream.step,
+                          .reach = detail.reach[l + 1],
+                          .bytes = static_cast<uint32_t>(stream.bytes.size()),
+                          .texcoord_step = stream.texcoords.step,
+                          .texcoord_bytes = static_cast<uint32_t>(stream.texcoords.bytes.size())});
+    table.has_texcoords = table.has_texcoords || stream.texcoords.step > 0;
+  }
+  return table;
+}
+
+/// Returns the view of a packed model's table and streams.
+std::string streams_of(const EncodedDetail& detail) {
+  std::string out = write_table(table_of(detail));
+  const auto add = [&](const std::vector<uint8_t>& bytes) { out.append(bytes.begin(), bytes.end()); };
+  add(detail.base.curves);
+  for (const DetailStream& stream : detail.levels) {
+    add(stream.bytes);
+    add(stream.texcoords.bytes);
+  }
+  return out;
 }
 
 }  // namespace
@@ -119,37 +135,10 @@ void put_reach(Json& json, const DetailReach& reach) {
 std::string write_packed(const EncodedDetail& detail, std::string_view base_stream, const gltf::Materials& material) {
   if (detail.reach.size() != detail.levels.size() + 1 || detail.levels.size() > most_detail_levels)
     throw std::invalid_argument("write_packed: levels and distances disagree");
-  const TriangleMesh& base = detail.base.triangles;
-  Scene scene = scene_of(base, base_stream);
+  Scene scene = scene_of(detail.base.triangles, base_stream);
   scene.json["extensionsUsed"].push_back(gltf::detail_extension);
-  Json extension{{"version", detail_version}};
-  put_reach(extension, detail.reach[0]);
-  const auto text_of = [](const std::vector<uint8_t>& bytes) {
-    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  };
-  if (!detail.base.curves.empty()) extension["curves"] = scene.add_view(text_of(detail.base.curves));
-  extension["levels"] = Json::array();
-  uint64_t faces = base.triangles.size();
-  uint64_t edges = build_mesh(base).topology.edge_count();
-  for (size_t l = 0; l < detail.levels.size(); ++l) {
-    const DetailStream& stream = detail.levels[l];
-    if (!(stream.step > 0 && stream.step <= coordinate_limit)) throw std::invalid_argument("write_packed: no step");
-    Json level = Json::object();
-    if (!stream.bytes.empty()) level["bufferView"] = scene.add_view(text_of(stream.bytes));  // of a byte at least
-    level["step"] = shortest(stream.step);
-    level["vertices"] = edges;
-    put_reach(level, detail.reach[l + 1]);
-    if (stream.texcoords.step > 0) {
-      Json texcoords = Json::object();
-      if (!stream.texcoords.bytes.empty()) texcoords["bufferView"] = scene.add_view(text_of(stream.texcoords.bytes));
-      texcoords["step"] = shortest(stream.texcoords.step);
-      level["texcoords"] = std::move(texcoords);
-    }
-    extension["levels"].push_back(std::move(level));
-    edges = 2 * edges + 3 * faces;
-    faces *= 4;
-  }
-  scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
+  const size_t view = scene.add_view(streams_of(detail));
+  scene.primitive()["extensions"][gltf::detail_extension] = {{"version", detail_version}, {"bufferView", view}};
   scene.add_material(material);
   return std::move(scene).write();
 }

@@ -10,7 +10,7 @@ namespace papilio::proto::detail {
 
 /// Writes a packed model (proto/detail.md). `base_stream`: Draco stream that decodes to `detail.base`. `material`: that
 /// of all faces, with its images; or none. Distances are
-/// rounded up to four digits; all else is read back to the bit. Throws `Problem` result_too_large beyond 4 GiB, and
+/// rounded up to 32-bit floats; all else is read back to the bit. Throws `Problem` result_too_large beyond 4 GiB, and
 /// `std::invalid_argument` for a step or a distance that no reader takes.
 [[nodiscard]] std::string write_packed(const EncodedDetail& detail, std::string_view base_stream,
                                        const gltf::Materials& material = {});

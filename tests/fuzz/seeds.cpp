@@ -172,10 +172,7 @@ void add_parameters(Seeds& seeds) {
                                  "OCTAHEDRAL",
                                  "normalized",
                                  "TEXCOORD_0",
-                                 "PAPILIO_detail",
-                                 "texcoords",
-                                 "vertices",
-                                 "largest"};
+                                 "PAPILIO_detail"};
   for (const proto::ParameterInfo& info : proto::parameter_table()) {
     const std::string name(info.name);
     std::string value = proto::describe_default(info);

@@ -99,6 +99,14 @@ test('the decoder says what is wrong, and goes on', async () => {
   refused((copy) => copy.triangles.subarray(0, 3).reverse(), /not a manifold surface/);
 });
 
+/// The file with other bytes in the table of its levels.
+function withTable(file, change) {
+  const bytes = Buffer.from(file);
+  const { draco } = readPacked(new Uint8Array(file)).base;
+  change(bytes.subarray(draco.byteOffset + draco.length));
+  return new Uint8Array(bytes);
+}
+
 /// The file with another document.
 function edited(file, change) {
   const bytes = Buffer.from(file);
@@ -118,19 +126,15 @@ function edited(file, change) {
 test('damaged and foreign documents are refused, with the place in them', () => {
   const file = bytesOf(torus);
   const refusals = [
-    [({ detail }) => (detail.version = 2), 'mesh_unsupported', /version 2; version 1 is supported/],
+    [({ detail }) => (detail.version = 1), 'mesh_unsupported', /version 1; version 2 is supported/],
     [({ detail }) => (detail.version = 1.5), 'mesh_not_gltf', /version is no whole number/],
-    [({ detail }) => delete detail.levels, 'mesh_not_gltf', /no array of levels/],
-    [({ detail }) => (detail.levels = Array(11).fill(detail.levels[0])), 'mesh_not_gltf', /11 levels; at most 10/],
-    [({ detail }) => (detail.rms = -1), 'mesh_not_gltf', /rms must not be negative/],
-    [({ detail }) => (detail.largest = 'far'), 'mesh_not_gltf', /largest must be a finite number/],
-    [({ detail }) => (detail.levels[1].step = 0), 'mesh_not_gltf', /levels\[1\]\.step must be above 0/],
-    [({ detail }) => (detail.levels[1].step = 1e-60), 'mesh_not_gltf', /levels\[1\]\.step must be above 0/],
-    [({ detail }) => (detail.levels[1].vertices = -3), 'mesh_not_gltf', /vertices is no whole number/],
-    [({ detail }) => (detail.levels[1].bufferView = 1), 'mesh_not_gltf', /before the end of bufferViews\[1\]/],
-    [({ detail }) => (detail.levels[0].bufferView = 99), 'mesh_not_gltf', /bufferViews\[99\] does not exist/],
-    [({ json }) => --json.bufferViews[2].byteOffset, 'mesh_not_gltf', /before the end of/],
-    [({ json }) => (json.bufferViews[2].byteLength += 1e6), 'mesh_not_gltf', /has the bytes .* of buffers\[0\]/],
+    [({ detail }) => delete detail.bufferView, 'mesh_not_gltf', /has no bufferView/],
+    [({ detail }) => (detail.bufferView = 0), 'mesh_not_gltf', /before the end of the base/],
+    [({ detail }) => (detail.bufferView = 99), 'mesh_not_gltf', /bufferViews\[99\] does not exist/],
+    [({ json }) => --json.bufferViews[1].byteOffset, 'mesh_not_gltf', /before the end of/],
+    [({ json }) => --json.bufferViews[1].byteLength, 'mesh_not_gltf', /has .* bytes, and its table declares/],
+    [({ json }) => (json.bufferViews[1].byteLength = 17), 'mesh_not_gltf', /too short/],
+    [({ json }) => (json.bufferViews[1].byteLength += 1e6), 'mesh_not_gltf', /has the bytes .* of buffers\[0\]/],
     [({ json }) => (json.bufferViews[1].byteStride = 4), 'mesh_not_gltf', /has byteStride/],
     [({ json }) => (json.buffers[0].byteLength += 9), 'mesh_not_gltf', /buffers\[0\] declares/],
     [({ json }) => (json.buffers[0].uri = 'other.bin'), 'mesh_unsupported', /one buffer, the binary chunk/],
@@ -144,16 +148,38 @@ test('damaged and foreign documents are refused, with the place in them', () => 
     [({ json }) => ++json.accessors[1].count, 'mesh_not_gltf', /whole triangles/],
     [({ json }) => (json.accessors[1].count = 3e6), 'result_too_large', /the limit is 8000000/],
   ];
-  for (const [change, code, message] of refusals)
-    assert.throws(
-      () => readPacked(edited(file, change)),
-      (error) => {
-        assert.equal(error.name, 'Problem', String(change));
-        assert.deepEqual([error.code, message.test(error.message)], [code, true], `${change}: ${error.message}`);
-        return true;
-      },
-    );
+  for (const [change, code, message] of refusals) assertRefused(edited(file, change), code, message, change);
   assert.equal(readPacked(edited(file, () => {})).levels.length, readPacked(file).levels.length);
+});
+
+function assertRefused(file, code, message, change) {
+  assert.throws(
+    () => readPacked(file),
+    (error) => {
+      assert.equal(error.name, 'Problem', String(change));
+      assert.deepEqual([error.code, message.test(error.message)], [code, true], `${change}: ${error.message}`);
+      return true;
+    },
+  );
+}
+
+test('damaged tables of levels are refused', () => {
+  const file = bytesOf(torus);
+  const refusals = [
+    [(table) => (table[0] = 11), 'mesh_not_gltf', /has 11 of them; at most 10/],
+    [(table) => --table[0], 'mesh_not_gltf', /its table declares/],
+    [(table) => (table[1] = 1), 'mesh_unsupported', /texture coordinates/],
+    [(table) => (table[1] = 2), 'mesh_not_gltf', /unknown flags/],
+    [(table) => ++table[6], 'mesh_not_gltf', /its table declares/],
+    [(table) => table.writeFloatLE(-1, 10), 'mesh_not_gltf', /the base's row has a distance/],
+    [(table) => table.writeFloatLE(Infinity, 14), 'mesh_not_gltf', /the base's row has a distance/],
+    [(table) => table.writeFloatLE(0, 34), 'mesh_not_gltf', /level 2 has a step that is not above 0/],
+    [(table) => table.writeFloatLE(1.1e18, 34), 'mesh_not_gltf', /level 2 has a step/],
+    [(table) => table.writeFloatLE(NaN, 38), 'mesh_not_gltf', /level 2 has a distance/],
+    [(table) => ++table[30], 'mesh_not_gltf', /its table declares/],
+  ];
+  for (const [change, code, message] of refusals) assertRefused(withTable(file, change), code, message, change);
+  assert.deepEqual(readPacked(withTable(file, () => {})), readPacked(file));
 });
 
 test('damaged containers are refused', () => {

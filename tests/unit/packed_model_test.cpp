@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
@@ -35,6 +39,33 @@ std::string with(const std::string& glb, const std::function<void(Json&)>& chang
   return changed(glb, [&](Json& json) { change(extension_in(json)); });
 }
 
+/// First byte of the binary chunk's content.
+size_t binary_begin(const std::string& glb) { return glb.size() - test::binary_of_glb(glb).size(); }
+
+/// Byte of the table in the binary chunk: it follows the base.
+size_t table_begin(const PackedFixture& made) { return made.base_stream.size(); }
+
+/// The model again with other bytes in its table.
+std::string with_table(const PackedFixture& made, size_t at, const std::string& bytes) {
+  std::string glb = made.glb;
+  glb.replace(binary_begin(glb) + table_begin(made) + at, bytes.size(), bytes);
+  return glb;
+}
+
+std::string bytes_of(uint32_t number) {
+  std::string bytes;
+  for (unsigned i = 0; i < 4; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFF);
+  return bytes;
+}
+std::string bytes_of(float number) { return bytes_of(std::bit_cast<uint32_t>(number)); }
+
+/// Bytes of a table's members: offsets of the base's, and of the first two levels'.
+constexpr size_t edges_at = 2;
+constexpr size_t curve_bytes_at = 6;
+constexpr std::array<size_t, 4> distances_at{10, 14, 22, 26};
+constexpr std::array<size_t, 2> steps_at{18, 34};
+constexpr size_t level_bytes_at = 30;
+
 /// Returns the code with which a file is refused, and "read" for one that is read.
 std::string refusal(const std::string& glb, const ReadOptions& options = {}) {
   try {
@@ -45,9 +76,6 @@ std::string refusal(const std::string& glb, const ReadOptions& options = {}) {
     return std::string(problem_kind(problem.code()).name);
   }
 }
-
-/// First byte of the binary chunk's content.
-size_t binary_begin(const std::string& glb) { return glb.size() - test::binary_of_glb(glb).size(); }
 
 TEST(PackedModel, BaseAndStreamsComeBackToTheBit) {
   const PackedFixture made = packed_fixture(test::torus(12, 8), 3);
@@ -66,13 +94,13 @@ TEST(PackedModel, BaseAndStreamsComeBackToTheBit) {
   }
 }
 
-TEST(PackedModel, DistancesAreRoundedUpToFourDigits) {
+TEST(PackedModel, DistancesAreRoundedUpToFloats) {
   PackedFixture made = packed_fixture(test::octahedron(), 1);
   for (const double distance : {0.0, 1e-9, 0.00123456, 0.1234, 0.99999, 3.3333e-5}) {
     made.detail.reach[1].rms = distance;
     const double read = read_packed(write_packed(made.detail, made.base_stream)).levels[0].reach.rms;
     EXPECT_GE(read, distance);
-    EXPECT_LE(read, distance * 1.001);
+    EXPECT_LE(read, distance * 1.0000002);
   }
 }
 
@@ -96,15 +124,18 @@ TEST(PackedModel, AnyViewerReadsTheBase) {
 
 TEST(PackedModel, StreamsFollowTheBaseLevelByLevel) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2, 31);
-  std::string expected = made.base_stream;
+  std::string expected;
   for (const DetailStream& stream : made.detail.levels) expected.append(stream.bytes.begin(), stream.bytes.end());
-  EXPECT_EQ(test::binary_of_glb(made.glb).substr(0, expected.size()), expected);
+  const std::string binary = test::binary_of_glb(made.glb);
+  EXPECT_EQ(binary.substr(0, made.base_stream.size()), made.base_stream);
+  EXPECT_EQ(binary.substr(made.base_stream.size() + 18 + 2 * 16, expected.size()), expected);
 }
 
-TEST(PackedModel, AnEmptyStreamHasNoView) {
+TEST(PackedModel, AStreamMayBeEmpty) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2, 0);
-  EXPECT_EQ(test::json_of_glb(made.glb)["bufferViews"].size(), 1U);
-  EXPECT_TRUE(read_packed(made.glb).levels[1].stream.bytes.empty());
+  const PackedModel model = read_packed(made.glb);
+  EXPECT_TRUE(model.levels.at(1).stream.bytes.empty());
+  EXPECT_EQ(model.levels.at(1).stream.step, made.detail.levels[1].step);
 }
 
 TEST(PackedModel, NoLevelsAndTheMostLevelsAreRead) {
@@ -126,7 +157,7 @@ TEST(PackedModel, ATruncatedFileIsRefusedUnlessAllowed) {
 TEST(PackedModel, APrefixGivesItsWholeLevels) {
   constexpr size_t bytes_per_level = 40;
   const PackedFixture made = packed_fixture(test::icosahedron(), 3, bytes_per_level);
-  const size_t base_end = binary_begin(made.glb) + made.base_stream.size();
+  const size_t base_end = binary_begin(made.glb) + made.base_stream.size() + 18 + 3 * 16;
   for (size_t size = 0; size <= made.glb.size(); ++size) {
     const std::string prefix = made.glb.substr(0, size);
     if (size < base_end) {
@@ -147,7 +178,7 @@ TEST(PackedModel, BytesBeyondTheFileAreRefusedEvenIfItMayBeCut) {
 
 TEST(PackedModel, AnotherVersionIsRefused) {
   const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
-  for (const int version : {0, 2, 1000}) {
+  for (const int version : {0, 1, 3, 1000}) {
     const std::string other = with(glb, [&](Json& json) { json["version"] = version; });
     EXPECT_EQ(refusal(other), "mesh_unsupported");
   }
@@ -156,46 +187,56 @@ TEST(PackedModel, AnotherVersionIsRefused) {
 }
 
 TEST(PackedModel, AStepThatIsNoPositiveFloatIsRefused) {
-  const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
-  for (const Json& step :
-       {Json(0), Json(-1), Json(1e39), Json(1.1e18), Json(1e-50), Json("1"), Json(nullptr), Json::array()})
-    EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][1]["step"] = step; })), "mesh_not_gltf") << step;
-  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"][0].erase("step"); })), "mesh_not_gltf");
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2);
+  EXPECT_EQ(refusal(with_table(made, steps_at[1], bytes_of(0.5F))), "read");
+  for (const float step : {0.0F, -1.0F, 1.1e18F, std::numeric_limits<float>::infinity(), std::nanf("")})
+    for (const size_t at : steps_at) EXPECT_EQ(refusal(with_table(made, at, bytes_of(step))), "mesh_not_gltf") << step;
 }
 
 TEST(PackedModel, ADistanceThatIsNoDistanceIsRefused) {
-  const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
-  for (const char* key : {"rms", "largest"})
-    for (const Json& distance : {Json(-1e-9), Json("0"), Json(nullptr)}) {
-      EXPECT_EQ(refusal(with(glb, [&](Json& json) { json[key] = distance; })), "mesh_not_gltf");
-      EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][0][key] = distance; })), "mesh_not_gltf");
-    }
+  const PackedFixture made = packed_fixture(test::icosahedron(), 1);
+  for (const size_t at : distances_at) {
+    EXPECT_EQ(refusal(with_table(made, at, bytes_of(0.5F))), "read");
+    for (const float distance : {-1e-9F, std::numeric_limits<float>::infinity(), std::nanf("")})
+      EXPECT_EQ(refusal(with_table(made, at, bytes_of(distance))), "mesh_not_gltf") << at << " " << distance;
+  }
 }
 
 TEST(PackedModel, AWrongViewIsRefused) {
   const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
-  for (const int view : {0, 1, 3, 1000})  // of the base, of level 1, missing
-    EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["levels"][1]["bufferView"] = view; })), "mesh_not_gltf") << view;
-  EXPECT_EQ(refusal(with(
-                glb, [](Json& json) { std::swap(json["levels"][0]["bufferView"], json["levels"][1]["bufferView"]); })),
-            "mesh_not_gltf");
+  for (const Json& view : {Json(0), Json(2), Json(1000), Json(-1), Json("1"), Json(nullptr)})  // of the base, none
+    EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["bufferView"] = view; })), "mesh_not_gltf") << view;
+  EXPECT_EQ(refusal(with(glb, [](Json& json) { json.erase("bufferView"); })), "mesh_not_gltf");
   for (const char* key : {"byteLength", "byteOffset"})
-    EXPECT_EQ(refusal(changed(glb, [&](Json& json) { json["bufferViews"][2][key] = 100000; })), "mesh_not_gltf");
-  EXPECT_EQ(refusal(changed(glb, [](Json& json) { json["bufferViews"][2]["byteOffset"] = 0; })), "mesh_not_gltf");
+    for (const int value : {0, 10, 40, 100000})
+      EXPECT_EQ(refusal(changed(glb, [&](Json& json) { json["bufferViews"][1][key] = value; })), "mesh_not_gltf");
   EXPECT_EQ(refusal(changed(glb, [](Json& json) { json["bufferViews"][1]["byteStride"] = 4; })), "mesh_not_gltf");
 }
 
-TEST(PackedModel, TooManyLevelsAreRefused) {
-  const std::string glb = packed_fixture(test::icosahedron(), most_detail_levels).glb;
-  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"].push_back(json["levels"][9]); })), "mesh_not_gltf");
-  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"] = 3; })), "mesh_not_gltf");
+TEST(PackedModel, SizesThatDoNotFillTheViewAreRefused) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2, 40);
+  EXPECT_EQ(refusal(with_table(made, level_bytes_at, bytes_of(40U))), "read");
+  for (const uint32_t bytes : {0U, 39U, 41U, 0xFFFFFFFFU})
+    EXPECT_EQ(refusal(with_table(made, level_bytes_at, bytes_of(bytes))), "mesh_not_gltf") << bytes;
+  for (const uint32_t bytes : {1U, 40U, 0xFFFFFFFFU})
+    EXPECT_EQ(refusal(with_table(made, curve_bytes_at, bytes_of(bytes))), "mesh_not_gltf") << bytes;
 }
 
-TEST(PackedModel, CountsThatTheBaseDoesNotGiveAreRefused) {
-  const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
-  EXPECT_EQ(refusal(with(glb, [](Json& json) { json["levels"][1]["vertices"] = 121; })), "mesh_not_gltf");
+TEST(PackedModel, TooManyLevelsAndUnknownFlagsAreRefused) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), most_detail_levels);
+  for (const int levels : {0, 9, 11, 255})
+    EXPECT_EQ(refusal(with_table(made, 0, std::string(1, static_cast<char>(levels)))), "mesh_not_gltf") << levels;
+  for (const int flags : {1, 2, 128})
+    EXPECT_EQ(refusal(with_table(made, 1, std::string(1, static_cast<char>(flags)))), "mesh_not_gltf") << flags;
+}
+
+TEST(PackedModel, CountsThatTheBaseDoesNotHaveAreRefused) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2);
+  EXPECT_EQ(refusal(with_table(made, edges_at, bytes_of(30U))), "read");
+  EXPECT_EQ(refusal(with_table(made, edges_at, bytes_of(31U))), "mesh_not_gltf");
   for (const size_t accessor : {0, 1})
-    EXPECT_EQ(refusal(changed(glb, [&](Json& json) { json["accessors"][accessor]["count"] = 66; })), "mesh_not_gltf");
+    EXPECT_EQ(refusal(changed(made.glb, [&](Json& json) { json["accessors"][accessor]["count"] = 66; })),
+              "mesh_not_gltf");
 }
 
 TEST(PackedModel, FacesBeyondTheLimitAreRefused) {

@@ -147,7 +147,7 @@ TEST(PackedScene, AsAMeshHasTheSameLevels) {
 
 TEST(PackedScene, OfAVersionToComeIsItsBase) {
   std::string glb = packed_scene();
-  const size_t at = glb.find("\"version\":1,");
+  const size_t at = glb.find("\"version\":2,");
   ASSERT_NE(at, std::string::npos);
   glb.replace(at, 12, "\"version\":7,");
   EXPECT_EQ(find_packed(glb, {}), std::nullopt);
@@ -156,9 +156,10 @@ TEST(PackedScene, OfAVersionToComeIsItsBase) {
 
 TEST(PackedScene, ThatIsDamagedIsRefused) {
   std::string glb = packed_scene();
-  const size_t at = glb.find("\"step\":");
+  constexpr std::string_view before = "\"version\":2,\"bufferView\":";
+  const size_t at = glb.find(before);
   ASSERT_NE(at, std::string::npos);
-  glb[at + 7] = '-';
+  glb[at + before.size()] = '7';
   EXPECT_THROW((void)test::refined(glb, {{"levels", "1"}}), Problem);
 }
 

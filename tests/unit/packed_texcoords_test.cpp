@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <functional>
 
@@ -53,8 +54,17 @@ std::string refusal_of(const std::string& glb, const std::function<void(Textured
   }
 }
 
-TexturedJson& first_level(TexturedJson& json) {
-  return json["meshes"][0]["primitives"][0]["extensions"]["PAPILIO_detail"]["levels"][0];
+/// Bytes of the table, and where it has the step and the size of the first level's texture coordinates.
+constexpr size_t table_bytes = 18 + 2 * 24;
+constexpr size_t step_at = 34;
+constexpr size_t size_at = 38;
+
+/// Returns the code with which the model is refused that has another number of 32 bits in its table.
+std::string refusal_with(const test::PackedFixture& made, size_t at, uint32_t number) {
+  std::string glb = made.glb;
+  const size_t begin = glb.size() - test::binary_of_glb(glb).size() + made.base_stream.size() + at;
+  for (unsigned i = 0; i < 4; ++i) glb[begin + i] = static_cast<char>(number >> (8 * i) & 0xFF);
+  return refusal_of(glb, [](TexturedJson&) {});
 }
 
 TEST(PackedTexcoords, ComeBackToTheBit) {
@@ -98,7 +108,8 @@ TEST(PackedTexcoords, AreTurnedOverOnTheWayInAndOut) {
 TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
   const test::PackedFixture made = textured_fixture();
   const size_t end = made.glb.size() - made.glb.size() % 4;
-  const size_t levels_end = end - (made.base_stream.size() + 160 + 3) / 4 * 4 + made.base_stream.size() + 160;
+  const size_t levels_end =
+      end - (made.base_stream.size() + table_bytes + 160 + 3) / 4 * 4 + made.base_stream.size() + table_bytes + 160;
   EXPECT_EQ(read_packed(made.glb.substr(0, levels_end), {.may_be_cut = true}).levels.size(), 2U);
   EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 1), {.may_be_cut = true}).levels.size(), 1U);
   EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 80), {.may_be_cut = true}).levels.size(), 1U);
@@ -108,35 +119,32 @@ TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
 TEST(PackedTexcoords, OfALevelMayBeAbsent) {
   test::PackedFixture made = textured_fixture();
   made.detail.levels[0].texcoords = {};
-  const std::string glb = write_packed(made.detail, made.base_stream);
-  TexturedJson json = test::json_of_glb(glb);
-  EXPECT_FALSE(first_level(json).contains("texcoords"));
-  EXPECT_EQ(read_packed(glb).levels[0].stream.texcoords.step, 0);
+  const PackedModel model = read_packed(write_packed(made.detail, made.base_stream));
+  EXPECT_EQ(model.levels.at(0).stream.texcoords.step, 0);
+  EXPECT_EQ(model.levels.at(1).stream.texcoords.step, made.detail.levels[1].texcoords.step);
 }
 
 TEST(PackedTexcoords, ThatAreNoneAreRefused) {
-  const std::string glb = textured_fixture().glb;
+  const test::PackedFixture made = textured_fixture();
+  const std::string glb = made.glb;
   const auto expect = [&](const char* code, const std::function<void(TexturedJson&)>& change) {
     EXPECT_EQ(refusal_of(glb, change), code);
   };
   expect("read", [](TexturedJson&) {});
-  for (const TexturedJson& step : {TexturedJson(0), TexturedJson(-1), TexturedJson("1"), TexturedJson(1e39)})
-    expect("mesh_not_gltf", [&](TexturedJson& json) { first_level(json)["texcoords"]["step"] = step; });
-  expect("mesh_not_gltf", [](TexturedJson& json) { first_level(json)["texcoords"] = 3; });
-  expect("mesh_not_gltf", [](TexturedJson& json) { first_level(json)["texcoords"]["bufferView"] = 1; });
-  expect("mesh_unsupported",
+  EXPECT_EQ(refusal_with(made, step_at, std::bit_cast<uint32_t>(0.25F)), "read");
+  for (const float step : {0.0F, -1.0F, 1.1e18F})
+    EXPECT_EQ(refusal_with(made, step_at, std::bit_cast<uint32_t>(step)), "mesh_not_gltf") << step;
+  EXPECT_EQ(refusal_with(made, size_at, 39), "mesh_not_gltf");
+  expect("mesh_not_gltf",
          [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0"); });
   expect("mesh_unsupported",
          [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0; });
-  const std::string plain = test::packed_fixture(test::cube(), 1).glb;
-  EXPECT_EQ(refusal_of(plain,
-                       [](TexturedJson& json) {
-                         first_level(json)["texcoords"] = {{"step", 0.1}};
-                       }),
-            "mesh_not_gltf");
-  EXPECT_EQ(
-      refusal_of(plain, [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 0; }),
-      "mesh_unsupported");
+  test::PackedFixture plain = test::packed_fixture(test::cube(), 1);
+  plain.detail.levels[0].texcoords.step = 0.1F;
+  EXPECT_EQ(refusal_of(write_packed(plain.detail, plain.base_stream), [](TexturedJson&) {}), "mesh_not_gltf");
+  EXPECT_EQ(refusal_of(plain.glb,
+                       [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 0; }),
+            "mesh_unsupported");
 }
 
 TEST(PackedMaterial, IsThatOfAllTriangles) {
@@ -168,7 +176,7 @@ TEST(PackedMaterial, KeepsItsImagesToTheByteBehindTheLevels) {
   EXPECT_EQ(read.materials.of_triangle, std::vector<uint32_t>(12, 0));
   EXPECT_EQ(read_packed(glb).levels.size(), 2U);
   const std::string binary = test::binary_of_glb(glb);
-  EXPECT_EQ(binary.find("the image's bytes"), made.base_stream.size() + 160);
+  EXPECT_EQ(binary.find("the image's bytes"), made.base_stream.size() + table_bytes + 160);
 }
 
 TEST(PackedMaterial, IsKeptWhereTheFileIsPlainDraco) {

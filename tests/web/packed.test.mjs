@@ -71,11 +71,15 @@ test('a packed model opens with all its levels, and says what each has and reach
   assert.deepEqual(faults, []);
 });
 
-/// Of the packed model, whose report counts them in its container.
-function curveBytes() {
-  const { bufferViews, meshes } = JSON.parse(glb.toString('utf8', 20, 20 + glb.readUInt32LE(12)));
-  return bufferViews[meshes[0].primitives[0].extensions.PAPILIO_detail.curves].byteLength;
+/// Where the table of its levels begins (proto/detail.md).
+function tableBegin() {
+  const jsonEnd = 20 + glb.readUInt32LE(12);
+  const { bufferViews, meshes } = JSON.parse(glb.toString('utf8', 20, jsonEnd));
+  return jsonEnd + 8 + bufferViews[meshes[0].primitives[0].extensions.PAPILIO_detail.bufferView].byteOffset;
 }
+
+/// Of the packed model, whose report counts them in its container.
+const curveBytes = () => glb.readUInt32LE(tableBegin() + 6);
 
 test('what decodes packed models is fetched with the first one', async () => {
   const context = await shared.browser.newContext();
@@ -156,22 +160,25 @@ test('the server refines the level that is shown', async () => {
   assert.deepEqual(faults, []);
 });
 
-/// The packed model with further levels to so many, whose residuals are too small to be seen.
+/// The packed model with further levels to so many, without residuals.
 function withMoreLevels(count) {
-  const end = 20 + glb.readUInt32LE(12);
-  const json = JSON.parse(glb.toString('utf8', 20, end));
-  const detail = json.meshes[0].primitives[0].extensions.PAPILIO_detail;
-  let [vertices, faces] = [detail.levels[0].vertices, levels[0].faces];
-  for (let l = 0; l < count; ++l) {
-    detail.levels[l] ??= { step: 1e-30, vertices, rms: 0.001, largest: 0.01 };
-    vertices = 2 * vertices + 3 * faces;
-    faces *= 4;
-  }
-  let text = JSON.stringify(json);
-  text = text.padEnd(Math.ceil(text.length / 4) * 4);
-  const made = Buffer.concat([glb.subarray(0, 20), Buffer.from(text), glb.subarray(end)]);
+  const jsonEnd = 20 + glb.readUInt32LE(12);
+  const json = JSON.parse(glb.toString('utf8', 20, jsonEnd));
+  const begin = tableBegin();
+  const more = Buffer.alloc(16 * (count - glb[begin]));
+  for (let at = 0; at < more.length; at += 16)
+    for (const [i, number] of [1e-30, 0.001, 0.01].entries()) more.writeFloatLE(number, at + 4 * i);
+  const rowsEnd = begin + 18 + 16 * glb[begin];
+  const binary = Buffer.concat([glb.subarray(jsonEnd + 8, rowsEnd), more, glb.subarray(rowsEnd)]);
+  binary[begin - jsonEnd - 8] = count;
+  json.bufferViews[1].byteLength += more.length;
+  json.buffers[0].byteLength += more.length;
+  const text = JSON.stringify(json);
+  const padded = text.padEnd(Math.ceil(text.length / 4) * 4);
+  const made = Buffer.concat([glb.subarray(0, 20), Buffer.from(padded), glb.subarray(jsonEnd, jsonEnd + 8), binary]);
   made.writeUInt32LE(made.length, 8);
-  made.writeUInt32LE(text.length, 12);
+  made.writeUInt32LE(padded.length, 12);
+  made.writeUInt32LE(binary.length, 20 + padded.length);
   return made;
 }
 
@@ -203,9 +210,9 @@ test('other files hide the levels, and damaged ones leave what is open', async (
   const { page } = await open();
   const tell = page.locator('#alert-text');
   const broken = Buffer.from(glb);
-  broken.write('"version":7', broken.indexOf('"version":1'));
+  broken.write('"version":7', broken.indexOf('"version":2'));
   await drop(page, 'later.glb', broken);
-  await tell.getByText('PAPILIO_detail has version 7; version 1 is supported').waitFor();
+  await tell.getByText('PAPILIO_detail has version 7; version 2 is supported').waitFor();
   const cut = glb.subarray(0, glb.length - 4);
   await drop(page, 'cut.glb', cut);
   await tell.getByText('The .glb header declares').waitFor();

@@ -52,14 +52,6 @@ export function index(of: JsonObject, key: string, where: string): number | null
   return of[key] === undefined ? null : whole(of, key, where);
 }
 
-/// A finite number, not negative.
-export function distance(of: JsonObject, key: string, where: string): number {
-  const value = of[key];
-  if (typeof value !== 'number' || !Number.isFinite(value)) refuse(`${where}.${key}`, 'must be a finite number');
-  if (value < 0) refuse(`${where}.${key}`, 'must not be negative');
-  return value;
-}
-
 export function extensionOf(of: JsonObject, name: string, where: string): JsonObject | null {
   if (of.extensions === undefined) return null;
   const found = objectOf(of.extensions, `${where}.extensions`)[name];

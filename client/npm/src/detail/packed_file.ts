@@ -1,10 +1,9 @@
 // The parts of a packed model (proto/detail.md): the Draco stream of its base, its curves, and the residuals of each level.
 
 import { Problem } from '../client.js';
-import { isGlb, type Json, readContainer, writeContainer } from './container.js';
+import { isGlb, readContainer, writeContainer } from './container.js';
 import {
   arrayOf,
-  distance,
   element,
   extensionOf,
   index,
@@ -15,19 +14,15 @@ import {
   refuseScene,
   whole,
 } from './document.js';
+import { leastTableBytes, type LevelTable, type Reach, readTable, sizeOfTable, writeTable } from './level_table.js';
 
-/// Distances to the original, the larger of both directions, as shares of the diagonal of its bounding box.
-export interface Reach {
-  /// Root mean square.
-  rms: number;
-  largest: number;
-}
+export type { Reach };
 
 export interface PackedLevel extends Reach {
   /// Of the residuals.
   step: number;
   residuals: Uint8Array<ArrayBuffer>;
-  /// Residuals of the level: edges that it splits.
+  /// Residuals of the level: the edges that it splits, by the table's count of those of the base.
   residualCount: number;
   /// Of the model with the levels up to this one.
   faces: number;
@@ -36,7 +31,7 @@ export interface PackedLevel extends Reach {
 }
 
 export interface PackedFile {
-  base: Reach & { draco: Uint8Array<ArrayBuffer>; vertices: number; faces: number; end: number };
+  base: Reach & { draco: Uint8Array<ArrayBuffer>; vertices: number; faces: number; edges: number; end: number };
   /// Empty: the base has no creases and no corners.
   curves: Uint8Array<ArrayBuffer>;
   /// Whole ones, coarse first.
@@ -59,9 +54,7 @@ const dracoExtension = 'KHR_draco_mesh_compression';
 const detailExtension = 'PAPILIO_detail';
 const primitivePlace = 'meshes[0].primitives[0]';
 const detailPlace = `${primitivePlace}.extensions.${detailExtension}`;
-const version = 1;
-const mostLevels = 10;
-const mostCoordinate = 1e18;
+const version = 2;
 
 /// Whether the bytes are a .glb file with PAPILIO_detail on a primitive, and without texture coordinates there: their
 /// residuals are not decoded here, so that such a model is a scene, which shows its textured base. Reads the JSON alone.
@@ -91,27 +84,33 @@ export function readPacked(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions 
 export function withLevels(bytes: Uint8Array<ArrayBuffer>, count: number): Uint8Array<ArrayBuffer> {
   const { base, curves, levels } = readPacked(bytes, { maxFaces: Infinity });
   const document = objectOf(readContainer(bytes, false).json, 'the JSON');
-  const streams: Uint8Array[] = [];
-  const views: JsonObject[] = [];
-  let length = 0;
-  const put = (of: JsonObject, key: string, stream: Uint8Array) => {
-    delete of[key];
-    if (stream.length === 0) return;
-    of[key] = views.push({ buffer: 0, byteOffset: length, byteLength: stream.length }) - 1;
-    streams.push(stream);
-    length += stream.length;
-  };
+  const kept = levels.slice(0, count);
+  const table = writeTable({
+    ...base,
+    curveBytes: curves.length,
+    rows: kept.map((level) => ({ ...level, bytes: level.residuals.length })),
+  });
+  const detail = joined([table, curves, ...kept.map(({ residuals }) => residuals)]);
   const primitive = primitiveOf(document);
-  const detail = detailOf(primitive)!;
-  put(extensionOf(primitive, dracoExtension, primitivePlace)!, 'bufferView', base.draco);
-  put(detail, 'curves', curves);
-  const kept = (detail.levels as JsonObject[]).slice(0, count);
-  for (const [l, level] of kept.entries()) put(level, 'bufferView', levels[l]!.residuals);
-  Object.assign(detail, { levels: kept });
-  Object.assign(document, { bufferViews: views, buffers: [{ byteLength: length }] });
-  const binary = new Uint8Array(length);
-  for (const [i, stream] of streams.entries()) binary.set(stream, whole(views[i]!, 'byteOffset', ''));
+  extensionOf(primitive, dracoExtension, primitivePlace)!.bufferView = 0;
+  detailOf(primitive)!.bufferView = 1;
+  const binary = joined([base.draco, detail]);
+  const views = [
+    { buffer: 0, byteLength: base.draco.length },
+    { buffer: 0, byteOffset: base.draco.length, byteLength: detail.length },
+  ];
+  Object.assign(document, { bufferViews: views, buffers: [{ byteLength: binary.length }] });
   return writeContainer(document, binary);
+}
+
+function joined(parts: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
+  const all = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
+  let at = 0;
+  for (const part of parts) {
+    all.set(part, at);
+    at += part.length;
+  }
+  return all;
 }
 
 function primitiveOf(json: JsonObject): JsonObject {
@@ -119,6 +118,14 @@ function primitiveOf(json: JsonObject): JsonObject {
 }
 function detailOf(primitive: JsonObject): JsonObject | null {
   return extensionOf(primitive, detailExtension, primitivePlace);
+}
+
+/// Of whose bytes a file that is cut has the first ones.
+interface View {
+  name: string;
+  offset: number;
+  length: number;
+  bytes: Uint8Array<ArrayBuffer>;
 }
 
 class Reader {
@@ -129,7 +136,6 @@ class Reader {
   readonly #options: ReadOptions;
   /// Of the last view, in the binary chunk.
   #end = 0;
-  #before = 'the binary chunk';
 
   constructor(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions) {
     const { json, binary } = readContainer(bytes, options.mayBeCut ?? false);
@@ -149,24 +155,28 @@ class Reader {
         'mesh_unsupported',
         `${detailExtension} has version ${found}; version ${version} is supported. Update papilio, or pack the model again.`,
       );
-    const { levels } = detail;
-    if (!Array.isArray(levels)) refuse(detailPlace, 'has no array of levels');
-    if (levels.length > mostLevels)
-      refuse(detailPlace, `has ${levels.length} levels; at most ${mostLevels} are allowed`);
+    const { draco, vertices } = this.#base(primitive);
+    const view = this.#view(index(detail, 'bufferView', detailPlace), detailPlace);
+    const table = tableOf(view);
     const corners = this.#count(index(primitive, 'indices', primitivePlace));
     if (corners % 3 !== 0) refuse(primitivePlace, 'has indices of other than whole triangles');
     const faces = corners / 3;
-    const most = this.#options.maxFaces ?? defaultMaxFaces;
-    if (faces * 4 ** levels.length > most)
+    const [most, count] = [this.#options.maxFaces ?? defaultMaxFaces, table.rows.length];
+    if (faces * 4 ** count > most)
       throw new Problem(
         'result_too_large',
-        `The base of ${faces} faces has ${faces * 4 ** levels.length} at level ${levels.length}; the limit is ${most}.`,
+        `The base of ${faces} faces has ${faces * 4 ** count} at level ${count}; the limit is ${most}.`,
       );
-    const base = { ...reachOf(detail, detailPlace), ...this.#base(primitive), faces, end: 0 };
-    base.end = this.#offset + this.#end;
-    const curves = this.#curves(detail);
-    if (curves.length > 0) base.end = this.#offset + this.#end;
-    return { base, curves, levels: this.#levels(levels, faces), declaredLevels: levels.length };
+    const begin = this.#offset + view.offset;
+    const levelsBegin = sizeOfTable(view.bytes) + table.curveBytes;
+    if (levelsBegin > view.bytes.length) cut('the curves of its base');
+    const { rms, largest, edges } = table;
+    return {
+      base: { rms, largest, draco, vertices, faces, edges, end: begin + levelsBegin },
+      curves: view.bytes.subarray(levelsBegin - table.curveBytes, levelsBegin),
+      levels: levelsOf(table, view.bytes, { begin, levelsBegin, faces }),
+      declaredLevels: count,
+    };
   }
 
   #requireVersionOfGltf(): void {
@@ -204,38 +214,14 @@ class Reader {
     const attributes = objectOf(primitive.attributes, `${primitivePlace}.attributes`);
     if (Object.keys(attributes).join() !== 'POSITION') refuseScene('other attributes than POSITION');
     const vertices = this.#count(index(attributes, 'POSITION', primitivePlace));
-    const view = index(draco, 'bufferView', primitivePlace);
-    if (view === null) refuse(primitivePlace, `has no view of its ${dracoExtension}`);
-    return { draco: this.#bytes(view) ?? cut('its base'), vertices };
+    const view = this.#view(index(draco, 'bufferView', primitivePlace), primitivePlace);
+    if (view.bytes.length < view.length) cut('its base');
+    return { draco: view.bytes, vertices };
   }
 
-  #curves(detail: JsonObject): Uint8Array<ArrayBuffer> {
-    const view = index(detail, 'curves', detailPlace);
-    if (view === null) return new Uint8Array();
-    return this.#bytes(view) ?? cut('the curves of its base');
-  }
-
-  /// The whole ones.
-  #levels(levels: Json[], baseFaces: number): PackedLevel[] {
-    const wholeOnes: PackedLevel[] = [];
-    let faces = baseFaces;
-    for (const [l, json] of levels.entries()) {
-      const where = `${detailPlace}.levels[${l}]`;
-      const level = objectOf(json, where);
-      const step = Math.fround(distance(level, 'step', where));
-      if (!(step > 0 && step <= mostCoordinate)) refuse(`${where}.step`, 'must be above 0, and at most 1e18');
-      faces *= 4;
-      const [reach, residualCount] = [reachOf(level, where), whole(level, 'vertices', where)];
-      const view = index(level, 'bufferView', where);
-      const residuals = view === null ? new Uint8Array() : this.#bytes(view);
-      if (residuals !== null && l === wholeOnes.length)
-        wholeOnes.push({ ...reach, step, residuals, residualCount, faces, end: this.#offset + this.#end });
-    }
-    return wholeOnes;
-  }
-
-  /// Of a view, which begins at or after the end of the view before. Null where the file is cut before its end.
-  #bytes(number: number): Uint8Array<ArrayBuffer> | null {
+  /// A view, which begins at or after the end of the view before.
+  #view(number: number | null, where: string): View {
+    if (number === null) refuse(where, 'has no bufferView');
     const name = `bufferViews[${number}]`;
     const view = element(this.#json, 'bufferViews', number);
     for (const key of ['byteStride', 'extensions'])
@@ -245,16 +231,41 @@ class Reader {
     const size = whole(objectOf(arrayOf(this.#json, 'buffers')[0], 'buffers[0]'), 'byteLength', 'buffers[0]');
     if (offset + length > size)
       refuse(name, `has the bytes ${offset} to ${offset + length} of buffers[0], which has ${size}`);
-    if (offset < this.#end)
-      refuse(name, `begins at byte ${offset}, before the end of ${this.#before} at byte ${this.#end}`);
+    if (offset < this.#end) refuse(name, `begins at byte ${offset}, before the end of the base at byte ${this.#end}`);
     this.#end = offset + length;
-    this.#before = name;
-    return this.#end > this.#binary.length ? null : this.#binary.subarray(offset, this.#end);
+    return { name, offset, length, bytes: this.#binary.subarray(offset, this.#end) };
   }
 }
 
-function reachOf(of: JsonObject, where: string): Reach {
-  return { rms: distance(of, 'rms', where), largest: distance(of, 'largest', where) };
+/// The table at the begin of a view, which it and its streams fill.
+function tableOf({ name, length, bytes }: View): LevelTable {
+  const size = bytes.length < leastTableBytes ? leastTableBytes : sizeOfTable(bytes);
+  if (length < size) refuse(name, 'is too short for its table of levels');
+  if (bytes.length < size) cut('the table of its levels');
+  const table = readTable(bytes);
+  const total = table.rows.reduce((sum, row) => sum + row.bytes, size + table.curveBytes);
+  if (length !== total) refuse(name, `has ${length} bytes, and its table declares ${total}`);
+  return table;
+}
+
+/// The whole ones. `begin`: of the bytes in the file; `levelsBegin`: of the first level in the bytes.
+function levelsOf(
+  table: LevelTable,
+  bytes: Uint8Array<ArrayBuffer>,
+  { begin, levelsBegin, faces }: { begin: number; levelsBegin: number; faces: number },
+): PackedLevel[] {
+  const wholeOnes: PackedLevel[] = [];
+  let [at, residualCount] = [levelsBegin, table.edges];
+  for (const row of table.rows) {
+    const residuals = bytes.subarray(at, at + row.bytes);
+    if (residuals.length < row.bytes) break;
+    at += row.bytes;
+    const { step, rms, largest } = row;
+    wholeOnes.push({ step, rms, largest, residuals, residualCount, faces: 4 * faces, end: begin + at });
+    residualCount = 2 * residualCount + 3 * faces;
+    faces *= 4;
+  }
+  return wholeOnes;
 }
 
 function cut(where: string): never {
