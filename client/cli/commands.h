@@ -52,7 +52,7 @@ struct PackFlags {
   std::optional<double> largest{};  ///< largest distance allowed, a share of the diagonal
   std::optional<int64_t> bytes{};   ///< most bytes of the file; at most one of these three is given
   int jobs = 1;                     ///< most encodings at once
-  bool simplify = false;            ///< whether a simplified mesh is compared too
+  bool no_simplify = false;         ///< whether no simplified mesh is compared
   bool json = false;
 };
 /// Packs a fine mesh into a coarse base and levels of residuals.

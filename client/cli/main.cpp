@@ -150,8 +150,8 @@ void add_pack(CLI::App& app) {
       ->check(CLI::Range(least, 1.0));
   command->add_option("--bytes", flags->bytes, "In place of --rms: most bytes of the file")
       ->check(CLI::Range(int64_t{1}, int64_t{1} << 40));
-  command->add_flag("--simplify", flags->simplify,
-                    "With --rms: write a simplified mesh without levels where that is smaller");
+  command->add_flag("--no-simplify", flags->no_simplify,
+                    "With --rms: do not write a simplified mesh without levels where that is smaller");
   command
       ->add_option("--jobs", flags->jobs,
                    "Threads that encode at once for --max and --bytes, which take up to seven encodings, two at a time")

@@ -60,6 +60,11 @@ void print_packed(std::ostream& out, const Packed& packed) {
   out << '\n';
 }
 
+/// Whether the file is a simplified mesh.
+bool is_simplified(const Packed& packed) {
+  return !packed.model && packed.simplified && packed.simplified->bytes == packed.glb.size();
+}
+
 void print_report(std::ostream& out, const PackFlags& flags, const Packed& packed) {
   if (flags.json) {
     out << proto::detail::pack_report(packed) << '\n';
@@ -69,7 +74,7 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
       std::to_string(packed.plain_bits) + " bits, RMS " + format_rounded(100 * packed.plain_rms) + " %";
   if (!packed.model) {
     const auto& simplified = packed.simplified;
-    if (simplified && simplified->bytes == packed.glb.size())
+    if (is_simplified(packed))
       out << packed.glb.size() << " bytes of Draco, simplified to " << simplified->faces << " faces ("
           << simplified->position_bits << " bits, " << reach_text(simplified->reach) << ")\n";
     else
@@ -94,7 +99,10 @@ void check_goals(const PackFlags& flags) {
 }
 
 void warn_of_result(const Packed& packed) {
-  if (!packed.model) return print_warnings({"The file is plain Draco without levels. " + packed.reason});
+  if (!packed.model)
+    return print_warnings({(is_simplified(packed) ? "The file is a simplified mesh as Draco, without levels. "
+                                                  : "The file is plain Draco without levels. ") +
+                           packed.reason});
   const double reached = reach_of(*packed.model).rms;
   if (packed.wanted_rms > 0 && reached > packed.wanted_rms)
     print_warnings({"The RMS distance reached is " + format_rounded(reached) + ", not " +
@@ -120,7 +128,7 @@ void pack_command(const PackFlags& flags) {
                                                 .largest = flags.largest.value_or(0),
                                                 .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
                                                 .jobs = flags.jobs,
-                                                .simplifies = flags.simplify,
+                                                .simplifies = !flags.no_simplify,
                                                 .cancelled = [] { return Interruption::is_asked(); },
                                                 .on_progress = [&](double share) { progress.show(share); }});
   });

@@ -7,7 +7,7 @@ load helpers
 fine=$PAPILIO_MESHES/bunny.obj
 
 setup_file() {
-  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.003 --json >"$BATS_FILE_TMPDIR/report.json"
+  "$papilio" pack "$fine" -o "$BATS_FILE_TMPDIR/model.glb" --rms 0.003 --no-simplify --json >"$BATS_FILE_TMPDIR/report.json"
 }
 setup() {
   cd "$BATS_TEST_TMPDIR" || return
@@ -55,10 +55,10 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 # bats test_tags=many_encodings
 @test "packing is deterministic, from each kind of file" {
   ball
-  "$papilio" pack - -o - --rms 0.005 <ball.obj >ball.glb
+  "$papilio" pack - -o - --rms 0.005 --no-simplify <ball.obj >ball.glb
   for kind in drc ply stl; do
     "$papilio" convert ball.obj "in.$kind"
-    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.005 --json | jq -e '.folds >= 0' >/dev/null
+    "$papilio" pack "in.$kind" -o "$kind.glb" --rms 0.005 --no-simplify --json | jq -e '.folds >= 0' >/dev/null
     "$papilio" unpack "$kind.glb" -o out.off
     is_within "$(distance "in.$kind" out.off rms)" 0.0055
   done
@@ -67,10 +67,23 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 
 @test "the report on a terminal's lines has base, levels, distances and the ratio" {
   ball
-  run --separate-stderr "$papilio" pack ball.obj -o again.glb --rms 0.005
+  run --separate-stderr "$papilio" pack ball.obj -o again.glb --rms 0.005 --no-simplify
   [ "$status" = 0 ]
   [ "$stderr" = "" ]
   [[ $output == *"base "*" faces, "*" bytes: RMS "*" %, largest "*"level 1 "*"plain Draco at the same distance"*"times as many"* ]]
+}
+
+@test "a simplified mesh that is smaller is the file, unless levels are wanted" {
+  ball
+  run --separate-stderr "$papilio" pack ball.obj -o simple.glb --rms 0.005
+  [ "$status" = 0 ]
+  [[ $output == *"bytes of Draco, simplified to "* ]]
+  [[ $stderr == *"a simplified mesh as Draco, without levels"*"and a packed model "* ]]
+  run "$papilio" unpack simple.glb -o simple.ply
+  [ "$status" = 0 ]
+  is_within "$(distance ball.obj simple.ply rms)" 0.005
+  "$papilio" pack ball.obj -o packed.glb --rms 0.005 --no-simplify >/dev/null
+  (($(stat -c %s simple.glb) < $(stat -c %s packed.glb)))
 }
 
 @test "a packed model is described" {

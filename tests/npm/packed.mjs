@@ -76,9 +76,13 @@ export function pack(name, folder, rms = 0.001) {
       ),
     );
   const packed = path.join(folder, `${path.basename(name, path.extname(name))}.glb`);
-  const report = execFileSync(path.join(build, 'papilio'), ['pack', original, '-o', packed, '--rms', rms, '--json'], {
-    encoding: 'utf8',
-  });
+  const report = execFileSync(
+    path.join(build, 'papilio'),
+    ['pack', original, '-o', packed, '--rms', rms, '--no-simplify', '--json'],
+    {
+      encoding: 'utf8',
+    },
+  );
   return { original, packed, report: JSON.parse(report) };
 }
 
