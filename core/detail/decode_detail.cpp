@@ -5,8 +5,8 @@
 
 namespace papilio {
 
-TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
-                           const std::function<bool()>& cancelled) {
+Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
+                        const std::function<bool()>& cancelled) {
   LevelDecoder decoder(mesh_of_base(base), true);
   check_levels(decoder.topology().face_count(), levels, face_limit);
   for (const DetailStream& stream : levels) {
@@ -14,6 +14,11 @@ TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream>
     decoder.decode(stream);
   }
   return decoder.take_mesh();
+}
+
+TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
+                           const std::function<bool()>& cancelled) {
+  return decode_detail_mesh(base, levels, face_limit, cancelled).triangles();
 }
 
 }  // namespace papilio

@@ -20,6 +20,7 @@ class DetailLevel {
   [[nodiscard]] DetailLevel next() const;
 
   [[nodiscard]] const Topology& topology() const { return topology_; }
+  [[nodiscard]] Topology take_topology() && { return std::move(topology_); }
   [[nodiscard]] uint32_t number() const { return number_; }
   /// Edges on boundaries, creases and seams, in ascending order [C]. Those of the next level come from them, two from
   /// each.

@@ -14,9 +14,9 @@
 #include "detail/error_weights.h"
 #include "detail/manifold_surface.h"
 #include "detail/original_surface.h"
+#include "detail/own_normals.h"
 #include "detail/placement.h"
 #include "detail/residual_fit.h"
-#include "detail/sharp_curves.h"
 #include "detail/surface_distance.h"
 #include "detail/texcoord_levels.h"
 #include "papilio/detail.h"
@@ -130,7 +130,7 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    mark_sharp_curves(surface.mesh);
+    normals_ = mark_detail_curves(surface.mesh);
     return std::move(surface.mesh);
   }
   void poll() const {
@@ -324,6 +324,7 @@ class DetailEncoder {
     encoded.base = {trial.coded.triangles, trial.curves};
     encoded.bytes = trial.chosen.outcome.bytes;
     encoded.parted = parted_;
+    encoded.normals = normals_;
     auto streams = fit.code();
     for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({fit.step(l), std::move(streams[l])});
     add_texcoords(trial, fit, encoded);
@@ -369,6 +370,7 @@ class DetailEncoder {
   const BaseCoder& code_base_;
   double wanted_;        ///< in the mesh's unit
   uint32_t parted_ = 0;  ///< vertices
+  NormalStyle normals_{};
   OriginalSurface original_;
   uint32_t samples_of_trial_;
   double first_step_;  ///< to try
@@ -381,7 +383,7 @@ class DetailEncoder {
 
 EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options, const BaseCoder& code_base) {
   check(options);
-  require_texcoords(original.attributes);
+  require_texcoords(without_normals(original.attributes));
   return DetailEncoder(original, options, code_base).run();
 }
 

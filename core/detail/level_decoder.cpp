@@ -54,14 +54,10 @@ void LevelDecoder::decode(const DetailStream& stream) {
   is_split_ = true;
 }
 
-TriangleMesh LevelDecoder::take_mesh() {
-  if (texcoords_) return texcoords_->mesh(positions_);
-  const Topology& t = topology();
-  TriangleMesh made;
-  made.positions = std::move(positions_);
-  made.triangles.reserve(t.face_count());
-  for (uint32_t h = 0; h < t.half_edge_count(); h += 3)
-    made.triangles.push_back({t.origin[h], t.origin[h + 1], t.origin[h + 2]});
+Mesh LevelDecoder::take_mesh() {
+  (void)topology();  // makes the finest level
+  Mesh made{.topology = std::move(level_).take_topology(), .positions = std::move(positions_)};
+  if (texcoords_) made.attributes = texcoords_->points();
   return made;
 }
 

@@ -29,8 +29,8 @@ class LevelDecoder {
   [[nodiscard]] const TexcoordLevels* texcoords() const { return texcoords_ ? &*texcoords_ : nullptr; }
   /// The finest mesh decoded, which `decode` splits next. Stays as it is until the next call after that.
   [[nodiscard]] const Topology& topology();
-  /// Returns the finest mesh decoded, with texture coordinates if they are; call last.
-  [[nodiscard]] TriangleMesh take_mesh();
+  /// Returns the finest mesh decoded, with its edges and curves, and with texture coordinates if they are; call last.
+  [[nodiscard]] Mesh take_mesh();
 
  private:
   Buffer<Vec3f> positions_;

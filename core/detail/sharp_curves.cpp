@@ -18,17 +18,28 @@ constexpr double sharp_angle = 40 * degree;
 constexpr double corner_angle = 50 * degree;
 /// Sharp edges count if clean curves are at least this share of their length.
 constexpr double least_clean_share = 0.5;
+/// Edges that are sharp by their angle alone count unless hard ones are at least this share of the sharp ones' length.
+constexpr double decisive_hard_share = 0.5;
 constexpr int most_rounds = 4;
 
 /// Sharp edges of a surface, which become curves, row by row.
 class SharpEdges {
  public:
-  explicit SharpEdges(Mesh& mesh) : mesh_(mesh), topology_(mesh.topology), is_sharp_(mesh.topology.edge_count()) {
+  SharpEdges(Mesh& mesh, const std::vector<bool>& is_hard)
+      : mesh_(mesh), topology_(mesh.topology), is_hard_(is_hard), is_sharp_(mesh.topology.edge_count()) {
+    double sharp_length = 0, hard_length = 0;
     for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
       if (topology_.kind[e] != EdgeKind::smooth) continue;
       const double cosine = Hinge(topology_, mesh.positions, topology_.half_edge[e]).cosine();
       is_sharp_[e] = cosine < std::cos(sharp_angle);
+      if (is_hard.empty() || !is_sharp_[e]) continue;
+      sharp_length += edge_length(e);
+      hard_length += is_hard[e] ? edge_length(e) : 0;
     }
+    if (is_hard.empty()) return;
+    const bool is_decisive = hard_length >= decisive_hard_share * sharp_length;
+    for (uint32_t e = 0; e < topology_.edge_count(); ++e)
+      if (topology_.kind[e] == EdgeKind::smooth) is_sharp_[e] = is_hard[e] || (is_sharp_[e] && !is_decisive);
   }
 
   void mark() {
@@ -48,6 +59,7 @@ class SharpEdges {
     double turn = 0;     ///< between edges, in all
     int loose_ends = 0;  ///< at which no other curve is
     bool is_closed = false;
+    bool is_hard = true;  ///< whether all edges are
   };
 
   [[nodiscard]] double edge_length(uint32_t e) const {
@@ -100,6 +112,7 @@ class SharpEdges {
     for (;;) {
       is_taken_[e] = true;
       row.edges.push_back(e);
+      row.is_hard = row.is_hard && !is_hard_.empty() && is_hard_[e];
       const uint32_t next = other_end(e, v);
       if (next == start && passes(next)) {
         row.is_closed = true;
@@ -122,10 +135,11 @@ class SharpEdges {
     return std::atan2(length(cross(one, two)), dot(one, two));
   }
 
-  /// Noise on a scan makes short rows with loose ends, that turn from edge to edge.
+  /// Noise on a scan makes short rows with loose ends, that turn from edge to edge. Hard edges without are drawn.
   [[nodiscard]] static bool is_clean(const Row& row) {
     const auto edges = static_cast<double>(row.edges.size());
     const double turn = row.turn / std::max(1.0, edges - 1);
+    if (row.is_hard && row.loose_ends == 0) return true;
     if (row.is_closed) return edges >= 4 && turn <= 65 * degree;
     if (row.loose_ends == 0) return edges < 3 || turn <= 40 * degree;
     if (row.loose_ends == 1) return edges >= 6 && turn <= 25 * degree;
@@ -134,6 +148,7 @@ class SharpEdges {
 
   Mesh& mesh_;
   Topology& topology_;
+  const std::vector<bool>& is_hard_;              // [E] or empty
   std::vector<bool> is_sharp_;                    // [E]
   std::vector<bool> is_taken_;                    // [E] by a row
   std::vector<std::vector<uint32_t>> at_vertex_;  // [V] sharp edges
@@ -165,8 +180,8 @@ void mark_corners(Mesh& mesh) {
   }
 }
 
-void mark_sharp_curves(Mesh& mesh) {
-  SharpEdges(mesh).mark();
+void mark_sharp_curves(Mesh& mesh, const std::vector<bool>& is_hard) {
+  SharpEdges(mesh, is_hard).mark();
   mark_corners(mesh);
 }
 

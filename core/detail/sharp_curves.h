@@ -15,8 +15,10 @@ enum class CurveRole : uint8_t {
 
 /// Makes creases of the sharp edges that form clean curves, and finds their corners (`ShapeMarks::corners`: where a
 /// boundary or crease goes on but turns sharply). Sharp edges that are noise, single ones and jagged rows, stay smooth;
-/// where most are, all do. The mesh must be manifold, with its edges. O(F).
-void mark_sharp_curves(Mesh& mesh);
+/// where most are, all do. `is_hard` [E], unless empty: edges that are sharp whatever their angle, as the original's
+/// normals are split there. If most sharp edges are hard, the others are not sharp. The mesh must be manifold, with its
+/// edges. O(F).
+void mark_sharp_curves(Mesh& mesh, const std::vector<bool>& is_hard = {});
 
 /// Finds the corners of the curves that the mesh has.
 void mark_corners(Mesh& mesh);

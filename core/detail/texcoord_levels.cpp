@@ -157,21 +157,16 @@ uint64_t TexcoordLevels::bytes() const {
          values_.size() * (sizeof(Vec3f) + 3 * sizeof(uint32_t));
 }
 
-TriangleMesh TexcoordLevels::mesh(const Buffer<Vec3f>& positions) {
-  const Topology& t = level().topology();
-  TriangleMesh made;
-  Attribute texcoords{.components = 2, .values = {}};
-  made.positions.reserve(vertices_.size());
+PointAttributes TexcoordLevels::points() {
+  PointAttributes made;
+  made.point = level().topology().origin;
+  made.point_count = static_cast<uint32_t>(vertices_.size());
+  Attribute& texcoords = made.attributes.emplace_back(Attribute{.components = 2, .values = {}});
   texcoords.values.reserve(2 * vertices_.size());
   for (size_t v = 0; v < vertices_.size(); ++v) {
-    made.positions.push_back(positions[vertices_[v]]);
     texcoords.values.push_back(values_[v].x);
     texcoords.values.push_back(values_[v].y);
   }
-  made.triangles.reserve(t.face_count());
-  for (uint32_t h = 0; h < t.half_edge_count(); h += 3)
-    made.triangles.push_back({t.origin[h], t.origin[h + 1], t.origin[h + 2]});
-  made.attributes.push_back(std::move(texcoords));
   return made;
 }
 

@@ -41,8 +41,8 @@ class TexcoordLevels {
   /// Returns the texture coordinates of the points on the half-edges of the level that was decoded last [H]; before
   /// level() is called again.
   [[nodiscard]] Buffer<Texcoord> on_half_edges() const;
-  /// Returns the mesh of all levels so far, points of `positions`, which are its vertices, at seams.
-  [[nodiscard]] TriangleMesh mesh(const Buffer<Vec3f>& positions);
+  /// Returns the points of all levels so far, several at vertices on seams, with their texture coordinates.
+  [[nodiscard]] PointAttributes points();
   /// Bytes in memory, about.
   [[nodiscard]] uint64_t bytes() const;
 

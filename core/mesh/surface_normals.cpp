@@ -1,10 +1,14 @@
+#include "mesh/surface_normals.h"
+
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/sort.h"
+#include "base/trigonometry.h"
 #include "mesh/normals.h"
 #include "papilio/mesh.h"
 
@@ -90,6 +94,30 @@ std::vector<Vec3d> sum_normals(const Mesh& mesh, uint32_t count, const Of& of) {
   return sums;
 }
 
+/// Returns the angle of a face at a corner, in radians.
+double angle_at(const Mesh& mesh, uint32_t h) {
+  const Vec3d place = to_double(mesh.positions[mesh.topology.origin[h]]);
+  const Vec3d one = to_double(mesh.positions[mesh.topology.tip(h)]) - place;
+  const Vec3d other = to_double(mesh.positions[mesh.topology.apex(h)]) - place;
+  const double lengths = length(one) * length(other);
+  if (!(lengths > 0)) return 0;
+  const double cosine = std::clamp(dot(one, other) / lengths, -1.0, 1.0);
+  return cosine < 0 ? std::numbers::pi - arc_cosine(-cosine) : arc_cosine(cosine);
+}
+
+/// The sums of the faces' unit normals, by their angles at the corners. As sum_normals().
+template <class Of>
+std::vector<Vec3d> sum_by_angle(const Mesh& mesh, uint32_t count, const Of& of) {
+  std::vector<Vec3d> sums(count);
+  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+    const Vec3d normal = area_normal(mesh, f);
+    const double size = length(normal);
+    if (!(size > 0)) continue;
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += angle_at(mesh, h) / size * normal;
+  }
+  return sums;
+}
+
 }  // namespace
 
 void renew_normals(Mesh& mesh, size_t number) {
@@ -107,7 +135,9 @@ void renew_normals(Mesh& mesh, size_t number) {
   }
 }
 
-void add_normals(Mesh& mesh) {
+void add_normals(Mesh& mesh) { add_weighted_normals(mesh, FaceWeight::area); }
+
+void add_weighted_normals(Mesh& mesh, FaceWeight weight) {
   PointAttributes& attributes = mesh.attributes;
   uint32_t sectors = 0;
   const std::vector<uint32_t> sector = find_sectors(mesh.topology, sectors);
@@ -140,7 +170,9 @@ void add_normals(Mesh& mesh) {
     }
     attribute.values = std::move(values);
   }
-  const std::vector<Vec3d> sums = sum_normals(mesh, sectors, [&](uint32_t h) { return sector[h]; });
+  const auto sector_at = [&](uint32_t h) { return sector[h]; };
+  const std::vector<Vec3d> sums =
+      weight == FaceWeight::area ? sum_normals(mesh, sectors, sector_at) : sum_by_angle(mesh, sectors, sector_at);
   Attribute normals{.components = 3, .unit_length = true, .values = std::vector<double>(3 * sector_of.size())};
   for (uint32_t p = 0; p < sector_of.size(); ++p) {
     const Vec3d sum = sums[sector_of[p]];

@@ -30,6 +30,14 @@ struct DetailBase {
   friend bool operator==(const DetailBase&, const DetailBase&) = default;
 };
 
+/// How an original's own normals are split, and with them those that its levels are shaded by.
+enum class NormalStyle : uint8_t {
+  absent,   ///< the original has none
+  smooth,   ///< nowhere: one normal a vertex
+  creased,  ///< at creases of the base
+  faceted,  ///< at most edges: the normals of the faces
+};
+
 /// Residuals of texture coordinates on one level.
 struct TexcoordStream {
   float step = 0;                ///< quantization step, in the unit of the coordinates; 0: there are no residuals
@@ -56,6 +64,12 @@ struct DetailReach {
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
+
+/// Returns the mesh that decode_detail() returns, with its edges. Its boundaries and creases come from the base's
+/// curves. Throws as decode_detail().
+[[nodiscard]] Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels,
+                                      uint64_t face_limit = face_count_limit,
+                                      const std::function<bool()>& cancelled = {});
 
 /// Texture coordinates of a point.
 using Texcoord = std::array<float, 2>;
@@ -103,6 +117,17 @@ struct DetailSource {
 /// bad_surface, result_too_large (beyond `face_count_limit`), and what build_mesh() throws. O(base).
 [[nodiscard]] std::shared_ptr<const Detail> stream_detail(DetailSource source);
 
+/// Marks the creases and corners of an original, as encode_detail() does: edges that form clean curves and are hard,
+/// where its normals are split, or sharp where the normals do not say otherwise. Takes the normals from it, an
+/// attribute of three components (`Attribute::unit_length`), and returns their style. Faces, edges and vertices stay.
+/// The mesh must have its edges. O(F log F).
+NormalStyle mark_detail_curves(Mesh& original);
+
+/// Adds normals in a style as the last attribute of a mesh: means of the faces' normals weighted by angles, at creases
+/// one for each side, or one a vertex. Without effect unless the style is smooth or creased. Smooth ones unmark the
+/// creases. Returns whether any were added. The mesh must have its edges. O(H log H).
+bool add_detail_normals(Mesh& mesh, NormalStyle style);
+
 /// Base as its decoder has it.
 struct CodedBase {
   TriangleMesh triangles;
@@ -130,14 +155,16 @@ struct EncodedDetail {
   uint32_t parted = 0;             ///< vertices at which the original touches itself, which were parted
   uint64_t bytes = 0;              ///< of base, curves and streams
   uint64_t texcoord_bytes = 0;     ///< of the streams of texture coordinates
+  NormalStyle normals{};           ///< of the original
 };
 
-/// Encodes an original without attributes or with texture coordinates alone: one attribute of two components, whose
-/// seams become seams of the base. Boundaries and sharp edges that form clean curves become curves of the base. Where
-/// the surface touches itself, or more than two faces share an edge, it is parted, by at most a tenth of the wanted
-/// distance. The number of base faces, of levels and the steps are those, of the ones tried, that take the fewest bytes
-/// for the wanted distance; where it is not reached they come nearest to it (`reach`). Throws `Error`: bad_option,
-/// bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory, and what build_mesh() throws.
+/// Encodes an original without attributes, or with texture coordinates, an attribute of two components, whose seams
+/// become seams of the base, and with normals, whose style alone is kept. Boundaries become curves of the base, and so
+/// do the creases of mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it
+/// is parted, by at most a tenth of the wanted distance. The number of base faces, of levels and the steps are those,
+/// of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached they come nearest to
+/// it (`reach`). Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled,
+/// out_of_memory, and what build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

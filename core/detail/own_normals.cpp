@@ -1,0 +1,108 @@
+#include "detail/own_normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "detail/sharp_curves.h"
+#include "mesh/hinge.h"
+#include "mesh/surface_normals.h"
+
+namespace papilio {
+namespace {
+
+constexpr double to_radians = std::numbers::pi / 180;
+/// Normals of one vertex that differ by more are split.
+constexpr double hard_angle = 5 * to_radians;
+/// Edges between faces whose normals differ by more are bent.
+constexpr double bent_angle = 1 * to_radians;
+/// Normals at a bent edge are those of its faces if they differ by at least this share of its angle.
+constexpr double faceted_share_of_angle = 0.5;
+/// An original is faceted if at least these shares of the bent edges, and of all, have normals of their faces.
+constexpr double faceted_share_of_bent = 0.95, faceted_share_of_all = 0.3;
+
+double angle_between(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+
+bool are_normals(const Attribute& attribute) { return attribute.components == 3 && attribute.unit_length; }
+
+/// Normals at the corners of a mesh.
+class CornerNormals {
+ public:
+  CornerNormals(const Mesh& mesh, const Attribute& normals)
+      : topology_(mesh.topology), mesh_(mesh), normals_(normals) {}
+
+  /// Returns the angles between the normals of an edge's two faces at its ends, the smaller one first.
+  [[nodiscard]] std::pair<double, double> angles(uint32_t h) const {
+    const uint32_t twin = topology_.twin[h];
+    return std::minmax(
+        {angle_between(at(h), at(Topology::next(twin))), angle_between(at(Topology::next(h)), at(twin))});
+  }
+
+ private:
+  [[nodiscard]] Vec3d at(uint32_t h) const {
+    const double* value = &normals_.values[size_t{3} * mesh_.attributes.point[h]];
+    return {value[0], value[1], value[2]};
+  }
+
+  const Topology& topology_;
+  const Mesh& mesh_;
+  const Attribute& normals_;
+};
+
+}  // namespace
+
+OwnNormals find_own_normals(const Mesh& mesh) {
+  const Topology& t = mesh.topology;
+  const auto normals = std::ranges::find_if(mesh.attributes.attributes, are_normals);
+  if (normals == mesh.attributes.attributes.end()) return {};
+  const CornerNormals corners(mesh, *normals);
+  OwnNormals found{.style = NormalStyle::smooth, .is_hard = std::vector<bool>(t.edge_count())};
+  uint32_t inner = 0, bent = 0, faceted = 0, hard = 0;
+  for (uint32_t e = 0; e < t.edge_count(); ++e) {
+    const uint32_t h = t.half_edge[e];
+    if (t.twin[h] == none) continue;
+    ++inner;
+    const auto [least, most] = corners.angles(h);
+    found.is_hard[e] = most > hard_angle;
+    hard += found.is_hard[e] ? 1 : 0;
+    const double turn = std::acos(std::clamp(Hinge(t, mesh.positions, h).cosine(), -1.0, 1.0));
+    if (turn <= bent_angle) continue;
+    ++bent;
+    faceted += least >= faceted_share_of_angle * turn ? 1 : 0;
+  }
+  if (faceted > 0 && faceted >= faceted_share_of_bent * bent && faceted >= faceted_share_of_all * inner)
+    found.style = NormalStyle::faceted;
+  else if (hard > 0)
+    found.style = NormalStyle::creased;
+  if (found.style != NormalStyle::creased) found.is_hard.clear();
+  return found;
+}
+
+std::vector<Attribute> without_normals(const std::vector<Attribute>& attributes) {
+  std::vector<Attribute> others = attributes;
+  std::erase_if(others, are_normals);
+  return others;
+}
+
+bool add_detail_normals(Mesh& mesh, NormalStyle style) {
+  if (style != NormalStyle::smooth && style != NormalStyle::creased) return false;
+  if (style == NormalStyle::smooth) std::ranges::replace(mesh.topology.kind, EdgeKind::crease, EdgeKind::smooth);
+  add_weighted_normals(mesh, FaceWeight::angle);
+  return true;
+}
+
+NormalStyle mark_detail_curves(Mesh& mesh) {
+  const OwnNormals normals = find_own_normals(mesh);
+  if (normals.style != NormalStyle::absent) {
+    TriangleMesh triangles = std::move(mesh).triangles();
+    std::erase_if(triangles.attributes, are_normals);
+    mesh = build_mesh(triangles);
+  }
+  mark_sharp_curves(mesh, normals.is_hard);
+  if (normals.style != NormalStyle::creased) return normals.style;
+  const bool has_creases = std::ranges::count(mesh.topology.kind, EdgeKind::crease) > 0;
+  return has_creases ? NormalStyle::creased : NormalStyle::smooth;  // hard edges that are noise are smooth
+}
+
+}  // namespace papilio
