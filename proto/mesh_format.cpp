@@ -1,5 +1,6 @@
 #include "proto/mesh_format.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace papilio::proto {
@@ -18,6 +19,14 @@ double unit_value(const AttributeFormat& format) {
   const auto number = static_cast<unsigned>(format.type);  // int8, uint8, int16, uint16, ...
   const int bits = 8 << (number / 2);
   return std::ldexp(1.0, number % 2 == 0 ? bits - 1 : bits) - 1;
+}
+
+void append_normals(MeshFormat& format) {
+  AttributeFormat normals{.kind = AttributeKind::normal};
+  while (normals.id == format.position_id ||
+         std::ranges::count(format.attributes, normals.id, &AttributeFormat::id) > 0)
+    ++normals.id;
+  format.attributes.push_back(normals);
 }
 
 }  // namespace papilio::proto

@@ -47,6 +47,9 @@ struct MeshFormat {
   friend bool operator==(const MeshFormat&, const MeshFormat&) = default;
 };
 
+/// Appends the format of unit normals, with the lowest free id.
+void append_normals(MeshFormat& format);
+
 /// A mesh with the formats of its attributes.
 struct FormattedMesh : TriangleMesh {
   MeshFormat format;

@@ -69,17 +69,6 @@ class BackgroundTask {
   std::future<void> running_;  // last member: its destructor waits
 };
 
-/// Appends unit normals with the lowest free id.
-void append_normals(AttributeEncoding& encoding) {
-  MeshFormat& format = encoding.format;
-  AttributeFormat normals{.kind = AttributeKind::normal};
-  while (normals.id == format.position_id ||
-         std::ranges::count(format.attributes, normals.id, &AttributeFormat::id) > 0)
-    ++normals.id;
-  format.attributes.push_back(normals);
-  encoding.grids.emplace_back();
-}
-
 /// The refinement gets at least this share of the tolerance, however coarse the grid is.
 constexpr double most_for_grid = 0.5;
 
@@ -114,7 +103,10 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   if (std::ranges::find(formats, AttributeKind::normal, &AttributeFormat::kind) != formats.end()) adds_normals_ = false;
   options_.output = encoding_bytes(coarse().mesh.attributes.attributes, adds_normals_, encoding_.format);
   options_.edges = adds_normals_;  // they are divided at creases
-  if (adds_normals_) append_normals(encoding_);
+  if (adds_normals_) {
+    append_normals(encoding_.format);
+    encoding_.grids.emplace_back();
+  }
   translate_errors([&] { check_room(coarse().mesh, options_); });
 }
 

@@ -27,7 +27,7 @@ DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits) {
       TriangleMesh base = model->base.triangles;
       for (Attribute& texcoords : base.attributes) detail::turn_over(texcoords);
       decoded.mesh = build_mesh(base, &decoded.found);
-      decoded.attributes = attribute_encoding(decoded.mesh, detail::base_format(base));
+      decoded.attributes = attribute_encoding(decoded.mesh, detail::base_format(base.attributes));
       for (AttributeEncoding::Grid& grid : decoded.attributes.grids) widen(grid);
       detail::attach_levels_turned_over(decoded.mesh, std::move(*model));
     } else {

@@ -62,6 +62,8 @@ struct UnpackFlags {
   MeshPlace input, output;
   std::optional<int> levels{};  ///< at most; nothing: all
   bool may_be_cut = false;      ///< whether the file may end inside a level
+  /// Whether the mesh has normals; nothing: in a scene, and where the original has any.
+  std::optional<bool> normals{};
 };
 /// Decodes a packed model.
 void unpack_command(const UnpackFlags& flags);

@@ -173,6 +173,12 @@ void add_unpack(CLI::App& app) {
   add_format(*command, "--to", flags->output.format, "Format of standard output; default drc");
   command->add_option("--levels", flags->levels, "Levels of detail at most; default all")
       ->check(CLI::Range(0, most_detail_levels));
+  command
+      ->add_option(
+          "--normals", flags->normals,
+          "true or false: whether the mesh has normals, split at creases; default true for .glb and .gltf, and "
+          "where the original has them, but not where its faces are flat")
+      ->type_name("BOOL");
   command->add_flag("--truncated", flags->may_be_cut, "Read a file that is cut inside a level: its whole levels");
   command->callback([flags] { unpack_command(*flags); });
 }

@@ -8,6 +8,7 @@
 #include "client/lib/read_materials.h"
 #include "proto/detail/only_material.h"
 #include "proto/detail/pack.h"
+#include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/gltf/document.h"
 #include "proto/text.h"
@@ -21,10 +22,10 @@ using proto::detail::Packed;
 /// Says what a packed model does not hold.
 void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& model) {
   std::vector<std::string> warnings;
-  const size_t packed = proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0;
+  const size_t packed =
+      (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) + (proto::detail::normals_to_pack(model.mesh) ? 1 : 0);
   if (model.mesh.attributes.size() > packed)
-    warnings.push_back(file.name + (packed > 0 ? ": normals and other attributes than texture coordinates are left out."
-                                               : ": normals and other attributes are left out."));
+    warnings.push_back(file.name + ": other attributes than texture coordinates and normals are left out.");
   if (!model.materials.empty() && !proto::detail::only_material(model.materials))
     warnings.push_back(file.name + ": its faces have several materials, or some have none: materials are left out.");
   if (is_scene(file.format)) {
@@ -70,8 +71,8 @@ void print_report(std::ostream& out, const PackFlags& flags, const Packed& packe
     out << proto::detail::pack_report(packed) << '\n';
     return;
   }
-  const std::string grid =
-      std::to_string(packed.plain_bits) + " bits, RMS " + format_rounded(100 * packed.plain_rms) + " %";
+  const std::string grid = std::to_string(packed.plain_bits) + " bits, RMS " + format_rounded(100 * packed.plain_rms) +
+                           " %" + (packed.plain_has_normals ? ", with normals" : "");
   if (!packed.model) {
     const auto& simplified = packed.simplified;
     if (is_simplified(packed))

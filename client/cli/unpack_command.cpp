@@ -1,11 +1,12 @@
+#include <algorithm>
 #include <iostream>
 
 #include "client/cli/commands.h"
 #include "client/cli/interruption.h"
 #include "client/lib/file_words.h"
 #include "client/lib/read_materials.h"
+#include "proto/detail/decode_packed.h"
 #include "proto/detail/packed_reader.h"
-#include "proto/detail/packed_texcoords.h"
 #include "proto/detail/plain_draco.h"
 #include "proto/draco_writer.h"
 #include "proto/text.h"
@@ -33,6 +34,25 @@ proto::gltf::Materials material_of(const UnpackFlags& flags, const MeshBytes& fi
   }
 }
 
+/// Returns how the normals of what is written are split, where the original's are of this style.
+NormalStyle output_normals(const UnpackFlags& flags, NormalStyle original) {
+  const Format format = output_format(flags.output);
+  if (!holds_normals(format) || !flags.normals.value_or(true)) return NormalStyle::absent;
+  const bool is_asked = flags.normals.has_value();
+  if (original == NormalStyle::faceted) return is_asked ? NormalStyle::creased : original;
+  // Viewers show scenes without normals in facets, and other meshes smooth.
+  if (original == NormalStyle::absent && (is_asked || is_scene(format))) return NormalStyle::creased;
+  return original;
+}
+
+/// Returns the mesh of a file without levels, with its own normals or those of its surface.
+proto::FormattedMesh with_output_normals(const UnpackFlags& flags, const proto::detail::PlainModel& model) {
+  const bool has_own =
+      std::ranges::count(model.mesh.format.attributes, proto::AttributeKind::normal, &proto::AttributeFormat::kind) > 0;
+  if (has_own && holds_normals(output_format(flags.output)) && flags.normals.value_or(true)) return model.mesh;
+  return proto::detail::with_normals(model.mesh, output_normals(flags, model.normals));
+}
+
 std::ostream& begin_report(const UnpackFlags& flags, const TriangleMesh& mesh) {
   std::ostream& out = flags.output.is_standard() ? std::cerr : std::cout;
   return out << proto::escape_controls(flags.output.path.string()) << ": " << mesh.positions.size() << " vertices, "
@@ -49,14 +69,17 @@ void report(const UnpackFlags& flags, const PackedModel& model, const TriangleMe
 /// Decodes the file without levels that `pack` writes where that is smaller. Returns whether it is one.
 bool unpack_plain(const UnpackFlags& flags, const MeshBytes& file) {
   if (!is_scene(file.format)) return false;
-  const auto mesh =
+  const auto model =
       in_words_of_the_file(file.name, [&] { return proto::detail::read_plain_draco(file.bytes, own_limits); });
-  if (!mesh) return false;
+  if (!model) return false;
   if (flags.levels.value_or(0) > 0) print_warnings({file.name + " is plain Draco and has no levels."});
-  save_triangles(
-      flags.output,
-      {.mesh = *mesh, .materials = in_words_of_the_file(file.name, [&] { return material_of(flags, file, *mesh); })});
-  begin_report(flags, *mesh) << "plain Draco without levels\n";
+  proto::gltf::MaterialMesh decoded;
+  in_words_of_the_file(file.name, [&] {
+    decoded.mesh = with_output_normals(flags, *model);
+    decoded.materials = material_of(flags, file, decoded.mesh);
+  });
+  save_triangles(flags.output, decoded);
+  begin_report(flags, decoded.mesh) << "plain Draco without levels\n";
   return true;
 }
 
@@ -73,7 +96,8 @@ void unpack_command(const UnpackFlags& flags) {
   in_words_of_the_file(file.name, [&] {
     model = proto::detail::read_packed(file.bytes,
                                        {.limits = own_limits, .levels = levels, .may_be_cut = flags.may_be_cut});
-    decoded.mesh = proto::detail::decode_packed(model, face_count_limit, [] { return Interruption::is_asked(); });
+    decoded.mesh = proto::detail::decode_packed(
+        model, {.normals = output_normals(flags, model.normals), .cancelled = [] { return Interruption::is_asked(); }});
     decoded.materials = material_of(flags, file, decoded.mesh);
   });
   if (flags.levels && levels > model.declared_levels)

@@ -6,8 +6,8 @@
 #include "client/lib/material_attribute.h"
 #include "client/lib/read_beside.h"
 #include "client/lib/save_obj.h"
+#include "proto/detail/decode_packed.h"
 #include "proto/detail/find_packed.h"
-#include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
@@ -51,7 +51,7 @@ proto::FormattedMesh triangles_of(const MeshBytes& file) {
   if (is_scene(file.format)) {
     return in_words_of_the_file(file.name, [&] {
       const auto packed = proto::detail::find_packed(file.bytes, own_limits);
-      return packed ? proto::detail::decode_packed(*packed, own_limits.max_output_faces)
+      return packed ? proto::detail::decode_packed(*packed, {.face_limit = own_limits.max_output_faces})
                     : proto::gltf::flatten_scene(file.bytes, own_limits);
     });
   }
@@ -83,6 +83,8 @@ bool holds_materials(const MeshPlace& place) {
   const Format format = output_format(place);
   return is_scene(format) || (format == Format::obj && !place.is_standard());
 }
+
+bool holds_normals(Format format) { return format != Format::off && format != Format::stl; }
 
 void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model) {
   const Format format = output_format(place);

@@ -57,6 +57,9 @@ struct MeshBytes {
 /// Whether files at the place can have materials: scenes, and OBJ files that are not standard output.
 [[nodiscard]] bool holds_materials(const MeshPlace& place);
 
+/// Whether files of a format can have normals of vertices.
+[[nodiscard]] bool holds_normals(Format format);
+
 /// Writes a mesh in the format of the place, which is not Draco; as a scene of one node where that is glTF, with its
 /// materials where `holds_materials`. Throws `FileError`.
 void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model);

@@ -65,8 +65,8 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
   int bits = fewest_position_bits;
   while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
   for (;; ++bits) {
-    std::string stream =
-        write_draco(mesh, grid, {.position_bits = bits, .speed = 0}, attribute_encoding(mesh, base_format(base)));
+    std::string stream = write_draco(mesh, grid, {.position_bits = bits, .speed = 0},
+                                     attribute_encoding(mesh, base_format(base.attributes)));
     TriangleMesh decoded = read_draco(stream, no_limits);
     const bool is_sound = keeps_surface(mesh, decoded);
     if (!is_sound && bits < most_position_bits) continue;

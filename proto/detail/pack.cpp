@@ -9,7 +9,9 @@
 #include "proto/detail/distance_search.h"
 #include "proto/detail/encodings.h"
 #include "proto/detail/only_material.h"
+#include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
+#include "proto/detail/plain_original.h"
 #include "proto/error_translation.h"
 #include "proto/problem.h"
 #include "proto/text.h"
@@ -38,6 +40,7 @@ class Packer {
       if (error.fault() != Fault::bad_surface) throw;
       packed_.reason = error.what();
     }
+    plain_ = plain_original(std::move(mesh_));
     if (options_.bytes > 0)
       choose_within_bytes();
     else if (options_.largest > 0)
@@ -96,9 +99,10 @@ class Packer {
 
   void choose_at_rms() {
     const double reached = best_ ? reach_of(best_->model).rms : 0;
-    PlainDraco plain = plain_at(std::max(options_.rms, reached));
-    if (options_.simplifies && mesh_.attributes.empty()) {
-      packed_.simplified = write_simplified_draco(mesh_.triangles(), options_.rms, options_.cancelled);
+    PlainDraco plain = plain_at(std::max(options_.rms, reached), compared());
+    if (options_.simplifies && plain_.mesh.attributes.empty()) {
+      packed_.simplified =
+          write_simplified_draco(plain_.mesh.triangles(), options_.rms, plain_.normals, options_.cancelled);
       if (packed_.simplified && is_smallest(*packed_.simplified, plain)) return take_simplified(plain);
     }
     if (best_ && best_->glb.size() < plain.glb.size()) return take_packed(plain);
@@ -106,7 +110,7 @@ class Packer {
       packed_.reason = "At an RMS distance of " + format_rounded(std::max(options_.rms, reached)) +
                        " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) +
                        " bytes, and a packed model " + std::to_string(best_->glb.size()) + ".";
-    take_plain(reached > options_.rms ? plain_at(options_.rms) : std::move(plain));
+    take_plain(reached > options_.rms || plain_.compared ? plain_at(options_.rms, plain_.mesh) : std::move(plain));
   }
 
   [[nodiscard]] bool is_smallest(const SimplifiedDraco& simplified, const PlainDraco& plain) const {
@@ -128,7 +132,7 @@ class Packer {
   }
 
   void choose_within_largest() {
-    PlainDraco plain = plain_within(options_.largest);
+    PlainDraco plain = plain_within(options_.largest, compared());
     if (best_ && fits(*best_) && best_->glb.size() < plain.glb.size()) return take_packed(plain);
     if (best_ && !fits(*best_))
       packed_.reason = "No packed model was found that is nowhere farther than " + format_rounded(options_.largest) +
@@ -137,14 +141,14 @@ class Packer {
       packed_.reason = "With no distance above " + format_rounded(options_.largest) +
                        " of the diagonal plain Draco takes " + std::to_string(plain.glb.size()) +
                        " bytes, and a packed model " + std::to_string(best_->glb.size()) + ".";
-    take_plain(std::move(plain));
+    take_plain(plain_.compared ? plain_within(options_.largest, plain_.mesh) : std::move(plain));
   }
 
   void choose_within_bytes() {
     std::optional<PlainDraco> plain = finest_plain();
     const bool is_fit = best_ && fits(*best_);
     if (is_fit && (!plain || reach_of(best_->model).rms < plain->rms))
-      return take_packed(plain_at(reach_of(best_->model).rms));
+      return take_packed(plain_at(reach_of(best_->model).rms, compared()));
     if (!plain) refuse_bytes();
     if (is_fit)
       packed_.reason = "In " + std::to_string(options_.bytes) + " bytes plain Draco has an RMS distance of " +
@@ -156,7 +160,7 @@ class Packer {
   }
 
   [[noreturn]] void refuse_bytes() const {
-    size_t fewest = plain_of(fewest_position_bits).glb.size();
+    size_t fewest = plain_of(fewest_position_bits, plain_.mesh).glb.size();
     if (best_) fewest = std::min(fewest, best_->glb.size());
     throw Problem(Code::result_too_large, "The smallest file found has " + std::to_string(fewest) +
                                               " bytes, more than " + std::to_string(options_.bytes) + ". Allow more.");
@@ -179,29 +183,36 @@ class Packer {
     packed_.plain_bytes = plain.glb.size();
     packed_.plain_bits = plain.position_bits;
     packed_.plain_rms = plain.rms;
+    packed_.plain_has_normals = plain_.has_normals;
   }
 
-  [[nodiscard]] PlainDraco plain_at(double rms) const {
-    return write_plain_draco(
-        mesh_, rms, [this] { poll(); }, material_);
+  /// Returns what packed models are compared with: with normals only where those have the same.
+  [[nodiscard]] const Mesh& compared() const { return plain_.compared ? *plain_.compared : plain_.mesh; }
+  [[nodiscard]] PlainOptions plain_options(const Mesh& mesh) const {
+    const bool has_normals = plain_.has_normals && &mesh == &plain_.mesh;
+    return {.poll = [this] { poll(); },
+            .material = &material_,
+            .normals = has_normals ? NormalStyle::absent : plain_.normals};
   }
-  [[nodiscard]] PlainDraco plain_of(int bits) const {
-    return write_plain_grid(
-        mesh_, bits, [this] { poll(); }, material_);
+  [[nodiscard]] PlainDraco plain_at(double rms, const Mesh& mesh) const {
+    return write_plain_draco(mesh, rms, plain_options(mesh));
+  }
+  [[nodiscard]] PlainDraco plain_of(int bits, const Mesh& mesh) const {
+    return write_plain_grid(mesh, bits, plain_options(mesh));
   }
   /// Returns the file with the fewest bits that move no position by more than this share of the diagonal.
-  [[nodiscard]] PlainDraco plain_within(double largest) const {
-    const Box box = bounding_box(mesh_.positions);
+  [[nodiscard]] PlainDraco plain_within(double largest, const Mesh& mesh) const {
+    const Box box = bounding_box(mesh.positions);
     int bits = fewest_position_bits;
     while (bits < most_position_bits && tight_grid_distance(box, bits) > largest * box.diagonal()) ++bits;
-    return plain_of(bits);
+    return plain_of(bits, mesh);
   }
   /// Returns the file with the most bits that has no more bytes than are allowed.
   [[nodiscard]] std::optional<PlainDraco> finest_plain() const {
     std::optional<PlainDraco> finest;
     for (int low = fewest_position_bits, high = most_position_bits; low <= high;) {
       const int bits = (low + high) / 2;
-      PlainDraco plain = plain_of(bits);
+      PlainDraco plain = plain_of(bits, plain_.mesh);
       if (plain.glb.size() > options_.bytes) {
         high = bits - 1;
       } else {
@@ -213,7 +224,8 @@ class Packer {
   }
 
   const PackOptions& options_;
-  Mesh mesh_;
+  Mesh mesh_;  ///< moved to `plain_` once it is encoded
+  PlainOriginal plain_;
   gltf::Materials material_;
   std::optional<Encoding> best_;
   Packed packed_;
@@ -225,6 +237,8 @@ Packed pack(const gltf::MaterialMesh& original, const PackOptions& options) {
   TriangleMesh surface{original.mesh.positions, original.mesh.triangles};
   if (std::optional<Attribute> texcoords = texcoords_to_pack(original.mesh))
     surface.attributes.push_back(std::move(*texcoords));
+  if (std::optional<Attribute> normals = normals_to_pack(original.mesh))
+    surface.attributes.push_back(std::move(*normals));
   return translate_errors([&] { return Packer(surface, only_material(original.materials), options).run(); });
 }
 

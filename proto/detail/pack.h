@@ -37,18 +37,19 @@ struct Packed {
   uint64_t plain_bytes = 0;            ///< of the plain .glb file at the same distance
   int plain_bits = 0;                  ///< its bits of a coordinate
   double plain_rms = 0;                ///< its distance, by `grid_rms`
+  bool plain_has_normals = false;      ///< whether normals are in its Draco, as readers would not find them
   std::optional<SimplifiedDraco> simplified{};  ///< what was compared; its `glb` is moved out where it is the result
   uint64_t image_bytes = 0;                     ///< of the material's images
   uint32_t parted = 0;                          ///< vertices at which the original touches itself, which were parted
 };
 
-/// Packs an original: its surface, its first texture coordinates of two components, and the material of its triangles
-/// where they all have the same one. The result is a plain .glb file where the surface
-/// cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the largest allowed
-/// distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For an RMS distance a
-/// simplified mesh as Draco is compared too, if asked and if there are no texture coordinates, which it would lose.
-/// Throws `Problem`:
-/// result_too_large where no file found is so small; and as the coders.
+/// Packs an original: its surface, its first texture coordinates of two components, the style of its normals
+/// (`NormalStyle`), and the material of its triangles where they all have the same one. The result is a plain .glb file
+/// where the surface cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the
+/// largest allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For an RMS
+/// distance a simplified mesh as Draco is compared too, if asked and if there are neither texture coordinates nor
+/// normals of hard edges, which it would lose. Throws `Problem`: result_too_large where no file found is so small; and
+/// as the coders.
 [[nodiscard]] Packed pack(const gltf::MaterialMesh& original, const PackOptions& options);
 /// Packs a surface; its attributes are left out.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/detail/pack.h"
+#include "proto/detail/packed_normals.h"
 
 namespace papilio::proto::detail {
 namespace {
@@ -17,6 +18,7 @@ Json json_of(const PackedModel& model) {
   base["bytes"] = model.base_bytes;
   if (!model.base.triangles.attributes.empty()) base["texcoords"] = true;
   add_reach(base, model.base_reach);
+  if (model.normals != NormalStyle::absent) base["normals"] = name_of(model.normals);
   Json levels = Json::array();
   for (const PackedLevel& level : model.levels) {
     Json& json = levels.emplace_back();
@@ -46,6 +48,7 @@ std::string pack_report(const Packed& packed) {
     out.update(json_of(*packed.model));
   }
   out["plain"] = {{"bytes", packed.plain_bytes}, {"position_bits", packed.plain_bits}, {"rms", packed.plain_rms}};
+  if (packed.plain_has_normals) out["plain"]["normals"] = true;
   if (packed.simplified) {
     Json& simplified = out["simplified"] = {{"faces", packed.simplified->faces},
                                             {"bytes", packed.simplified->bytes},

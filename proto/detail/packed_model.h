@@ -23,6 +23,7 @@ struct PackedModel {
   DetailBase base;
   uint64_t base_bytes = 0;  ///< of its Draco stream
   DetailReach base_reach;
+  NormalStyle normals{};            ///< of the original
   std::vector<PackedLevel> levels;  ///< those that were read, coarse first
   size_t declared_levels = 0;       ///< those that the file declares
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "proto/detail/level_table.h"
+#include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
 #include "proto/error_translation.h"
@@ -38,6 +39,14 @@ const Json& only(const Json& array, const char* what) {
                 "The file is cut inside " + where + ", so no level can be read. Provide more of it.");
 }
 
+NormalStyle normals_member(const Json& extension) {
+  const Json* name = gltf::find_member(extension, "normals", detail_place);
+  if (name == nullptr) return NormalStyle::absent;
+  const auto style = name->is_string() ? normal_style_named(name->get<std::string>()) : std::nullopt;
+  if (!style) refuse_document(detail_place + ".normals", "must be \"smooth\", \"creased\" or \"faceted\"");
+  return *style;
+}
+
 /// Reader of one file.
 class PackedReader {
  public:
@@ -58,6 +67,7 @@ class PackedReader {
     model.declared_levels = table.rows.size();
     const uint64_t faces = declared_faces();
     require_room(faces, std::min(options_.levels, table.rows.size()));
+    model.normals = normals_member(extension);
     read_base(base, faces, table, model);
     read_streams(table, detail.bytes.substr(table.size()), model);
     return model;
@@ -184,7 +194,7 @@ class PackedReader {
   /// Returns the format of a base's attributes if they are texture coordinates as packed models have them.
   static std::vector<AttributeFormat> one_texcoord(const FormattedMesh& base) {
     if (base.attributes.size() != 1 || base.attributes[0].components != 2) refuse_scene("no texture coordinates");
-    std::vector<AttributeFormat> expected = base_format(base).attributes;
+    std::vector<AttributeFormat> expected = base_format(base.attributes).attributes;
     expected[0].id = base.format.attributes[0].id;
     return expected;
   }

@@ -12,10 +12,14 @@ void turn_over(Attribute& texcoords) {
   for (size_t i = 1; i < texcoords.values.size(); i += 2) texcoords.values[i] = 1 - texcoords.values[i];
 }
 
-MeshFormat base_format(const TriangleMesh& base) {
+MeshFormat base_format(const std::vector<Attribute>& attributes) {
   MeshFormat format;
-  if (!base.attributes.empty())
-    format.attributes.push_back({.kind = AttributeKind::tex_coord, .type = ValueType::float32, .id = texcoord_id});
+  for (const Attribute& attribute : attributes) {
+    if (attribute.unit_length)
+      append_normals(format);
+    else
+      format.attributes.push_back({.kind = AttributeKind::tex_coord, .type = ValueType::float32, .id = texcoord_id});
+  }
   return format;
 }
 
@@ -27,14 +31,6 @@ std::optional<Attribute> texcoords_to_pack(const FormattedMesh& mesh) {
     return texcoords;
   }
   return std::nullopt;
-}
-
-FormattedMesh decode_packed(const PackedModel& model, uint64_t face_limit, const std::function<bool()>& cancelled) {
-  FormattedMesh mesh;
-  static_cast<TriangleMesh&>(mesh) = decode_detail(model.base, model.streams(), face_limit, cancelled);
-  mesh.format = base_format(mesh);
-  for (Attribute& texcoords : mesh.attributes) turn_over(texcoords);
-  return mesh;
 }
 
 }  // namespace papilio::proto::detail

@@ -7,6 +7,7 @@
 
 #include "proto/detail/level_table.h"
 #include "proto/detail/packed_model.h"
+#include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/gltf/accessor.h"
 #include "proto/gltf/container.h"
@@ -88,12 +89,14 @@ Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
       {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
   Json extension{{"bufferView", scene.add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
   Json attributes{{"POSITION", 0}};
-  for (const AttributeFormat& texcoords : base_format(mesh).attributes) {
-    attributes["TEXCOORD_0"] = scene.json["accessors"].size();
-    extension["attributes"]["TEXCOORD_0"] = texcoords.id;
+  for (const AttributeFormat& attribute : base_format(mesh.attributes).attributes) {
+    const bool is_normal = attribute.kind == AttributeKind::normal;
+    const char* const semantic = is_normal ? "NORMAL" : "TEXCOORD_0";
+    attributes[semantic] = scene.json["accessors"].size();
+    extension["attributes"][semantic] = attribute.id;
     scene.json["accessors"].push_back({{"componentType", static_cast<uint32_t>(ComponentType::float32)},
                                        {"count", mesh.positions.size()},
-                                       {"type", "VEC2"}});
+                                       {"type", is_normal ? "VEC3" : "VEC2"}});
   }
   scene.primitive() = {{"attributes", std::move(attributes)},
                        {"indices", 1},
@@ -138,13 +141,17 @@ std::string write_packed(const EncodedDetail& detail, std::string_view base_stre
   Scene scene = scene_of(detail.base.triangles, base_stream);
   scene.json["extensionsUsed"].push_back(gltf::detail_extension);
   const size_t view = scene.add_view(streams_of(detail));
-  scene.primitive()["extensions"][gltf::detail_extension] = {{"version", detail_version}, {"bufferView", view}};
+  Json extension{{"version", detail_version}, {"bufferView", view}};
+  if (detail.normals != NormalStyle::absent) extension["normals"] = name_of(detail.normals);
+  scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
   scene.add_material(material);
   return std::move(scene).write();
 }
 
-std::string write_plain(const TriangleMesh& decoded, std::string_view stream, const gltf::Materials& material) {
+std::string write_plain(const TriangleMesh& decoded, std::string_view stream, NormalStyle normals,
+                        const gltf::Materials& material) {
   Scene scene = scene_of(decoded, stream);
+  if (normals != NormalStyle::absent) scene.primitive()["extras"]["normals"] = name_of(normals);
   scene.add_material(material);
   return std::move(scene).write();
 }

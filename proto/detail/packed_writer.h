@@ -15,9 +15,9 @@ namespace papilio::proto::detail {
 [[nodiscard]] std::string write_packed(const EncodedDetail& detail, std::string_view base_stream,
                                        const gltf::Materials& material = {});
 
-/// Writes a .glb scene of one mesh without levels. `stream`: Draco stream that decodes to `decoded`. `material` as
-/// above.
-[[nodiscard]] std::string write_plain(const TriangleMesh& decoded, std::string_view stream,
+/// Writes a .glb scene of one mesh without levels. `stream`: Draco stream that decodes to `decoded`, which may have
+/// normals. `normals`: style of those that readers are to find. `material` as above.
+[[nodiscard]] std::string write_plain(const TriangleMesh& decoded, std::string_view stream, NormalStyle normals = {},
                                       const gltf::Materials& material = {});
 
 }  // namespace papilio::proto::detail

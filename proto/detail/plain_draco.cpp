@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "proto/detail/base_coder.h"
+#include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/detail/packed_writer.h"
 #include "proto/draco_reader.h"
@@ -31,6 +32,15 @@ class GridMoves {
   double step_;
 };
 
+/// Returns the style of normals that the extras of a primitive name.
+NormalStyle style_of(const gltf::Json& primitive) {
+  const auto extras = primitive.find("extras");
+  if (extras == primitive.end() || !extras->is_object()) return {};
+  const auto name = extras->find("normals");
+  if (name == extras->end() || !name->is_string()) return {};
+  return normal_style_named(name->get<std::string>()).value_or(NormalStyle::absent);
+}
+
 }  // namespace
 
 double grid_rms(const Mesh& mesh, int position_bits) {
@@ -51,30 +61,28 @@ double grid_rms(const Mesh& mesh, int position_bits) {
   return doubled_area > 0 ? std::sqrt(sum / doubled_area) / box.diagonal() : 0;
 }
 
-PlainDraco write_plain_draco(const Mesh& mesh, double rms, const std::function<void()>& poll,
-                             const gltf::Materials& material) {
+PlainDraco write_plain_draco(const Mesh& mesh, double rms, const PlainOptions& options) {
   int bits = fewest_position_bits;
   while (bits < most_position_bits && grid_rms(mesh, bits) > rms) {
-    if (poll) poll();
+    if (options.poll) options.poll();
     ++bits;
   }
-  return write_plain_grid(mesh, bits, poll, material);
+  return write_plain_grid(mesh, bits, options);
 }
 
-PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const std::function<void()>& poll,
-                            const gltf::Materials& material) {
+PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const PlainOptions& options) {
   PlainDraco plain{.position_bits = position_bits, .rms = grid_rms(mesh, position_bits)};
   const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
-  MeshFormat format;
-  if (!mesh.attributes.empty()) format = base_format(mesh.triangles());
-  const std::string stream = write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0},
-                                         attribute_encoding(mesh, std::move(format)), poll);
+  const std::string stream =
+      write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0},
+                  attribute_encoding(mesh, base_format(mesh.attributes.attributes)), options.poll);
   constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
-  plain.glb = write_plain(read_draco(stream, no_limits), stream, material);
+  plain.glb = write_plain(read_draco(stream, no_limits), stream, options.normals,
+                          options.material == nullptr ? gltf::Materials() : *options.material);
   return plain;
 }
 
-std::optional<FormattedMesh> read_plain_draco(std::string_view glb, const Limits& limits) {
+std::optional<PlainModel> read_plain_draco(std::string_view glb, const Limits& limits) {
   if (!gltf::is_glb(glb)) return std::nullopt;
   const gltf::Json json = gltf::read_document(glb).json;
   const gltf::Json& meshes = gltf::array_of(json, "meshes");
@@ -87,8 +95,26 @@ std::optional<FormattedMesh> read_plain_draco(std::string_view glb, const Limits
     return std::nullopt;
   const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
   if (attributes == nullptr || !attributes->is_object()) return std::nullopt;
-  if (attributes->size() != (attributes->contains("TEXCOORD_0") ? 2 : 1)) return std::nullopt;
-  return gltf::find_only_mesh(glb, limits);
+  const size_t known = attributes->count("POSITION") + attributes->count("TEXCOORD_0") + attributes->count("NORMAL");
+  if (attributes->size() != known) return std::nullopt;
+  std::optional<FormattedMesh> mesh = gltf::find_only_mesh(glb, limits);
+  if (!mesh) return std::nullopt;
+  return PlainModel{.mesh = std::move(*mesh), .normals = style_of(primitive)};
+}
+
+FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
+  for (size_t a = mesh.attributes.size(); a-- > 0;) {
+    if (mesh.format.attributes[a].kind != AttributeKind::normal) continue;
+    mesh.attributes.erase(mesh.attributes.begin() + static_cast<ptrdiff_t>(a));
+    mesh.format.attributes.erase(mesh.format.attributes.begin() + static_cast<ptrdiff_t>(a));
+  }
+  if (style != NormalStyle::smooth && style != NormalStyle::creased) return mesh;
+  Mesh built = build_mesh(mesh);
+  (void)mark_detail_curves(built);
+  add_detail_normals(built, style);
+  append_normals(mesh.format);
+  static_cast<TriangleMesh&>(mesh) = std::move(built).triangles();
+  return mesh;
 }
 
 }  // namespace papilio::proto::detail

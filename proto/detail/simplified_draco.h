@@ -18,8 +18,10 @@ struct SimplifiedDraco {
 };
 
 /// Simplifies a surface to an RMS distance, a share of the diagonal, and writes it as Draco in a .glb file. Nothing
-/// where no file was found that reaches the distance. Throws `Problem` and `Error`.
+/// where no file was found that reaches the distance. `normals`: style of those that readers are to find. Throws
+/// `Problem` and `Error`.
 [[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, double rms,
+                                                                    NormalStyle normals = {},
                                                                     const std::function<bool()>& cancelled = {});
 
 }  // namespace papilio::proto::detail

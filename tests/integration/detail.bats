@@ -16,6 +16,8 @@ setup() {
 
 # distance A B KEY: a distance between two surfaces as a share of the first one's diagonal.
 distance() { "$papilio" compare --json "$1" "$2" | jq ".$3 / .diagonal"; }
+# attributes SCENE: those of its first mesh.
+attributes() { "$papilio" info --json "$1" | jq -c '.meshes[0].attributes'; }
 # is_within A B: A is at most B.
 is_within() { jq -ne "$1 <= $2" >/dev/null || { echo "$1 > $2"; return 1; }; }
 report() { jq -r "$1" report.json; }
@@ -46,6 +48,13 @@ report() { jq -r "$1" report.json; }
     "$papilio" unpack model.glb -o "out.$kind"
     is_within "$(distance out.obj "out.$kind" hausdorff)" 1e-12
   done
+  # An original without normals has them in scenes, which viewers show in facets else.
+  ! grep -q '^vn ' out.obj
+  for kind in glb gltf; do [ "$(attributes "out.$kind")" = '["NORMAL","POSITION"]' ]; done
+  "$papilio" unpack model.glb -o flat.glb --normals false --levels 1
+  [ "$(attributes flat.glb)" = '["POSITION"]' ]
+  "$papilio" unpack model.glb -o smooth.obj --normals true --levels 1
+  grep -q '^vn ' smooth.obj
   "$papilio" unpack - -o - --to obj <model.glb | cmp - out.obj
 }
 
@@ -203,6 +212,8 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [[ $output == "out.obj: 4 vertices, 2 faces, plain Draco without levels" ]]
   [ "$stderr" = "" ]
   is_within "$(distance open.glb out.obj hausdorff)" 1e-12
+  "$papilio" unpack open.glb -o out.glb
+  [ "$(attributes out.glb)" = '["NORMAL","POSITION"]' ]
   run --separate-stderr "$papilio" unpack open.glb -o out.obj --levels 2
   [[ $stderr == *"has no levels"* ]]
   "$papilio" pack open.obj -o open.glb >report.txt 2>/dev/null
@@ -259,7 +270,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
     'f 2//1 3//1 4//1' 'f 3//1 1//1 4//1' >smooth.obj
   run --separate-stderr "$papilio" pack smooth.obj -o smooth.glb
   [ "$status" = 0 ]
-  [[ $stderr == *"normals and other attributes are left out"* ]]
+  [ "$stderr" = "$(grep 'plain Draco' <<<"$stderr")" ] # nothing of normals
   printf '%s\n' 'newmtl red' 'newmtl blue' >two.mtl
   sed -e '1i mtllib two.mtl' -e 's/f 2/usemtl red\nf 2/; s/f 3/usemtl blue\nf 3/; s,//1,,g; /vn/d' smooth.obj >two.obj
   run --separate-stderr "$papilio" pack two.obj -o two.glb
@@ -274,7 +285,7 @@ textured_ball() {
   printf '%s\n' 'mtllib cube.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 0 0 1' 'v 1 0 1' 'v 1 1 1' 'v 0 1 1' \
     'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 0 1' 'usemtl wood' 'f 4/1 3/2 2/3 1/4' 'f 5/1 6/2 7/3 8/4' 'f 1/1 2/2 6/3 5/4' \
     'f 3/1 4/2 8/3 7/4' 'f 2/1 3/2 7/3 6/4' 'f 4/1 1/2 5/3 8/4' >cube.obj
-  "$papilio" refine cube.obj -o ball.obj --levels 5 --tension off
+  "$papilio" refine cube.obj -o ball.obj --levels 5 --tension off --output.normals true
 }
 
 @test "a textured model stays textured, as base and unpacked" {
@@ -287,11 +298,13 @@ textured_ball() {
   "$papilio" info --json ball.glb >info.json
   [ "$(jq -c '[.materials, .images, .meshes[0].attributes, .detail.base.texcoords]' info.json)" = \
     '[1,1,["POSITION","TEXCOORD_0"],true]' ]
+  [ "$(jq -r .base.normals <<<"$output")" = smooth ]
   for command in unpack convert; do
     if [ $command = unpack ]; then "$papilio" unpack ball.glb -o out.obj; else "$papilio" convert ball.glb out.obj; fi
     is_within "$(distance ball.obj out.obj rms)" 0.0011
     grep -qx 'usemtl wood' out.obj
     grep -q '^vt ' out.obj
+    grep -q '^vn ' out.obj
     image=$(sed -n 's/^map_Kd //p' out.mtl)
     cmp "$image" wood.png
     mv out.obj $command.obj
@@ -299,7 +312,7 @@ textured_ball() {
   cmp unpack.obj convert.obj
   "$papilio" unpack ball.glb -o out.glb
   [ "$("$papilio" info --json out.glb | jq -c '[.materials, .images, .meshes[0].attributes]')" = \
-    '[1,1,["POSITION","TEXCOORD_0"]]' ]
+    '[1,1,["NORMAL","POSITION","TEXCOORD_0"]]' ]
   # What refine makes of all levels, as a scene and as a mesh.
   levels=$("$papilio" info --json ball.glb | jq '.detail.levels | length')
   "$papilio" refine ball.glb -o refined.glb --levels "$levels" --compress none

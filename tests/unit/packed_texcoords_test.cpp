@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "proto/detail/decode_packed.h"
 #include "proto/detail/only_material.h"
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
@@ -186,10 +187,10 @@ TEST(PackedMaterial, IsKeptWhereTheFileIsPlainDraco) {
   const Packed packed = pack(model, {.rms = 1e-2, .face_limit = 500});
   ASSERT_FALSE(packed.model);
   EXPECT_EQ(packed.image_bytes, 17U);
-  const std::optional<FormattedMesh> read = read_plain_draco(packed.glb, {});
+  const std::optional<PlainModel> read = read_plain_draco(packed.glb, {});
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->positions.size(), 24U);
-  for (const double value : read->attributes.at(0).values) EXPECT_NEAR(value, std::round(value), 11.0 / (1 << 14));
+  EXPECT_EQ(read->mesh.positions.size(), 24U);
+  for (const double value : read->mesh.attributes.at(0).values) EXPECT_NEAR(value, std::round(value), 11.0 / (1 << 14));
   const gltf::MaterialMesh scene = gltf::flatten_with_materials(packed.glb, {});
   EXPECT_EQ(scene.materials.images, one_material().images);
 }

@@ -39,15 +39,15 @@ TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
     EXPECT_LT(made->faces, original.triangles.size());
     const auto read = read_plain_draco(made->glb, {});
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->triangles.size(), made->faces);
-    const test::SampledDistance distance = test::SampledSurface(original, 40'000).distance_to(*read);
+    EXPECT_EQ(read->mesh.triangles.size(), made->faces);
+    const test::SampledDistance distance = test::SampledSurface(original, 40'000).distance_to(read->mesh);
     EXPECT_NEAR(distance.rms / 100, made->reach.rms, 0.05 * made->reach.rms);
   }
 }
 
 TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
   try {
-    (void)write_simplified_draco(sphere(4), 1e-3, [] { return true; });
+    (void)write_simplified_draco(sphere(4), 1e-3, {}, [] { return true; });
     ADD_FAILURE() << "it was not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::cancelled);

@@ -1,0 +1,143 @@
+#include "proto/detail/packed_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "proto/detail/decode_packed.h"
+#include "proto/detail/pack.h"
+#include "proto/detail/packed_reader.h"
+#include "proto/detail/plain_original.h"
+#include "proto/problem.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/lens.h"
+#include "tests/support/packed_model.h"
+#include "tests/support/shapes.h"
+
+// Normals of packed models, and of the files without levels that take their place.
+
+namespace papilio::proto::detail {
+namespace {
+
+using test::Shading;
+
+FormattedMesh with_normal_format(const TriangleMesh& mesh) {
+  FormattedMesh made;
+  static_cast<TriangleMesh&>(made) = mesh;
+  if (!mesh.attributes.empty()) append_normals(made.format);
+  return made;
+}
+
+FormattedMesh small_lens(double degrees, Shading shading) {
+  return with_normal_format(test::lens(12, 4, degrees, shading));
+}
+
+/// Packs a small original, whose file is plain Draco, and reads it.
+PlainModel packed_plainly(const FormattedMesh& original) {
+  const Packed packed = pack(gltf::MaterialMesh{.mesh = original}, {.rms = 1e-5, .face_limit = 500});
+  EXPECT_FALSE(packed.model);
+  const std::optional<PlainModel> read = read_plain_draco(packed.glb, {});
+  EXPECT_TRUE(read);
+  EXPECT_EQ(packed.plain_has_normals, read && !read->mesh.attributes.empty());
+  return read.value_or(PlainModel{});
+}
+
+/// Largest angle between the normals of a lens and those of a mesh of it, in degrees.
+double largest_angle(const FormattedMesh& mesh, double degrees) {
+  double largest = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    float height = 0;
+    for (const uint32_t p : triangle) height += mesh.positions[p].z;
+    for (const uint32_t p : triangle) {
+      const double* value = &mesh.attributes.at(0).values[size_t{3} * p];
+      const Vec3d expected = test::lens_normal(mesh.positions[p], degrees, height > 0);
+      const Vec3d normal{value[0], value[1], value[2]};
+      largest = std::max(largest, std::atan2(length(cross(normal, expected)), dot(normal, expected)));
+    }
+  }
+  return largest * 180 / std::numbers::pi;
+}
+
+TEST(PackedNormals, StyleComesBack) {
+  test::PackedFixture made = test::packed_fixture(test::cube(), 1);
+  EXPECT_EQ(read_packed(made.glb).normals, NormalStyle::absent);
+  for (const NormalStyle style : {NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
+    made.detail.normals = style;
+    EXPECT_EQ(read_packed(write_packed(made.detail, made.base_stream)).normals, style);
+  }
+}
+
+TEST(PackedNormals, OfAnUnknownStyleAreRefused) {
+  test::PackedFixture made = test::packed_fixture(test::cube(), 1);
+  made.detail.normals = NormalStyle::smooth;
+  const std::string glb = write_packed(made.detail, made.base_stream);
+  const std::string known = R"("normals":"smooth")";
+  for (const std::string_view other : {R"("normals":"smOoth")", R"("normals": 1234567)", R"("normals":["othe"])"}) {
+    std::string changed = glb;
+    ASSERT_EQ(other.size(), known.size());
+    changed.replace(changed.find(known), known.size(), other);
+    try {
+      (void)read_packed(changed);
+      ADD_FAILURE() << other;
+    } catch (const Problem& problem) {
+      EXPECT_EQ(problem.code(), Code::mesh_not_gltf);
+    }
+  }
+}
+
+TEST(PackedNormals, AreDecodedInTheStyleOfTheOriginalUnlessAsked) {
+  PackedModel model = read_packed(test::packed_fixture(test::cube(), 1).glb);
+  EXPECT_TRUE(decode_packed(model).attributes.empty());
+  EXPECT_EQ(decode_packed(model, {.normals = NormalStyle::smooth}).attributes.size(), 1U);
+  model.normals = NormalStyle::faceted;
+  EXPECT_TRUE(decode_packed(model).attributes.empty());
+  model.normals = NormalStyle::smooth;
+  EXPECT_TRUE(decode_packed(model, {.normals = NormalStyle::absent}).attributes.empty());
+  const FormattedMesh smooth = decode_packed(model);
+  EXPECT_EQ(smooth.positions.size(), 26U) << "one normal a vertex";
+  EXPECT_EQ(smooth.format.attributes.at(0).kind, AttributeKind::normal);
+  for (size_t i = 0; i < smooth.attributes.at(0).values.size(); i += 3) {
+    const double* n = &smooth.attributes[0].values[i];
+    EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-6);
+  }
+}
+
+TEST(PlainNormals, AreInTheFileWhereHardEdgesAreNotSharp) {
+  const PlainModel model = packed_plainly(small_lens(20, Shading::hard_rim));
+  EXPECT_EQ(model.normals, NormalStyle::absent);
+  ASSERT_EQ(model.mesh.attributes.size(), 1U);
+  EXPECT_LT(largest_angle(model.mesh, 20), 2);
+}
+
+TEST(PlainNormals, AreFoundWhereHardEdgesAreSharp) {
+  const PlainModel model = packed_plainly(small_lens(90, Shading::hard_rim));
+  EXPECT_EQ(model.normals, NormalStyle::creased);
+  EXPECT_TRUE(model.mesh.attributes.empty());
+  const FormattedMesh shaded = with_normals(model.mesh, model.normals);
+  EXPECT_EQ(shaded.positions.size(), model.mesh.positions.size() + 12) << "the rim is split";
+  EXPECT_LT(largest_angle(shaded, 90), 10);
+}
+
+TEST(PlainNormals, AreFoundWhereTheyAreSmoothOrThoseOfTheFaces) {
+  const PlainModel smooth = packed_plainly(small_lens(90, Shading::smooth));
+  EXPECT_EQ(smooth.normals, NormalStyle::smooth);
+  EXPECT_TRUE(smooth.mesh.attributes.empty());
+  EXPECT_EQ(with_normals(smooth.mesh, smooth.normals).positions.size(), smooth.mesh.positions.size());
+  const PlainModel faceted = packed_plainly(small_lens(90, Shading::faceted));
+  EXPECT_EQ(faceted.normals, NormalStyle::faceted);
+  EXPECT_TRUE(with_normals(faceted.mesh, faceted.normals).attributes.empty());
+}
+
+TEST(PlainNormals, ThatNoSurfaceHasAreInTheFileAlone) {
+  TriangleMesh turned = test::lens(12, 4, 90, Shading::smooth);
+  for (double& value : turned.attributes[0].values) value = -value;
+  const PlainOriginal made = plain_original(build_mesh(turned));
+  EXPECT_TRUE(made.has_normals);
+  ASSERT_TRUE(made.compared);
+  EXPECT_TRUE(made.compared->attributes.empty());
+}
+
+}  // namespace
+}  // namespace papilio::proto::detail
