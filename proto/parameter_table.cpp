@@ -283,7 +283,7 @@ const std::array table{
         .type = ParameterType::boolean,
         .description =
             "Adds unit normals, apart at creases, to a mesh without normals; a mesh's own always become those of the "
-            "refined surface",
+            "refined surface, and a packed model has those of its original without being asked",
         .get = [](const Parameters& p) { return Values{p.normals ? 1.0 : 0.0}; },
         .set = [](Parameters& p, const Values& v) { p.normals = v[0] != 0; }},
     ParameterInfo{

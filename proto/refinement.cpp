@@ -99,6 +99,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;
   encoding_ = coarse().attributes;
+  adds_normals_ = adds_normals_ || has_detail_normals(coarse().normals);
   const auto& formats = encoding_.format.attributes;
   if (std::ranges::find(formats, AttributeKind::normal, &AttributeFormat::kind) != formats.end()) adds_normals_ = false;
   options_.output = encoding_bytes(coarse().mesh.attributes.attributes, adds_normals_, encoding_.format);
@@ -136,7 +137,7 @@ Result Refinement::refine_coarse(const Hooks& hooks) {
 
 std::optional<Mesh> Refinement::with_normals(const Mesh& mesh, int level) const {
   std::optional<Mesh> dressed;
-  if (adds_normals_) add_normals(dressed.emplace(mesh));
+  if (adds_normals_ && !add_detail_normals(dressed.emplace(mesh), coarse().normals)) add_normals(*dressed);
   if (level == 0) return dressed;  // its own are the author's
   for (size_t a = 0; a < mesh.attributes.attributes.size(); ++a) {
     if (!is_unit_normal(encoding_.format.attributes[a], mesh.attributes.attributes[a].components)) continue;

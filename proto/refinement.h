@@ -89,7 +89,8 @@ class Refinement {
   double tolerance_;       ///< that was asked for
   double grid_error_ = 0;  ///< by how much the grid moves positions, as a share of the diagonal
   OutputOptions output_;
-  bool adds_normals_;                         ///< the mesh has none, and they are asked for
+  /// Whether the mesh has none, and they are asked for, or its original, as a packed model, had some.
+  bool adds_normals_;
   AttributeEncoding encoding_;                ///< of all levels
   DecodedMesh decoded_;                       ///< unused with `shared_`
   std::shared_ptr<const SharedMesh> shared_;  ///< null: `decoded_` is used

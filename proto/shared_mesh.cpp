@@ -29,6 +29,7 @@ DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits) {
       decoded.mesh = build_mesh(base, &decoded.found);
       decoded.attributes = attribute_encoding(decoded.mesh, detail::base_format(base.attributes));
       for (AttributeEncoding::Grid& grid : decoded.attributes.grids) widen(grid);
+      decoded.normals = model->normals;
       detail::attach_levels_turned_over(decoded.mesh, std::move(*model));
     } else {
       FormattedMesh input = read_draco(bytes, limits);

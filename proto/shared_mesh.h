@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "papilio/detail.h"
 #include "proto/draco_writer.h"
 #include "proto/limits.h"
 #include "proto/prepared_meshes.h"
@@ -16,6 +17,7 @@ struct DecodedMesh {
   BuildReport found;
   QuantizationBox box;
   AttributeEncoding attributes;
+  NormalStyle normals{};  ///< of a packed model's original
 };
 
 /// Decodes and checks a mesh: a Draco stream, or a packed model (proto/detail.md), whose levels are attached to its

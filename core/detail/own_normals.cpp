@@ -86,7 +86,7 @@ std::vector<Attribute> without_normals(const std::vector<Attribute>& attributes)
 }
 
 bool add_detail_normals(Mesh& mesh, NormalStyle style) {
-  if (style != NormalStyle::smooth && style != NormalStyle::creased) return false;
+  if (!has_detail_normals(style)) return false;
   if (style == NormalStyle::smooth) std::ranges::replace(mesh.topology.kind, EdgeKind::crease, EdgeKind::smooth);
   add_weighted_normals(mesh, FaceWeight::angle);
   return true;

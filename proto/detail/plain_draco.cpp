@@ -108,7 +108,7 @@ FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
     mesh.attributes.erase(mesh.attributes.begin() + static_cast<ptrdiff_t>(a));
     mesh.format.attributes.erase(mesh.format.attributes.begin() + static_cast<ptrdiff_t>(a));
   }
-  if (style != NormalStyle::smooth && style != NormalStyle::creased) return mesh;
+  if (!has_detail_normals(style)) return mesh;
   Mesh built = build_mesh(mesh);
   (void)mark_detail_curves(built);
   add_detail_normals(built, style);

@@ -34,7 +34,7 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
     if (renews_normals) renew_normals(refined, *normals);
   } else if (adds_normals) {
     normals = refined.attributes.attributes.size();
-    add_normals(refined);
+    if (!add_detail_normals(refined, mesh.surface.normals)) add_normals(refined);
   }
   poll();
   const std::vector<RefinedTarget> targets =

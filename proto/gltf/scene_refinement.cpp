@@ -113,7 +113,10 @@ class SceneRefinement::State {
   void prepare() {
     options_ = options_for(parameters_, decoded().scene.box);
     options_.memory_limit = limits_.max_compute_bytes;
-    options_.edges = parameters_.normals;
+    adds_normals_ = parameters_.normals || std::ranges::any_of(meshes(), [](const SceneMesh& mesh) {
+                      return has_detail_normals(mesh.surface.normals);
+                    });
+    options_.edges = adds_normals_;
     scene_diagonal_ = decoded().scene.box.diagonal();
     for (const SceneMesh& mesh : meshes()) {
       auto& options = runs_.emplace_back().options;
@@ -282,12 +285,12 @@ class SceneRefinement::State {
     make_room(parting_bytes(mesh, result.mesh, is_compressed_));
     if (options_.max_faces > 0) making.budget_left -= result.mesh.topology.face_count();
     count_result(mesh, result, making);
-    const bool is_new = result.levels > 0 || parameters_.normals || parameters_.compression != Compression::same;
+    const bool is_new = result.levels > 0 || adds_normals_ || parameters_.compression != Compression::same;
     if (!is_new) {
       if (is_made_once()) release(m);
       return;
     }
-    NewGeometry refined = refined_geometry(mesh, std::move(result), parameters_.normals, [this] { poll(); });
+    NewGeometry refined = refined_geometry(mesh, std::move(result), adds_normals_, [this] { poll(); });
     if (is_made_once()) release(m);
     encode(std::move(refined), making);
   }
@@ -368,6 +371,7 @@ class SceneRefinement::State {
   Options options_;            ///< for the scene
   double scene_diagonal_ = 0;
   uint64_t coarse_faces_ = 0;
+  bool adds_normals_ = false;   ///< whether meshes without normals get them
   bool is_compressed_ = false;  ///< whether any of the new geometry may be
   uint64_t budget_left_ = 0;    ///< faces of `max_faces` that no mesh takes at the tolerance of all
   StageTimes times_;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "papilio/mesh.h"
+#include "papilio/detail.h"
 #include "proto/gltf/geometry.h"
 
 // All primitives of a mesh as one surface. The core carries for each point the coarse face that it lies in, its place
@@ -25,6 +25,7 @@ struct Surface {
   size_t target_count = 0;       ///< of morph targets: the attributes behind are their displacements
   /// Number of the attribute with the texture coordinates of a packed model, the last one, which its levels give.
   std::optional<size_t> texcoords{};
+  NormalStyle normals{};  ///< of a packed model's original
 
   [[nodiscard]] size_t first_displacement() const { return has_normals ? 2 : 1; }
 };

@@ -319,7 +319,9 @@ textured_ball() {
   "$papilio" convert refined.glb refined.obj
   for file in unpack.obj refined.obj; do grep '^vt ' $file | sort -u | head -c 100000 >$file.vt; done
   cmp unpack.obj.vt refined.obj.vt
+  [ "$(attributes refined.glb)" = '["NORMAL","POSITION","TEXCOORD_0"]' ]
   "$papilio" refine ball.glb -o mesh.obj --levels "$levels"
+  grep -q '^vn ' mesh.obj
   grep -qx 'usemtl wood' mesh.obj
   [ "$(grep -c '^f ' mesh.obj)" = "$(grep -c '^f ' unpack.obj)" ]
   cmp "$(sed -n 's/^map_Kd //p' mesh.mtl)" wood.png

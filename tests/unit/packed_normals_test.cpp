@@ -10,7 +10,11 @@
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
 #include "proto/detail/plain_original.h"
+#include "proto/draco_reader.h"
+#include "proto/gltf/flattening.h"
 #include "proto/problem.h"
+#include "proto/refinement.h"
+#include "tests/support/gltf_refinement.h"
 #include "tests/support/gltf_scene.h"
 #include "tests/support/lens.h"
 #include "tests/support/packed_model.h"
@@ -101,6 +105,31 @@ TEST(PackedNormals, AreDecodedInTheStyleOfTheOriginalUnlessAsked) {
   for (size_t i = 0; i < smooth.attributes.at(0).values.size(); i += 3) {
     const double* n = &smooth.attributes[0].values[i];
     EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-6);
+  }
+}
+
+TEST(PackedNormals, AreThoseOfRefinementsToo) {
+  test::PackedFixture made = test::packed_fixture(test::cube(), 1);
+  for (const NormalStyle style :
+       {NormalStyle::absent, NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
+    made.detail.normals = style;
+    const std::string glb = write_packed(made.detail, made.base_stream);
+    const Parameters parameters = parse_query({{"levels", "1"}, {"output.compress", "same"}});
+    const FormattedMesh mesh = read_draco(Refinement(glb, parameters, {}).run().bytes, {});
+    EXPECT_EQ(mesh.attributes.size(), has_detail_normals(style) ? 1U : 0U);
+    const FormattedMesh scene =
+        gltf::flatten_scene(test::refined(glb, {{"levels", "1"}, {"output.compress", "none"}}).bytes, {});
+    ASSERT_EQ(scene.attributes.size(), has_detail_normals(style) ? 1U : 0U);
+    if (scene.attributes.empty()) continue;
+    const FormattedMesh unpacked = decode_packed(read_packed(glb));
+    ASSERT_EQ(scene.positions.size(), unpacked.positions.size());
+    for (size_t p = 0; p < scene.positions.size(); ++p) {
+      const auto same = std::ranges::find(unpacked.positions, scene.positions[p]);
+      ASSERT_NE(same, unpacked.positions.end());
+      const auto other = static_cast<size_t>(same - unpacked.positions.begin());
+      for (size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(scene.attributes[0].values[3 * p + i], unpacked.attributes[0].values[3 * other + i], 1e-6);
+    }
   }
 }
 

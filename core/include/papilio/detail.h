@@ -123,8 +123,12 @@ struct DetailSource {
 /// The mesh must have its edges. O(F log F).
 NormalStyle mark_detail_curves(Mesh& original);
 
+/// Whether normals of a style are computed on levels: those of a faceted original are its faces'.
+[[nodiscard]] constexpr bool has_detail_normals(NormalStyle style) {
+  return style == NormalStyle::smooth || style == NormalStyle::creased;
+}
 /// Adds normals in a style as the last attribute of a mesh: means of the faces' normals weighted by angles, at creases
-/// one for each side, or one a vertex. Without effect unless the style is smooth or creased. Smooth ones unmark the
+/// one for each side, or one a vertex. Without effect unless has_detail_normals(). Smooth ones unmark the
 /// creases. Returns whether any were added. The mesh must have its edges. O(H log H).
 bool add_detail_normals(Mesh& mesh, NormalStyle style);
 
