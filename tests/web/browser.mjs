@@ -149,6 +149,44 @@ export function redShare(page, picture) {
   }, picture.toString('base64'));
 }
 
+/// Of a picture's pixels that are not the ground's colour: `mean` and `spread` of their lightness, 0 to 255, the share
+/// `steps` of them whose lightness differs by 6 or more from the one to the right, and `drawn`, their share of all.
+export function shades(page, picture) {
+  return page.evaluate(async (text) => {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    canvas.drawImage(bitmap, 0, 0);
+    const { data } = canvas.getImageData(0, 0, bitmap.width, bitmap.height);
+    const isDrawn = (i) => [0, 1, 2].some((k) => Math.abs(data[i + k] - data[k]) > 16);
+    const lightness = (i) => (data[i] + data[i + 1] + data[i + 2]) / 3;
+    let [count, sum, squares, steps] = [0, 0, 0, 0];
+    for (let i = 0; i + 7 < data.length; i += 4) {
+      if (!isDrawn(i) || !isDrawn(i + 4)) continue;
+      ++count;
+      sum += lightness(i);
+      squares += lightness(i) ** 2;
+      if (Math.abs(lightness(i) - lightness(i + 4)) >= 6) ++steps;
+    }
+    const mean = sum / count;
+    const spread = Math.sqrt(squares / count - mean * mean);
+    return { mean, spread, steps: steps / count, drawn: (4 * count) / data.length };
+  }, picture.toString('base64'));
+}
+
+/// The tasks of the page's main thread in a trace of `toplevel`, in milliseconds by the clock, and of the processor in
+/// that thread, ascending.
+export function tasksOf(trace) {
+  const { traceEvents } = JSON.parse(trace);
+  const main = traceEvents.filter(({ name, args }) => name === 'thread_name' && args.name === 'CrRendererMain');
+  const ids = new Set(main.map(({ pid, tid }) => `${pid} ${tid}`));
+  const tasks = traceEvents.filter(
+    ({ name, pid, tid, dur }) => name === 'ThreadControllerImpl::RunTask' && dur && ids.has(`${pid} ${tid}`),
+  );
+  const sorted = (of) => tasks.map((task) => of(task) / 1000).sort((a, b) => a - b);
+  return { clock: sorted(({ dur }) => dur), processor: sorted(({ tdur }) => tdur ?? 0) };
+}
+
 /// Shares of the pixels: `drawn` of the first that are not the ground's colour, `differing` between the two.
 export function compare(page, first, second) {
   return page.evaluate(

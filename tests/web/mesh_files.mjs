@@ -1,5 +1,7 @@
 // A cube in the formats that the viewer opens, made here: 8 vertices, 12 triangles.
 
+import { createRequire } from 'node:module';
+
 const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]);
 // Counter-clockwise seen from outside.
 const quads = [
@@ -110,12 +112,74 @@ export function cubeGlb({ isTextured = false, change = () => {} } = {}) {
     json.images = [{ bufferView: 5, mimeType: 'image/png' }];
   }
   change(json);
+  return glbOf(json, binary);
+}
+
+/// A .glb file of a document and its binary.
+function glbOf(json, binary) {
   const text = Buffer.from(JSON.stringify(json));
-  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const padded = [
+    [text, ' '],
+    [binary, '\0'],
+  ].map(([bytes, fill]) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, fill)]));
   const word = (...values) => Buffer.from(new Uint32Array(values).buffer);
-  const all = [word(padded.length, 0x4e4f534a), padded, word(binary.length, 0x004e4942), binary];
-  const length = 12 + all.reduce((sum, part) => sum + part.length, 0);
-  return Buffer.concat([word(0x46546c67, 2, length), ...all]);
+  const all = padded.flatMap((bytes, i) => [word(bytes.length, i ? 0x004e4942 : 0x4e4f534a), bytes]);
+  return Buffer.concat([word(0x46546c67, 2, 12 + all.reduce((sum, part) => sum + part.length, 0)), ...all]);
+}
+
+const quantizedCorners = new Int16Array(corners.flatMap((p) => [...p.map((x) => 1000 * x), 0]));
+const quantizedIndices = new Uint16Array(triangles.flat());
+const quantizedCube = (extensions) => ({
+  asset: { version: '2.0' },
+  extensionsUsed: extensions,
+  extensionsRequired: extensions,
+  scene: 0,
+  scenes: [{ nodes: [0] }],
+  nodes: [{ mesh: 0, scale: [0.001, 0.001, 0.001] }],
+  meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+  accessors: [
+    { bufferView: 0, componentType: 5122, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1000, 1000, 1000] },
+    { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' },
+  ],
+});
+
+/// A cube whose positions are 16-bit integers.
+export function quantizedCubeGlb() {
+  const [positions, indices] = [quantizedCorners, quantizedIndices].map(({ buffer }) => Buffer.from(buffer));
+  const json = quantizedCube(['KHR_mesh_quantization']);
+  json.buffers = [{ byteLength: positions.length + indices.length }];
+  json.bufferViews = [
+    { buffer: 0, byteLength: positions.length, byteStride: 8 },
+    { buffer: 0, byteOffset: positions.length, byteLength: indices.length },
+  ];
+  return glbOf(json, Buffer.concat([positions, indices]));
+}
+
+/// The quantized cube in meshoptimizer's compression.
+export async function compressedCubeGlb() {
+  const { resolve } = createRequire(new URL('../../client/web/package.json', import.meta.url));
+  const { MeshoptEncoder } = await import(resolve('meshoptimizer'));
+  await MeshoptEncoder.ready;
+  const bytesOf = ({ buffer }) => new Uint8Array(buffer);
+  const arrays = [
+    { source: bytesOf(quantizedCorners), count: 8, byteStride: 8, mode: 'ATTRIBUTES' },
+    { source: bytesOf(quantizedIndices), count: 36, byteStride: 2, mode: 'TRIANGLES' },
+  ];
+  const json = quantizedCube(['KHR_mesh_quantization', 'EXT_meshopt_compression']);
+  let binary = Buffer.alloc(0);
+  let sourceBytes = 0;
+  json.bufferViews = arrays.map(({ source, count, byteStride, mode }) => {
+    const packed = MeshoptEncoder.encodeGltfBuffer(source, count, byteStride, mode);
+    const extension = { buffer: 0, byteOffset: binary.length, byteLength: packed.length, byteStride, count, mode };
+    const view = { buffer: 1, byteOffset: sourceBytes, byteLength: source.length };
+    if (mode === 'ATTRIBUTES') view.byteStride = byteStride;
+    binary = Buffer.concat([binary, packed, Buffer.alloc((4 - (packed.length % 4)) % 4)]);
+    sourceBytes += source.length;
+    return { ...view, extensions: { EXT_meshopt_compression: extension } };
+  });
+  const fallback = { EXT_meshopt_compression: { fallback: true } };
+  json.buffers = [{ byteLength: binary.length }, { byteLength: sourceBytes, extensions: fallback }];
+  return glbOf(json, binary);
 }
 
 /// Two cubes beside each other, called first and second.

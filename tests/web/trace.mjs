@@ -5,24 +5,12 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { drop, facesOf, launch, meshes, openPage, startServer } from './browser.mjs';
+import { drop, facesOf, launch, meshes, openPage, startServer, tasksOf } from './browser.mjs';
 
 const wanted = Number(process.argv[2] ?? 300_000);
 const [server, browser] = await Promise.all([startServer(), launch()]);
 const row = (...cells) =>
   console.log(cells.map((cell, i) => (i ? String(cell).padStart(10) : cell.padEnd(12))).join(''));
-
-/// The tasks of the page's main thread, in milliseconds by the clock, and of its processor.
-function tasksOf(trace) {
-  const { traceEvents } = JSON.parse(trace);
-  const main = traceEvents.filter(({ name, args }) => name === 'thread_name' && args.name === 'CrRendererMain');
-  const ids = new Set(main.map(({ pid, tid }) => `${pid} ${tid}`));
-  const tasks = traceEvents.filter(
-    ({ name, pid, tid, dur }) => name === 'ThreadControllerImpl::RunTask' && dur && ids.has(`${pid} ${tid}`),
-  );
-  const sorted = (of) => tasks.map((task) => of(task) / 1000).sort((a, b) => a - b);
-  return { clock: sorted(({ dur }) => dur), processor: sorted(({ tdur }) => tdur ?? 0) };
-}
 
 try {
   row('look', 'faces', 'refined', 'pictures', 'time of', 'tasks', 'over 16 ms', 'over 50 ms', 'longest');
