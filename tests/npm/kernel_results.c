@@ -1,10 +1,10 @@
-/* kernel_results MESH [RUNS]: refines a mesh by the C functions, for each line of standard input as parameters, and
-   writes what comes out to standard output, as kernel_results.mjs reads it:
+/* kernel_results MESH [--times]: refines a mesh by the C functions, for each line of standard input as parameters, and
+   writes the result to standard output, as requests.mjs reads it. The mesh is opened anew for each line.
 
    MESH: uint32 points, faces, attributes; of each attribute uint32 components, kind; float positions, uint32
    triangles, double values of each attribute.
-   Result: uint32 fault, then of a failure the texts of the message and the parameter, each ended by 0; else double
-   seconds (the least of RUNS, each of a mesh opened anew), papilio_statistics, and a MESH. */
+   Result: uint32 fault, then of a failure the texts of the message and the parameter, each ended by 0; else
+   papilio_statistics and a MESH. With --times: a line with the milliseconds of the refinement. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,41 +77,42 @@ static double now(void) {
   return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
 
+static void write_result(const papilio_result* result) {
+  const uint32_t fault = result == NULL ? papilio_last_fault() : PAPILIO_NO_FAULT;
+  give(&fault, 1, sizeof fault);
+  if (result == NULL) {
+    give(papilio_last_message(), strlen(papilio_last_message()) + 1, 1);
+    give(papilio_last_parameter(), strlen(papilio_last_parameter()) + 1, 1);
+  } else {
+    give(papilio_result_statistics(result), 1, sizeof(papilio_statistics));
+    write_mesh(papilio_result_mesh(result));
+  }
+}
+
 int main(int argc, char** argv) {
   char line[4096];
   papilio_triangles coarse;
-  const int runs = argc > 2 ? atoi(argv[2]) : 1;
-  if (argc < 2) {
-    fputs("usage: kernel_results MESH [RUNS] <PARAMETERS\n", stderr);
+  const int is_timed = argc == 3 && strcmp(argv[2], "--times") == 0;
+  if (argc != 2 + is_timed) {
+    fputs("usage: kernel_results MESH [--times] <PARAMETERS\n", stderr);
     return 2;
   }
   coarse = read_mesh(argv[1]);
   while (fgets(line, sizeof line, stdin) != NULL) {
-    papilio_result* result = NULL;
-    double least = 1e9;
-    uint32_t fault = PAPILIO_NO_FAULT;
-    int run;
+    papilio_mesh* mesh = papilio_mesh_create(&coarse);
+    const double began = now();
+    papilio_result* result;
     line[strcspn(line, "\n")] = 0;
-    for (run = 0; run < runs && fault == PAPILIO_NO_FAULT; ++run) {
-      papilio_mesh* mesh = papilio_mesh_create(&coarse);
-      double began = now(), took;
-      papilio_result_free(result);
-      result = mesh == NULL ? NULL : papilio_refine(mesh, line, NULL);
-      took = now() - began;
-      least = took < least ? took : least;
-      if (result == NULL) fault = papilio_last_fault();
-      papilio_mesh_free(mesh);
-    }
-    give(&fault, 1, sizeof fault);
-    if (fault != PAPILIO_NO_FAULT) {
-      give(papilio_last_message(), strlen(papilio_last_message()) + 1, 1);
-      give(papilio_last_parameter(), strlen(papilio_last_parameter()) + 1, 1);
+    result = mesh == NULL ? NULL : papilio_refine(mesh, line, NULL);
+    if (is_timed) {
+      if (result == NULL) return 1;
+      printf("%.4f\n", 1000 * (now() - began));
+      fflush(stdout);
     } else {
-      give(&least, 1, sizeof least);
-      give(papilio_result_statistics(result), 1, sizeof(papilio_statistics));
-      write_mesh(papilio_result_mesh(result));
+      write_result(result);
     }
     papilio_result_free(result);
+    papilio_mesh_free(mesh);
   }
   return 0;
 }

@@ -1,12 +1,14 @@
 // Meshes and random requests, and what the C functions, compiled for this machine, make of them.
 
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
+import { createInterface } from 'node:readline';
 
 export const root = new URL('../..', import.meta.url).pathname;
 export const build = process.env.PAPILIO_BUILD ?? path.join(root, 'build/release');
+const kernelResults = path.join(build, 'kernel_results');
 const files = process.env.PAPILIO_MESHES ?? path.join(root, 'build/deps/meshes');
 
 const kinds = ['values', 'normals', 'smoothing-groups', 'displacements'];
@@ -125,27 +127,46 @@ export function randomQuery(random, size) {
   ].join('&');
 }
 
-/// What kernel_results gives for each query: `{ mesh, statistics, seconds }`, or `{ fault, message, parameter }`.
-export function nativeResults({ positions, triangles, attributes = [] }, queries, runs = 1) {
-  const folder = mkdtempSync(path.join(tmpdir(), 'kernel-'));
-  const bytesOf = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
+/// What kernel_results gives for each query: `{ mesh, statistics }`, or `{ fault, message, parameter }`.
+export function nativeResults(mesh, queries) {
+  const { file, remove } = writeMesh(mesh);
   try {
-    const file = path.join(folder, 'mesh');
-    const head = [positions.length / 3, triangles.length / 3, attributes.length];
-    for (const { components, kind } of attributes) head.push(components, kinds.indexOf(kind));
-    const values = attributes.map((attribute) => bytesOf(attribute.values));
-    writeFileSync(
-      file,
-      Buffer.concat([bytesOf(new Uint32Array(head)), bytesOf(positions), bytesOf(triangles), ...values]),
-    );
-    const output = execFileSync(path.join(build, 'kernel_results'), [file, String(runs)], {
-      input: `${queries.join('\n')}\n`,
-      maxBuffer: 2 ** 31,
-    });
-    return readResults(output, queries.length);
+    const input = `${queries.join('\n')}\n`;
+    return readResults(execFileSync(kernelResults, [file], { input, maxBuffer: 2 ** 31 }), queries.length);
   } finally {
-    rmSync(folder, { recursive: true });
+    remove();
   }
+}
+
+/// A process of kernel_results that stays: `time` refines once and returns the milliseconds.
+export function nativeClock(mesh) {
+  const { file, remove } = writeMesh(mesh);
+  const child = spawn(kernelResults, [file, '--times'], { stdio: ['pipe', 'pipe', 'inherit'] });
+  const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
+  return {
+    async time(query) {
+      child.stdin.write(`${query}\n`);
+      const { value, done } = await lines.next();
+      if (done) throw new Error(`kernel_results cannot refine by ${query}`);
+      return Number(value);
+    },
+    stop() {
+      child.stdin.end();
+      remove();
+    },
+  };
+}
+
+/// Writes a mesh where kernel_results reads it.
+function writeMesh({ positions, triangles, attributes = [] }) {
+  const folder = mkdtempSync(path.join(tmpdir(), 'kernel-'));
+  const file = path.join(folder, 'mesh');
+  const bytesOf = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
+  const head = [positions.length / 3, triangles.length / 3, attributes.length];
+  for (const { components, kind } of attributes) head.push(components, kinds.indexOf(kind));
+  const arrays = [new Uint32Array(head), positions, triangles, ...attributes.map(({ values }) => values)];
+  writeFileSync(file, Buffer.concat(arrays.map(bytesOf)));
+  return { file, remove: () => rmSync(folder, { recursive: true }) };
 }
 
 function readResults(bytes, count) {
@@ -166,13 +187,11 @@ function readResults(bytes, count) {
   return Array.from({ length: count }, () => {
     const [fault] = take(Uint32Array, 1);
     if (fault !== 0) return { fault: faults[fault - 1], message: text(), parameter: text() };
-    const [seconds] = take(Float64Array, 1);
     const [level, isLast, stopReason, components, mechanical, creases] = take(Uint32Array, 6);
     const [error, errorPixels] = take(Float64Array, 2);
     const [points, faces, attributeCount] = take(Uint32Array, 3);
     const rows = take(Uint32Array, 2 * attributeCount);
     return {
-      seconds,
       statistics: {
         level,
         isLast: isLast !== 0,

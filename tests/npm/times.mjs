@@ -1,15 +1,18 @@
-// Times of the WebAssembly module in node and of the same functions compiled for this machine, in turns: a line each of
-// name, milliseconds of the module (its result copied out), milliseconds of the native library. For `./dev bench wasm`.
+// times.mjs [MODULE]: the WebAssembly module in node beside the same functions compiled for this machine, both in
+// processes that stay, one thread each, in turns. A line for each request: its name, the median milliseconds of the
+// module (its result copied out), those of the native library, and the median of the ratios. For `./dev bench wasm`.
 
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
-import { nativeResults, readMesh, root, sizeOf } from './requests.mjs';
+import { nativeClock, readMesh, root, sizeOf } from './requests.mjs';
 
 const { Kernel } = await import(path.join(root, 'build/npm/dist/wasm.js'));
-const kernel = new Kernel(await Kernel.compile(readFileSync(path.join(root, 'build/npm/dist/papilio.wasm'))));
+const module = process.argv[2] ?? path.join(root, 'build/npm/dist/papilio.wasm');
+const kernel = new Kernel(await Kernel.compile(readFileSync(module)));
 
-const turns = 9;
-const median = (values) => [...values].sort((a, b) => a - b)[turns >> 1];
+const warmingTurns = 5; // until the engine has compiled the module for speed
+const turns = 15;
+const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 for (const [file, levels] of [
   ['bunny600.obj', 3],
@@ -24,21 +27,24 @@ for (const [file, levels] of [
     flatness: `levels=${levels}&flatness=0.97`,
     view: `levels=${levels}&${eye}&view.error_pixels=0.5`,
   };
+  const native = nativeClock(mesh);
+  const timeOfModule = (query) => {
+    const opened = kernel.open(mesh);
+    const began = performance.now();
+    kernel.refine(opened, query);
+    const took = performance.now() - began;
+    kernel.close(opened);
+    return took;
+  };
   for (const [name, query] of Object.entries(requests)) {
-    const once = () => {
-      const opened = kernel.open(mesh);
-      const began = performance.now();
-      kernel.refine(opened, query);
-      const took = performance.now() - began;
-      kernel.close(opened);
-      return took;
-    };
-    for (let warm = 0; warm < 3; ++warm) once(); // until the engine has compiled it for speed
-    const [ours, peer] = [[], []];
-    for (let turn = 0; turn < turns; ++turn) {
-      ours.push(once());
-      peer.push(1000 * nativeResults(mesh, [query], 3)[0].seconds);
+    const pairs = [];
+    for (let turn = -warmingTurns; turn < turns; ++turn) {
+      const pair = [timeOfModule(query), await native.time(query)];
+      if (turn >= 0) pairs.push(pair);
     }
-    console.log(`wasm/${path.basename(file, path.extname(file))}/${name} ${median(ours)} ${median(peer)}`);
+    const figures = [0, 1].map((i) => median(pairs.map((pair) => pair[i])));
+    const ratio = median(pairs.map(([ours, peer]) => ours / peer));
+    console.log(`wasm/${path.basename(file, path.extname(file))}/${name}`, ...figures, ratio);
   }
+  native.stop();
 }
