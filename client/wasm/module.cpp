@@ -49,6 +49,19 @@ namespace {
 
 }  // namespace
 
+// The virtual tables of the standard library's classes of types, by which `catch` and dynamic_cast find the bases of a
+// type. Types are only compared here: with empty tables the code behind them is left out.
+extern "C" {
+
+extern const void* const class_type_table[3] __asm__("_ZTVN10__cxxabiv117__class_type_infoE");
+extern const void* const single_type_table[3] __asm__("_ZTVN10__cxxabiv120__si_class_type_infoE");
+extern const void* const multiple_type_table[3] __asm__("_ZTVN10__cxxabiv121__vmi_class_type_infoE");
+const void* const class_type_table[3] = {};
+const void* const single_type_table[3] = {};
+const void* const multiple_type_table[3] = {};
+
+}  // extern "C"
+
 // What `throw` calls.
 extern "C" {
 

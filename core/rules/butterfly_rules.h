@@ -78,6 +78,9 @@ void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence,
     const InteriorRing<Real, known_valence> points(positions, centre, valence, ring);
     for (uint32_t i = 0; i < (known_valence != 0 ? known_valence : valence); ++i) add(i, points.split(i));
   };
+#if defined(__wasm__)  // where size counts more
+  split(std::integral_constant<uint32_t, 0>());
+#else
   switch (valence) {
     case 3:
       return split(std::integral_constant<uint32_t, 3>());
@@ -94,6 +97,7 @@ void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence,
     default:
       return split(std::integral_constant<uint32_t, 0>());
   }
+#endif
 }
 
 /// The eight-point rule where every edge is split, for four faces at once (child_stencil.h): each position is loaded
@@ -198,7 +202,7 @@ class ButterflyRules {
 
   /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge; `curves` may be null where there
   /// are none.
-  [[nodiscard]] Point finish(uint32_t h, Point q, const CurveNeighbours* curves) const {
+  [[nodiscard, gnu::always_inline]] Point finish(uint32_t h, Point q, const CurveNeighbours* curves) const {
     return limit(h, follow(h, q, curves));
   }
   /// The first part of that, which is linear in the points.
@@ -209,7 +213,9 @@ class ButterflyRules {
   }
   [[nodiscard]] Point middle(uint32_t h) const { return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))); }
   /// The second part. Of places alone.
-  [[nodiscard]] Point limit(uint32_t h, Point q) const { return tensed_ ? tensed_->limited(h, q) : q; }
+  [[nodiscard, gnu::always_inline]] Point limit(uint32_t h, Point q) const {
+    return tensed_ ? tensed_->limited(h, q) : q;
+  }
 
   /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
   /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in edge_accumulator.h.

@@ -127,19 +127,19 @@ class TensedRules {
   }
 
   /// Whether the shape rules hold, and h is the diagonal of a flat quadrangle two of whose sides are curves.
-  [[nodiscard]] bool is_diagonal_of_strip(uint32_t h) const {
+  [[nodiscard, gnu::always_inline]] bool is_diagonal_of_strip(uint32_t h) const {
     return field_.shape && field_.shape->is_flat[mesh_.edge[h]] != 0 && sides_of_strip(mesh_, h)[0] != none;
   }
 
   /// Sharp edges follow their feature.
-  [[nodiscard]] Point followed(uint32_t h, Point q) const {
+  [[nodiscard, gnu::always_inline]] Point followed(uint32_t h, Point q) const {
     if (!field_.follow_features || mesh_.twin[h] == none) return q;
     const auto factor = Real(field_.factor[mesh_.edge[h]]);
     return factor < 1 ? factor * q + (1 - factor) * along_feature(h) : q;
   }
 
   /// What comes last for every edge: nothing goes far, and flat stays flat. Of places alone.
-  [[nodiscard]] Point limited(uint32_t h, Point q) const {
+  [[nodiscard, gnu::always_inline]] Point limited(uint32_t h, Point q) const {
     if (!field_.shape) return bounded(h, q);
     if (field_.shape->is_flat[mesh_.edge[h]] != 0 && has_flat_stencil(mesh_, *field_.shape, h)) return midpoint(h);
     return is_surely_within_bounds(h, q) ? q : unfolded(h, bounded(h, q));
@@ -158,7 +158,7 @@ class TensedRules {
 
   /// Most are, and spare the roots.
   static constexpr double sure = 0.99;
-  [[nodiscard]] bool is_surely_within_bounds(uint32_t h, Point q) const {
+  [[nodiscard, gnu::always_inline]] bool is_surely_within_bounds(uint32_t h, Point q) const {
     const Vec3d off = widen(q - midpoint(h));
     const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
     const double size = dot(along, along);
