@@ -21,6 +21,9 @@ namespace {
 
 /// Largest distance, in RMS distances, of about the models that were tried: where a search for it begins.
 constexpr double largest_of_rms = 8;
+/// A simplified mesh is taken up to this largest distance in wanted RMS distances, or in largest ones of the packed
+/// model.
+constexpr double most_of_rms = 8, most_of_packed = 1.25;
 /// RMS distance where a search for a number of bytes begins, and the power of it that they follow about.
 constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
@@ -113,10 +116,13 @@ class Packer {
     take_plain(reached > options_.rms || plain_.compared ? plain_at(options_.rms, plain_.mesh) : std::move(plain));
   }
 
+  /// Whether a simplified mesh is the smallest file, and has not lost what is small and far.
   [[nodiscard]] bool is_smallest(const SimplifiedDraco& simplified, const PlainDraco& plain) const {
     const uint64_t bytes = simplified.bytes;
     const bool is_packed_farther = best_ && reach_of(best_->model).rms > options_.rms;
-    return bytes < plain.glb.size() && (!best_ || is_packed_farther || bytes < best_->glb.size());
+    const double packed_largest = best_ ? reach_of(best_->model).largest : 0;
+    return simplified.reach.largest <= std::max(most_of_rms * options_.rms, most_of_packed * packed_largest) &&
+           bytes < plain.glb.size() && (!best_ || is_packed_farther || bytes < best_->glb.size());
   }
 
   void take_simplified(const PlainDraco& plain) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "papilio/error.h"
 #include "papilio/refine.h"
 #include "proto/detail/pack.h"
@@ -65,6 +67,22 @@ TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
   ASSERT_TRUE(round.model);
   ASSERT_TRUE(round.simplified);
   EXPECT_LT(round.glb.size(), round.simplified->bytes);
+}
+
+TEST(Pack, KeepsWhatASimplifiedMeshLoses) {
+  TriangleMesh spiked = test::box({4, 4, 4}, {1, 1, 1});
+  const auto tip = std::ranges::min_element(spiked.positions, {}, [](Vec3f p) {
+    return length(p - Vec3f{0.5F, 0.5F, 1});
+  });
+  tip->z += 0.1F;
+  const Packed near = pack(spiked, {.rms = 2e-3, .simplifies = true});
+  ASSERT_TRUE(near.simplified);
+  EXPECT_EQ(near.glb.size(), near.simplified->bytes);
+  const Packed lost = pack(spiked, {.rms = 4e-3, .simplifies = true});
+  ASSERT_TRUE(lost.simplified);
+  EXPECT_GT(lost.simplified->reach.largest, 8 * 4e-3);
+  EXPECT_LT(lost.simplified->bytes, lost.plain_bytes);
+  EXPECT_EQ(lost.glb.size(), lost.plain_bytes);
 }
 
 TEST(PackJobs, MakeTheSameFile) {
