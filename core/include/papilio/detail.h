@@ -121,7 +121,7 @@ struct DetailSource {
 /// where its normals are split, or sharp where the normals do not say otherwise. Takes the normals from it, an
 /// attribute of three components (`Attribute::unit_length`), and returns their style. Faces, edges and vertices stay.
 /// The mesh must have its edges. O(F log F).
-NormalStyle mark_detail_curves(Mesh& original);
+NormalStyle mark_detail_curves(Mesh& mesh);
 
 /// Whether normals of a style are computed on levels: those of a faceted original are its faces'.
 [[nodiscard]] constexpr bool has_detail_normals(NormalStyle style) {
