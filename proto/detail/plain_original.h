@@ -8,7 +8,7 @@ namespace papilio::proto::detail {
 
 /// Original as files without levels hold it.
 struct PlainOriginal {
-  /// Without normals, or with them where readers would not find the same by themselves (`with_normals_of`).
+  /// Without normals, or with them where readers would not find the same by themselves (with_normals()).
   Mesh mesh;
   NormalStyle normals{};     ///< of the original
   bool has_normals = false;  ///< whether `mesh` has them

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "proto/detail/decode_packed.h"
-#include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
+#include "proto/detail/plain_draco.h"
 #include "proto/detail/plain_original.h"
 #include "proto/draco_reader.h"
 #include "proto/gltf/flattening.h"
@@ -38,13 +38,14 @@ FormattedMesh small_lens(double degrees, Shading shading) {
   return with_normal_format(test::lens(12, 4, degrees, shading));
 }
 
-/// Packs a small original, whose file is plain Draco, and reads it.
+/// Writes an original without levels, as pack() does where that is smaller, and reads it.
 PlainModel packed_plainly(const FormattedMesh& original) {
-  const Packed packed = pack(gltf::MaterialMesh{.mesh = original}, {.rms = 1e-5, .face_limit = 500});
-  EXPECT_FALSE(packed.model);
-  const std::optional<PlainModel> read = read_plain_draco(packed.glb, {});
+  const PlainOriginal plain = plain_original(build_mesh(original, nullptr, rounding_gap));
+  const PlainDraco file =
+      write_plain_draco(plain.mesh, 1e-5, {.normals = plain.has_normals ? NormalStyle::absent : plain.normals});
+  const std::optional<PlainModel> read = read_plain_draco(file.glb, {});
   EXPECT_TRUE(read);
-  EXPECT_EQ(packed.plain_has_normals, read && !read->mesh.attributes.empty());
+  EXPECT_EQ(plain.has_normals, read && !read->mesh.attributes.empty());
   return read.value_or(PlainModel{});
 }
 
