@@ -13,7 +13,7 @@ uint32_t parts_of(uint32_t count, int threads) {
 
 void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint32_t, uint32_t, uint32_t)>& work) {
   const auto start_of = [&](uint32_t part) { return static_cast<uint32_t>(uint64_t{count} * part / parts); };
-#if defined(__wasm__)  // whose standard library has no threads
+#if defined(__wasm__)  // where std::thread is not declared
   for (uint32_t part = 0; part < parts; ++part) work(part, start_of(part), start_of(part + 1));
 #else
   if (parts <= 1) {

@@ -5,6 +5,12 @@
 
 namespace papilio {
 
+#if defined(__wasm__)  // whose standard library has none
+inline constexpr bool has_threads = false;
+#else
+inline constexpr bool has_threads = true;
+#endif
+
 /// So few are not worth a thread.
 inline constexpr uint32_t least_per_thread = 1U << 13;
 

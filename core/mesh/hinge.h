@@ -9,7 +9,7 @@ namespace papilio {
 /// The two faces at a half-edge that has a twin.
 class Hinge {
  public:
-  Hinge(const Topology& mesh, const Buffer<Vec3f>& positions, uint32_t h) {
+  [[gnu::always_inline]] Hinge(const Topology& mesh, const Buffer<Vec3f>& positions, uint32_t h) {
     const auto at = [&](uint32_t vertex) { return to_double(positions[vertex]); };
     const Vec3d a = at(mesh.origin[h]);
     const Vec3d along = at(mesh.tip(h)) - a;

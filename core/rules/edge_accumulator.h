@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/parallel.h"
 #include "papilio/buffer.h"
 #include "simd/vec3fa.h"
 
@@ -30,7 +31,7 @@ class DeferredEdgeAccumulator {
   DeferredEdgeAccumulator(EdgeAccumulator<Real> shares, uint32_t first_face)
       : shares_(shares), first_half_edge_(3 * first_face) {}
 
-  [[nodiscard]] bool is_early(uint32_t twin) const { return twin < first_half_edge_; }
+  [[nodiscard]] bool is_early(uint32_t twin) const { return has_threads && twin < first_half_edge_; }
   void add(uint32_t face, uint32_t twin, uint32_t edge, const Wide<Real>& share) {
     if (is_early(twin))
       late_.push_back({edge, share});

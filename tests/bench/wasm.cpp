@@ -24,7 +24,7 @@ std::string output_of(const char* command) {
 
 std::vector<ReportRow> print() {
   std::vector<ReportRow> rows;
-  MarkdownTable table({"medians of 15 pairs, ms", "WebAssembly", "native", "WebAssembly / native"});
+  MarkdownTable table({"medians of pairs, ms", "WebAssembly", "native", "WebAssembly / native"});
   std::istringstream lines(output_of("node tests/npm/times.mjs"));
   std::string name;
   double ours = 0, peer = 0, ratio = 0;
