@@ -23,12 +23,13 @@ constexpr uint32_t few_samples = 20'000, many_samples = 60'000;
 
 class Simplification {
  public:
-  Simplification(const TriangleMesh& original, const DetailOptions& options, const MeshCoder& code)
+  Simplification(const TriangleMesh& original, const SimplifyOptions& options, const MeshCoder& code)
       : options_(options),
         code_(code),
         tree_(build_mesh(original).triangles()),
         box_(bounding_box(tree_.surface().positions)),
-        wanted_(options.rms * box_.diagonal()) {}
+        wanted_(options.rms * box_.diagonal()),
+        most_(options.largest * box_.diagonal()) {}
 
   std::optional<SimplifiedDetail> run() {
     std::vector<size_t> sizes;
@@ -41,7 +42,7 @@ class Simplification {
         collapse_to_sizes(tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); });
     // Distances ascend, or nearly so: the first size that is too far.
     const auto first_beyond = std::ranges::partition_point(
-        meshes, [&](const TriangleMesh& mesh) { return distance_to(mesh, few_samples).rms <= wanted_; });
+        meshes, [&](const TriangleMesh& mesh) { return is_near(distance_to(mesh, few_samples)); });
     std::optional<SimplifiedDetail> best;
     const auto count = std::min<std::ptrdiff_t>(coded_sizes, first_beyond - meshes.begin());
     for (std::ptrdiff_t i = 1; i <= count; ++i) {
@@ -61,6 +62,10 @@ class Simplification {
     return surface_distance(tree_, SurfaceTree(mesh), samples);
   }
 
+  [[nodiscard]] bool is_near(const SurfaceDistance& distance) const {
+    return distance.rms <= wanted_ && distance.largest <= most_;
+  }
+
   [[nodiscard]] std::optional<SimplifiedDetail> with_fewest_bits(const TriangleMesh& mesh) const {
     const Vec3d size = to_double(box_.max) - to_double(box_.min);
     const double longest = std::max({size.x, size.y, size.z});
@@ -71,7 +76,7 @@ class Simplification {
       CodedBase coded = code_(mesh, bits);
       if (coded.triangles.triangles.empty()) continue;
       const SurfaceDistance distance = distance_to(coded.triangles, many_samples);
-      if (distance.rms > wanted_) continue;
+      if (!is_near(distance)) continue;
       const double diagonal = box_.diagonal();
       return SimplifiedDetail{
           std::move(coded.triangles), {distance.rms / diagonal, distance.largest / diagonal}, coded.bytes, bits};
@@ -79,19 +84,20 @@ class Simplification {
     return std::nullopt;
   }
 
-  const DetailOptions& options_;
+  const SimplifyOptions& options_;
   const MeshCoder& code_;
   SurfaceTree tree_;  // of the original
   Box box_;
-  double wanted_;  // in the mesh's unit
+  double wanted_, most_;  // RMS and largest distance, in the mesh's unit
 };
 
 }  // namespace
 
-std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original, const DetailOptions& options,
+std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original, const SimplifyOptions& options,
                                                 const MeshCoder& code) {
   if (!(options.rms >= 1e-6 && options.rms <= 0.1))
     throw Error(Fault::bad_option, "The distance must be 1e-6 to 0.1 of the diagonal.", "rms");
+  if (!(options.largest > 0)) throw Error(Fault::bad_option, "The largest distance must be above 0.", "largest");
   return Simplification(original, options, code).run();
 }
 

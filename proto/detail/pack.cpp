@@ -19,11 +19,11 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Largest distance, in RMS distances, of about the models that were tried: where a search for it begins.
+/// Largest distance, in RMS distances, of about the models that were tried: where a search for it begins, and what a
+/// simplified mesh is held to.
 constexpr double largest_of_rms = 8;
-/// A simplified mesh is taken up to this largest distance in wanted RMS distances, or in largest ones of the packed
-/// model.
-constexpr double most_of_rms = 8, most_of_packed = 1.25;
+/// An original of fewer faces is not a fine one: each may be a feature, and few bytes are saved.
+constexpr size_t fewest_to_simplify = 5000;
 /// RMS distance where a search for a number of bytes begins, and the power of it that they follow about.
 constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
@@ -103,9 +103,11 @@ class Packer {
   void choose_at_rms() {
     const double reached = best_ ? reach_of(best_->model).rms : 0;
     PlainDraco plain = plain_at(std::max(options_.rms, reached), compared());
-    if (options_.simplifies && plain_.mesh.attributes.empty()) {
-      packed_.simplified =
-          write_simplified_draco(plain_.mesh.triangles(), options_.rms, plain_.normals, options_.cancelled);
+    if (options_.simplifies && plain_.mesh.attributes.empty() &&
+        plain_.mesh.topology.face_count() >= fewest_to_simplify) {
+      packed_.simplified = write_simplified_draco(
+          plain_.mesh.triangles(),
+          {.rms = options_.rms, .largest = most_of_simplified(), .cancelled = options_.cancelled}, plain_.normals);
       if (packed_.simplified && is_smallest(*packed_.simplified, plain)) return take_simplified(plain);
     }
     if (best_ && best_->glb.size() < plain.glb.size()) return take_packed(plain);
@@ -116,13 +118,18 @@ class Packer {
     take_plain(reached > options_.rms || plain_.compared ? plain_at(options_.rms, plain_.mesh) : std::move(plain));
   }
 
-  /// Whether a simplified mesh is the smallest file, and has not lost what is small and far.
+  /// Largest distance of a simplified mesh: what is small and far is not lost, unless the packed model loses it too.
+  [[nodiscard]] double most_of_simplified() const {
+    const double usual = largest_of_rms * options_.rms;
+    const bool reaches = best_ && reach_of(best_->model).rms <= options_.rms;
+    return reaches ? std::max(usual, reach_of(best_->model).largest) : usual;
+  }
+
+  /// Whether a simplified mesh is the smallest file.
   [[nodiscard]] bool is_smallest(const SimplifiedDraco& simplified, const PlainDraco& plain) const {
     const uint64_t bytes = simplified.bytes;
     const bool is_packed_farther = best_ && reach_of(best_->model).rms > options_.rms;
-    const double packed_largest = best_ ? reach_of(best_->model).largest : 0;
-    return simplified.reach.largest <= std::max(most_of_rms * options_.rms, most_of_packed * packed_largest) &&
-           bytes < plain.glb.size() && (!best_ || is_packed_farther || bytes < best_->glb.size());
+    return bytes < plain.glb.size() && (!best_ || is_packed_farther || bytes < best_->glb.size());
   }
 
   void take_simplified(const PlainDraco& plain) {

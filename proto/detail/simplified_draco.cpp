@@ -45,12 +45,11 @@ class SmallestDraco {
 
 }  // namespace
 
-std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, double rms, NormalStyle normals,
-                                                      const std::function<bool()>& cancelled) {
+std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, const SimplifyOptions& options,
+                                                      NormalStyle normals) {
   SmallestDraco coder;
   const std::optional<SimplifiedDetail> made =
-      simplify_detail(original, {.rms = rms, .cancelled = cancelled},
-                      [&](const TriangleMesh& mesh, int bits) { return coder.code(mesh, bits); });
+      simplify_detail(original, options, [&](const TriangleMesh& mesh, int bits) { return coder.code(mesh, bits); });
   if (!made) return std::nullopt;
   SimplifiedDraco simplified{.glb = write_plain(made->triangles, coder.stream_of(*made), normals),
                              .faces = made->triangles.triangles.size(),

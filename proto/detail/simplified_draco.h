@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,11 +16,10 @@ struct SimplifiedDraco {
   DetailReach reach{};  ///< from samples
 };
 
-/// Simplifies a surface to an RMS distance, a share of the diagonal, and writes it as Draco in a .glb file. Nothing
-/// where no file was found that reaches the distance. `normals`: style of those that readers are to find. Throws
-/// `Problem` and `Error`.
-[[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, double rms,
-                                                                    NormalStyle normals = {},
-                                                                    const std::function<bool()>& cancelled = {});
+/// Simplifies a surface to the wanted distances, and writes it as Draco in a .glb file. Nothing where no file was found
+/// that reaches them. `normals`: style of those that readers are to find. Throws `Problem` and `Error`.
+[[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original,
+                                                                    const SimplifyOptions& options,
+                                                                    NormalStyle normals = {});
 
 }  // namespace papilio::proto::detail

@@ -24,8 +24,18 @@ TriangleMesh sphere(int levels) {
   return mesh;
 }
 
+/// A box in whose upper side one vertex stands out.
+TriangleMesh spiked_box(uint32_t n) {
+  TriangleMesh spiked = test::box({n, n, n}, {1, 1, 1});
+  const auto tip = std::ranges::min_element(spiked.positions, {}, [](Vec3f p) {
+    return length(p - Vec3f{0.5F, 0.5F, 1});
+  });
+  tip->z += 0.1F;
+  return spiked;
+}
+
 TEST(SimplifiedDraco, OfAFinelyDividedBoxHasTwelveFaces) {
-  const auto made = write_simplified_draco(test::box({20, 20, 20}, {1, 2, 3}), 1e-4);
+  const auto made = write_simplified_draco(test::box({20, 20, 20}, {1, 2, 3}), {.rms = 1e-4});
   ASSERT_TRUE(made);
   EXPECT_EQ(made->faces, 12U);
   EXPECT_LE(made->reach.rms, 1e-4);
@@ -35,7 +45,7 @@ TEST(SimplifiedDraco, OfAFinelyDividedBoxHasTwelveFaces) {
 TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
   const TriangleMesh original = sphere(4);
   for (const double rms : {3e-3, 3e-4}) {
-    const auto made = write_simplified_draco(original, rms);
+    const auto made = write_simplified_draco(original, {.rms = rms});
     ASSERT_TRUE(made);
     EXPECT_LE(made->reach.rms, rms);
     EXPECT_LT(made->faces, original.triangles.size());
@@ -49,7 +59,7 @@ TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
 
 TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
   try {
-    (void)write_simplified_draco(sphere(4), 1e-3, {}, [] { return true; });
+    (void)write_simplified_draco(sphere(4), {.rms = 1e-3, .cancelled = [] { return true; }});
     ADD_FAILURE() << "it was not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::cancelled);
@@ -57,7 +67,7 @@ TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
 }
 
 TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
-  const Packed box = pack(test::box({10, 10, 10}, {1, 2, 3}), {.rms = 1e-3, .simplifies = true});
+  const Packed box = pack(test::box({21, 21, 21}, {1, 2, 3}), {.rms = 1e-3, .simplifies = true});
   EXPECT_FALSE(box.model);
   ASSERT_TRUE(box.simplified);
   EXPECT_EQ(box.simplified->bytes, box.glb.size());
@@ -69,20 +79,33 @@ TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
   EXPECT_LT(round.glb.size(), round.simplified->bytes);
 }
 
+TEST(SimplifiedDraco, KeepsTheLargestDistance) {
+  const TriangleMesh spiked = spiked_box(4);
+  const auto lost = write_simplified_draco(spiked, {.rms = 4e-3});
+  const auto kept = write_simplified_draco(spiked, {.rms = 4e-3, .largest = 2e-2});
+  ASSERT_TRUE(lost && kept);
+  EXPECT_GT(lost->reach.largest, 3e-2);
+  EXPECT_LE(kept->reach.largest, 2e-2);
+  EXPECT_LE(kept->reach.rms, 4e-3);
+  EXPECT_LT(lost->faces, kept->faces);
+  EXPECT_THROW((void)write_simplified_draco(spiked, {.largest = 0}), Error);
+}
+
 TEST(Pack, KeepsWhatASimplifiedMeshLoses) {
-  TriangleMesh spiked = test::box({4, 4, 4}, {1, 1, 1});
-  const auto tip = std::ranges::min_element(spiked.positions, {}, [](Vec3f p) {
-    return length(p - Vec3f{0.5F, 0.5F, 1});
-  });
-  tip->z += 0.1F;
-  const Packed near = pack(spiked, {.rms = 2e-3, .simplifies = true});
-  ASSERT_TRUE(near.simplified);
-  EXPECT_EQ(near.glb.size(), near.simplified->bytes);
-  const Packed lost = pack(spiked, {.rms = 4e-3, .simplifies = true});
-  ASSERT_TRUE(lost.simplified);
-  EXPECT_GT(lost.simplified->reach.largest, 8 * 4e-3);
-  EXPECT_LT(lost.simplified->bytes, lost.plain_bytes);
-  EXPECT_EQ(lost.glb.size(), lost.plain_bytes);
+  const TriangleMesh spiked = spiked_box(21);
+  const double rms = 4e-3;
+  EXPECT_GT(write_simplified_draco(spiked, {.rms = rms})->reach.largest, 8 * rms);
+  const Packed packed = pack(spiked, {.rms = rms, .simplifies = true});
+  ASSERT_TRUE(packed.simplified);
+  EXPECT_EQ(packed.glb.size(), packed.simplified->bytes);
+  EXPECT_LE(packed.simplified->reach.largest, 8 * rms);
+}
+
+TEST(Pack, SimplifiesNoMeshOfFewFaces) {
+  const TriangleMesh box = test::box({20, 20, 20}, {1, 2, 3});
+  const Packed packed = pack(box, {.rms = 1e-2, .simplifies = true});
+  EXPECT_FALSE(packed.simplified);
+  EXPECT_LT(write_simplified_draco(box, {.rms = 1e-2})->bytes, packed.glb.size());
 }
 
 TEST(PackJobs, MakeTheSameFile) {

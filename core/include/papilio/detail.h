@@ -172,6 +172,12 @@ struct EncodedDetail {
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 
+struct SimplifyOptions {
+  double rms = 1e-4;                  ///< RMS distance at most, a share of the diagonal as above; 1e-6..0.1
+  double largest = 1;                 ///< largest distance at most, from samples, a share of the diagonal; > 0
+  std::function<bool()> cancelled{};  ///< asked between steps; true stops with `Fault::cancelled`
+};
+
 /// Mesh without levels, as its decoder has it.
 struct SimplifiedDetail {
   TriangleMesh triangles;
@@ -183,9 +189,9 @@ struct SimplifiedDetail {
 using MeshCoder = std::function<CodedBase(const TriangleMesh&, int)>;
 
 /// Simplifies an original without its attributes to what its levels compete with: the fewest faces and bits, of those
-/// tried, that leave the wanted distance, by quadrics with optimal placement. Nothing where none do. Throws `Error`:
+/// tried, that leave the wanted distances, by quadrics with optimal placement. Nothing where none do. Throws `Error`:
 /// bad_option, cancelled, out_of_memory, and what build_mesh() throws.
 [[nodiscard]] std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original,
-                                                              const DetailOptions& options, const MeshCoder& code);
+                                                              const SimplifyOptions& options, const MeshCoder& code);
 
 }  // namespace papilio
