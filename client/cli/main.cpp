@@ -108,7 +108,8 @@ void add_convert(CLI::App& app) {
   CLI::App* command = app.add_subcommand("convert", "Turn a mesh file into another kind");
   command->add_option("input", flags->input.path, mesh_file)->required();
   command
-      ->add_option("output", flags->output.path, "Mesh file whose extension names its format, or - for standard output")
+      ->add_option("-o,--output,output", flags->output.path,
+                   "Mesh file whose extension names its format, or - for standard output")
       ->required();
   add_from(*command, flags->input);
   add_format(*command, "--to", flags->output.format, "Format of standard output; default drc");

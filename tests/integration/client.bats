@@ -129,6 +129,15 @@ END
   [ "$("$papilio" info --json "$coarse" | jq -c '[.vertices, .faces, .closed]')" = '[302,600,true]' ]
 }
 
+@test "convert takes its output by place or by name" {
+  "$papilio" convert "$coarse" place.ply
+  "$papilio" convert "$coarse" -o name.ply
+  cmp place.ply name.ply
+  run "$papilio" convert "$coarse" one.ply -o other.ply
+  [ "$status" = 2 ]
+  [ ! -e one.ply ] && [ ! -e other.ply ]
+}
+
 @test "convert --exact keeps positions to the bit" {
   "$papilio" convert --exact "$PAPILIO_MESHES/bunny600.obj" exact.drc
   "$papilio" convert exact.drc back.obj
