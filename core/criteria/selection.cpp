@@ -176,6 +176,15 @@ Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int lev
   return edges;
 }
 
+bool Selection::is_kept_by_view(const Mesh& mesh, const EdgesShown& shown, uint32_t edge) const {
+  return camera_ && (!shown[edge] || !is_long(mesh, *camera_, options_.view->edge_pixels, edge));
+}
+
+bool Selection::may_have_long_halves(const Mesh& mesh, uint32_t edge) const {
+  constexpr double least = 1.5;  // of what a half must have
+  return !camera_ || is_long(mesh, *camera_, least * options_.view->edge_pixels, edge);
+}
+
 Buffer<float> Selection::errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& wanted, const Box& box,
                                 float threshold, Reaching reaching) const {
   Buffer<float> errors(mesh.topology.edge_count(), never);

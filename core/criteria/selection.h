@@ -96,6 +96,8 @@ class Selection {
   [[nodiscard]] bool is_uniform() const;
   /// Errors decide, not only yes and no: there is a tolerance or a budget.
   [[nodiscard]] bool is_by_error() const;
+  /// The view alone decides: its outline, which lies below faces that are turned away themselves, is refined too.
+  [[nodiscard]] bool follows_outline() const { return camera_ && options_.flatness.empty() && !is_by_error(); }
   /// What an edge's error must reach for it to be split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
   /// Of the coarse mesh's box.
@@ -114,6 +116,11 @@ class Selection {
   /// those whose error (below) may be `least` or more. `level` is the one to be made, from 1. In ascending order.
   [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                         const EdgesShown& shown, const Box& box, float least) const;
+
+  /// Whether the view keeps the edge from being split: it does not show it, or it looks too short.
+  [[nodiscard]] bool is_kept_by_view(const Mesh& mesh, const EdgesShown& shown, uint32_t edge) const;
+  /// Whether the halves of the edge may look long enough for the view; an edge's halves are longer than half of it.
+  [[nodiscard]] bool may_have_long_halves(const Mesh& mesh, uint32_t edge) const;
 
   /// What errors that reach a threshold are to be: where more is done with them than to compare them with it, exact.
   enum class Reaching { exact, no_more };

@@ -181,13 +181,15 @@ void EdgesShown::keep_shown(const Region& region, Buffer<uint32_t>& edges) const
   }
 }
 
-void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges) {
-  if (edge_pixels == 0) return;
+bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, uint32_t edge) {
   const auto end = [&](uint32_t vertex) { return to_double(mesh.positions[vertex]); };
-  keep_if(edges, [&](uint32_t e) {
-    const uint32_t h = mesh.topology.half_edge[e];
-    return !camera.looks_shorter(end(mesh.topology.origin[h]), end(mesh.topology.tip(h)), edge_pixels);
-  });
+  const uint32_t h = mesh.topology.half_edge[edge];
+  return edge_pixels == 0 ||
+         !camera.looks_shorter(end(mesh.topology.origin[h]), end(mesh.topology.tip(h)), edge_pixels);
+}
+
+void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges) {
+  if (edge_pixels > 0) keep_if(edges, [&](uint32_t e) { return is_long(mesh, camera, edge_pixels, e); });
 }
 
 }  // namespace papilio

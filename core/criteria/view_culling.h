@@ -47,7 +47,9 @@ class EdgesShown {
   std::unique_ptr<Memory> memory_;  ///< none: all are
 };
 
-/// Keeps those edges of the list that look at least so long, in pixels.
+/// Whether an edge looks at least so long, in pixels.
+[[nodiscard]] bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, uint32_t edge);
+/// Keeps those edges of the list that do.
 void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges);
 
 }  // namespace papilio

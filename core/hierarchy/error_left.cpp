@@ -138,7 +138,11 @@ class ErrorFinder {
   [[nodiscard]] static bool are_all_divided(const LevelChoice& choice, uint32_t child) {
     if (choice.red.empty()) return false;
     const uint8_t* red = &choice.red[child];
-    return (red[0] & red[1] & red[2] & red[3]) != 0;
+    if ((red[0] & red[1] & red[2] & red[3]) == 0) return false;
+    if (choice.at_outline.empty()) return true;
+    unsigned mask = 7;
+    for (uint32_t c = 0; c < 4; ++c) mask &= choice.split_mask(child + c);
+    return mask == 7;
   }
 
   /// Looks at the edges of one level, as above.
@@ -213,7 +217,7 @@ class ErrorFinder {
 
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    if (choice.level->trial.bounds.empty()) return;  // add_far did it
+    if (choice.level->trial.bounds.empty()) return add_sides_at_outline(k);  // add_far did the others
     has_children_ = choice.with_children();
     Buffer<uint32_t> faces = choice.faces_at_split();
     keep_if(faces, [&](uint32_t f) {
@@ -230,25 +234,40 @@ class ErrorFinder {
     for (uint32_t h : sides) add_side(k, h);
   }
 
+  /// The sides that are split of faces at an outline that are not divided.
+  void add_sides_at_outline(size_t k) {
+    const LevelChoice& choice = levels_[k];
+    for (uint32_t f : choice.at_outline) {
+      if (reached_[f] == 0 || choice.split_mask(f) == 7) continue;
+      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+        if (choice.split[mesh_of(k).edge[h]] != 0 && are_halves_judged(k, h)) add_halves(k, h);
+    }
+  }
+
+  /// Of a side whose face has children.
+  [[nodiscard]] bool are_halves_judged(size_t k, uint32_t h) const {
+    const auto [first, second] = halves(k, Topology::face(h), h % 3);
+    const EdgeMarks& has_edge = levels_[k + 1].region.has_edge;
+    return (has_edge[first] & has_edge[second]) != 0;
+  }
+  void add_halves(size_t k, uint32_t h) {
+    const auto [first, second] = halves(k, Topology::face(h), h % 3);
+    for (uint32_t half : {first, second})
+      if (may_be_largest(k + 1, half) && levels_[k].shown[mesh_of(k).edge[h]] && levels_[k + 1].shown[half])
+        add(k + 1, half);
+  }
+
   /// A side of a face, which is split: its halves may have been judged, though nothing below was wanted.
   void add_side(size_t k, uint32_t h) {
     const LevelChoice& choice = levels_[k];
     const uint32_t e = mesh_of(k).edge[h];
-    if (has_children_[Topology::face(h)] != 0) {
-      const auto [first, second] = halves(k, Topology::face(h), h % 3);
-      const LevelChoice& below = levels_[k + 1];
-      if (below.region.has_edge[first] != 0 && below.region.has_edge[second] != 0) {
-        for (uint32_t half : {first, second})
-          if (may_be_largest(k + 1, half) && choice.shown[e] && below.shown[half]) add(k + 1, half);
-        return;
-      }
-    }
+    if (has_children_[Topology::face(h)] != 0 && are_halves_judged(k, h)) return add_halves(k, h);
     if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k)) && choice.shown[e])
       add(k, e, split_share(k));
   }
 
   /// An edge that is split where errors do not decide, so that what is below it is not judged unless all of a face is
-  /// divided.
+  /// divided, or at an outline.
   void add_split_far(size_t k, uint32_t e) {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
@@ -258,7 +277,12 @@ class ErrorFinder {
     bool is_any_cut = is_cut(mesh.half_edge[e]) || is_cut(mesh.twin[mesh.half_edge[e]]);
     if (mesh.kind[e] == EdgeKind::shared)
       for (uint32_t h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
-    if (is_any_cut && choice.shown[e]) add(k, e, split_share(k));
+    if (is_any_cut && choice.shown[e] && !is_judged_at_outline(k, mesh.half_edge[e])) add(k, e, split_share(k));
+  }
+
+  [[nodiscard]] bool is_judged_at_outline(size_t k, uint32_t h) const {
+    const LevelChoice& choice = levels_[k];
+    return !choice.at_outline.empty() && choice.red[Topology::face(h)] != 0 && are_halves_judged(k, h);
   }
 
   /// By what is known of the deviation.

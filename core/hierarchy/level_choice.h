@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct LevelChoice {
   Buffer<uint8_t> masks;         ///< [F] split_mask() of the region's faces, where find_masks() found it; else empty
   Buffer<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
   Buffer<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
+  Buffer<uint32_t> at_outline;   ///< those of the red faces that were not divided when they were marked (outline.h)
 
   /// Bit i is set where edge i of the face is split.
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
@@ -70,6 +72,11 @@ struct LevelChoice {
       const uint32_t f = region.faces[i];
       visit(level->parent_of(f), &level->mesh.topology.edge[size_t{3} * f]);
     }
+  }
+  /// Whether an edge is split of the children of a face of the level above, whose children are in the region.
+  [[nodiscard]] bool splits_below(uint32_t parent) const {
+    const uint32_t* edge = &level->mesh.topology.edge[size_t{3} * level->first_child_of(parent)];
+    return std::any_of(edge, edge + 12, [&](uint32_t e) { return split[e] != 0; });
   }
   /// Whether all the face's edges may be split.
   [[nodiscard]] bool may_divide(uint32_t face) const {

@@ -10,6 +10,7 @@
 #include "hierarchy/error_left.h"
 #include "hierarchy/level_choice.h"
 #include "hierarchy/move_bounds.h"
+#include "hierarchy/outline.h"
 #include "hierarchy/repair.h"
 #include "hierarchy/surface_check.h"
 #include "hierarchy/transition.h"
@@ -98,6 +99,7 @@ class RedGreen {
   bool choose() {
     if (!selection_.is_by_error()) {
       split_deepest();
+      if (selection_.follows_outline()) divide_at_outlines(choices_, most_cosine_);
     } else {
       for (size_t k = choices_.size() - 1; k > 0; --k) carry_up(choices_[k], choices_[k - 1]);
       threshold_ = selection_.threshold();
@@ -107,7 +109,7 @@ class RedGreen {
     return !choices_.back().split_edges.empty();
   }
 
-  /// Where errors do not decide: below faces that are divided everything is as wanted, and above nothing changes.
+  /// Where errors do not decide: below divided faces all is as wanted, and above nothing changes but at an outline.
   void split_deepest() {
     LevelChoice& choice = choices_.back();
     choice.split_first(choice.candidates);
@@ -224,10 +226,12 @@ class RedGreen {
     return true;
   }
 
-  [[nodiscard]] Buffer<uint32_t> faces_to_divide() const {
-    const LevelChoice& choice = choices_.back();
+  /// Those that are divided, and those at an outline.
+  [[nodiscard]] Buffer<uint32_t> faces_to_divide() {
+    LevelChoice& choice = choices_.back();
     Buffer<uint32_t> red = choice.region.faces;
     keep_if(red, [&](uint32_t f) { return choice.split_mask(f) == 7; });
+    if (selection_.follows_outline()) add_faces_at_outline(choice, selection_, red);
     return red;
   }
 

@@ -123,10 +123,11 @@ class Refiner {
 
   /// Decides what is split. Returns whether the budget kept something out.
   bool choose() {
-    if (!criteria_.is_by_error()) {  // parents are divided already
+    if (!criteria_.is_by_error()) {  // parents are divided already, but for those at an outline
       for (const auto& [key, error] : error_)
         if (key.first == deepest()) split_.insert(key);
       avoid_slivers(deepest());
+      for (size_t k = deepest(); k > 0 && divide_parents(k); --k) avoid_slivers(k - 1);
       return false;
     }
     carry_errors_up();
@@ -167,9 +168,15 @@ class Refiner {
       if (error.value >= threshold_) split_.insert(key);
     for (size_t k = levels_.size(); k-- > 0;) {
       avoid_slivers(k);
-      for (uint32_t f : faces_of(k))
-        if (k > 0 && mask(k, f) != 0) divide(k - 1, f / 4);
+      divide_parents(k);
     }
+  }
+  /// Divides the parents of faces with split sides. Returns whether one was not divided.
+  bool divide_parents(size_t k) {
+    const size_t before = split_.size();
+    for (uint32_t f : faces_of(k))
+      if (k > 0 && mask(k, f) != 0) divide(k - 1, f / 4);
+    return split_.size() > before;
   }
 
   /// Returns the number of faces of the result.
@@ -208,6 +215,32 @@ class Refiner {
     return std::ranges::all_of(surface(k).sides[f], [&](uint32_t e) { return edges_.contains({k, e}); });
   }
 
+  /// Returns the vertices of faces with a large error.
+  [[nodiscard]] std::set<uint32_t> touched_by_error(size_t k) {
+    std::set<uint32_t> touched;
+    const Surface& s = surface(k);
+    for (uint32_t f : faces_of(k))
+      for (uint32_t e : s.sides[f])
+        if (error_.contains({k, e}) && error_[{k, e}].value >= threshold_)
+          touched.insert(s.faces[f].begin(), s.faces[f].end());
+    return touched;
+  }
+  /// Returns the vertices at which an edge is wanted, as its halves may be, and an edge of a face that is not divided
+  /// is not shown.
+  [[nodiscard]] std::set<uint32_t> on_outline(size_t k) const {
+    std::set<uint32_t> wanted, outline;
+    const Surface& s = surface(k);
+    for (const auto& [key, error] : error_)
+      if (key.first == k && criteria_.is_long(s, key.second, 1.5))
+        wanted.insert({s.edges[key.second].a, s.edges[key.second].b});
+    for (uint32_t f : faces_of(k))
+      for (uint32_t e : s.sides[f])
+        if (mask(k, f) != 7 && !criteria_.is_shown(s, e))
+          for (uint32_t v : {s.edges[e].a, s.edges[e].b})
+            if (wanted.contains(v)) outline.insert(v);
+    return outline;
+  }
+
   /// Goes on to the next level. In place it is the surface as it is now; else children of faces that may be divided.
   bool go_on() {
     const size_t k = deepest();
@@ -217,16 +250,18 @@ class Refiner {
       start(levels_[0].below(placed()));
       return true;
     }
-    std::set<uint32_t> touched;  // vertices of faces with a large error
-    for (uint32_t f : faces_of(k))
-      for (uint32_t e : s.sides[f])
-        if (error_.contains({k, e}) && error_[{k, e}].value >= threshold_)
-          touched.insert(s.faces[f].begin(), s.faces[f].end());
     std::vector<uint32_t> faces = faces_of(k);
+    const bool follows_outline = options_.view && options_.flatness.empty();
+    const std::set<uint32_t> touched = criteria_.is_by_error() ? touched_by_error(k)
+                                       : follows_outline       ? on_outline(k)
+                                                               : std::set<uint32_t>();
     std::erase_if(faces, [&](uint32_t f) {
-      const auto is_touched = [&](uint32_t v) { return touched.contains(v); };
-      return criteria_.is_by_error() ? std::ranges::none_of(s.faces[f], is_touched) || !may_be_divided(k, f)
-                                     : mask(k, f) != 7;
+      const bool is_near = std::ranges::any_of(s.faces[f], [&](uint32_t v) { return touched.contains(v); });
+      if (criteria_.is_by_error()) return !is_near || !may_be_divided(k, f);
+      if (mask(k, f) == 7) return false;
+      return !is_near || !may_be_divided(k, f) || std::ranges::none_of(s.sides[f], [&](uint32_t e) {
+        return !split_.contains({k, e}) && (!criteria_.is_shown(s, e) || !criteria_.is_long(s, e));
+      });
     });
     if (!faces.empty()) deepen(faces);
     return !faces.empty();

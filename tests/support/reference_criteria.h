@@ -68,6 +68,15 @@ class Criteria {
     return !margin_.is_less(inside, 0, 2) && margin_.is_less(away, least_away, s.slope);
   }
 
+  /// Returns whether an edge looks long enough to be split, or so many times as long.
+  [[nodiscard]] bool is_long(const Surface& s, uint32_t e, double times = 1) const {
+    if (!options_.view || view_.edge_pixels == 0) return true;
+    const Vec3d a = s.at[s.edges[e].a];
+    const Vec3d b = s.at[s.edges[e].b];
+    return !margin_.is_less(projected_length(a, b), times * view_.edge_pixels,
+                            std::max(pixels_per_unit(a), pixels_per_unit(b)));
+  }
+
   [[nodiscard]] double pixels_per_unit(Vec3d point) const {
     if (!options_.view) return 0;
     const double depth = is_perspective() ? std::max(near(), dot(forward_, point - view_.eye)) : distance();
@@ -154,14 +163,6 @@ class Criteria {
     if (depth_b < 0) b += depth_b / (depth_b - depth_a) * (a - b);
     const Vec3d off = pixels_per_unit(a) * (a - view_.eye) - pixels_per_unit(b) * (b - view_.eye);
     return std::hypot(dot(right_, off), dot(cross(right_, forward_), off));
-  }
-
-  [[nodiscard]] bool is_long(const Surface& s, uint32_t e) const {
-    if (!options_.view || view_.edge_pixels == 0) return true;
-    const Vec3d a = s.at[s.edges[e].a];
-    const Vec3d b = s.at[s.edges[e].b];
-    return !margin_.is_less(projected_length(a, b), view_.edge_pixels,
-                            std::max(pixels_per_unit(a), pixels_per_unit(b)));
   }
 
   /// Returns the weight of a deviation in a lit picture. The formula and its constants are those of core/lighting.h.
