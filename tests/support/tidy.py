@@ -3,7 +3,8 @@
 
 Most of its time goes into system headers, so the sources of a folder that are compiled alike are read together, as one
 source that includes them. What passed is not read again, in whichever checkout, until one of the sources, a header of the
-project, the rules or the compile command change. Run from the root; prints what is found, and fails if anything is.
+project that they include, the rules or the compile command change. Run from the root; prints what is found, and fails if
+anything is.
 """
 
 import concurrent.futures
@@ -48,15 +49,44 @@ def digest_of(*texts):
     return digest.hexdigest()
 
 
+class Headers:
+    """The project's headers, by each name that an include may give them: the end of their path."""
+
+    def __init__(self):
+        self.named = {}
+        self.included = {}  # by a source or header: the headers that it includes itself
+        listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "core", "proto", "server", "client"],
+                                capture_output=True, check=True, text=True).stdout.split()
+        for path in listed:
+            if not path.endswith(".h") or not os.path.exists(path):
+                continue
+            parts = path.split("/")
+            for first in range(len(parts)):
+                self.named.setdefault("/".join(parts[first:]), []).append(path)
+
+    def included_by(self, path):
+        if path not in self.included:
+            names = re.findall(r'^#include "([^"]+)"', pathlib.Path(path).read_text(), re.MULTILINE)
+            self.included[path] = [header for name in names for header in self.named.get(name, [])]
+        return self.included[path]
+
+    def behind(self, sources):
+        """The headers that sources include, and those that these do, in the order of their paths."""
+        found, left = set(), list(sources)
+        while left:
+            for header in self.included_by(left.pop()):
+                if header not in found:
+                    found.add(header)
+                    left.append(header)
+        return sorted(found)
+
+
 class Reader:
     def __init__(self, program):
         self.program = program
+        self.headers = Headers()
         version = subprocess.run([program, "--version"], capture_output=True, check=True).stdout
-        names = sorted(subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "core", "proto", "server", "client"],
-                                      capture_output=True, check=True, text=True).stdout.split())
-        headers = [pathlib.Path(name).read_bytes() for name in names if name.endswith(".h") and os.path.exists(name)]
-        self.rules = digest_of(version, pathlib.Path(".clang-tidy").read_bytes(), pathlib.Path(__file__).read_bytes(),
-                               *headers)
+        self.rules = digest_of(version, pathlib.Path(".clang-tidy").read_bytes(), pathlib.Path(__file__).read_bytes())
         cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
         self.cache = pathlib.Path(cache, "papilio", "clang-tidy")
         self.cache.mkdir(parents=True, exist_ok=True)
@@ -64,8 +94,9 @@ class Reader:
     def read(self, group):
         """What is found in the sources of a group; nothing if it is sound."""
         paths, of_all = group
-        sources = [pathlib.Path(path).read_bytes() for path in paths]
-        passed = self.cache / digest_of(self.rules, of_all.replace(ROOT, ""), *paths, *sources)
+        read = [*paths, *self.headers.behind(paths)]
+        texts = [pathlib.Path(path).read_bytes() for path in read]
+        passed = self.cache / digest_of(self.rules, of_all.replace(ROOT, ""), *read, *texts)
         if passed.exists():
             return ""
         folder = pathlib.Path(ROOT, "build", "tidy", digest_of(*paths)[:16])
