@@ -50,7 +50,10 @@ proto::FormattedMesh with_output_normals(const UnpackFlags& flags, const proto::
   const bool has_own =
       std::ranges::count(model.mesh.format.attributes, proto::AttributeKind::normal, &proto::AttributeFormat::kind) > 0;
   if (has_own && holds_normals(output_format(flags.output)) && flags.normals.value_or(true)) return model.mesh;
-  return proto::detail::with_normals(model.mesh, output_normals(flags, model.normals));
+  const NormalStyle style = output_normals(flags, model.normals);
+  if (model.normals == NormalStyle::absent && style != NormalStyle::absent)
+    return proto::detail::with_normals_of_shape(model.mesh);
+  return proto::detail::with_normals(model.mesh, style);
 }
 
 std::ostream& begin_report(const UnpackFlags& flags, const TriangleMesh& mesh) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "papilio/refine.h"
 #include "proto/detail/base_coder.h"
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
@@ -102,19 +103,39 @@ std::optional<PlainModel> read_plain_draco(std::string_view glb, const Limits& l
   return PlainModel{.mesh = std::move(*mesh), .normals = style_of(primitive)};
 }
 
-FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
+namespace {
+
+void take_normals(FormattedMesh& mesh) {
   for (size_t a = mesh.attributes.size(); a-- > 0;) {
     if (mesh.format.attributes[a].kind != AttributeKind::normal) continue;
     mesh.attributes.erase(mesh.attributes.begin() + static_cast<ptrdiff_t>(a));
     mesh.format.attributes.erase(mesh.format.attributes.begin() + static_cast<ptrdiff_t>(a));
   }
-  if (!has_detail_normals(style)) return mesh;
-  Mesh built = build_mesh(mesh);
-  (void)mark_detail_curves(built);
+}
+
+/// Adds normals in a style, apart at the creases that the built mesh has, to the mesh of which it was built.
+FormattedMesh add_normals(FormattedMesh mesh, Mesh built, NormalStyle style) {
   add_detail_normals(built, style);
   append_normals(mesh.format);
   static_cast<TriangleMesh&>(mesh) = std::move(built).triangles();
   return mesh;
+}
+
+}  // namespace
+
+FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
+  take_normals(mesh);
+  if (!has_detail_normals(style)) return mesh;
+  Mesh built = build_mesh(mesh);
+  (void)mark_detail_curves(built);
+  return add_normals(std::move(mesh), std::move(built), style);
+}
+
+FormattedMesh with_normals_of_shape(FormattedMesh mesh) {
+  take_normals(mesh);
+  Mesh built = refine(build_mesh(mesh), {.levels = 0}).mesh;
+  if (!built.topology.shape.is_mechanical) return with_normals(std::move(mesh), NormalStyle::creased);
+  return add_normals(std::move(mesh), std::move(built), NormalStyle::creased);
 }
 
 }  // namespace papilio::proto::detail

@@ -160,6 +160,23 @@ TEST(PlainNormals, AreFoundWhereTheyAreSmoothOrThoseOfTheFaces) {
   EXPECT_TRUE(with_normals(faceted.mesh, faceted.normals).attributes.empty());
 }
 
+TEST(PlainNormals, OfAnOriginalWithoutThemAreSplitAsItsShapeIs) {
+  const PlainModel prism = packed_plainly(with_normal_format(test::tube(10, 1, 2, true)));
+  EXPECT_EQ(prism.normals, NormalStyle::absent);
+  const FormattedMesh shaded = with_normals_of_shape(prism.mesh);
+  ASSERT_EQ(shaded.attributes.size(), 1U);
+  for (const Triangle& triangle : shaded.triangles) {  // its sides meet at 36 degrees, which no sharp curve has
+    const auto at = [&](size_t i) { return to_double(shaded.positions[triangle[i]]); };
+    const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
+    for (const uint32_t p : triangle) {
+      const double* value = &shaded.attributes[0].values[size_t{3} * p];
+      EXPECT_GT(dot(normal, Vec3d{value[0], value[1], value[2]}), 0.9999 * length(normal));
+    }
+  }
+  const PlainModel ring = packed_plainly(with_normal_format(test::torus(32, 20)));
+  EXPECT_EQ(with_normals_of_shape(ring.mesh).positions.size(), ring.mesh.positions.size()) << "nothing is split";
+}
+
 TEST(PlainNormals, ThatNoSurfaceHasAreInTheFileAlone) {
   TriangleMesh turned = test::lens(12, 4, 90, Shading::smooth);
   for (double& value : turned.attributes[0].values) value = -value;
