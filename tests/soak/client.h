@@ -49,5 +49,6 @@ class Client {
 };
 
 inline constexpr const char* draco_type = "application/x-draco";
+inline const httplib::Headers as_draco{{"Content-Type", draco_type}};
 
 }  // namespace papilio::soak

@@ -8,8 +8,6 @@
 namespace papilio::soak {
 namespace {
 
-const httplib::Headers as_draco{{"Content-Type", draco_type}};
-
 void refine_small(Client& client) {
   const Order& order = client.pick(client.world().small());
   const auto began = std::chrono::steady_clock::now();

@@ -7,8 +7,6 @@
 namespace papilio::soak {
 namespace {
 
-const httplib::Headers as_draco{{"Content-Type", draco_type}};
-
 /// Uploads the mesh; its path, "" when the server was too busy.
 std::string upload(Client& client, const std::string& mesh) {
   const httplib::Result answer = client.ask("POST", "/v1/meshes", as_draco, mesh);

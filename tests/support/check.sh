@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # check.sh: what is judged without running the programs: formatting (clang-format, prettier), static analysis (clang-tidy,
-# with the compile commands of build/release; tsc) and the shell scripts (shellcheck). All of them run, whatever comes of
-# the others. clang-format and clang-tidy differ from version to version; without version 14, Debian 12's, nothing runs.
+# with the compile commands of build/check, where nothing is built; tsc) and the shell scripts (shellcheck). All of them
+# run, whatever comes of the others. clang-format and clang-tidy differ from version to version; without version 14,
+# Debian 12's, nothing runs.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
@@ -38,6 +39,7 @@ echo "clang-format: ${#sources[@]} files"
 "$clang_format" --dry-run --Werror "${sources[@]}" || failed+=(clang-format)
 
 echo "clang-tidy: ${#analysed[@]} files"
+cmake --preset release -B build/check -DPAPILIO_UNITY=OFF -DPAPILIO_WEB=OFF >build/configure.log || cat build/configure.log
 python3 tests/support/tidy.py "$clang_tidy" "${analysed[@]}" || failed+=(clang-tidy)
 
 mapfile -t web < <(files client/{web,npm} tests/{web,npm,scenes,container,openapi} | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)

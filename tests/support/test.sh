@@ -39,11 +39,14 @@ fi
 apart='(c_library|dev|generated|library|nginx|page)\.bats$'
 [[ $preset != tsan ]] || apart='(c_library|client|detail|dev|generated|library|nginx|page)\.bats$'
 [[ $preset != release ]] || apart='^$'
+# Pages, and what only scripts and the proxy have to say, are the same on each Debian; its proxy is in the image's tests.
+has_pages=${PAPILIO_TEST_PAGES:-yes}
+[[ $has_pages == yes ]] || apart='(dev|generated|nginx|page)\.bats$'
 mapfile -t suites < <(printf '%s\n' tests/integration/*.bats | grep -vE "$apart")
 prove --failures --comments --timer --jobs "$(nproc)" --exec "$integration" "${suites[@]}" || failed=1
-# Pages are the same on each Debian, and look at what the programs have written, which is the same under sanitizers. What
-# they ask the server for, the integration tests have asked for. The module for browsers is compiled once.
-[[ $preset != tsan && ${PAPILIO_TEST_PAGES:-yes} == yes ]] || exit "$failed"
+# Pages look at what the programs have written, which is the same under sanitizers. What they ask the server for, the
+# integration tests have asked for. The module for browsers is compiled once.
+[[ $preset != tsan && $has_pages == yes ]] || exit "$failed"
 pages=(tests/{web,scenes,npm}/*.test.mjs)
 [[ $preset == release ]] || pages=(tests/scenes/scenes.test.mjs)
 prove --failures --comments --timer --jobs "$(nproc)" --exec "$web" "${pages[@]}" || failed=1

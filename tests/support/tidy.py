@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tidy.py CLANG_TIDY FILE...: clang-tidy on sources, with the compile commands of build/release.
+"""tidy.py CLANG_TIDY FILE...: clang-tidy on sources, with the compile commands of build/check.
 
 Most of its time goes into system headers, so the sources of a folder that are compiled alike are read together, as one
 source that includes them. What passed is not read again, in whichever checkout, until one of the sources, a header of the
@@ -17,7 +17,7 @@ import subprocess
 import sys
 
 MOST_TOGETHER = 16
-BUILD = "build/release"
+BUILD = "build/check"
 ROOT = os.getcwd()
 
 
