@@ -41,7 +41,7 @@ apart='(c_library|dev|generated|library|nginx|page)\.bats$'
 [[ $preset != release ]] || apart='^$'
 # Pages, and what only scripts and the proxy have to say, are the same on each Debian; its proxy is in the image's tests.
 has_pages=${PAPILIO_TEST_PAGES:-yes}
-[[ $has_pages == yes ]] || apart='(dev|generated|nginx|page)\.bats$'
+[[ $has_pages == yes ]] || apart='(dev|generated|library|nginx|page)\.bats$'
 mapfile -t suites < <(printf '%s\n' tests/integration/*.bats | grep -vE "$apart")
 prove --failures --comments --timer --jobs "$(nproc)" --exec "$integration" "${suites[@]}" || failed=1
 # Pages look at what the programs have written, which is the same under sanitizers. What they ask the server for, the
