@@ -133,8 +133,8 @@ FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
 
 FormattedMesh with_normals_of_shape(FormattedMesh mesh) {
   take_normals(mesh);
-  Mesh built = refine(build_mesh(mesh), {.levels = 0}).mesh;
-  if (!built.topology.shape.is_mechanical) return with_normals(std::move(mesh), NormalStyle::creased);
+  Mesh built = refine(build_mesh(mesh), {.levels = 0}).mesh;  // with the creases of its shape
+  (void)mark_detail_curves(built);
   return add_normals(std::move(mesh), std::move(built), NormalStyle::creased);
 }
 

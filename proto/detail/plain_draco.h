@@ -53,8 +53,8 @@ struct PlainModel {
 /// Gives a mesh of a file without levels normals of a style in place of its own: smooth ones, or split at the edges
 /// that are sharp by their angle. None for other styles. Throws what build_mesh() throws.
 [[nodiscard]] FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style);
-/// The same where the original has none: of a mechanical mesh they are split at the creases of its shape
-/// (`Shape::automatic`), which have no noise, of others as above. Throws also what refine() throws.
+/// The same where the original has none: split at those edges and, where it is mechanical, at the creases of its shape
+/// (`Shape::automatic`), also where a coarse grid makes them jagged. Throws also what refine() throws.
 [[nodiscard]] FormattedMesh with_normals_of_shape(FormattedMesh mesh);
 
 }  // namespace papilio::proto::detail

@@ -36,9 +36,9 @@ if [[ -n $filter ]]; then # prove splits it at spaces
 fi
 # What a sanitizer has nothing to find in: programs and pages that are built without, a proxy before the server, and for
 # threads the command line.
-apart='(c_library|dev|generated|library|nginx|page)\.bats$'
+apart='^$'
+[[ $preset != asan ]] || apart='(c_library|dev|generated|library|nginx|page)\.bats$'
 [[ $preset != tsan ]] || apart='(c_library|client|detail|dev|generated|library|nginx|page)\.bats$'
-[[ $preset != release ]] || apart='^$'
 # Pages, and what only scripts and the proxy have to say, are the same on each Debian; its proxy is in the image's tests.
 has_pages=${PAPILIO_TEST_PAGES:-yes}
 [[ $has_pages == yes ]] || apart='(dev|generated|library|nginx|page)\.bats$'
