@@ -1,5 +1,5 @@
-# The whole suite on Debian 13, the Debian of the images: `./dev container suite` builds this, and it fails when a test
-# does. What set-up brings is a layer of its own, kept until set-up itself changes.
+# The suite on Debian 13, the Debian of the images: `./dev container suite` builds this, `programs` without the unit tests,
+# and it fails when a test does. What set-up brings is a layer of its own, kept until set-up itself changes.
 ARG DEBIAN=debian:13.7-slim
 FROM ${DEBIAN}
 WORKDIR /papilio
@@ -13,4 +13,5 @@ COPY tests/scenes/package.json tests/scenes/package-lock.json tests/scenes/.npmr
 RUN tests/support/setup.sh build wasm test && tests/support/library_source.sh meshoptimizer libmeshoptimizer-dev
 COPY . .
 ENV PAPILIO_UNITY=ON
+ARG PAPILIO_TEST_UNITS=yes
 RUN --mount=type=cache,target=/root/.cache/ccache ./dev test

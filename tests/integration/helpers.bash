@@ -26,9 +26,11 @@ stop_server() {
   wait "$server_pid"
 }
 
+sanitized() { grep -q '^PAPILIO_SANITIZE:STRING=.' "$PAPILIO_BUILD/CMakeCache.txt"; }
+
 # skip_if_sanitized: for tests of what is the same in every build.
 skip_if_sanitized() {
-  ! grep -q '^PAPILIO_SANITIZE:STRING=.' "$PAPILIO_BUILD/CMakeCache.txt" || skip "the release build runs it"
+  ! sanitized || skip "the release build runs it"
 }
 
 # free_port: one that nobody listens on.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# container.sh [suite|throughput|images]: builds the images of docker/ and tests them in containers, by themselves, in the
-# composition and as kubernetes would run them; suite: runs the whole suite on the images' Debian; throughput: measures the
-# composition with one server and two; images: only builds. All without a Docker engine, by buildah and podman, in a
+# container.sh [programs|suite|throughput|images]: builds the images of docker/ and tests them in containers, by themselves,
+# in the composition and as kubernetes would run them; programs: runs the integration tests on the images' Debian; suite: all
+# tests there; throughput: measures the composition with one server and two; images: only builds. All without a Docker engine, by buildah and podman, in a
 # storage of its own under build/containers; what it starts is gone when it ends, and what its compilers keep lies in the
 # user's cache. As root: it makes networks.
 set -euo pipefail
@@ -69,7 +69,7 @@ site_of() {
     awk -v security="$1" '($2 ~ /-security$/) == (security == "security") && !found++ { print $1 }'
 }
 
-# image NAME DOCKERFILE: builds it. What fails before a test ran is tried once more: networks do fail.
+# image NAME DOCKERFILE [UNITS]: builds it, UNITS (yes) being whether unit tests are. What fails before a test ran is tried once more: networks do fail.
 image() {
   local log=$containers/$1.log began=$SECONDS
   echo "container: building $1"
@@ -87,6 +87,7 @@ build_image() {
   local log=$containers/$1.log
   # Warnings are errors as in the suite's build: with equal flags the compiler's cache of one serves the other.
   local options=(--isolation chroot --layers --pull-never --format docker --build-arg PAPILIO_WERROR=ON
+    --build-arg "PAPILIO_TEST_UNITS=${3:-yes}"
     -v /etc/ssl/certs:/etc/ssl/certs:ro -v "$containers/npmrc:/root/.npmrc:ro")
   { cat "$HOME/.npmrc" 2>/dev/null || true; echo "cafile=/etc/ssl/certs/ca-certificates.crt"; } >"$containers/npmrc"
   chmod 600 "$containers/npmrc"
@@ -142,9 +143,11 @@ clean_up # of one that was killed
 
 debian=$(sed -n 's/^ARG DEBIAN=//p' docker/Dockerfile)
 base "$debian"
-if [[ $part == suite ]]; then
-  echo "container: the whole suite on $debian"
-  image papilio-suite tests/container/suite.Dockerfile
+if [[ $part == suite || $part == programs ]]; then
+  units=yes
+  [[ $part == suite ]] || units=no
+  echo "container: the $part on $debian"
+  image papilio-suite tests/container/suite.Dockerfile "$units"
   grep -E 'tests passed|^Files=' "$containers/papilio-suite.log"
   exit
 fi

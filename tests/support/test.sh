@@ -24,7 +24,7 @@ one_thread+='|Edgebreaker|EveryRealMesh|Growth|mesh_file|OptimalCollapse|Pack\.|
 [[ $preset != tsan ]] || unit+=(-E "^($one_thread|.*CurvedCollapses|.*(RedGreen|Shape|Simplify)(OnReal|Real)Mesh)")
 # And of one kernel, whose memory other tests look at in all its functions.
 [[ $preset != asan ]] || unit+=(-E '^(DetailBaseline|Edgebreaker/EdgebreakerAtSpeed|Growth|Pack\.TakesTheSimplified)')
-"${unit[@]}" || failed=1
+[[ ${PAPILIO_TEST_UNITS:-yes} != yes ]] || "${unit[@]}" || failed=1
 
 integration='bats --tap'
 # Sanitized encoders of detail take minutes, and are tested by CTest.

@@ -47,9 +47,11 @@ export async function startServer(...args) {
   };
 }
 
-export async function launch() {
+/// Without `smooth`, edges of triangles are not smoothed (multisampled), which takes most of what drawing in software does.
+export async function launch({ smooth = false } = {}) {
   const program = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
   const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+  if (!smooth) args.push('--webgl-antialiasing-mode=none');
   if (process.getuid() === 0) args.push('--no-sandbox'); // which root cannot have
   return chromium.launch({ executablePath: program, args });
 }

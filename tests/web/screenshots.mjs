@@ -7,7 +7,7 @@ import { done, drag, drop, launch, openPage, startServer } from './browser.mjs';
 
 const [folder, samples, scene, frames] = process.argv.slice(2);
 for (const made of [folder, frames]) mkdirSync(made, { recursive: true });
-const [server, browser] = await Promise.all([startServer('--samples', samples), launch()]);
+const [server, browser] = await Promise.all([startServer('--samples', samples), launch({ smooth: true })]);
 
 /// Once nothing changes any more.
 async function save(page, name) {

@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { drop, facesOf, launch, meshes, openPage, startServer, tasksOf } from './browser.mjs';
 
 const wanted = Number(process.argv[2] ?? 300_000);
-const [server, browser] = await Promise.all([startServer(), launch()]);
+const [server, browser] = await Promise.all([startServer(), launch({ smooth: true })]);
 const row = (...cells) =>
   console.log(cells.map((cell, i) => (i ? String(cell).padStart(10) : cell.padEnd(12))).join(''));
 
