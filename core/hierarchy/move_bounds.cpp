@@ -11,6 +11,27 @@ namespace {
 /// Whether the face is not in the result, but its children are.
 bool is_divided(const LevelChoice& choice, uint32_t face) { return choice.split_mask(face) == 7; }
 
+bool is_at_middle(const Mesh& mesh, uint32_t edge, double offset) {
+  constexpr double rounding = 1e-6;
+  const uint32_t h = mesh.topology.half_edge[edge];
+  const Vec3d along =
+      to_double(mesh.positions[mesh.topology.tip(h)]) - to_double(mesh.positions[mesh.topology.origin[h]]);
+  return offset * offset <= rounding * rounding * dot(along, along);
+}
+
+/// What a smooth edge that stays where it is may move at further levels, about. Between two curves an edge has no rule
+/// (the published one is its middle), but what it is split into has.
+double move_to_come(const LevelChoice& choice, uint32_t edge) {
+  constexpr double share_of_bend = 1.0 / 8;  // the rule's weight of what lies beside
+  const Topology& mesh = choice.level->mesh.topology;
+  if (mesh.shape.is_mechanical) return 0;  // whose flat edges have none either
+  const uint32_t h = mesh.half_edge[edge];
+  const Buffer<Vec3f>& normals = choice.level->trial.normals;
+  const Vec3d turn = to_double(normals[Topology::face(h)]) - to_double(normals[Topology::face(mesh.twin[h])]);
+  const Buffer<Vec3f>& at = choice.level->mesh.positions;
+  return share_of_bend * length(turn) * length(to_double(at[mesh.tip(h)]) - to_double(at[mesh.origin[h]]));
+}
+
 }  // namespace
 
 double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
@@ -18,7 +39,9 @@ double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
   const Topology& mesh = level.mesh.topology;
   const uint32_t h = mesh.half_edge[edge];
   const double offset = std::sqrt(level.trial.squared_offset(level.mesh, edge));
-  if (mesh.kind[edge] != EdgeKind::smooth || offset <= enough) return offset;
+  if (mesh.kind[edge] != EdgeKind::smooth) return offset;
+  if (offset <= enough)
+    return is_at_middle(level.mesh, edge, offset) ? std::max(offset, move_to_come(choice, edge)) : offset;
   // A vertex that slides along one side of a bend leaves the edge behind.
   const Buffer<Vec3f>& normals = level.trial.normals;
   const double cosine = dot(normals[Topology::face(h)], normals[Topology::face(mesh.twin[h])]);
@@ -51,19 +74,19 @@ Buffer<float> sums_above(const LevelChoice& above, const Buffer<float>& sums, co
 }
 
 Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<float>& sums,
-                                        const Buffer<float>& moves, float limit) {
+                                        const Buffer<float>& moves, const Buffer<float>& allowed) {
   constexpr float share_that_counts = 0.5F;
   const Topology& mesh = choice.level->mesh.topology;
   Buffer<float> further(mesh.vertex_count, 0);  // the largest move at the vertex
-  float known = 0;
+  float known = 0;                              // share
   for (uint32_t f : choice.region.faces) {
-    if (!is_divided(choice, f)) known = std::max(known, sums[f] + moves[f]);
+    if (!is_divided(choice, f) && sums[f] + moves[f] > 0) known = std::max(known, (sums[f] + moves[f]) / allowed[f]);
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) further[mesh.origin[h]] = std::max(further[mesh.origin[h]], moves[f]);
   }
-  const float matters = std::min(limit, known);
   Buffer<uint8_t> marks(mesh.vertex_count, 0);
   for (uint32_t f : choice.region.faces) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
+    const float matters = known < 1 ? known * allowed[f] : allowed[f];  // not a number where anything is allowed
     const float more = std::max({further[corner[0]], further[corner[1]], further[corner[2]]});
     const bool is_open = moves[f] + more > share_that_counts * matters && sums[f] + moves[f] + more > matters;
     if (is_divided(choice, f) || is_open)

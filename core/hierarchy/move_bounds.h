@@ -20,10 +20,10 @@ namespace papilio {
 [[nodiscard]] Buffer<float> sums_above(const LevelChoice& above, const Buffer<float>& sums, const Buffer<float>& moves,
                                        const LevelChoice& below);
 
-/// Marks the vertices [V] of the faces below which the distance may exceed the limit, or the largest that is known to
-/// be there. What further levels add is taken to be no more than the largest move at a face's corners.
+/// Marks the vertices [V] of the faces below which the distance may exceed what is allowed [F], or be a larger share of
+/// that than any known one. What further levels add is taken to be no more than the largest move at a face's corners.
 [[nodiscard]] Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<float>& sums,
-                                                      const Buffer<float>& moves, float limit);
+                                                      const Buffer<float>& moves, const Buffer<float>& allowed);
 
 /// For each face of each level [level][F] the largest sum of moves from it down. Below a face that was not explored of
 /// the first `level_count` levels, half of its own is added, where a smooth surface moves by a third. `enough` as

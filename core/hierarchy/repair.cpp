@@ -11,6 +11,8 @@ namespace {
 
 /// A candidate that is split whatever the threshold.
 constexpr float largest_error = std::numeric_limits<float>::max();
+/// Of what is allowed: the sums of smaller moves may be bounded loosely.
+constexpr double share_known = 1.0 / 64;
 
 }  // namespace
 
@@ -28,17 +30,16 @@ void set_splits(std::vector<LevelChoice>& choices, const Splits& splits) {
   }
 }
 
-Repair::Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, double limit, int level_count,
-               int threads)
+Repair::Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
+               int level_count, int threads)
     : choices_(choices),
       threshold_(threshold),
-      check_(choices, most_cosine, level_count, limit, threads),
-      limit_(limit) {
+      check_(choices, most_cosine, level_count, std::move(allowed), share_known, threads) {
   for (const LevelChoice& choice : choices) near_.emplace_back(choice.level->mesh.topology.face_count(), 0);
 }
 
 bool Repair::add_candidates() {
-  const Buffer<LevelFace> far = check_.far_faces(limit_, near_);
+  const Buffer<LevelFace> far = check_.far_faces(near_);
   is_complete_ = far.empty();
   before_ = splits_of(choices_);
   bool has_any = false;
@@ -68,13 +69,15 @@ void Repair::look_again() {
   for (size_t k = 0; k < choices_.size(); ++k) {
     const LevelChoice& choice = choices_[k];
     const Topology& mesh = choice.level->mesh.topology;
-    EdgeMarks is_new = choice.split;
-    for (uint32_t e : before_[k]) is_new[e] = 0;
+    EdgeMarks has_changed = choice.split;
+    for (uint32_t e : before_[k]) has_changed[e] ^= 1U;  // a split that only kept slivers away may be gone
     Buffer<uint8_t> touched(mesh.vertex_count, 0);
-    for (uint32_t e : choice.split_edges) {
-      touched[mesh.origin[mesh.half_edge[e]]] |= is_new[e];
-      touched[mesh.tip(mesh.half_edge[e])] |= is_new[e];
-    }
+    const auto touch = [&](uint32_t e) {
+      touched[mesh.origin[mesh.half_edge[e]]] |= has_changed[e];
+      touched[mesh.tip(mesh.half_edge[e])] |= has_changed[e];
+    };
+    for (uint32_t e : choice.split_edges) touch(e);
+    for (uint32_t e : before_[k]) touch(e);
     for (uint32_t f : choice.region.faces) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
       if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) == 0) continue;

@@ -19,9 +19,9 @@ void set_splits(std::vector<LevelChoice>& choices, const Splits& splits);
 class Repair {
  public:
   /// `choices` must outlive this, and not grow. Edges with an error of at least `threshold` are candidates already.
-  /// `limit` in the mesh's unit; up to so many threads work on it.
-  Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, double limit, int level_count,
-         int threads);
+  /// Up to so many threads work on it.
+  Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
+         int level_count, int threads);
 
   /// Makes candidates with the largest of all errors of those edges of the faces too far away at which the surface
   /// moves most. Returns false if there are none.
@@ -37,7 +37,6 @@ class Repair {
   std::vector<LevelChoice>& choices_;
   float threshold_;
   SurfaceCheck check_;
-  double limit_;
   NearFaces near_;
   Splits before_;  ///< when the faces were last compared
   bool is_complete_ = false;

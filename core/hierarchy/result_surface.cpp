@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hierarchy/transition.h"
+#include "split/split_pattern.h"
 
 namespace papilio {
 namespace {
@@ -11,19 +12,19 @@ constexpr size_t most_visited = 64;
 
 }  // namespace
 
-Corners ResultSurface::corners(uint32_t k, uint32_t f) const {
-  const Mesh& mesh = level(k).mesh;
-  const uint32_t* corner = &mesh.topology.origin[size_t{3} * f];
+Corners corners_of(const LevelChoice& choice, uint32_t face) {
+  const Mesh& mesh = choice.level->mesh;
+  const uint32_t* corner = &mesh.topology.origin[size_t{3} * face];
   return {to_double(mesh.positions[corner[0]]), to_double(mesh.positions[corner[1]]),
           to_double(mesh.positions[corner[2]])};
 }
 
-Corners ResultSurface::new_vertices(uint32_t k, uint32_t f, const Corners& corner) const {
+Corners new_vertices_of(const LevelChoice& choice, uint32_t face, const Corners& corner) {
   Corners made;
   for (uint32_t i = 0; i < 3; ++i) {
-    const uint32_t e = topology(k).edge[3 * f + i];
+    const uint32_t e = choice.level->mesh.topology.edge[3 * face + i];
     made[i] =
-        choice(k).region.has_edge[e] != 0 ? to_double(level(k).trial.at(e)) : 0.5 * (corner[i] + corner[(i + 1) % 3]);
+        choice.region.has_edge[e] != 0 ? to_double(choice.level->trial.at(e)) : 0.5 * (corner[i] + corner[(i + 1) % 3]);
   }
   return made;
 }
@@ -46,10 +47,8 @@ void ResultSurface::find_pieces(const LevelFace& leaf, std::vector<TriangleCorne
 
 void ResultSurface::find_beside(const LevelFace& leaf, uint32_t i, std::vector<LevelFace>& beside) const {
   beside.clear();
-  const auto [k, f] = leaf;
-  const uint32_t twin = topology(k).twin[3 * f + i];
-  if (twin == none) return;
-  const uint32_t other = Topology::face(twin);
+  if (topology(leaf.level).twin[3 * leaf.face + i] == none) return;
+  const auto [k, other] = face_across(leaf.level, leaf.face, i);
   if (k > 0 && !is_divided(k - 1, level(k).parent_of(other))) {
     beside.push_back({k - 1, level(k).parent_of(other)});
   } else if (!is_divided(k, other)) {
@@ -58,6 +57,17 @@ void ResultSurface::find_beside(const LevelFace& leaf, uint32_t i, std::vector<L
     for (uint32_t child = first_child(k, other); child < first_child(k, other) + 4; ++child)
       if (!is_divided(k + 1, child)) beside.push_back({k + 1, child});
   }
+}
+
+LevelFace ResultSurface::face_across(uint32_t k, uint32_t f, uint32_t i) const {
+  const uint32_t other = Topology::face(topology(k).twin[3 * f + i]);
+  if (k == 0 || level(k).parent_of(other) != none) return {k, other};
+  // A last level may hold children of red faces alone (refine_last_level). The side is half of one of the face above.
+  const uint32_t parent = level(k).parent_of(f);
+  const uint32_t half_edge = 3 * (f - level(k).first_child_of(parent)) + i;
+  const auto& outer = split_pattern(7, false).outer;
+  const auto side = static_cast<uint32_t>(std::ranges::find(outer, half_edge) - outer.begin()) / 2;
+  return {k - 1, Topology::face(topology(k - 1).twin[3 * parent + side])};
 }
 
 double ResultSurface::squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough) {

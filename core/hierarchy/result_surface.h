@@ -15,6 +15,10 @@ namespace papilio {
 
 using Corners = std::array<Vec3d, 3>;  ///< of a face; or the middles of its sides, side i running from corner i
 
+[[nodiscard]] Corners corners_of(const LevelChoice& choice, uint32_t face);
+/// The new vertices of the face's edges; the middle where none was computed. `corner` as above.
+[[nodiscard]] Corners new_vertices_of(const LevelChoice& choice, uint32_t face, const Corners& corner);
+
 /// A face of a level.
 struct LevelFace {
   uint32_t level, face;
@@ -30,9 +34,10 @@ class ResultSurface {
   [[nodiscard]] const LevelChoice& choice(uint32_t k) const { return levels_[k]; }
   [[nodiscard]] const HierarchyLevel& level(uint32_t k) const { return *levels_[k].level; }
   [[nodiscard]] const Topology& topology(uint32_t k) const { return level(k).mesh.topology; }
-  [[nodiscard]] Corners corners(uint32_t k, uint32_t f) const;
-  /// The new vertices of the face's edges; the middle where none was computed.
-  [[nodiscard]] Corners new_vertices(uint32_t k, uint32_t f, const Corners& corner) const;
+  [[nodiscard]] Corners corners(uint32_t k, uint32_t f) const { return corners_of(levels_[k], f); }
+  [[nodiscard]] Corners new_vertices(uint32_t k, uint32_t f, const Corners& corner) const {
+    return new_vertices_of(levels_[k], f, corner);
+  }
 
   /// Whether the face has children in the region of the next level.
   [[nodiscard]] bool has_children(uint32_t k, uint32_t f) const {
@@ -56,6 +61,8 @@ class ResultSurface {
   [[nodiscard]] double squared_distance_from(const LevelFace& leaf, Vec3d point, double enough);
 
  private:
+  /// The face across side i of a face, of its level or, where that does not hold it, of the one above.
+  [[nodiscard]] LevelFace face_across(uint32_t k, uint32_t f, uint32_t i) const;
   [[nodiscard]] double squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough);
 
   std::span<const LevelChoice> levels_;

@@ -18,12 +18,13 @@ namespace {
 /// Compares a result with the surface, one undivided face after the other.
 class Comparison {
  public:
-  Comparison(std::span<const LevelChoice> levels, double most_cosine, const std::vector<Buffer<float>>& sums)
-      : result_(levels, most_cosine), sums_(sums) {}
+  Comparison(std::span<const LevelChoice> levels, double most_cosine, const std::vector<Buffer<float>>& sums,
+             const AllowedDistance& allowed)
+      : result_(levels, most_cosine), sums_(sums), allowed_(allowed) {}
 
   /// Below the coarse faces from `first` to the one before `last`.
-  Buffer<LevelFace> far_faces(double limit, int level_count, NearFaces& near, uint32_t first, uint32_t last) {
-    limit_ = limit * limit;
+  Buffer<LevelFace> far_faces(int level_count, NearFaces& near, uint32_t first, uint32_t last) {
+    begin_with(1);
     stops_at_limit_ = true;
     level_count_ = static_cast<uint32_t>(level_count);
     Buffer<LevelFace> far;
@@ -39,23 +40,37 @@ class Comparison {
     return far;
   }
 
-  /// The largest distance, if it is larger than `known`; else that.
-  double largest_distance(double known, int level_count, uint32_t first, uint32_t last) {
-    limit_ = known * known;
+  /// The largest share, if it is larger than `known`; else that.
+  double largest_share(double known, int level_count, uint32_t first, uint32_t last) {
+    begin_with(known);
     level_count_ = static_cast<uint32_t>(level_count);
     visit_leaves(first, last, [&](const LevelFace& leaf) {
       if (!is_surely_near(leaf)) look_at_leaf(leaf);
     });
-    return limit_ > known * known ? std::sqrt(limit_) : known;
+    return has_grown_ ? std::sqrt(squared_share_) : known;
   }
 
   double largest_bound(uint32_t first, uint32_t last) {
     double most = 0;
-    visit_leaves(first, last, [&](const LevelFace& leaf) { most = std::max(most, bound_at(leaf)); });
+    visit_leaves(first, last,
+                 [&](const LevelFace& leaf) { most = std::max(most, bound_at(leaf) / allowed_.at(leaf)); });
     return most;
   }
 
  private:
+  void begin_with(double share) {
+    squared_share_ = limit_ = share * share;
+    allowed_here_ = 1;
+    has_grown_ = false;
+  }
+  /// Has distances held against what is allowed at a face.
+  void go_to(const LevelFace& leaf) {
+    const double allowed = allowed_.at(leaf);
+    if (allowed == allowed_here_ || allowed == AllowedDistance::any) return;
+    limit_ = squared_share_ * allowed * allowed;
+    allowed_here_ = allowed;
+  }
+
   template <class Visit>
   void visit_leaves(uint32_t first, uint32_t last, const Visit& visit) {
     for (uint32_t f = first; f < last; ++f) visit_leaves({0, f}, visit);
@@ -78,11 +93,12 @@ class Comparison {
     return result_.choice(leaf.level).split_mask(leaf.face) == 0 ? sum : along_diagonal * sum;
   }
   [[nodiscard]] bool is_surely_near(const LevelFace& leaf) const {
-    const double bound = bound_at(leaf);
+    const double bound = bound_at(leaf) * (allowed_here_ / allowed_.at(leaf));
     return bound * bound <= limit_;
   }
 
   void look_at_leaf(const LevelFace& leaf) {
+    go_to(leaf);
     leaf_ = leaf;
     is_far_ = false;
     prisms_.clear();
@@ -256,10 +272,13 @@ class Comparison {
 
   void note(double squared) {
     if (!matters(squared)) return;
-    if (stops_at_limit_)
+    if (stops_at_limit_) {
       is_far_ = true;
-    else
+    } else {
       limit_ = squared;
+      squared_share_ = squared / (allowed_here_ * allowed_here_);
+      has_grown_ = true;
+    }
   }
 
   /// Whether the vertex is surely near the leaf at hand.
@@ -279,7 +298,11 @@ class Comparison {
   ResultSurface result_;
   LevelSurface surface_{result_};
   const std::vector<Buffer<float>>& sums_;
-  double limit_ = 0;          ///< what distances, squared, must exceed for them to matter
+  const AllowedDistance& allowed_;
+  double squared_share_ = 0;  ///< of what is allowed: what distances must exceed for them to matter
+  double allowed_here_ = 1;   ///< at the leaf at hand
+  double limit_ = 0;          ///< the same there, as a squared distance
+  bool has_grown_ = false;    ///< that, by a distance found
   double rest_ = 0;           ///< what further levels may add at the face at hand
   uint32_t level_count_ = 0;  ///< the rest that levels up to this one add is counted
   bool stops_at_limit_ = false;
@@ -292,15 +315,14 @@ class Comparison {
 
 }  // namespace
 
-constexpr double share_of_limit_known = 1.0 / 64;  ///< smaller moves may be bounded loosely
-
-SurfaceCheck::SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count, double limit,
-                           int threads)
+SurfaceCheck::SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count,
+                           AllowedDistance allowed, double share_known, int threads)
     : levels_(levels),
       most_cosine_(most_cosine),
       level_count_(level_count),
+      allowed_(std::move(allowed)),
       threads_(threads),
-      sums_(sums_below(levels, level_count, share_of_limit_known * limit)) {}
+      sums_(sums_below(levels, level_count, share_known * allowed_.least())) {}
 
 /// What `find` returns for each part of the coarse faces.
 template <class Found, class Find>
@@ -311,33 +333,36 @@ std::vector<Found> SurfaceCheck::compare(const Find& find) const {
   const uint32_t parts = std::min(count, parts_of(static_cast<uint32_t>(std::min<uint64_t>(faces, none)), threads_));
   std::vector<Found> found(parts);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {
-    Comparison comparison(levels_, most_cosine_, sums_);
+    Comparison comparison(levels_, most_cosine_, sums_, allowed_);
     found[part] = find(comparison, first, last);
   });
   return found;
 }
 
-Buffer<LevelFace> SurfaceCheck::far_faces(double limit, NearFaces& near) const {
+Buffer<LevelFace> SurfaceCheck::far_faces(NearFaces& near) const {
   Buffer<LevelFace> far;
   for (const Buffer<LevelFace>&of_part :
        compare<Buffer<LevelFace>>([&](Comparison&comparison, uint32_t first, uint32_t last) {
-         return comparison.far_faces(limit, level_count_, near, first, last);
+         return comparison.far_faces(level_count_, near, first, last);
        }))
     far.insert(far.end(), of_part.begin(), of_part.end());
   return far;
 }
 
-double SurfaceCheck::largest_distance() const {
+double SurfaceCheck::largest_bound() const {
+  return std::ranges::max(compare<double>(
+      [](Comparison& comparison, uint32_t first, uint32_t last) { return comparison.largest_bound(first, last); }));
+}
+
+double SurfaceCheck::largest_share() const {
   constexpr double first_guess = 0.8, last_guess = 1.0 / 256;
-  const auto largest = [&](const auto& find) { return std::ranges::max(compare<double>(find)); };
-  const double most = largest(
-      [](Comparison& comparison, uint32_t first, uint32_t last) { return comparison.largest_bound(first, last); });
+  const double most = largest_bound();
   // Few distances are much smaller than the sum of the moves: what is above a guess is looked at.
   double guess = first_guess * most;
   while (guess > last_guess * most) {
-    const double found = largest([&](Comparison& comparison, uint32_t first, uint32_t last) {
-      return comparison.largest_distance(guess, level_count_, first, last);
-    });
+    const double found = std::ranges::max(compare<double>([&](Comparison& comparison, uint32_t first, uint32_t last) {
+      return comparison.largest_share(guess, level_count_, first, last);
+    }));
     if (found > guess) return found;
     guess /= 2;
   }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "hierarchy/allowed_distance.h"
 #include "hierarchy/level_choice.h"
 #include "hierarchy/result_surface.h"
 
@@ -22,17 +23,20 @@ using NearFaces = std::vector<Buffer<uint8_t>>;
 class SurfaceCheck {
  public:
   /// Of `level_count` levels some may be missing, where they were not explored. All must outlive this, and no level may
-  /// be added. `most_cosine`: see transition.h. `limit` is about what distances will be held against; in the mesh's
-  /// unit. Up to so many threads work on it.
-  SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count, double limit, int threads);
+  /// be added. `most_cosine`: see transition.h. Sums of moves below `share_known` of what is allowed may be bounded
+  /// loosely. Up to so many threads work on it.
+  SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count, AllowedDistance allowed,
+               double share_known, int threads);
 
-  /// The undivided faces, of those not marked in `near`, at which the distance exceeds `limit`, in the mesh's unit, in
-  /// the order of their coarse faces. Marks the others. O(faces of the levels' regions).
-  [[nodiscard]] Buffer<LevelFace> far_faces(double limit, NearFaces& near) const;
+  /// The undivided faces, of those not marked in `near`, at which the distance exceeds what is allowed, in the order of
+  /// their coarse faces. Marks the others. O(faces of the levels' regions).
+  [[nodiscard]] Buffer<LevelFace> far_faces(NearFaces& near) const;
 
-  /// Upper bound of the distance, in the mesh's unit. Below a face that
-  /// was not explored half of its largest move is added, where a smooth surface moves by a third.
-  [[nodiscard]] double largest_distance() const;
+  /// Upper bound of the distances as shares of what is allowed, which must not be 0. Below a face that was not explored
+  /// half of its largest move is added, where a smooth surface moves by a third.
+  [[nodiscard]] double largest_share() const;
+  /// The same, looser: the sums of moves at the undivided faces. O(faces of the levels' regions), and little.
+  [[nodiscard]] double largest_bound() const;
 
  private:
   template <class Found, class Find>
@@ -41,6 +45,7 @@ class SurfaceCheck {
   std::span<const LevelChoice> levels_;
   double most_cosine_;
   int level_count_;
+  AllowedDistance allowed_;
   int threads_;
   std::vector<Buffer<float>> sums_;  ///< of moves (move_bounds.h): few faces with small ones are looked at
 };

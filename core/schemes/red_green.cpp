@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "criteria/budget.h"
 #include "hierarchy/assemble.h"
 #include "hierarchy/detail_levels.h"
 #include "hierarchy/displaced_levels.h"
 #include "hierarchy/error_left.h"
+#include "hierarchy/exploration.h"
 #include "hierarchy/level_choice.h"
-#include "hierarchy/move_bounds.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/repair.h"
 #include "hierarchy/surface_check.h"
@@ -31,7 +32,8 @@ class RedGreen {
         progress_(progress),
         levels_(std::move(levels)),
         most_cosine_(most_cosine_beside(levels_.smallest_angle())),
-        threshold_(selection.threshold()) {}
+        threshold_(selection.threshold()),
+        exploration_(options, selection, levels_.plan(), progress) {}
 
   Result run() {
     choices_.push_back(choose_coarsest(levels_.deepest()));
@@ -57,7 +59,7 @@ class RedGreen {
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
-    if (bounds_distance() && options_.tolerance > 0 && !out_of_budget_ && !is_at_limit_ && repair(result.levels)) {
+    if (bounds_distance() && has_limit() && !out_of_budget_ && !is_at_limit_ && repair(result.levels)) {
       keep();
       if (progress_.wants_levels()) latest = assembled();
     }
@@ -69,8 +71,21 @@ class RedGreen {
  private:
   /// Whether the distance to the uniform surface is bounded: where errors decide, and nothing else.
   [[nodiscard]] bool bounds_distance() const {
-    return selection_.is_by_error() && options_.flatness.empty() && selection_.camera() == nullptr &&
-           options_.levels > 0;
+    return selection_.is_by_error() && options_.flatness.empty() && options_.levels > 0 &&
+           (selection_.camera() == nullptr || is_view_verified(*options_.view));
+  }
+  [[nodiscard]] static bool is_view_verified(const View& view) {
+    return view.verify && view.error_pixels > 0 && view.edge_pixels == 0 && view.lights.empty();
+  }
+  [[nodiscard]] bool has_limit() const { return options_.tolerance > 0 || selection_.camera() != nullptr; }
+
+  /// What is asked for, or a share of that.
+  [[nodiscard]] DistanceLimit limit(double share) const {
+    DistanceLimit limit{.everywhere = share * options_.tolerance * selection_.diagonal()};
+    if (selection_.camera() == nullptr) return limit;
+    limit.camera = selection_.camera();
+    limit.pixels = share * options_.view->error_pixels;
+    return limit;
   }
 
   /// Finds how much the edges of the lowest level want to be split.
@@ -195,7 +210,9 @@ class RedGreen {
 
   /// Makes the next level where it may be needed; false when it is needed nowhere.
   bool go_deeper(int level) {
-    const Buffer<uint32_t> red = selection_.is_by_error() ? faces_to_look_into() : faces_to_divide();
+    const Buffer<uint32_t> red = selection_.is_by_error()
+                                     ? exploration_.faces_to_look_into(choices_, threshold_, limit_to_explore())
+                                     : faces_to_divide();
     if (red.empty()) return false;
     mark_red(choices_.back(), red);
     if (!has_room_below(level + 1)) return false;
@@ -226,6 +243,13 @@ class RedGreen {
     return true;
   }
 
+  /// What the distance is bounded by; nothing where it is not.
+  [[nodiscard]] std::optional<DistanceLimit> limit_to_explore() const {
+    if (!bounds_distance()) return std::nullopt;
+    if (selection_.camera() != nullptr) return limit(threshold_ / selection_.threshold());
+    return DistanceLimit{.everywhere = threshold_ * selection_.diagonal()};
+  }
+
   /// Those that are divided, and those at an outline.
   [[nodiscard]] Buffer<uint32_t> faces_to_divide() {
     LevelChoice& choice = choices_.back();
@@ -235,71 +259,11 @@ class RedGreen {
     return red;
   }
 
-  /// Every face that touches one with an edge of large error, or one below which the result may be too far from the
-  /// surface, unless its edges may not be split. (Edges of half that error were tried too, and a tenth: results were
-  /// the same.) Of a mesh with detail also every face below which a move of its finer levels may be: where the distance
-  /// is bounded these are all. In a mechanical mesh an edge that stays in a flat may bend a level further, once the
-  /// faces beside it have: there their neighbours are looked into, too.
-  [[nodiscard]] Buffer<uint32_t> faces_to_look_into() {
-    const LevelChoice& choice = choices_.back();
-    const Topology& mesh = choice.level->mesh.topology;
-    Buffer<uint8_t> touched(mesh.vertex_count, 0);
-    const auto touch = [&](uint32_t f) {
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
-    };
-    if (bounds_distance()) {
-      const size_t k = choices_.size() - 1;
-      sums_above_ =
-          k == 0 ? Buffer<float>(mesh.face_count(), 0) : sums_above(choices_[k - 1], sums_above_, moves_, choice);
-      const double limit = threshold_ * selection_.diagonal();
-      moves_ = largest_moves(choice, limit / 64);
-      touched = vertices_that_may_leave(choice, sums_above_, moves_, static_cast<float>(limit));
-    }
-    for (uint32_t f : choice.region.faces) {
-      const uint32_t* edge = &mesh.edge[size_t{3} * f];
-      if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= threshold_) touch(f);
-    }
-    if (choice.level->detail_levels > 1) {
-      if (!bounds_distance())
-        move_below_ =
-            largest_move_below(coarse(), static_cast<int>(choices_.size()), options_, levels_.plan(), progress_);
-      for (uint32_t f : choice.region.faces)
-        if (bounds_distance() || (choice.may_divide(f) && may_have_detail_below(f))) touch(f);
-    }
-    if (mesh.shape.is_mechanical) {
-      const Buffer<uint8_t> near = touched;
-      for (uint32_t f : choice.region.faces) {
-        const uint32_t* corner = &mesh.origin[size_t{3} * f];
-        if ((near[corner[0]] | near[corner[1]] | near[corner[2]]) != 0)
-          for (uint32_t i = 0; i < 3; ++i) touched[corner[i]] = 1;
-      }
-    }
-    Buffer<uint32_t> faces = choice.region.faces;
-    keep_if(faces, [&](uint32_t f) {
-      const uint32_t* corner = &mesh.origin[size_t{3} * f];
-      const bool is_touched = (touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0;
-      const bool may_divide = choice.may_divide(f);
-      return is_touched & may_divide;
-    });
-    return faces;
-  }
-
-  /// Whether the detail may have a move of large error below a face: how large those of a level are says nothing of the
-  /// next.
-  [[nodiscard]] bool may_have_detail_below(uint32_t face) {
-    const LevelChoice& choice = choices_.back();
-    const HierarchyLevel& level = *choice.level;
-    const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
-    return std::any_of(edge, edge + 3, [&](uint32_t e) {
-      return choice.shown[e] && selection_.error_of(level.mesh, level.trial, e, move_below_) >= threshold_;
-    });
-  }
-
   /// Splits further edges until the result is within the tolerance of the uniform surface, as far as budget and limits
   /// allow. Returns whether any was split.
   bool repair(int& level) {
-    const double limit = share_of_tolerance * options_.tolerance * selection_.diagonal();
-    Repair repair(choices_, selection_.threshold(), most_cosine_, limit, options_.levels, progress_.threads());
+    Repair repair(choices_, selection_.threshold(), most_cosine_, allowed(share_of_tolerance), options_.levels,
+                  progress_.threads());
     bool has_repaired = false;
     while (repair.add_candidates()) {
       progress_.poll();
@@ -314,9 +278,15 @@ class RedGreen {
         if (!choices_[k].split_edges.empty()) level = std::max(level, static_cast<int>(k) + 1);
       repair.look_again();
     }
-    if (has_repaired && repair.is_complete()) distance_ = limit;
-    if (has_detail() && repair.is_complete()) most_distance_ = limit;
+    is_within_limit_ = repair.is_complete();
+    has_repaired_ = has_repaired;
     return has_repaired;
+  }
+
+  /// That of limit().
+  [[nodiscard]] AllowedDistance allowed(double share) const {
+    if (selection_.camera() == nullptr) return AllowedDistance(limit(share).everywhere);
+    return {choices_, limit(share)};
   }
 
   /// Whether the result may be as large as it is now.
@@ -345,10 +315,22 @@ class RedGreen {
   /// Upper bound of the distance from the uniform surface.
   [[nodiscard]] double distance() const {
     if (has_detail() && is_uniform()) return 0;
-    if (distance_ > 0) return distance_;
-    const double found =
-        SurfaceCheck(choices_, most_cosine_, options_.levels, 0, progress_.threads()).largest_distance();
-    return std::min(found, most_distance_);
+    const double limit_kept = limit(share_of_tolerance).everywhere;
+    if (is_within_limit_ && has_repaired_) return limit_kept;
+    const double found = surface_check(AllowedDistance(1)).largest_share();
+    return is_within_limit_ && has_detail() ? std::min(found, limit_kept) : found;
+  }
+
+  /// The same in pixels, of what the view shows.
+  [[nodiscard]] double distance_in_pixels() const {
+    if (has_detail() && is_uniform()) return 0;
+    const SurfaceCheck check = surface_check(allowed(1));
+    return options_.view->error_pixels *
+           (is_within_limit_ ? std::min(check.largest_bound(), share_of_tolerance) : check.largest_share());
+  }
+
+  [[nodiscard]] SurfaceCheck surface_check(AllowedDistance allowed) const {
+    return {choices_, most_cosine_, options_.levels, std::move(allowed), 0, progress_.threads()};
   }
 
   void finish(Result& result, Mesh latest) {
@@ -356,9 +338,11 @@ class RedGreen {
     if (options_.measure_error) {
       const ErrorLeft left = error_left(choices_, selection_);
       result.error = left.error();
-      if (bounds_distance() && selection_.diagonal() > 0)
-        result.error = std::max(result.error, distance() / selection_.diagonal());
       result.error_pixels = left.pixels();
+      if (bounds_distance() && selection_.camera() == nullptr && selection_.diagonal() > 0)
+        result.error = std::max(result.error, distance() / selection_.diagonal());
+      else if (bounds_distance() && selection_.camera() != nullptr && options_.tolerance == 0)
+        result.error_pixels = std::max(result.error_pixels, distance_in_pixels());
     }
     if (out_of_budget_)
       result.stop_reason = StopReason::budget;
@@ -381,12 +365,10 @@ class RedGreen {
   std::vector<LevelChoice> choices_;  ///< [level]
   double most_cosine_;                ///< what transition faces keep to
   float threshold_;
-  Splits kept_;          ///< [level] the edges split when a level last changed something
-  double distance_ = 0;  ///< bound of that to the uniform surface, where repair() found one
-  /// Known bound of the same with detail, whose large moves make others loose.
-  double most_distance_ = std::numeric_limits<double>::infinity();
-  Buffer<float> sums_above_, moves_;  ///< [F] of the lowest level that was looked into (move_bounds.h)
-  double move_below_ = 0;             ///< the largest of the detail below the deepest level
+  Splits kept_;  ///< [level] the edges split when a level last changed something
+  Exploration exploration_;
+  bool is_within_limit_ = false;  ///< of the surface, as repair() found; which may have split more
+  bool has_repaired_ = false;
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

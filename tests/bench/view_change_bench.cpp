@@ -95,13 +95,16 @@ void add_orbit(const std::string& name, const proto::QueryFields& criteria, bool
 }  // namespace
 
 void add_view_change() {
-  const proto::QueryFields by_error{{"levels", "3"}, {"view.error_pixels", "0.5"}, {"view.edge_pixels", "0"}};
+  const proto::QueryFields verified{{"levels", "3"}, {"view.error_pixels", "0.5"}, {"view.edge_pixels", "0"}};
+  proto::QueryFields by_error = verified;
+  by_error.emplace_back("view.verify", "false");
   const proto::QueryFields by_flatness{{"levels", "3"}, {"flatness", "0.8,0.9,0.95"}, {"view.edge_pixels", "4"}};
   for (bool whole : {true, false})
     for (bool first_round : {false, true}) {
       add_orbit("error_pixels", by_error, whole, first_round);
       add_orbit("flatness", by_flatness, whole, first_round);
     }
+  add_orbit("error_pixels verified", verified, false, false);
 }
 
 }  // namespace papilio::bench

@@ -135,6 +135,8 @@ test('a vertex is at the same place in every view', async () => {
 
 test('a server refines to the same faces, and the nodes stay', async () => {
   const { page, faults } = await open();
+  const asked = [];
+  page.on('request', (request) => request.url().includes('error_pixels') && asked.push(request.url()));
   for (const file of ['/bunny.drc', '/red.glb']) {
     const seen = await page.evaluate(
       async ([url, base]) => {
@@ -159,6 +161,8 @@ test('a server refines to the same faces, and the nodes stay', async () => {
       [file, server.url],
     );
     assert.equal(seen.theirs.faces, seen.own.faces);
+    // A picture cannot wait for the surfaces to be compared.
+    assert.ok(asked.length > 0 && asked.every((url) => url.includes('view.verify=false')), asked.join('\n'));
     assert.ok(seen.own.faces > 12 && seen.isSame, JSON.stringify(seen));
     assert.equal(seen.hasMap, file === '/red.glb');
     assert.equal(seen.isTextured, seen.hasMap);

@@ -171,7 +171,7 @@ TEST(PreparedMesh, GrowsByWhatIsNewWithinItsBudget) {
   const auto ask = [&](const PreparedMesh& prepared, double degrees) {
     Options options{.levels = 3, .view = view_from(coarse, degrees)};
     options.view->error_pixels = 1;
-    options.view->fov_y = 6;  // little of it: where much is needed, everything is made and kept
+    options.view->fov_y = 2;  // little of it: where much is needed, everything is made and kept
     (void)refine(prepared, options);
     return prepared.bytes();
   };

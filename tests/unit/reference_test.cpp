@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "criteria/camera.h"
 #include "tests/support/decisive_request.h"
+#include "tests/support/seen_distance.h"
 #include "tests/support/shapes.h"
 #include "tests/support/small_surfaces.h"
 #include "tests/support/two_sided_distance.h"
@@ -93,6 +95,12 @@ bool is_repaired(const Options& options) {
          (options.tolerance > 0 || options.max_faces > 0);
 }
 
+/// Whether it does so until all that a view shows is near enough.
+bool is_verified(const Options& options) {
+  return options.scheme == Scheme::red_green && options.view && options.flatness.empty() &&
+         options.view->error_pixels > 0 && options.view->edge_pixels == 0 && options.view->lights.empty();
+}
+
 /// Whether the mesh has the vertices of the reference, within rounding.
 bool has_vertices(const Mesh& mesh, const reference::Outcome& expected, const Box& box) {
   const VertexFinder vertices(mesh);
@@ -110,7 +118,7 @@ void expect_repaired(const Result& result, const Mesh& coarse, const Options& op
   uniform.tolerance = 0;
   uniform.max_faces = 0;
   const double distance = two_sided_distance(result.mesh, papilio::refine(coarse, uniform).mesh).largest();
-  constexpr double sampling = 1.02;
+  constexpr double sampling = 1.03;
   EXPECT_LE(distance, sampling * result.error * box.diagonal() + rounding_in(box));
   if (options.max_faces > 0) {
     EXPECT_LE(result.mesh.topology.face_count(), options.max_faces);
@@ -119,6 +127,27 @@ void expect_repaired(const Result& result, const Mesh& coarse, const Options& op
   EXPECT_GE(result.mesh.topology.face_count(), expected.triangles.size());
   EXPECT_TRUE(has_vertices(result.mesh, expected, box));
   EXPECT_LE(distance, sampling * options.tolerance * box.diagonal() + rounding_in(box));
+}
+
+/// What was verified is measured.
+void expect_verified(const Mesh& coarse, const Options& options) {
+  const Result result = papilio::refine(coarse, options);
+  Options uniform = options;
+  uniform.tolerance = 0;
+  uniform.max_faces = 0;
+  uniform.view.reset();
+  const double pixels = seen_distance(result.mesh, papilio::refine(coarse, uniform).mesh, *options.view).largest();
+  constexpr double sampling = 1.25;
+  const Box box = bounding_box(coarse.positions);
+  const double rounding = rounding_in(box) * Camera(*options.view).highest_pixels_per_unit(box);
+  if (options.tolerance == 0) {
+    EXPECT_LE(pixels, sampling * result.error_pixels + rounding);
+  }
+  if (options.max_faces > 0) {
+    EXPECT_LE(result.mesh.topology.face_count(), options.max_faces);
+  } else if (options.tolerance == 0) {
+    EXPECT_LE(pixels, sampling * options.view->error_pixels + rounding);
+  }
 }
 
 void expect_same(const Result& result, const reference::Outcome& expected, const Box& box) {
@@ -141,7 +170,12 @@ class Comparison {
     ++requests_;
     if (expected.is_disputed || !(expected.margin >= enough_margin)) return;
     SCOPED_TRACE(text_of(options));
-    const Result result = papilio::refine(mesh, options);
+    Options chosen = options;
+    if (is_verified(options)) {
+      expect_verified(mesh, options);
+      chosen.view->verify = false;
+    }
+    const Result result = papilio::refine(mesh, chosen);
     if (is_repaired(options))
       expect_repaired(result, mesh, options, expected);
     else

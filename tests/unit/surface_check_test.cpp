@@ -107,6 +107,21 @@ TEST(Tolerance, RefinesTheRimOfAThinLeaf) {
   EXPECT_GT(refine(coarse, fine).mesh.topology.face_count(), 4 * coarse.topology.face_count());
 }
 
+/// Between two lines that are skew to each other, with all vertices on these: at the first level none moves.
+TriangleMesh skew_strip() {
+  TriangleMesh strip;
+  for (uint32_t i = 0; i < 4; ++i) strip.positions.push_back({static_cast<float>(i), 0, 0});
+  for (uint32_t i = 0; i < 3; ++i)
+    strip.positions.push_back({static_cast<float>(i) + 0.5F, 1, 2 * static_cast<float>(i)});
+  strip.triangles = {{0, 1, 4}, {1, 5, 4}, {1, 2, 5}, {2, 6, 5}, {2, 3, 6}};
+  return strip;
+}
+
+TEST(Tolerance, HoldsWhereTheFirstLevelMovesNothing) {
+  const Mesh coarse = build_mesh(skew_strip());
+  for (double tolerance : {1e-2, 3e-3, 1e-3}) expect_kept(coarse, {.levels = 4, .tension = Tension::off}, tolerance);
+}
+
 TEST(Tolerance, ErrorIsAtMostTwiceTheDistance) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj", "cgal/rotor_small.off", "cgal/joint.off"}) {
     const Mesh coarse = build_mesh(real_mesh(name));

@@ -21,6 +21,10 @@ struct View {
   /// Edges are split only where the surface would move by at least this many pixels, as large as the move looks from
   /// its distance, whichever way it goes; 0 turns the criterion off.
   double error_pixels = 0;
+  /// Whether results by error_pixels alone, without lights and `edge_pixels`, are compared with the uniform surface,
+  /// and refined further until nothing that the picture shows is further from it than so many pixels. Takes most of the
+  /// time.
+  bool verify = true;
   /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
   /// over the edge and by whether it is on the silhouette (lighting.h).
   std::vector<Vec3d> lights{};

@@ -142,7 +142,7 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     }
     const { z, w } = renderer.getCurrentViewport(new Vector4());
     const seen = viewOf(object, camera, [z, w]);
-    return seen && queryOf({ ...rest, view: { ...seen, ...(view as object) } } as Parameters);
+    return seen && queryOf({ ...rest, view: { verify: false, ...seen, ...(view as object) } } as Parameters);
   }
 
   async #refinePart(parts: Parts, part: Part, query: string): Promise<void> {

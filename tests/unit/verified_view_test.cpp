@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "papilio/refine.h"
+#include "tests/support/random_request.h"
+#include "tests/support/real_mesh.h"
+#include "tests/support/seen_distance.h"
+
+// What view.error_pixels promises: nothing that the picture shows of the result or of the uniform one of the same
+// levels is further from the other. Measured with a tree of boxes (seen_distance.h), which knows nothing of levels.
+
+namespace papilio {
+namespace {
+
+using namespace test;
+
+Vec3d centre_of(const Box& box) { return 0.5 * (to_double(box.min) + to_double(box.max)); }
+
+/// An eye that looks at the mesh from a random side, and from where it fills the picture or a part of it is cut off.
+View random_view(std::mt19937& random, const Box& box) {
+  std::normal_distribution<double> direction;
+  Vec3d towards{direction(random), direction(random), direction(random)};
+  towards = 1 / length(towards) * towards;
+  const double distance = std::uniform_real_distribution<double>(0.8, 2)(random);
+  const Vec3d centre = centre_of(box);
+  return {.eye = centre + distance * box.diagonal() * towards,
+          .target = centre,
+          .up = std::abs(towards.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0},
+          .viewport = {800, 600},
+          .edge_pixels = 0};
+}
+
+struct Measured {
+  Result result;
+  SeenDistance distance;
+};
+
+Measured measure(const Mesh& coarse, const Options& options) {
+  Measured measured{.result = refine(coarse, options), .distance = {}};
+  Options all = options;
+  all.view.reset();
+  measured.distance = seen_distance(measured.result.mesh, refine(coarse, all).mesh, *options.view);
+  return measured;
+}
+
+void expect_kept(const Mesh& coarse, Options options, double pixels) {
+  SCOPED_TRACE(std::to_string(pixels) + " pixels");
+  constexpr double sampling = 1.25;  // between the points that the core compares a distance may be larger
+  options.view->error_pixels = pixels;
+  const auto [result, distance] = measure(coarse, options);
+  EXPECT_LE(distance.largest(), sampling * pixels) << result.mesh.topology.face_count() << " faces";
+  EXPECT_LE(distance.largest(), sampling * result.error_pixels + 1e-3);
+  if (result.stop_reason == StopReason::converged) {
+    EXPECT_LE(result.error_pixels, pixels);
+  }
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int views = 1;  // more take minutes
+#else
+constexpr int views = 3;
+#endif
+
+TEST(VerifiedView, HoldsForRealMeshesFromBothSides) {
+  std::mt19937 random(1);
+  for (const auto& [name, levels] : {std::pair{"bunny600.obj", 4}, {"elephant2000.obj", 3}, {"cgal/joint.off", 4}}) {
+    SCOPED_TRACE(name);
+    const Mesh coarse = build_mesh(real_mesh(name));
+    for (int i = 0; i < views; ++i) {
+      const View view = random_view(random, bounding_box(coarse.positions));
+      for (double pixels : {0.5, 1.0, 2.0, 4.0}) expect_kept(coarse, {.levels = levels, .view = view}, pixels);
+    }
+  }
+}
+
+TEST(VerifiedView, HoldsForRandomMeshes) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const Mesh coarse = build_mesh(random_small_mesh(random));
+    Options options{.levels = 3};
+    choose_rules(random, options);
+    options.view = random_view(random, bounding_box(coarse.positions));
+    expect_kept(coarse, options, std::pow(10, 1 - 1.5 * i / 60));
+  }
+}
+
+TEST(VerifiedView, HasTheSplitsOfOneThatIsNotAndMore) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  const Box box = bounding_box(coarse.positions);
+  Options options{.levels = 4, .view = View{.target = centre_of(box), .edge_pixels = 0, .error_pixels = 1}};
+  options.view->eye = framing_eye(*options.view, box);
+  const Result verified = refine(coarse, options);
+  options.view->verify = false;
+  const Result not_verified = refine(coarse, options);
+  EXPECT_GT(verified.mesh.topology.face_count(), not_verified.mesh.topology.face_count());
+  EXPECT_LT(verified.mesh.topology.face_count(), 2 * not_verified.mesh.topology.face_count());
+}
+
+}  // namespace
+}  // namespace papilio
