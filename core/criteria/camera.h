@@ -32,10 +32,12 @@ class Camera {
   /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
   /// perspective.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const {
-    const Vec3d sight = perspective_ ? point - eye_ : forward_;
+    const Vec3d sight = sight_to(point);
     const double along = dot(sight, normal);
     return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
   }
+  /// True when it is turned to the viewer, by a normal of any length.
+  [[nodiscard]] bool is_towards(Vec3d point, Vec3d normal) const { return dot(sight_to(point), normal) < 0; }
   /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
   [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
   /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
@@ -51,6 +53,7 @@ class Camera {
   [[nodiscard]] std::vector<Plane> planes_through(const Box& box) const;
 
  private:
+  [[nodiscard]] Vec3d sight_to(Vec3d point) const { return perspective_ ? point - eye_ : forward_; }
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
   [[nodiscard]] std::array<double, 2> projected_difference(Vec3d a, Vec3d b) const;
   [[nodiscard]] double pixels_per_unit_at(double depth) const {

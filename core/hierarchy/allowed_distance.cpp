@@ -1,22 +1,37 @@
 #include "hierarchy/allowed_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hierarchy/patch.h"
+#include "split/split_pattern.h"
 
 namespace papilio {
 namespace {
 
+/// Of a triangle, as long as twice its area.
+Vec3d area_normal(Vec3d a, Vec3d b, Vec3d c) { return cross(b - a, c - a); }
+
 /// Of length one; 0 of a triangle without area.
 Vec3d unit_normal(const Corners& corner) {
-  const Vec3d area = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const Vec3d area = area_normal(corner[0], corner[1], corner[2]);
   const double size = length(area);
   return size > 0 ? 1 / size * area : Vec3d{};
 }
 
+/// Whether one of the triangles is turned to the viewer that a transition face may be cut into.
+bool has_piece_towards(const Corners& corner, const Corners& made, const Camera& camera) {
+  const std::array<Vec3d, 6> point{corner[0], corner[1], corner[2], made[0], made[1], made[2]};
+  return std::any_of(split_patterns.begin() + 2, split_patterns.end() - 2, [&](const SplitPattern& cut) {
+    return std::any_of(cut.corner.begin(), cut.corner.begin() + cut.children, [&](const auto& c) {
+      return camera.is_towards(point[c[0]], area_normal(point[c[0]], point[c[1]], point[c[2]]));
+    });
+  });
+}
+
 /// The largest number of pixels per unit at a face if the picture may show any of it, of its pieces, or of what lies
-/// below; else 0. The normals of all these are taken to be no further from its own than three times those of its
+/// below; else 0. The normals of the last are taken to be no further from its own than three times those of its
 /// children are.
 double scale_at(const LevelChoice& choice, uint32_t face, const Camera& camera) {
   constexpr double all_turns = 3;
@@ -36,7 +51,7 @@ double scale_at(const LevelChoice& choice, uint32_t face, const Camera& camera) 
   double turn = 0;
   for (const Corners& child : children_of(corner, made))
     turn = std::max(turn, squared_norm(unit_normal(child) - normal));
-  return -facing <= all_turns * std::sqrt(turn) ? scale : 0;
+  return -facing <= all_turns * std::sqrt(turn) || has_piece_towards(corner, made, camera) ? scale : 0;
 }
 
 }  // namespace

@@ -44,7 +44,14 @@ double LevelSurface::squared_distance_to_level(uint32_t k, uint32_t f, Vec3d poi
 }
 
 double LevelSurface::squared_distance_to_children(uint32_t k, uint32_t f, Vec3d point, double enough) const {
-  for (; result_->has_children(k, f); ++k) f = result_->first_child(k, f) + child_below(k, f, point);
+  while (result_->has_children(k, f)) {
+    f = result_->first_child(k, f) + child_below(k, f, point);
+    ++k;
+    // The children may have slid along the face: the point may be above one of a face beside. Where that was not
+    // explored as deep, it does not tell where the surface is.
+    const uint32_t beside = walk_towards(k, f, point);
+    if (result_->has_children(k, beside) || !result_->has_children(k, f)) f = beside;
+  }
   const Corners corner = result_->corners(k, f);
   const std::array<Corners, 4> children = children_of(corner, result_->new_vertices(k, f, corner));
   double least = squared_distance_to(children[child_below(k, f, point)], point);

@@ -131,18 +131,18 @@ class Comparison {
     look_at(k, f, {.corner = corner, .made = made, .middle = middle, .on_ridge = sides}, below);
   }
 
-  /// By bits: of two leaves at a side one looks at it, but that may be one that is not looked at.
+  /// By bits: of two leaves of a level one looks at the side between them, but that may be one that is not looked at.
+  /// Of two levels both do: either may be explored further there.
   [[nodiscard]] unsigned sides_to_look_at() {
     const auto [k, f] = leaf_;
     const Topology& mesh = result_.topology(k);
     unsigned sides = 0;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-      bool is_own = mesh.half_edge[mesh.edge[h]] == h || mesh.twin[h] == none;
-      if (!is_own) {
-        result_.find_beside(leaf_, h % 3, beside_);
-        is_own = std::ranges::any_of(beside_, [&](const LevelFace& beside) { return is_surely_near(beside); });
-      }
-      if (is_own) sides |= 1U << h % 3;
+      result_.find_beside(leaf_, h % 3, beside_);
+      const uint32_t level = beside_.empty() ? none : beside_[0].level;
+      const bool is_own = level != k || mesh.half_edge[mesh.edge[h]] == h;
+      const auto is_left_out = [&](const LevelFace& beside) { return is_surely_near(beside); };
+      if (is_own || std::ranges::any_of(beside_, is_left_out)) sides |= 1U << h % 3;
     }
     return sides;
   }
@@ -355,18 +355,15 @@ double SurfaceCheck::largest_bound() const {
 }
 
 double SurfaceCheck::largest_share() const {
-  constexpr double first_guess = 0.8, last_guess = 1.0 / 256;
   const double most = largest_bound();
   // Few distances are much smaller than the sum of the moves: what is above a guess is looked at.
-  double guess = first_guess * most;
-  while (guess > last_guess * most) {
+  for (const double guess : {0.8 * most, 0.2 * most, 0.0}) {
     const double found = std::ranges::max(compare<double>([&](Comparison& comparison, uint32_t first, uint32_t last) {
       return comparison.largest_share(guess, level_count_, first, last);
     }));
     if (found > guess) return found;
-    guess /= 2;
   }
-  return last_guess * most;
+  return 0;
 }
 
 }  // namespace papilio

@@ -50,18 +50,19 @@ void expect_kept(const Mesh& coarse, Options options, double tolerance) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr size_t real_meshes = 2;  // more take minutes
 #else
-constexpr size_t real_meshes = 8;
+constexpr size_t real_meshes = 9;
 #endif
 
 TEST(Tolerance, HoldsForRealMeshesFromBothSides) {
-  constexpr std::array<std::pair<const char*, int>, 8> meshes{{{"bunny600.obj", 4},
+  constexpr std::array<std::pair<const char*, int>, 9> meshes{{{"bunny600.obj", 4},
                                                                {"cgal/bones.off", 2},
                                                                {"elephant2000.obj", 3},
                                                                {"cgal/rotor_small.off", 2},
                                                                {"cgal/joint.off", 4},
                                                                {"cgal/cactus.off", 3},
                                                                {"cgal/elephant-with-holes.off", 2},
-                                                               {"cgal/cheese.off", 1}}};
+                                                               {"cgal/cheese.off", 1},
+                                                               {"cgal/part.off", 3}}};
   for (const auto& [name, levels] : std::span(meshes).first(real_meshes)) {
     SCOPED_TRACE(name);
     const Mesh coarse = build_mesh(real_mesh(name));
@@ -123,11 +124,16 @@ TEST(Tolerance, HoldsWhereTheFirstLevelMovesNothing) {
 }
 
 TEST(Tolerance, ErrorIsAtMostTwiceTheDistance) {
-  for (const char* name : {"bunny600.obj", "elephant2000.obj", "cgal/rotor_small.off", "cgal/joint.off"}) {
+  for (const auto& [name, levels] : {std::pair{"bunny600.obj", 3},
+                                     {"elephant2000.obj", 3},
+                                     {"cgal/rotor_small.off", 3},
+                                     {"cgal/joint.off", 3},
+                                     {"cgal/mpi.off", 4},
+                                     {"cgal/tetrahedron.off", 4}}) {
     const Mesh coarse = build_mesh(real_mesh(name));
     for (double tolerance : {1e-2, 3e-3, 1e-3}) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(tolerance));
-      const auto [result, distance] = measure(coarse, {.levels = 3, .tolerance = tolerance});
+      const auto [result, distance] = measure(coarse, {.levels = levels, .tolerance = tolerance});
       if (result.stop_reason == StopReason::converged) {
         EXPECT_LE(result.error, 2 * distance);
       }

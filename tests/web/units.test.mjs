@@ -153,4 +153,7 @@ test('what chooses where to refine has no part in the uniform result, nor a view
   assert.deepEqual([12, 4000, 70_000, 1e6].map(levels), ['3', '3', '1', '1']);
   const pixels = new Map([['view.error_pixels', '0.5']]);
   assert.equal(valuesFor('adaptive', pixels, view, 100).get('tolerance'), '0.0005');
+  // Surfaces are not compared while the camera moves, unless the user says so.
+  assert.equal(valuesFor('view', pixels, view, 100).get('view.verify'), 'false');
+  assert.equal(valuesFor('view', new Map([...pixels, ['view.verify', 'true']]), view, 100).get('view.verify'), 'true');
 });

@@ -371,7 +371,7 @@ test('a link restores the whole state', async () => {
   await done(page);
   await drop(page, 'bunny.drc', readFileSync(join(meshes, 'bunny600.drc')));
   await page.locator('.panel[data-mode=coarse][data-faces="600"]').waitFor();
-  await page.getByRole('checkbox', { name: 'Uniform' }).uncheck();
+  await page.getByRole('checkbox', { name: 'Uniform', exact: true }).uncheck();
   await page.getByLabel('By level').check();
   await page.locator('[id="parameter-tolerance"]').fill('0.003');
   await page.keyboard.press('Enter');

@@ -60,10 +60,9 @@ export class Here {
     const rest = [...values].filter(([name]) => !places.includes(name) && !name.startsWith('output.'));
     const given = rest.map(([name, value]) => `${name}=${encodeURIComponent(value)}`).join('&');
     const near = values.get('view.near');
-    const verify = values.has('view.verify') ? {} : { verify: false }; // which takes longer than a picture may
     const refined = await Promise.all(
       this.#parts.all.map((part) => {
-        const view = { ...verify, ...viewOf(part.meshes[0], camera, pixels), ...(near !== undefined && { near }) };
+        const view = { ...viewOf(part.meshes[0], camera, pixels), ...(near !== undefined && { near }) };
         return this.#parts.refine(part, `${given}&${queryOf({ view } as never)}`);
       }),
     );

@@ -27,11 +27,17 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
     if (pixels > 0 && !hasTarget(values)) adaptive.set('tolerance', shortest(pixels / wholePicture));
     return adaptive;
   }
-  const all = new Map(values);
+  const all = forMoving(values);
   all.set('view.eye', view.eye.map(shortest).join(','));
   all.set('view.target', view.target.map(shortest).join(','));
   if (!all.has('view.viewport')) all.set('view.viewport', view.pixels.join(','));
   return all;
+}
+
+/// A picture that follows the camera does not wait for surfaces to be compared, unless the user says so.
+export function forMoving(values: Values): Values {
+  const all = new Map(values);
+  return all.has('view.error_pixels') && !all.has('view.verify') ? all.set('view.verify', 'false') : all;
 }
 
 /// What the user should know of it; empty: nothing.
