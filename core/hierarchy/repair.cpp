@@ -31,10 +31,10 @@ void set_splits(std::vector<LevelChoice>& choices, const Splits& splits) {
 }
 
 Repair::Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
-               int level_count, int threads)
+               int level_count, const Progress& progress)
     : choices_(choices),
       threshold_(threshold),
-      check_(choices, most_cosine, level_count, std::move(allowed), share_known, threads) {
+      check_(choices, most_cosine, level_count, std::move(allowed), share_known, progress) {
   for (const LevelChoice& choice : choices) near_.emplace_back(choice.level->mesh.topology.face_count(), 0);
 }
 

@@ -19,9 +19,9 @@ void set_splits(std::vector<LevelChoice>& choices, const Splits& splits);
 class Repair {
  public:
   /// `choices` must outlive this, and not grow. Edges with an error of at least `threshold` are candidates already.
-  /// Up to so many threads work on it.
+  /// `progress`: see surface_check.h.
   Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
-         int level_count, int threads);
+         int level_count, const Progress& progress);
 
   /// Makes candidates with the largest of all errors of those edges of the faces too far away at which the surface
   /// moves most. Returns false if there are none.

@@ -18,9 +18,10 @@ namespace {
 /// Compares a result with the surface, one undivided face after the other.
 class Comparison {
  public:
+  /// `progress` is asked whether to stop; null: nobody is.
   Comparison(std::span<const LevelChoice> levels, double most_cosine, const std::vector<Buffer<float>>& sums,
-             const AllowedDistance& allowed)
-      : result_(levels, most_cosine), sums_(sums), allowed_(allowed) {}
+             const AllowedDistance& allowed, const Progress* progress)
+      : result_(levels, most_cosine), sums_(sums), allowed_(allowed), progress_(progress) {}
 
   /// Below the coarse faces from `first` to the one before `last`.
   Buffer<LevelFace> far_faces(int level_count, NearFaces& near, uint32_t first, uint32_t last) {
@@ -79,6 +80,7 @@ class Comparison {
   void visit_leaves(const LevelFace& face, const Visit& visit) {
     const auto [k, f] = face;
     if (!result_.is_divided(k, f)) {
+      if (++visited_ % leaves_between_polls == 0 && progress_ != nullptr) progress_->poll();
       visit(face);
       return;
     }
@@ -293,12 +295,15 @@ class Comparison {
   static constexpr double share_of_sum = 0.25;  ///< of a move and its rest: what the further ones add
   static constexpr double share_of_rest = 0.5;  ///< of a move: all further ones together are a third where it is smooth
   static constexpr double along_diagonal = 2;
+  static constexpr uint32_t leaves_between_polls = 1024;
   static constexpr double quiet = 0.36;  ///< share of the limit, squared, below which no more samples are taken beside
 
   ResultSurface result_;
   LevelSurface surface_{result_};
   const std::vector<Buffer<float>>& sums_;
   const AllowedDistance& allowed_;
+  const Progress* progress_;
+  uint32_t visited_ = 0;      ///< leaves
   double squared_share_ = 0;  ///< of what is allowed: what distances must exceed for them to matter
   double allowed_here_ = 1;   ///< at the leaf at hand
   double limit_ = 0;          ///< the same there, as a squared distance
@@ -316,12 +321,12 @@ class Comparison {
 }  // namespace
 
 SurfaceCheck::SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count,
-                           AllowedDistance allowed, double share_known, int threads)
+                           AllowedDistance allowed, double share_known, const Progress& progress)
     : levels_(levels),
       most_cosine_(most_cosine),
       level_count_(level_count),
       allowed_(std::move(allowed)),
-      threads_(threads),
+      progress_(progress),
       sums_(sums_below(levels, level_count, share_known * allowed_.least())) {}
 
 /// What `find` returns for each part of the coarse faces.
@@ -330,10 +335,12 @@ std::vector<Found> SurfaceCheck::compare(const Find& find) const {
   const uint32_t count = levels_[0].level->mesh.topology.face_count();
   uint64_t faces = 0;
   for (const LevelChoice& choice : levels_) faces += choice.region.faces.size();
-  const uint32_t parts = std::min(count, parts_of(static_cast<uint32_t>(std::min<uint64_t>(faces, none)), threads_));
+  const uint32_t parts =
+      std::min(count, parts_of(static_cast<uint32_t>(std::min<uint64_t>(faces, none)), progress_.threads()));
   std::vector<Found> found(parts);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {
-    Comparison comparison(levels_, most_cosine_, sums_, allowed_);
+    // The first part is that of the calling thread, which alone may ask.
+    Comparison comparison(levels_, most_cosine_, sums_, allowed_, part == 0 ? &progress_ : nullptr);
     found[part] = find(comparison, first, last);
   });
   return found;

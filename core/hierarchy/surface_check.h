@@ -6,6 +6,7 @@
 
 #include "hierarchy/allowed_distance.h"
 #include "hierarchy/level_choice.h"
+#include "hierarchy/progress.h"
 #include "hierarchy/result_surface.h"
 
 // The distance between a result and the uniform surface, as far as its levels hold it: from both sides.
@@ -24,9 +25,9 @@ class SurfaceCheck {
  public:
   /// Of `level_count` levels some may be missing, where they were not explored. All must outlive this, and no level may
   /// be added. `most_cosine`: see transition.h. Sums of moves below `share_known` of what is allowed may be bounded
-  /// loosely. Up to so many threads work on it.
+  /// loosely. Works with as many threads as `progress` allows, and asks it now and then whether to stop.
   SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count, AllowedDistance allowed,
-               double share_known, int threads);
+               double share_known, const Progress& progress);
 
   /// The undivided faces, of those not marked in `near`, at which the distance exceeds what is allowed, in the order of
   /// their coarse faces. Marks the others. O(faces of the levels' regions).
@@ -46,7 +47,7 @@ class SurfaceCheck {
   double most_cosine_;
   int level_count_;
   AllowedDistance allowed_;
-  int threads_;
+  const Progress& progress_;
   std::vector<Buffer<float>> sums_;  ///< of moves (move_bounds.h): few faces with small ones are looked at
 };
 

@@ -263,7 +263,7 @@ class RedGreen {
   /// allow. Returns whether any was split.
   bool repair(int& level) {
     Repair repair(choices_, selection_.threshold(), most_cosine_, allowed(share_of_tolerance), options_.levels,
-                  progress_.threads());
+                  progress_);
     bool has_repaired = false;
     while (repair.add_candidates()) {
       progress_.poll();
@@ -330,7 +330,7 @@ class RedGreen {
   }
 
   [[nodiscard]] SurfaceCheck surface_check(AllowedDistance allowed) const {
-    return {choices_, most_cosine_, options_.levels, std::move(allowed), 0, progress_.threads()};
+    return {choices_, most_cosine_, options_.levels, std::move(allowed), 0, progress_};
   }
 
   void finish(Result& result, Mesh latest) {

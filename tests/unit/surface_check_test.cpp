@@ -195,5 +195,13 @@ TEST(Tolerance, RepairStopsWhenItIsCancelled) {
                Error);
 }
 
+TEST(Tolerance, AsksWhetherToStopWhileItCompares) {
+  const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
+  int asked = 0;
+  const Options options{.levels = 5, .tolerance = 1e-5};
+  const Result result = refine(coarse, options, {.cancelled = [&] { return ++asked, false; }});
+  EXPECT_GT(asked, static_cast<int>(result.mesh.topology.face_count() / 2048));
+}
+
 }  // namespace
 }  // namespace papilio
