@@ -60,7 +60,8 @@ build_examples() {
 
 @test "the core alone is built and installed without what only server and client need" {
   skip_if_sanitized
-  options=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='' -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)")
+  options=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='' -DCMAKE_UNITY_BUILD=ON
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)")
   for package in draco spdlog nlohmann_json CLI11 OpenSSL prometheus-cpp PkgConfig GTest benchmark; do
     options+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON") # as if it were not installed
   done
