@@ -63,8 +63,8 @@ class RedGreen {
       keep();
       if (progress_.wants_levels()) latest = assembled();
     }
-    levels_.hand_back();
     finish(result, std::move(latest));
+    levels_.hand_back();
     return result;
   }
 
