@@ -21,6 +21,7 @@ double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d p
   double least = std::numeric_limits<double>::infinity();
   for (;; --k) {
     least = std::min(least, squared_distance_to_level(k, f, point, enough));
+    if (least > enough) least = std::min(least, squared_distance_where_it_slid(k, f, point, enough));
     if (least <= enough || k == coarsest) return least;
     f = result_->level(k).parent_of(f);
   }
@@ -44,14 +45,23 @@ double LevelSurface::squared_distance_to_level(uint32_t k, uint32_t f, Vec3d poi
 }
 
 double LevelSurface::squared_distance_to_children(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+  for (; result_->has_children(k, f); ++k) f = result_->first_child(k, f) + child_below(k, f, point);
+  return squared_distance_to_new_faces(k, f, point, enough);
+}
+
+double LevelSurface::squared_distance_where_it_slid(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+  f = walk_towards(k, f, point);
   while (result_->has_children(k, f)) {
     f = result_->first_child(k, f) + child_below(k, f, point);
     ++k;
-    // The children may have slid along the face: the point may be above one of a face beside. Where that was not
-    // explored as deep, it does not tell where the surface is.
+    // Where a face beside was not explored as deep, it does not tell where the surface is.
     const uint32_t beside = walk_towards(k, f, point);
     if (result_->has_children(k, beside) || !result_->has_children(k, f)) f = beside;
   }
+  return squared_distance_to_new_faces(k, f, point, enough);
+}
+
+double LevelSurface::squared_distance_to_new_faces(uint32_t k, uint32_t f, Vec3d point, double enough) const {
   const Corners corner = result_->corners(k, f);
   const std::array<Corners, 4> children = children_of(corner, result_->new_vertices(k, f, corner));
   double least = squared_distance_to(children[child_below(k, f, point)], point);

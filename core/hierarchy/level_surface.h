@@ -23,6 +23,10 @@ class LevelSurface {
   [[nodiscard]] double squared_distance_to_level(uint32_t k, uint32_t f, Vec3d point, double enough);
   /// Of a face below which others are held, to the deepest ones below the point.
   [[nodiscard]] double squared_distance_to_children(uint32_t k, uint32_t f, Vec3d point, double enough) const;
+  /// The same by walking on each level: children may slide along the face until the point is above others.
+  [[nodiscard]] double squared_distance_where_it_slid(uint32_t k, uint32_t f, Vec3d point, double enough) const;
+  /// Of a face below which none is held.
+  [[nodiscard]] double squared_distance_to_new_faces(uint32_t k, uint32_t f, Vec3d point, double enough) const;
   /// Faces beyond may be held for other requests, or not.
   [[nodiscard]] uint32_t twin_in_region(uint32_t k, uint32_t h) const;
   /// Walks over the faces of a level, each time across the side that lies most between, until the point is above one.

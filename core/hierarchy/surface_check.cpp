@@ -133,16 +133,16 @@ class Comparison {
     look_at(k, f, {.corner = corner, .made = made, .middle = middle, .on_ridge = sides}, below);
   }
 
-  /// By bits: of two leaves of a level one looks at the side between them, but that may be one that is not looked at.
-  /// Of two levels both do: either may be explored further there.
+  /// By bits: of two leaves one looks at the side between them, but that may be one that is not looked at. Of two
+  /// levels it is the finer, below which as much was explored.
   [[nodiscard]] unsigned sides_to_look_at() {
     const auto [k, f] = leaf_;
     const Topology& mesh = result_.topology(k);
     unsigned sides = 0;
     for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
       result_.find_beside(leaf_, h % 3, beside_);
-      const uint32_t level = beside_.empty() ? none : beside_[0].level;
-      const bool is_own = level != k || mesh.half_edge[mesh.edge[h]] == h;
+      const bool is_own =
+          beside_.empty() || beside_[0].level < k || (beside_[0].level == k && mesh.half_edge[mesh.edge[h]] == h);
       const auto is_left_out = [&](const LevelFace& beside) { return is_surely_near(beside); };
       if (is_own || std::ranges::any_of(beside_, is_left_out)) sides |= 1U << h % 3;
     }
