@@ -14,8 +14,8 @@ struct DistanceLimit {
   const Camera* camera = nullptr;  ///< null: none
   double pixels = 0;               ///< with a camera: further where this is less than so many
 
-  /// [F] of the choice's region, in the mesh's unit. Infinite where the picture shows neither the face nor any of those
-  /// that it may be split into; of further levels it is assumed that faces turn no more than at this.
+  /// [F] of the choice's region, in the mesh's unit. Infinite where the picture shows neither the face nor its pieces,
+  /// nor what lies below, whose normals are taken to be within three times the turn of its children's.
   [[nodiscard]] Buffer<float> at_faces(const LevelChoice& choice) const;
 };
 

@@ -18,10 +18,10 @@ failed=0
 
 unit=(ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)")
 if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); fi
-# Long tests of what runs in one thread, in which this sanitizer has nothing to find.
-one_thread='Budget|Detail(Baseline|Normals|Texcoords)?\.|DetailLevels\.Boundaries|Draco(Attributes|Bounds)'
-one_thread+='|Edgebreaker|EveryRealMesh|Growth|mesh_file|OptimalCollapse|Pack\.|Reference|SimplifiedDraco|Tolerance\.(Holds|Error)'
-[[ $preset != tsan ]] || unit+=(-E "^($one_thread|.*CurvedCollapses|.*(RedGreen|Shape|Simplify)(OnReal|Real)Mesh)")
+# The thread sanitizer has the tests alone that name threads, servers or HTTP (tests/CMakeLists.txt); of these, without long
+# ones of what runs in one thread.
+one_thread='DetailLevels\.Boundaries|DracoAttributes|Growth|Tolerance\.(Holds|Error)|.*RedGreen(OnReal|Real)Mesh'
+[[ $preset != tsan ]] || unit+=(-E "^($one_thread)")
 # And of one kernel, whose memory other tests look at in all its functions.
 [[ $preset != asan ]] || unit+=(-E '^(DetailBaseline|Edgebreaker/EdgebreakerAtSpeed|Growth|Pack\.TakesTheSimplified)')
 [[ ${PAPILIO_TEST_UNITS:-yes} != yes ]] || "${unit[@]}" || failed=1
