@@ -6,34 +6,21 @@
 
 #include "client/lib/surface_distance.h"
 #include "criteria/camera.h"
+#include "tests/support/two_sided_distance.h"
 
 namespace papilio::test {
 namespace {
 
 using client::SurfaceDistance;
 
-std::vector<TriangleCorners> corners_of(const Mesh& mesh) {
-  std::vector<TriangleCorners> all;
-  all.reserve(mesh.topology.face_count());
-  const auto at = [&](uint32_t h) { return to_double(mesh.positions[mesh.topology.origin[h]]); };
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); h += 3) all.push_back({at(h), at(h + 1), at(h + 2)});
-  return all;
-}
-
 /// Calls `visit` with samples of the faces that the camera sees.
 template <class Visit>
 void visit_seen(const std::vector<TriangleCorners>& faces, const Camera& camera, const Visit& visit) {
-  constexpr int steps = 4;
-  for (const auto& [a, b, c] : faces) {
-    const Vec3d normal = cross(b - a, c - a);
-    if (!(length(normal) > 0) || camera.is_away(a, 1 / length(normal) * normal)) continue;
-    for (int i = 0; i <= steps; ++i)
-      for (int j = 0; i + j <= steps; ++j) {
-        const double u = static_cast<double>(i) / steps;
-        const double v = static_cast<double>(j) / steps;
-        const Vec3d sample = (1 - u - v) * a + u * b + v * c;
-        if (!camera.is_outside(sample, 0)) visit(sample);
-      }
+  for (const TriangleCorners& face : faces) {
+    const Vec3d normal = cross(face.b - face.a, face.c - face.a);
+    if (!(length(normal) > 0) || camera.is_away(face.a, 1 / length(normal) * normal)) continue;
+    for (const Vec3d& sample : samples_of(face))
+      if (!camera.is_outside(sample, 0)) visit(sample);
   }
 }
 

@@ -14,8 +14,7 @@ struct SeenDistance {
 };
 
 /// Measures with a tree of boxes. What is turned to the viewer and inside of the picture counts as seen, also where
-/// something else covers it; a distance is as large as it looks from its own, whichever way it goes. Each face is
-/// sampled at its corners, the quarters of its sides and inner points between these.
+/// something else covers it; a distance is as large as it looks there, whichever way it goes. Each face is sampled.
 [[nodiscard]] SeenDistance seen_distance(const Mesh& adaptive, const Mesh& uniform, const View& view);
 
 }  // namespace papilio::test

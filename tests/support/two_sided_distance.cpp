@@ -7,8 +7,6 @@
 #include "client/lib/surface_distance.h"
 
 namespace papilio::test {
-namespace {
-
 using client::SurfaceDistance;
 
 std::vector<TriangleCorners> corners_of(const Mesh& mesh) {
@@ -19,7 +17,18 @@ std::vector<TriangleCorners> corners_of(const Mesh& mesh) {
   return all;
 }
 
-}  // namespace
+std::array<Vec3d, 15> samples_of(const TriangleCorners& face) {
+  constexpr int steps = 4;
+  std::array<Vec3d, 15> samples;
+  size_t at = 0;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; i + j <= steps; ++j) {
+      const double u = static_cast<double>(i) / steps;
+      const double v = static_cast<double>(j) / steps;
+      samples[at++] = (1 - u - v) * face.a + u * face.b + v * face.c;
+    }
+  return samples;
+}
 
 TwoSidedDistance two_sided_distance(const Mesh& adaptive, const Mesh& uniform) {
   const std::vector<TriangleCorners> faces = corners_of(adaptive);
@@ -33,14 +42,9 @@ TwoSidedDistance two_sided_distance(const Mesh& adaptive, const Mesh& uniform) {
     sum += distance * distance;
   }
   found.rms = std::sqrt(sum / static_cast<double>(uniform.positions.size()));
-  constexpr int steps = 4;
-  for (const auto& [a, b, c] : faces)
-    for (int i = 0; i <= steps; ++i)
-      for (int j = 0; i + j <= steps; ++j) {
-        const double u = static_cast<double>(i) / steps;
-        const double v = static_cast<double>(j) / steps;
-        found.to_uniform = std::max(found.to_uniform, to_uniform.distance((1 - u - v) * a + u * b + v * c));
-      }
+  for (const TriangleCorners& face : faces)
+    for (const Vec3d& sample : samples_of(face))
+      found.to_uniform = std::max(found.to_uniform, to_uniform.distance(sample));
   return found;
 }
 

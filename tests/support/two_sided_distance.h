@@ -1,8 +1,17 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "papilio/mesh.h"
+#include "papilio/triangle_distance.h"
 
 namespace papilio::test {
+
+/// Of each face.
+[[nodiscard]] std::vector<TriangleCorners> corners_of(const Mesh& mesh);
+/// A face's corners, the quarters of its sides and inner points between these.
+[[nodiscard]] std::array<Vec3d, 15> samples_of(const TriangleCorners& face);
 
 /// The largest distances between an adaptive result and the uniform one of the same levels, in the mesh's unit.
 struct TwoSidedDistance {
@@ -13,7 +22,7 @@ struct TwoSidedDistance {
 };
 
 /// Measures with a tree of boxes, and shares nothing with the core but the distance to one triangle. Each adaptive face
-/// is sampled at its corners, the quarters of its sides and inner points between these.
+/// is sampled.
 [[nodiscard]] TwoSidedDistance two_sided_distance(const Mesh& adaptive, const Mesh& uniform);
 
 }  // namespace papilio::test
