@@ -239,7 +239,7 @@ const std::array table{
         .type = ParameterType::boolean,
         .description =
             "Compares what view.error_pixels gives with the uniform surface, and refines until nothing visible "
-            "is further from it; false: results are up to a hundred times faster, and a few pixels off in "
+            "is further from it; false: results are ten to 160 times faster, and a few pixels off in "
             "places. Not with view.edge_pixels or view.lights",
         .get = [](const Parameters& p) { return Values{view_of(p).verify ? 1.0 : 0.0}; },
         .set = [](Parameters& p, const Values& v) { view_of(p).verify = v[0] != 0; }},
