@@ -193,21 +193,34 @@ start_stream() {
   streams+=($!)
 }
 
+# start_work SERVER: what it needs some seconds for, and says no to others in when it shuts down.
+start_work() {
+  local number
+  for number in 1 2 3 4; do
+    curl -sS --noproxy '*' -H "$draco" --data-binary @"$coarse" -o /dev/null -w '%{http_code}\n' \
+      "$1/v1/refine?levels=6&output.normals=true&w=0.0$number" >>"$BATS_TEST_TMPDIR/work" 3>&- &
+    work+=($!)
+  done
+}
+
 @test "rolling restart: no stream is dropped, no request fails" {
-  streams=()
+  streams=() work=()
   start_load "${light[@]}"
   local number
   for number in 1 2; do start_stream "$number"; done
+  start_work "$first"
   sleep 1
   compose restart --timeout 40 server-a >/dev/null
   started_again proxy_reaches "$first"
   sleep 11 # fail_timeout, for which nginx leaves out a server that was away
   for number in 3 4; do start_stream "$number"; done
+  start_work "$second"
   sleep 1
   compose restart --timeout 40 server-b >/dev/null
   started_again proxy_reaches "$second"
   stop_load
-  for number in "${streams[@]}"; do wait "$number"; done
+  for number in "${streams[@]}" "${work[@]}"; do wait "$number"; done
+  [ "$(grep -c '^200$' "$BATS_TEST_TMPDIR/work")" = 8 ]
   for number in 1 2 3 4; do
     grep -aq '"stop_reason"' "$BATS_TEST_TMPDIR/stream-$number" # the summary, the last part
     # The finest level, as it is without a stream, is in it.
