@@ -3,9 +3,7 @@
 
 load helpers
 
-# Of requests that take seconds of the release build; sanitized ones have enough in a quarter of the triangles.
-large_levels=6
-! sanitized || large_levels=5
+large_levels=6 # of requests that take seconds
 
 teardown() {
   if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then stop_server; fi
