@@ -18,6 +18,7 @@ import sys
 
 MOST_TOGETHER = 16
 BUILD = "build/check"
+OF_GCC_ALONE = " -fno-ipa-modref"  # an error to clang
 ROOT = os.getcwd()
 
 
@@ -26,7 +27,7 @@ def compile_commands():
     commands = {}
     for entry in json.loads(pathlib.Path(BUILD, "compile_commands.json").read_text()):
         path = os.path.relpath(entry["file"], ROOT)
-        command = re.sub(r" -o \S+ -c \S+$", "", entry["command"])
+        command = re.sub(r" -o \S+ -c \S+$", "", entry["command"]).replace(OF_GCC_ALONE, "")
         commands.setdefault(path, command)
     return commands
 
