@@ -212,7 +212,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
 }
 
 @test "SIGTERM lets a running request finish, refuses others, and exits 0" {
-  start_server --slots 1 --queue 0
+  start_server --slots 1 --queue 0 --drain-seconds 300
   long_request long "levels=$large_levels&output.normals=true"
   until_busy
   kill -TERM "$server_pid"
@@ -227,7 +227,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
 }
 
 @test "SIGHUP while the last requests are answered cuts none of them short" {
-  start_server --slots 1 --queue 0
+  start_server --slots 1 --queue 0 --drain-seconds 300
   long_request long "levels=$large_levels&output.normals=true"
   until_busy
   kill -TERM "$server_pid"
