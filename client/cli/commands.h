@@ -52,7 +52,8 @@ struct PackFlags {
   std::optional<double> largest{};  ///< largest distance allowed, a share of the diagonal
   std::optional<int64_t> bytes{};   ///< most bytes of the file; at most one of these three is given
   int jobs = 1;                     ///< most encodings at once
-  bool no_simplify = false;         ///< whether no simplified mesh is compared
+  uint64_t piece_bytes = DetailOptions{}.piece_bytes;
+  bool no_simplify = false;  ///< whether no simplified mesh is compared
   bool json = false;
 };
 /// Packs a fine mesh into a coarse base and levels of residuals.

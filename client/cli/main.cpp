@@ -158,6 +158,12 @@ void add_pack(CLI::App& app) {
                    "Threads that encode at once for --max and --bytes, which take up to seven encodings, two at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command
+      ->add_option("--piece-bytes", flags->piece_bytes,
+                   "Bytes of a piece, about: levels of more are written in pieces, each decoded with the coarser ones "
+                   "around it")
+      ->check(CLI::Range(uint64_t{64}, uint64_t{1} << 32))
+      ->capture_default_str();
   command->add_flag("--json", flags->json, "Report as JSON; on standard error where the model goes to standard output");
   command->callback([flags] { pack_command(*flags); });
 }
@@ -180,7 +186,7 @@ void add_unpack(CLI::App& app) {
           "true or false: whether the mesh has normals, split at creases; default true for .glb and .gltf, and "
           "where the original has them, but not where its faces are flat")
       ->type_name("BOOL");
-  command->add_flag("--truncated", flags->may_be_cut, "Read a file that is cut inside a level: its whole levels");
+  command->add_flag("--truncated", flags->may_be_cut, "Read a file that is cut: its whole levels and pieces");
   command->callback([flags] { unpack_command(*flags); });
 }
 

@@ -50,7 +50,9 @@ void print_packed(std::ostream& out, const Packed& packed) {
     bytes += level.stream.bytes.size();
     texcoord_bytes += level.stream.texcoords.bytes.size();
     out << "level " << l + 1 << (l < 9 ? "   " : "  ") << level.faces << " faces, " << level.stream.bytes.size()
-        << " bytes: " << reach_text(level.reach) << '\n';
+        << " bytes";
+    if (!level.stream.pieces.empty()) out << " in " << level.stream.pieces.size() << " pieces";
+    out << ": " << reach_text(level.reach) << '\n';
   }
   if (!model.base.triangles.attributes.empty())
     out << "texture coordinates of the levels " << texcoord_bytes << " bytes\n";
@@ -129,6 +131,7 @@ void pack_command(const PackFlags& flags) {
                                                 .largest = flags.largest.value_or(0),
                                                 .bytes = static_cast<uint64_t>(flags.bytes.value_or(0)),
                                                 .jobs = flags.jobs,
+                                                .piece_bytes = flags.piece_bytes,
                                                 .simplifies = !flags.no_simplify,
                                                 .cancelled = [] { return Interruption::is_asked(); },
                                                 .on_progress = [&](double share) { progress.show(share); }});

@@ -62,9 +62,24 @@ std::ostream& begin_report(const UnpackFlags& flags, const TriangleMesh& mesh) {
              << mesh.triangles.size() << " faces, ";
 }
 
+size_t whole_levels(const PackedModel& model) {
+  return static_cast<size_t>(std::ranges::count(model.levels, 0U, &proto::detail::PackedLevel::missing_pieces));
+}
+
+/// Of a file that is cut.
+std::string what_is_there(const PackedModel& model) {
+  std::string there =
+      std::to_string(whole_levels(model)) + " of " + std::to_string(model.declared_levels) + " levels are whole";
+  if (model.levels.empty() || model.levels.back().missing_pieces == 0) return there;
+  const proto::detail::PackedLevel& last = model.levels.back();
+  const size_t pieces = last.stream.pieces.size();
+  return there + ", and of the next one " + std::to_string(pieces - last.missing_pieces) + " of " +
+         std::to_string(pieces) + " pieces; the distance is that without these";
+}
+
 void report(const UnpackFlags& flags, const PackedModel& model, const TriangleMesh& mesh) {
   const DetailReach reach = reach_of(model);
-  begin_report(flags, mesh) << model.levels.size() << " of " << model.declared_levels
+  begin_report(flags, mesh) << whole_levels(model) << " of " << model.declared_levels
                             << " levels; distance to the original: RMS " << proto::format_rounded(100 * reach.rms)
                             << " % of the diagonal, largest " << proto::format_rounded(100 * reach.largest) << " %\n";
 }
@@ -105,9 +120,8 @@ void unpack_command(const UnpackFlags& flags) {
   });
   if (flags.levels && levels > model.declared_levels)
     print_warnings({file.name + " has " + std::to_string(model.declared_levels) + " levels."});
-  else if (model.levels.size() < std::min(levels, model.declared_levels))
-    print_warnings({file.name + " is cut: " + std::to_string(model.levels.size()) + " of " +
-                    std::to_string(model.declared_levels) + " levels are whole."});
+  else if (whole_levels(model) < std::min(levels, model.declared_levels))
+    print_warnings({file.name + " is cut: " + what_is_there(model) + '.'});
   save_triangles(flags.output, decoded);
   report(flags, model, decoded.mesh);
 }

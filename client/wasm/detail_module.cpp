@@ -23,6 +23,20 @@ struct Level {
   float step;
   uint32_t length;
   const uint8_t* bytes;
+  uint32_t piece_count;         ///< 0: one
+  const uint32_t* piece_bytes;  ///< [piece_count]
+
+  static constexpr uint32_t missing_piece = 0xFFFFFFFF;
+
+  [[nodiscard]] DetailStream stream() const {
+    DetailStream made{step, {bytes, bytes + length}};
+    for (uint32_t p = 0; p < piece_count; ++p) {
+      papilio::DetailPiece& piece = made.pieces.emplace_back();
+      piece.is_missing = piece_bytes[p] == missing_piece;
+      if (!piece.is_missing) piece.bytes = piece_bytes[p];
+    }
+    return made;
+  }
 };
 
 /// Triangles, as the caller reads them.
@@ -65,8 +79,7 @@ PAPILIO_EXPORTED(decode)
 Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level* levels, uint32_t face_limit) {
   std::vector<DetailStream> streams;
   streams.reserve(level_count);
-  for (uint32_t l = 0; l < level_count; ++l)
-    streams.push_back({levels[l].step, {levels[l].bytes, levels[l].bytes + levels[l].length}});
+  for (uint32_t l = 0; l < level_count; ++l) streams.push_back(levels[l].stream());
   auto* made = new Decoded{.mesh = papilio::decode_detail(*base, streams, face_limit)};
   made->point_count = static_cast<uint32_t>(made->mesh.positions.size());
   made->face_count = static_cast<uint32_t>(made->mesh.triangles.size());

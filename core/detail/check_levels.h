@@ -8,6 +8,22 @@
 
 namespace papilio {
 
+/// Throws `Error` bad_option unless the pieces of a level, if it has any, are those of its bytes.
+inline void check_pieces(uint64_t base_faces, const DetailStream& level) {
+  if (level.pieces.empty()) return;
+  if (level.pieces.size() > std::min<uint64_t>(base_faces, most_detail_pieces))
+    throw Error(Fault::bad_option, "A level of detail has more pieces than its base has faces.", "pieces");
+  uint64_t bytes = 0, texcoord_bytes = 0;
+  for (const DetailPiece& piece : level.pieces) {
+    if (piece.is_missing && piece.bytes + piece.texcoord_bytes > 0)
+      throw Error(Fault::bad_option, "A piece of detail is missing and has bytes.", "pieces");
+    bytes += piece.bytes;
+    texcoord_bytes += piece.texcoord_bytes;
+  }
+  if (bytes != level.bytes.size() || texcoord_bytes != level.texcoords.bytes.size())
+    throw Error(Fault::bad_option, "The pieces of a level of detail have other bytes than the level.", "pieces");
+}
+
 /// Throws `Error` unless the levels of a base of so many faces can be decoded within the limit: bad_option,
 /// result_too_large.
 inline void check_levels(uint64_t base_faces, std::span<const DetailStream> levels, uint64_t face_limit) {
@@ -21,6 +37,7 @@ inline void check_levels(uint64_t base_faces, std::span<const DetailStream> leve
       throw Error(Fault::bad_option, "A level of detail has a step that is not above 0.", "step");
     if (!(level.texcoords.step >= 0 && level.texcoords.step <= coordinate_limit))
       throw Error(Fault::bad_option, "A level of detail has a negative step of texture coordinates.", "step");
+    check_pieces(base_faces, level);
   }
   const uint64_t faces = base_faces << (2 * levels.size());
   if (faces > std::min(face_limit, face_count_limit))

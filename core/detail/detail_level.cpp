@@ -39,8 +39,8 @@ void DetailLevel::predict(Buffer<Vec3f>& positions) const {
   uniform_butterfly(topology_, features_, positions.data(), positions.data() + topology_.vertex_count);
 }
 
-ResidualContext DetailLevel::context(uint32_t e, std::span<const int32_t> residual, std::span<const uint8_t> is_free,
-                                     std::span<const int32_t> at_vertex, const Vec3f* positions, float step) const {
+ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
+                                     const Vec3f* positions, float step) const {
   const Topology& t = topology_;
   const uint32_t h = t.half_edge[e];
   const auto is_recent = [&](uint32_t v) { return number_ > 0 && v >= vertices_before_; };
@@ -60,10 +60,10 @@ ResidualContext DetailLevel::context(uint32_t e, std::span<const int32_t> residu
   for (const uint32_t side : {h, t.twin[h]}) {
     if (side == none) continue;
     for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
-      if (other < e) {
+      if (other < e && coded.piece[other] == coded.piece[e]) {
         ++c.known;
-        c.neighbours[i] = residual[other];
-        c.free_neighbours += is_free[other];
+        c.neighbours[i] = coded.residual[other];
+        c.free_neighbours += coded.is_free[other];
       }
       ++i;
     }

@@ -10,6 +10,13 @@
 
 namespace papilio {
 
+/// Residuals of a level's edges [E], of which those before an edge, in its piece, are coded.
+struct CodedResiduals {
+  std::span<const int32_t> residual;
+  std::span<const uint8_t> is_free;
+  std::span<const uint16_t> piece;
+};
+
 /// A level of the hierarchy whose edges are all split: what decoder and encoder compute alike.
 class DetailLevel {
  public:
@@ -31,11 +38,12 @@ class DetailLevel {
   /// Predicts the new vertices: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;
 
-  /// What is known of the residual of edge e. `residual` [E] and `is_free` [E] of this level, of
-  /// which those before e are coded; `at_vertex` [V] of the vertices; `positions` [V + E] hold the predictions.
-  [[nodiscard]] ResidualContext context(uint32_t e, std::span<const int32_t> residual, std::span<const uint8_t> is_free,
-                                        std::span<const int32_t> at_vertex, const Vec3f* positions, float step) const;
-  /// What is known of the residual of the curve's edge of number c. `residual` [E] as above, `across` [C].
+  /// What is known of the residual of edge e. `at_vertex` [V] are those of the vertices; `positions` [V + E] hold the
+  /// predictions.
+  [[nodiscard]] ResidualContext context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
+                                        const Vec3f* positions, float step) const;
+  /// What is known of the residual of the curve's edge of number c. `residual` [E], `across` [C]: those before are
+  /// coded.
   [[nodiscard]] CurveContext curve_context(uint32_t c, std::span<const int32_t> residual,
                                            std::span<const int32_t> across, std::span<const int32_t> at_vertex) const;
 

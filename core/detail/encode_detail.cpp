@@ -10,6 +10,7 @@
 #include "detail/base_lift.h"
 #include "detail/base_points.h"
 #include "detail/collapse_sequence.h"
+#include "detail/encode_pieces.h"
 #include "detail/encode_texcoords.h"
 #include "detail/error_weights.h"
 #include "detail/manifold_surface.h"
@@ -60,6 +61,7 @@ void check(const DetailOptions& options) {
     throw Error(Fault::bad_option, "The distance must be 1e-6 to 0.1 of the diagonal.", "rms");
   if (!(options.texcoord_step > 0 && options.texcoord_step <= coordinate_limit))
     throw Error(Fault::bad_option, "The step of texture coordinates must be above 0.", "texcoord_step");
+  if (options.piece_bytes == 0) throw Error(Fault::bad_option, "Pieces must have bytes.", "piece_bytes");
 }
 
 /// What a base with its levels comes to.
@@ -309,7 +311,8 @@ class DetailEncoder {
       step = expected_step(step, rms, trial.chosen.floor);
     }
     uint64_t streams = 0;
-    for (const auto& stream : best->code()) streams += stream.size();
+    const std::vector<uint32_t> whole(best->level_count(), 1);
+    for (const auto& level : best->code(PieceOrder(trial.lifted.mesh), whole)) streams += level[0].size();
     Outcome& outcome = trial.chosen.outcome;
     outcome.bytes = trial.coded.bytes + trial.curves.size() + streams;
     outcome.expected_bytes =
@@ -322,12 +325,10 @@ class DetailEncoder {
   [[nodiscard]] EncodedDetail finish(const Trial& trial, const ResidualFit& fit) const {
     EncodedDetail encoded;
     encoded.base = {trial.coded.triangles, trial.curves};
-    encoded.bytes = trial.chosen.outcome.bytes;
     encoded.parted = parted_;
     encoded.normals = normals_;
-    auto streams = fit.code();
-    for (size_t l = 0; l < streams.size(); ++l) encoded.levels.push_back({fit.step(l), std::move(streams[l])});
-    add_texcoords(trial, fit, encoded);
+    encoded.bytes = trial.coded.bytes + trial.curves.size();
+    add_levels(trial, fit, encoded);
     for (size_t l = 0; l <= encoded.levels.size(); ++l) {
       poll();
       const SurfaceTree surface(fit.surface(l));
@@ -339,17 +340,18 @@ class DetailEncoder {
     return encoded;
   }
 
-  void add_texcoords(const Trial& trial, const ResidualFit& fit, EncodedDetail& encoded) const {
-    if (trial.lifted.mesh.attributes.empty()) return;
-    const size_t levels = fit.level_count();
-    std::vector<TexcoordStream> streams =
-        encode_texcoords(original_, trial.lifted, *sequence_, *trial.base, fit.surface(levels).positions, levels,
-                         static_cast<float>(options_.texcoord_step), poller());
-    for (size_t l = 0; l < levels; ++l) {
-      encoded.texcoord_bytes += streams[l].bytes.size();
-      encoded.levels[l].texcoords = std::move(streams[l]);
+  void add_levels(const Trial& trial, const ResidualFit& fit, EncodedDetail& encoded) const {
+    const PieceOrder order(trial.lifted.mesh);
+    encoded.levels = encode_pieces(fit, order, options_.piece_bytes, [&](std::span<const uint32_t> piece_counts) {
+      if (trial.lifted.mesh.attributes.empty()) return std::vector<CodedTexcoords>{};
+      return encode_texcoords(original_, trial.lifted, *sequence_, *trial.base,
+                              fit.surface(fit.level_count()).positions, static_cast<float>(options_.texcoord_step),
+                              order, piece_counts, poller());
+    });
+    for (const DetailStream& level : encoded.levels) {
+      encoded.texcoord_bytes += level.texcoords.bytes.size();
+      encoded.bytes += level.bytes.size() + level.texcoords.bytes.size();
     }
-    encoded.bytes += encoded.texcoord_bytes;
   }
 
   /// Faces turned against the original where their centres lie: against its face there and its smooth normal.

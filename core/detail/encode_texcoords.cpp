@@ -19,11 +19,13 @@ constexpr float ratio_of_steps = 0.6F;
 
 }  // namespace
 
-std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
+std::vector<CodedTexcoords> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
                                              const CollapseSequence& sequence, const BaseMesh& base,
-                                             const Buffer<Vec3f>& positions, size_t levels, float step,
+                                             const Buffer<Vec3f>& positions, float step, const PieceOrder& order,
+                                             std::span<const uint32_t> piece_counts,
                                              const std::function<void()>& poll) {
-  std::vector<TexcoordStream> streams;
+  const size_t levels = piece_counts.size();
+  std::vector<CodedTexcoords> streams;
   TexcoordLevels texcoords(lifted.mesh, lifted.seams);
   ChartSearch search(original);
   EdgeMiddles middles(lifted.faces);
@@ -44,7 +46,11 @@ std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, co
       wanted.push_back(found.texcoord);
       face.push_back(found.face);
     }
-    streams.push_back(texcoords.encode(wanted, step * std::pow(ratio_of_steps, static_cast<float>(levels - 1 - l))));
+    const float own_step = step * std::pow(ratio_of_steps, static_cast<float>(levels - 1 - l));
+    const EdgePieces pieces = order.edges(whole, static_cast<uint32_t>(l), piece_counts[l]).on_cut(whole, t);
+    CodedTexcoords& coded = streams.emplace_back();
+    coded.pieces = texcoords.encode(pieces, wanted, own_step);
+    coded.step = coded.pieces.empty() ? 0 : own_step;
     whole = split_in_four(whole);
     middles.next();
   }

@@ -1,22 +1,26 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "detail/base_lift.h"
 #include "detail/collapse_sequence.h"
+#include "detail/encode_pieces.h"
 #include "detail/original_surface.h"
 #include "papilio/detail.h"
 
 namespace papilio {
 
 /// Encodes the texture coordinates of the levels of a base whose positions are chosen: those that the original has
-/// where the vertices came to lie, in the charts that they correspond to. `positions`: vertices of the base and of
-/// `levels` levels. `lifted` must have texture coordinates. `step`: of the last level; coarser ones have smaller ones.
-/// One stream a level.
-[[nodiscard]] std::vector<TexcoordStream> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
+/// where the vertices came to lie, in the charts that they correspond to. `positions`: vertices of the base and of all
+/// levels. `lifted` must have texture coordinates. `step`: of the last level; coarser ones have smaller ones.
+/// In so many pieces a level.
+[[nodiscard]] std::vector<CodedTexcoords> encode_texcoords(const OriginalSurface& original, const LiftedBase& lifted,
                                                            const CollapseSequence& sequence, const BaseMesh& base,
-                                                           const Buffer<Vec3f>& positions, size_t levels, float step,
+                                                           const Buffer<Vec3f>& positions, float step,
+                                                           const PieceOrder& order,
+                                                           std::span<const uint32_t> piece_counts,
                                                            const std::function<void()>& poll);
 
 }  // namespace papilio

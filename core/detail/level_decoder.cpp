@@ -29,7 +29,11 @@ Mesh mesh_of_base(const DetailBase& base) {
 }
 
 LevelDecoder::LevelDecoder(const Mesh& base, bool has_texcoords)
-    : positions_(base.positions), at_vertex_(positions_.size()), level_(base.topology, seam_edges(base)) {
+    : order_(base),
+      needs_(base.topology.vertex_count),
+      positions_(base.positions),
+      at_vertex_(positions_.size()),
+      level_(base.topology, seam_edges(base)) {
   if (has_texcoords && !base.attributes.empty()) texcoords_.emplace(base, seam_edges(base));
 }
 
@@ -43,12 +47,19 @@ void LevelDecoder::decode(const DetailStream& stream) {
   (void)topology();  // makes the level to be split
   const Buffer<Vec3f> normals = residual_normals(level_, positions_.data());
   level_.predict(positions_);
-  const Residuals residuals = decode_residuals(level_, stream.bytes, stream.step, at_vertex_, positions_, *models_);
+  const std::vector<DetailPiece> pieces = pieces_of(stream);
+  const std::vector<uint8_t> is_decoded = needs_.next(order_, pieces);
+  const EdgePieces edges = order_.edges(level_.topology(), level_.number(), static_cast<uint32_t>(pieces.size()));
+  const Residuals residuals =
+      decode_residuals(level_, edges, piece_bytes(stream.bytes, pieces, &DetailPiece::bytes, is_decoded), stream.step,
+                       at_vertex_, positions_, *models_);
   displace(level_, normals, residuals, positions_);
   require_finite(positions_);
   if (texcoords_) {
     texcoords_->predict(level_.topology(), positions_);
-    texcoords_->decode(stream.texcoords);
+    texcoords_->decode(edges.on_cut(level_.topology(), texcoords_->level().topology()),
+                       piece_bytes(stream.texcoords.bytes, pieces, &DetailPiece::texcoord_bytes, is_decoded),
+                       stream.texcoords.step);
   }
   at_vertex_.insert(at_vertex_.end(), residuals.along_normal.begin(), residuals.along_normal.end());
   is_split_ = true;

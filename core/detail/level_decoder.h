@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detail/detail_level.h"
+#include "detail/pieces.h"
 #include "detail/texcoord_levels.h"
 #include "papilio/detail.h"
 
@@ -33,6 +34,8 @@ class LevelDecoder {
   [[nodiscard]] Mesh take_mesh();
 
  private:
+  PieceOrder order_;
+  PieceNeeds needs_;
   Buffer<Vec3f> positions_;
   Buffer<int32_t> at_vertex_;  ///< [V] residuals along normals
   std::unique_ptr<ResidualModels> models_ = std::make_unique<ResidualModels>();

@@ -238,14 +238,16 @@ void ResidualFit::improve_across(Level& level, double bit_cost) {
   }
 }
 
-std::vector<std::vector<uint8_t>> ResidualFit::code() const {
-  std::vector<std::vector<uint8_t>> streams;
+std::vector<std::vector<std::vector<uint8_t>>> ResidualFit::code(const PieceOrder& order,
+                                                                 std::span<const uint32_t> piece_counts) const {
+  std::vector<std::vector<std::vector<uint8_t>>> streams;
   const auto models = std::make_unique<ResidualModels>();
   Buffer<Vec3f> positions(positions_.begin(), positions_.begin() + base_vertices_);
   Buffer<int32_t> at_vertex(base_vertices_);
   for (const Level& level : levels_) {
     level.level.predict(positions);
-    streams.push_back(encode_residuals(level.level, level.residuals, at_vertex, positions, *models));
+    const EdgePieces pieces = order.edges(level.level.topology(), level.level.number(), piece_counts[streams.size()]);
+    streams.push_back(encode_residuals(level.level, pieces, level.residuals, at_vertex, positions, *models));
     displace(level.level, level.normals, level.residuals, positions);
     const Buffer<int32_t>& made = level.residuals.along_normal;
     at_vertex.insert(at_vertex.end(), made.begin(), made.end());

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "detail/linear_stencils.h"
@@ -22,12 +23,15 @@ class ResidualFit {
   /// So many turns, each of one level. `rate_weight`: weight of a bit, 1 being what it saves at a high rate.
   void improve(int turns, double rate_weight);
 
-  /// One stream a level.
-  [[nodiscard]] std::vector<std::vector<uint8_t>> code() const;
+  /// Codes the residuals: [levels][pieces], of so many pieces a level.
+  [[nodiscard]] std::vector<std::vector<std::vector<uint8_t>>> code(const PieceOrder& order,
+                                                                    std::span<const uint32_t> piece_counts) const;
   /// The mesh of the first `levels` levels; all of them: the surface.
   [[nodiscard]] TriangleMesh surface(size_t levels) const;
   [[nodiscard]] size_t level_count() const { return levels_.size(); }
   [[nodiscard]] float step(size_t level) const { return levels_[level].residuals.step; }
+  [[nodiscard]] const DetailLevel& level(size_t level) const { return levels_[level].level; }
+  [[nodiscard]] const Residuals& residuals(size_t level) const { return levels_[level].residuals; }
 
  private:
   struct Level {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "detail/detail_level.h"
+#include "detail/pieces.h"
 #include "detail/residual_models.h"
 #include "papilio/mesh.h"
 
@@ -28,14 +29,16 @@ struct Residuals {
 void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
               Buffer<Vec3f>& positions);
 
-/// Codes residuals. `at_vertex` [V] are those of the vertices along their normals, 0 on the base; `positions` [V + E]
-/// hold the predictions. `models` learn, and go on to the next level.
-[[nodiscard]] std::vector<uint8_t> encode_residuals(const DetailLevel& level, const Residuals& residuals,
-                                                    std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
-                                                    ResidualModels& models);
+/// Codes residuals, each piece by itself. `at_vertex` [V] are those of the vertices along their normals, 0 on the base;
+/// `positions` [V + E] hold the predictions. `models` learn, and go on to the next level.
+[[nodiscard]] std::vector<std::vector<uint8_t>> encode_residuals(const DetailLevel& level, const EdgePieces& pieces,
+                                                                 const Residuals& residuals,
+                                                                 std::span<const int32_t> at_vertex,
+                                                                 const Buffer<Vec3f>& positions,
+                                                                 ResidualModels& models);
 /// Decodes what encode_residuals() made. Other bytes give other residuals within `largest_residual`.
-[[nodiscard]] Residuals decode_residuals(const DetailLevel& level, std::span<const uint8_t> bytes, float step,
-                                         std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
+[[nodiscard]] Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes,
+                                         float step, std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
                                          ResidualModels& models);
 
 }  // namespace papilio

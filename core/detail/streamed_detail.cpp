@@ -34,7 +34,8 @@ class StreamedDetail final : public Detail {
     check_levels(base_.topology.face_count(), streams_, face_count_limit);
     decoder_.emplace(base_, true);
     fixed_bytes_ = bytes_while_decoding(*decoder_, base_.topology, base_.topology.vertex_count);
-    for (const DetailStream& stream : streams_) fixed_bytes_ += stream.bytes.size() + stream.texcoords.bytes.size();
+    for (const DetailStream& stream : streams_)
+      fixed_bytes_ += stream.bytes.size() + stream.texcoords.bytes.size() + stream.pieces.size() * sizeof(DetailPiece);
     bytes_ = fixed_bytes_;
   }
 

@@ -64,7 +64,8 @@ void require_texcoords(const std::vector<Attribute>& attributes) {
 }
 
 TexcoordLevels::TexcoordLevels(const Mesh& base, const std::vector<uint32_t>& seams)
-    : level_(cut_level(base, cut_at_seams(base, seams), values_, vertices_)), models_(values_.size()) {}
+    : level_(cut_level(base, cut_at_seams(base, seams), values_, vertices_)),
+      at_vertex_{Buffer<int32_t>(values_.size()), Buffer<int32_t>(values_.size())} {}
 
 void TexcoordLevels::predict(const Topology& whole, const Buffer<Vec3f>& positions) {
   const Topology& t = level().topology();
@@ -97,14 +98,15 @@ void TexcoordLevels::correct(uint32_t e, Vec3f move, const Buffer<Vec3f>& positi
   values_[t.vertex_count + e] += (t.twin[h] == none ? 1.0F : 0.5F) * sum;
 }
 
-void TexcoordLevels::decode(const TexcoordStream& stream) {
+void TexcoordLevels::decode(const EdgePieces& pieces, const PieceBytes& bytes, float step) {
   const uint32_t edges = level_.topology().edge_count();
-  finish(stream.step > 0 ? decode_texcoord_residuals(level_, stream.bytes, stream.step, values_, models_)
-                         : TexcoordResiduals{.u = Buffer<int32_t>(edges), .v = Buffer<int32_t>(edges)},
-         stream.step);
+  finish(step > 0 ? decode_texcoord_residuals(level_, pieces, bytes, step, at_vertex_, values_, *models_)
+                  : TexcoordResiduals{.u = Buffer<int32_t>(edges), .v = Buffer<int32_t>(edges)},
+         step);
 }
 
-TexcoordStream TexcoordLevels::encode(const Buffer<Vec3f>& wanted, float step) {
+std::vector<std::vector<uint8_t>> TexcoordLevels::encode(const EdgePieces& pieces, const Buffer<Vec3f>& wanted,
+                                                         float step) {
   const Topology& t = level_.topology();
   TexcoordResiduals residuals{.u = Buffer<int32_t>(t.edge_count()), .v = Buffer<int32_t>(t.edge_count())};
   const auto steps = [&](float move) {
@@ -119,10 +121,10 @@ TexcoordStream TexcoordLevels::encode(const Buffer<Vec3f>& wanted, float step) {
     residuals.v[e] = steps(move.y);
     is_needed = is_needed || residuals.u[e] != 0 || residuals.v[e] != 0;
   }
-  TexcoordStream stream;
-  if (is_needed) stream = {step, encode_texcoord_residuals(level_, residuals, step, values_, models_)};
-  finish(residuals, stream.step);
-  return stream;
+  std::vector<std::vector<uint8_t>> made;
+  if (is_needed) made = encode_texcoord_residuals(level_, pieces, residuals, step, at_vertex_, values_, *models_);
+  finish(residuals, is_needed ? step : 0);
+  return made;
 }
 
 void TexcoordLevels::finish(const TexcoordResiduals& residuals, float step) {
@@ -133,7 +135,8 @@ void TexcoordLevels::finish(const TexcoordResiduals& residuals, float step) {
     value.y += static_cast<float>(residuals.v[e]) * step;
   }
   require_finite(values_);
-  models_.append(residuals);
+  at_vertex_.u.insert(at_vertex_.u.end(), residuals.u.begin(), residuals.u.end());
+  at_vertex_.v.insert(at_vertex_.v.end(), residuals.v.begin(), residuals.v.end());
   is_split_ = true;
 }
 

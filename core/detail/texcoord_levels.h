@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "detail/detail_level.h"
@@ -25,11 +26,13 @@ class TexcoordLevels {
   /// Predicts the coordinates of a level's new vertices: `whole` is the level as it is not cut, `positions` [V + E] and
   /// more are its vertices with the new ones.
   void predict(const Topology& whole, const Buffer<Vec3f>& positions);
-  /// Decodes the residuals of the level that is predicted, and goes on to the next one. Throws `Error` not_finite.
-  void decode(const TexcoordStream& stream);
+  /// Decodes the residuals of the level that is predicted, and goes on to the next one. `pieces` of its edges; a step
+  /// of 0: all residuals are 0. Throws `Error` not_finite.
+  void decode(const EdgePieces& pieces, const PieceBytes& bytes, float step);
   /// Codes the residuals that lead to `wanted` [E], or to within 3/4 of a step, for the level that is predicted, and
-  /// goes on to the next one.
-  [[nodiscard]] TexcoordStream encode(const Buffer<Vec3f>& wanted, float step);
+  /// goes on to the next one. Returns the bytes of its pieces; none where all residuals are 0.
+  [[nodiscard]] std::vector<std::vector<uint8_t>> encode(const EdgePieces& pieces, const Buffer<Vec3f>& wanted,
+                                                         float step);
 
   /// The level that is cut: the one that is predicted, or is to be. Stays as it is until the next call after `decode`
   /// or `encode`.
@@ -54,7 +57,8 @@ class TexcoordLevels {
   Buffer<uint32_t> vertices_;
   DetailLevel level_;
   bool is_split_ = false;  ///< whether `level_` is decoded: connectivity below it is made when it is needed
-  TexcoordModels models_;
+  std::unique_ptr<TexcoordModels> models_ = std::make_unique<TexcoordModels>();
+  TexcoordResiduals at_vertex_;  ///< [V]; 0 on the base
 };
 
 }  // namespace papilio

@@ -5,46 +5,60 @@
 namespace papilio {
 namespace {
 
-/// Goes through the residuals in the order of their edges and codes each: encoder and decoder alike.
-template <class Code>
-void code_texcoords(const DetailLevel& level, TexcoordResiduals& residuals, float step, const Buffer<Vec3f>& predicted,
-                    TexcoordModels& models, const Code& code) {
-  const Buffer<uint8_t> is_free(level.topology().edge_count());  // none is
-  const auto code_one = [&](uint32_t e, ResidualModels& own, Buffer<int32_t>& of, const Buffer<int32_t>& at_vertex) {
-    of[e] = own.code(level.context(e, of, is_free, at_vertex, predicted.data(), step), of[e], code);
-  };
-  for (uint32_t e = 0; e < level.topology().edge_count(); ++e) {
-    code_one(e, *models.u, residuals.u, models.at_vertex.u);
-    code_one(e, *models.v, residuals.v, models.at_vertex.v);
+/// What the residuals of a level are coded by.
+struct TexcoordPass {
+  const DetailLevel& level;
+  const EdgePieces& pieces;
+  TexcoordResiduals& residuals;
+  float step;
+  const TexcoordResiduals& at_vertex;
+  const Buffer<Vec3f>& predicted;
+  const Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< none is
+
+  /// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
+  template <class Code>
+  void run(uint32_t piece, TexcoordModels& models, const Code& code) {
+    const auto code_one = [&](uint32_t e, ResidualModels& own, Buffer<int32_t>& of, const Buffer<int32_t>& at) {
+      of[e] = own.code(level.context(e, {of, is_free, pieces.of_edge}, at, predicted.data(), step), of[e], code);
+    };
+    for (const uint32_t e : pieces.edges_of(piece)) {
+      code_one(e, models.u, residuals.u, at_vertex.u);
+      code_one(e, models.v, residuals.v, at_vertex.v);
+    }
   }
-}
+};
 
 }  // namespace
 
-void TexcoordModels::append(const TexcoordResiduals& residuals) {
-  at_vertex.u.insert(at_vertex.u.end(), residuals.u.begin(), residuals.u.end());
-  at_vertex.v.insert(at_vertex.v.end(), residuals.v.begin(), residuals.v.end());
-}
-
-std::vector<uint8_t> encode_texcoord_residuals(const DetailLevel& level, const TexcoordResiduals& residuals, float step,
-                                               const Buffer<Vec3f>& predicted, TexcoordModels& models) {
-  BinaryEncoder encoder;
+std::vector<std::vector<uint8_t>> encode_texcoord_residuals(const DetailLevel& level, const EdgePieces& pieces,
+                                                            const TexcoordResiduals& residuals, float step,
+                                                            const TexcoordResiduals& at_vertex,
+                                                            const Buffer<Vec3f>& predicted, TexcoordModels& models) {
   TexcoordResiduals copy = residuals;
-  const auto code = [&](bool bit, uint32_t probability) {
-    encoder.code(bit, probability);
-    return bit;
-  };
-  code_texcoords(level, copy, step, predicted, models, code);
-  return encoder.finish();
+  TexcoordPass pass{level, pieces, copy, step, at_vertex, predicted};
+  std::vector<std::vector<uint8_t>> made;
+  code_pieces(pieces.count(), models, [&](uint32_t piece, TexcoordModels& own) {
+    BinaryEncoder encoder;
+    pass.run(piece, own, [&](bool bit, uint32_t probability) {
+      encoder.code(bit, probability);
+      return bit;
+    });
+    made.push_back(encoder.finish());
+  });
+  return made;
 }
 
-TexcoordResiduals decode_texcoord_residuals(const DetailLevel& level, std::span<const uint8_t> bytes, float step,
+TexcoordResiduals decode_texcoord_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes,
+                                            float step, const TexcoordResiduals& at_vertex,
                                             const Buffer<Vec3f>& predicted, TexcoordModels& models) {
-  BinaryDecoder decoder(bytes);
   const uint32_t edges = level.topology().edge_count();
   TexcoordResiduals residuals{.u = Buffer<int32_t>(edges), .v = Buffer<int32_t>(edges)};
-  const auto code = [&](bool, uint32_t probability) { return decoder.code(probability); };
-  code_texcoords(level, residuals, step, predicted, models, code);
+  TexcoordPass pass{level, pieces, residuals, step, at_vertex, predicted};
+  code_pieces(pieces.count(), models, [&](uint32_t piece, TexcoordModels& own) {
+    if (!bytes[piece]) return;
+    BinaryDecoder decoder(*bytes[piece]);
+    pass.run(piece, own, [&](bool, uint32_t probability) { return decoder.code(probability); });
+  });
   return residuals;
 }
 

@@ -54,6 +54,7 @@ Encoding Encodings::encode_at(double rms, size_t number) {
   DracoBaseCoder coder(base_move * rms * diagonal_);
   const DetailOptions options{.rms = rms,
                               .face_limit = options_.face_limit,
+                              .piece_bytes = options_.piece_bytes,
                               .cancelled = options_.cancelled,
                               .on_progress = [this, number](double share) { show(number, share); }};
   const EncodedDetail encoded =

@@ -19,8 +19,9 @@ struct PackOptions {
   double largest = 0;  ///< largest distance of either direction that is allowed, as above; 1e-6..1; 0: none
   uint64_t bytes = 0;  ///< most bytes of the file; 0: any number
   int jobs = 1;        ///< most threads that encode at once; the file is the same
-  uint64_t face_limit = 8'000'000;  ///< faces of the last level
-  bool simplifies = false;          ///< whether a simplified mesh is compared too, where the goal is `rms`
+  uint64_t face_limit = 8'000'000;                     ///< faces of the last level
+  uint64_t piece_bytes = DetailOptions{}.piece_bytes;  ///< of a piece of a level, about; > 0
+  bool simplifies = false;  ///< whether a simplified mesh is compared too, where the goal is `rms`
   /// Asked now and then; true stops with `Problem` cancelled. Comes from several threads at once with several jobs.
   std::function<bool()> cancelled{};
   std::function<void(double)> on_progress{};  ///< share done, 0..1; calls do not overlap

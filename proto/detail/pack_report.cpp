@@ -24,6 +24,8 @@ Json json_of(const PackedModel& model) {
     Json& json = levels.emplace_back();
     json = {{"new_vertices", level.vertices}, {"faces", level.faces}, {"bytes", level.stream.bytes.size()}};
     json["step"] = level.stream.step;
+    if (!level.stream.pieces.empty()) json["pieces"] = level.stream.pieces.size();
+    if (level.missing_pieces > 0) json["missing_pieces"] = level.missing_pieces;
     if (level.stream.texcoords.step > 0)
       json["texcoords"] = {{"bytes", level.stream.texcoords.bytes.size()}, {"step", level.stream.texcoords.step}};
     add_reach(json, level.reach);

@@ -13,9 +13,10 @@ inline constexpr uint64_t detail_version = 2;
 /// A level of a packed model.
 struct PackedLevel {
   DetailStream stream;
-  DetailReach reach;      ///< of all levels up to this one
-  uint64_t vertices = 0;  ///< new vertices: edges of the level below
-  uint64_t faces = 0;     ///< faces of the model at this level
+  DetailReach reach;          ///< of all levels up to this one; where pieces are missing, up to the one before
+  size_t missing_pieces = 0;  ///< behind the end of a file that is cut
+  uint64_t vertices = 0;      ///< new vertices: edges of the level below
+  uint64_t faces = 0;         ///< faces of the model at this level
 };
 
 /// A packed model as its reader has it.

@@ -67,6 +67,8 @@ class PackedReader {
     model.declared_levels = table.rows.size();
     const uint64_t faces = declared_faces();
     require_room(faces, std::min(options_.levels, table.rows.size()));
+    for (const LevelRow& row : table.rows)
+      if (row.pieces.size() > faces) refuse_document("the table of levels", "has more pieces than the base has faces");
     model.normals = normals_member(extension);
     read_base(base, faces, table, model);
     read_streams(table, detail.bytes.substr(table.size()), model);
@@ -160,11 +162,12 @@ class PackedReader {
   /// Returns the table at the begin of a view, which it and its streams fill.
   static LevelTable table_of(const View& view) {
     if (view.length < least_table_bytes) refuse_document(view.place, "is too short for a table of levels");
-    if (view.bytes.size() < least_table_bytes) refuse_cut("the table of its levels");
-    const uint64_t size = size_of_table(view.bytes);
-    if (view.length < size) refuse_document(view.place, "is too short for its table of levels");
-    if (view.bytes.size() < size) refuse_cut("the table of its levels");
-    LevelTable table = read_table(view.bytes.substr(0, size));
+    const auto first = [&](uint64_t size) {
+      if (view.length < size) refuse_document(view.place, "is too short for its table of levels");
+      if (view.bytes.size() < size) refuse_cut("the table of its levels");
+      return view.bytes.substr(0, size);
+    };
+    LevelTable table = read_table(first(size_of_table(first(size_of_rows(first(least_table_bytes))))));
     if (view.length != table.total())
       refuse_document(view.place, "has " + std::to_string(view.length) + " bytes, and its table declares " +
                                       std::to_string(table.total()));
@@ -210,31 +213,50 @@ class PackedReader {
     return mesh.topology.edge_count();
   }
 
-  /// Reads the curves and the whole levels of streams that may be cut.
+  /// Reads the curves and the levels of streams that may be cut: then whole pieces of the last one.
   void read_streams(const LevelTable& table, std::string_view streams, PackedModel& model) const {
-    const auto take = [&](uint32_t bytes) -> std::optional<std::vector<uint8_t>> {
-      if (bytes > streams.size()) return std::nullopt;
-      std::vector<uint8_t> taken(streams.begin(), streams.begin() + bytes);
-      streams.remove_prefix(bytes);
-      return taken;
-    };
-    std::optional<std::vector<uint8_t>> curves = take(table.curve_bytes);
-    if (!curves) refuse_cut("the curves of its base");
-    model.base.curves = *std::move(curves);
+    if (streams.size() < table.curve_bytes) refuse_cut("the curves of its base");
+    model.base.curves.assign(streams.begin(), streams.begin() + table.curve_bytes);
+    streams.remove_prefix(table.curve_bytes);
     uint64_t faces = model.base.triangles.triangles.size();
     uint64_t edges = table.edges;
     for (size_t l = 0; l < std::min(options_.levels, table.rows.size()); ++l) {
-      const LevelRow& row = table.rows[l];
-      std::optional<std::vector<uint8_t>> residuals = take(row.bytes);
-      std::optional<std::vector<uint8_t>> texcoords = take(row.texcoord_bytes);
-      if (!residuals || !texcoords) break;
-      model.levels.push_back({.stream = {row.step, *std::move(residuals), {row.texcoord_step, *std::move(texcoords)}},
-                              .reach = row.reach,
-                              .vertices = edges,
-                              .faces = 4 * faces});
+      PackedLevel level = read_level(table.rows[l], streams);
+      if (level.missing_pieces == std::max<size_t>(1, level.stream.pieces.size())) break;
+      const bool is_whole = level.missing_pieces == 0;
+      level.reach = is_whole ? table.rows[l].reach : reach_of(model);
+      level.vertices = edges;
+      level.faces = 4 * faces;
+      model.levels.push_back(std::move(level));
+      if (!is_whole) break;
       edges = 2 * edges + 3 * faces;
       faces *= 4;
     }
+  }
+
+  /// Takes the pieces that are whole from the begin of the streams.
+  static PackedLevel read_level(const LevelRow& row, std::string_view& streams) {
+    PackedLevel level;
+    level.stream.step = row.step;
+    level.stream.texcoords.step = row.texcoord_step;
+    const auto take = [&](uint32_t bytes, std::vector<uint8_t>& to) {
+      to.insert(to.end(), streams.begin(), streams.begin() + bytes);
+      streams.remove_prefix(bytes);
+    };
+    std::vector<DetailPiece> pieces = row.pieces;
+    if (pieces.empty()) pieces.push_back({.bytes = row.bytes, .texcoord_bytes = row.texcoord_bytes});
+    for (DetailPiece& piece : pieces) {
+      if (level.missing_pieces > 0 || uint64_t{piece.bytes} + piece.texcoord_bytes > streams.size()) {
+        ++level.missing_pieces;
+        piece.is_missing = true;
+        piece.bytes = piece.texcoord_bytes = 0;
+        continue;
+      }
+      take(piece.bytes, level.stream.bytes);
+      take(piece.texcoord_bytes, level.stream.texcoords.bytes);
+    }
+    if (!row.pieces.empty()) level.stream.pieces = std::move(pieces);
+    return level;
   }
 
   const ReadOptions& options_;

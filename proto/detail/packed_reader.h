@@ -10,7 +10,8 @@ namespace papilio::proto::detail {
 struct ReadOptions {
   Limits limits{};
   size_t levels = most_detail_levels;  ///< levels to read at most
-  /// Whether the file may end inside the bytes of a level, as a prefix of a file does. Its whole levels are read.
+  /// Whether the file may end inside the bytes of a level, as a prefix of a file does. Its whole levels are read, and
+  /// the whole pieces of the one that is cut.
   bool may_be_cut = false;
 };
 

@@ -115,7 +115,8 @@ LevelTable table_of(const EncodedDetail& detail) {
                           .reach = detail.reach[l + 1],
                           .bytes = static_cast<uint32_t>(stream.bytes.size()),
                           .texcoord_step = stream.texcoords.step,
-                          .texcoord_bytes = static_cast<uint32_t>(stream.texcoords.bytes.size())});
+                          .texcoord_bytes = static_cast<uint32_t>(stream.texcoords.bytes.size()),
+                          .pieces = stream.pieces});
     table.has_texcoords = table.has_texcoords || stream.texcoords.step > 0;
   }
   return table;
@@ -124,11 +125,18 @@ LevelTable table_of(const EncodedDetail& detail) {
 /// Returns the view of a packed model's table and streams.
 std::string streams_of(const EncodedDetail& detail) {
   std::string out = write_table(table_of(detail));
-  const auto add = [&](const std::vector<uint8_t>& bytes) { out.append(bytes.begin(), bytes.end()); };
-  add(detail.base.curves);
+  out.append(detail.base.curves.begin(), detail.base.curves.end());
   for (const DetailStream& stream : detail.levels) {
-    add(stream.bytes);
-    add(stream.texcoords.bytes);
+    auto residuals = stream.bytes.begin();
+    auto texcoords = stream.texcoords.bytes.begin();
+    for (const DetailPiece& piece : stream.pieces) {
+      out.append(residuals, residuals + piece.bytes);
+      out.append(texcoords, texcoords + piece.texcoord_bytes);
+      residuals += piece.bytes;
+      texcoords += piece.texcoord_bytes;
+    }
+    out.append(residuals, stream.bytes.end());  // all, where the level is one piece
+    out.append(texcoords, stream.texcoords.bytes.end());
   }
   return out;
 }

@@ -147,8 +147,9 @@ void add_packed_models(Seeds& seeds) {
   charted.attributes.erase(charted.attributes.begin());  // texture coordinates are left
   for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted})
     for (const char choice : {'\x20', '\x21', '\x33'}) {
-      const std::string glb = test::packed_fixture(shape, 3).glb;
-      seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
+      const test::PackedFixture whole = test::packed_fixture(shape, 3);
+      for (const std::string& glb : {whole.glb, test::in_pieces(whole, {2, 1, 4}).glb})
+        seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
     }
 }
 

@@ -118,6 +118,21 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp out.obj coarser.obj
 }
 
+@test "levels in pieces are the same surface, and a prefix has the pieces that are whole" {
+  "$papilio" pack "$fine" -o pieces.glb --rms 0.003 --no-simplify --piece-bytes 64 --json >pieces.json
+  "$papilio" unpack pieces.glb -o pieces.obj
+  "$papilio" unpack model.glb -o whole.obj
+  cmp pieces.obj whole.obj
+  pieces=$(jq '[.levels[].pieces | select(.)][-1]' pieces.json)
+  ((pieces > 1))
+  behind=$(jq '.levels | map(has("pieces")) as $has | [.[($has | rindex(true)) + 1:][].bytes] | add // 0' pieces.json)
+  head -c $(($(stat -c %s pieces.glb) - behind - 10)) pieces.glb >cut-pieces.glb
+  run --separate-stderr "$papilio" unpack cut-pieces.glb -o cut-pieces.obj --truncated
+  [ "$status" = 0 ]
+  [[ $stderr == *"and of the next one $((pieces - 1)) of $pieces pieces"* ]]
+  ! cmp cut-pieces.obj whole.obj
+}
+
 @test "refine takes the levels of a packed model, to every kind of file" {
   levels=$(report '.levels | length')
   for ((level = 0; level <= levels; ++level)); do

@@ -64,8 +64,8 @@ const vase = grid(40, (u, v) => {
 /// By name; those with a folder are files.
 export const originals = { torus, waves, cushion, vase };
 
-/// The file of the original, and that of the packed model, in `folder`.
-export function pack(name, folder, rms = 0.001) {
+/// The file of the original, and that of the packed model, in `folder`, its levels in pieces of so many bytes if asked.
+export function pack(name, folder, { rms = 0.001, pieceBytes = null } = {}) {
   const shape = originals[name];
   const original = shape ? path.join(folder, `${name}.obj`) : path.join(files, name);
   if (shape)
@@ -75,21 +75,23 @@ export function pack(name, folder, rms = 0.001) {
         '\n',
       ),
     );
-  const packed = path.join(folder, `${path.basename(name, path.extname(name))}.glb`);
+  const packed = path.join(folder, `${path.basename(name, path.extname(name))}-${rms}-${pieceBytes ?? 'whole'}.glb`);
   const report = execFileSync(
     path.join(build, 'papilio'),
-    ['pack', original, '-o', packed, '--rms', rms, '--no-simplify', '--json'],
-    {
-      encoding: 'utf8',
-    },
+    [
+      ...['pack', original, '-o', packed, '--rms', rms, '--no-simplify', '--json'],
+      ...(pieceBytes === null ? [] : ['--piece-bytes', pieceBytes]),
+    ],
+    { encoding: 'utf8' },
   );
   return { original, packed, report: JSON.parse(report) };
 }
 
 /// The first levels of a packed model by the native decoder.
-export function unpack(packed, levels) {
+export function unpack(packed, levels, ...more) {
   const ply = `${packed}.ply`;
-  execFileSync(path.join(build, 'papilio'), ['unpack', packed, '-o', ply, '--levels', levels], { stdio: 'pipe' });
+  const flags = ['--levels', levels, ...more];
+  execFileSync(path.join(build, 'papilio'), ['unpack', packed, '-o', ply, ...flags], { stdio: 'pipe' });
   const bytes = readFileSync(ply);
   const end = bytes.indexOf('end_header\n') + 11;
   const head = bytes.toString('latin1', 0, end);

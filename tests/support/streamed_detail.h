@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "papilio/detail.h"
 
@@ -11,9 +12,10 @@ namespace papilio::test {
 /// middle.
 using ResidualOfEdge = std::function<int32_t(int level, uint32_t edge, Vec3f middle)>;
 
-/// Encodes levels with these residuals. The step of a level is a quarter of the one before.
+/// Encodes levels with these residuals, in so many pieces each. The step of a level is a quarter of the one before.
 [[nodiscard]] DetailSource detail_of_residuals(const TriangleMesh& base, int levels, float first_step,
-                                               const ResidualOfEdge& residual);
+                                               const ResidualOfEdge& residual,
+                                               const std::vector<uint32_t>& piece_counts = {1});
 
 /// Returns the base with its levels attached.
 [[nodiscard]] Mesh with_detail(const DetailSource& source);

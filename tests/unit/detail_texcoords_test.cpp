@@ -10,18 +10,14 @@
 #include <span>
 #include <tuple>
 
-#include "core/detail/base_curves.h"
 #include "core/detail/base_points.h"
 #include "core/detail/collapse_sequence.h"
-#include "core/detail/encode_texcoords.h"
 #include "core/detail/level_decoder.h"
-#include "core/detail/manifold_surface.h"
-#include "core/detail/residual_fit.h"
 #include "core/detail/seams.h"
-#include "core/detail/sharp_curves.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
+#include "tests/support/packed_levels.h"
 #include "tests/support/shapes.h"
 #include "tests/support/textured_shapes.h"
 
@@ -33,36 +29,16 @@ namespace {
 using test::box_texcoord;
 using test::charted_box;
 using test::flat_sheet;
+using test::pack_levels;
 using test::sheet_texcoord;
 using test::Texcoord;
 using test::texcoord_at;
 using test::textured_tube;
 using test::with_texcoords;
 
-/// A base of about so many faces with levels whose positions have this step: what encode_detail() makes of its last
-/// trial, without the search.
-DetailSource pack_levels(const TriangleMesh& triangles, uint32_t faces, int levels, float step, float texcoord_step) {
-  Mesh mesh = build_mesh(triangles);
-  mark_sharp_curves(mesh);
-  const OriginalSurface original(std::move(mesh));
-  CollapseSequence sequence(original.mesh());
-  sequence.collapse_to(faces);
-  const BaseMesh base = sequence.base();
-  const LiftedBase lifted = lift_base(sequence, base, points_of_base(base, original.mesh()), original, levels, {});
-  ResidualFit fit(original, lifted.mesh.positions, place_on_original(original, lifted, levels, {.last = step}, {}), {});
-  DetailSource made{{lifted.mesh.triangles(), encode_base_curves(lifted.mesh.topology)}, {}};
-  const std::vector<std::vector<uint8_t>> streams = fit.code();
-  const auto count = static_cast<size_t>(levels);
-  std::vector<TexcoordStream> texcoords =
-      encode_texcoords(original, lifted, sequence, base, fit.surface(count).positions, count, texcoord_step, {});
-  for (size_t l = 0; l < count; ++l) made.levels.push_back({fit.step(l), streams[l], std::move(texcoords[l])});
-  return made;
-}
-
 constexpr float usual_step = 1.0F / 2048;
 constexpr double largest_miss = 0.75 / 2048;
 
-DetailSource pack_levels(const TriangleMesh& triangles) { return pack_levels(triangles, 60, 4, 1e-4F, usual_step); }
 TriangleMesh decode_all(const DetailSource& source) { return decode_detail(source.base, source.levels); }
 size_t texcoord_bytes(const DetailSource& source) {
   size_t bytes = 0;
@@ -205,7 +181,7 @@ TEST(DetailTexcoords, AreFinerWithASmallerStep) {
   const TriangleMesh original = textured_tube(48, 16);
   double before = 1;
   for (const float step : {1.0F / 128, 1.0F / 512, 1.0F / 2048}) {
-    const double error = largest_error(decode_all(pack_levels(original, 60, 4, 1e-4F, step)), error_on_tube);
+    const double error = largest_error(decode_all(pack_levels(original, {.texcoord_step = step})), error_on_tube);
     EXPECT_LT(error, 0.5 * before);
     EXPECT_GT(error, 0.1 * step);
     before = error;
@@ -230,7 +206,7 @@ TEST(DetailTexcoords, MayBeSkipped) {
 }
 
 TEST(DetailTexcoords, OfAnyBytesAreDecodedTheSame) {
-  DetailSource made = pack_levels(charted_box(6), 60, 3, 1e-3F, usual_step);
+  DetailSource made = pack_levels(charted_box(6), {.levels = 3, .step = 1e-3F});
   std::mt19937 random(9);
   for (int round = 0; round < 20; ++round) {
     for (DetailStream& level : made.levels) {
@@ -245,7 +221,7 @@ TEST(DetailTexcoords, OfAnyBytesAreDecodedTheSame) {
 }
 
 TEST(DetailTexcoords, BeyondTheLargestNumberAreRefused) {
-  DetailSource made = pack_levels(charted_box(6), 60, 2, 1e-3F, usual_step);
+  DetailSource made = pack_levels(charted_box(6), {.levels = 2, .step = 1e-3F});
   for (DetailStream& level : made.levels) level.texcoords = {1e18F, {}};  // bits that are all 1
   EXPECT_THROW((void)decode_all(made), Error);
   for (DetailStream& level : made.levels) level.texcoords = {-1, {}};
@@ -307,7 +283,7 @@ TEST(DetailTexcoords, OfChosenFacesAreThoseOfTheDecoder) {
 }
 
 TEST(DetailTexcoords, BelowTheLastLevelAreInterpolated) {
-  const DetailSource source = pack_levels(textured_tube(48, 16), 60, 3, 1e-4F, usual_step);
+  const DetailSource source = pack_levels(textured_tube(48, 16), {.levels = 3});
   Options options;
   options.levels = 4;
   EXPECT_LT(largest_error(refine(with_levels(source), options).mesh.triangles(), error_on_tube), 0.01);

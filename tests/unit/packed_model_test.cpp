@@ -226,7 +226,7 @@ TEST(PackedModel, TooManyLevelsAndUnknownFlagsAreRefused) {
   const PackedFixture made = packed_fixture(test::icosahedron(), most_detail_levels);
   for (const int levels : {0, 9, 11, 255})
     EXPECT_EQ(refusal(with_table(made, 0, std::string(1, static_cast<char>(levels)))), "mesh_not_gltf") << levels;
-  for (const int flags : {1, 2, 128})
+  for (const int flags : {1, 2, 4, 128})
     EXPECT_EQ(refusal(with_table(made, 1, std::string(1, static_cast<char>(flags)))), "mesh_not_gltf") << flags;
 }
 

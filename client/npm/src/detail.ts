@@ -1,8 +1,8 @@
 // papilio/detail: packed models, made by `papilio pack`, decoded level by level in a worker.
 
 export { compileDecoder, DetailDecoder } from './detail/decoder.js';
-export type { DecodedTriangles } from './detail/decoder.js';
+export type { CodedLevel, DecodedTriangles } from './detail/decoder.js';
 export { isPacked, readPacked, withLevels } from './detail/packed_file.js';
-export type { PackedFile, PackedLevel, Reach, ReadOptions } from './detail/packed_file.js';
+export type { PackedFile, PackedLevel, Piece, Reach, ReadOptions } from './detail/packed_file.js';
 export { openPacked, PackedModel } from './detail/packed_model.js';
 export type { DecodeOptions, LevelInfo, OpenOptions } from './detail/packed_model.js';

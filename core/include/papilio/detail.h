@@ -44,11 +44,39 @@ struct TexcoordStream {
   std::vector<uint8_t> bytes{};  ///< entropy-coded residuals
 };
 
+/// What is known of a piece before it is there, in the mesh's unit. The surface is that of the last level below the
+/// piece's faces of the base.
+struct PieceBounds {
+  float largest_move = 0;   ///< upper bound of how far residuals move a vertex
+  Vec3f centre{};           ///< of a sphere that holds the surface
+  float radius = 0;         ///< of that
+  Vec3f axis{};             ///< unit length: of a cone of the normals of the surface's faces
+  float least_cosine = -1;  ///< lower bound of the cosine of their angles with it
+
+  friend bool operator==(const PieceBounds&, const PieceBounds&) = default;
+};
+
+/// A part of a level that is coded by itself. Pieces take the faces of the base in the order of a space-filling curve,
+/// about as many each, and have the edges below those.
+struct DetailPiece {
+  uint32_t bytes = 0;           ///< of its residuals, among those of its level
+  uint32_t texcoord_bytes = 0;  ///< likewise, of those of texture coordinates
+  bool is_missing = false;      ///< without bytes: its vertices, and those of pieces that need it, are the smooth ones
+  PieceBounds bounds{};
+
+  friend bool operator==(const DetailPiece&, const DetailPiece&) = default;
+};
+
+/// Most pieces of a level.
+inline constexpr uint32_t most_detail_pieces = 65535;
+
 /// Residuals of one level.
 struct DetailStream {
   float step = 0;              ///< quantization step, in the mesh's unit; > 0
-  std::vector<uint8_t> bytes;  ///< entropy-coded residuals, in the order of the edges that are split
+  std::vector<uint8_t> bytes;  ///< entropy-coded residuals: of each piece in the order of the edges that are split
   TexcoordStream texcoords{};  ///< where the base has texture coordinates
+  /// In the order of their bytes, at most as many as the base has faces; empty: all is one piece.
+  std::vector<DetailPiece> pieces{};
 };
 
 /// What a decoder of the levels up to one has, compared with the original.
@@ -59,8 +87,9 @@ struct DetailReach {
 
 /// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams, with
 /// the attributes of the base. `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every
-/// processor. Throws `Error`: bad_option (no step, too many levels, other attributes), not_finite, result_too_large
-/// beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
+/// processor, and of each vertex whose piece can be decoded whatever other pieces are there (decodable_pieces()).
+/// Throws `Error`: bad_option (no step, too many levels, other attributes, pieces that are not those of the bytes),
+/// not_finite, result_too_large beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
@@ -70,6 +99,12 @@ struct DetailReach {
 [[nodiscard]] Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels,
                                       uint64_t face_limit = face_count_limit,
                                       const std::function<bool()>& cancelled = {});
+
+/// Returns [level][piece] whether decode_detail() decodes each piece: those that are there, if all of the level before
+/// are decoded that lie at a vertex of the base at which the piece has a face, and the first one of its level and of
+/// those before. Throws as decode_detail().
+[[nodiscard]] std::vector<std::vector<uint8_t>> decodable_pieces(const DetailBase& base,
+                                                                 std::span<const DetailStream> levels);
 
 /// Texture coordinates of a point.
 using Texcoord = std::array<float, 2>;
@@ -147,6 +182,7 @@ struct DetailOptions {
   /// the RMS error of the whole is then a texel of a texture of 2048 by 2048.
   double texcoord_step = 1.0 / 512;
   uint64_t face_limit = 8'000'000;            ///< faces of the last level
+  uint64_t piece_bytes = 16'384;              ///< of a piece of a level, about; > 0
   std::function<bool()> cancelled{};          ///< asked between steps; true stops with `Fault::cancelled`
   std::function<void(double)> on_progress{};  ///< share done, 0..1
 };

@@ -2,7 +2,17 @@
 // those of client/wasm/detail_module.cpp.
 
 import { Problem } from '../client.js';
-import type { PackedLevel } from './packed_file.js';
+
+/// Residuals of a level.
+export interface CodedLevel {
+  step: number;
+  /// Of the pieces that are there, one behind the other.
+  residuals: Uint8Array;
+  /// Empty: the residuals are one piece. The vertices of one that is missing, and of those that need it, are the smooth
+  /// ones: a piece needs all pieces of the level before with a face at a vertex of its faces of the base, and the first
+  /// of its level.
+  pieces: readonly { bytes: number; isMissing?: boolean }[];
+}
 
 /// Indexed triangles, counter-clockwise seen from outside.
 export interface DecodedTriangles {
@@ -31,7 +41,8 @@ interface Exports {
   decoded_free(decoded: number): void;
 }
 
-const levelBytes = 12;
+const levelBytes = 20;
+const missingPiece = 2 ** 32 - 1;
 // papilio.h
 const codes = ['bad_parameter', 'mesh_unusable', 'result_too_large', 'cancelled', 'out_of_memory'];
 
@@ -72,15 +83,16 @@ export class DetailDecoder {
   }
 
   /// The surface with these levels, to the bits that the native library decodes. Throws Problem.
-  decode(levels: readonly Pick<PackedLevel, 'step' | 'residuals'>[], maxFaces = 2 ** 30): DecodedTriangles {
+  decode(levels: readonly CodedLevel[], maxFaces = 2 ** 30): DecodedTriangles {
     const made = this.#guarded(() => {
       const blocks: number[] = [];
       const write = (bytes: ArrayBufferView) => blocks[blocks.push(this.#write(bytes)) - 1]!;
       const rows = new DataView(new ArrayBuffer(levels.length * levelBytes));
-      for (const [l, { step, residuals }] of levels.entries()) {
+      for (const [l, { step, residuals, pieces }] of levels.entries()) {
+        const sizes = Uint32Array.from(pieces, ({ bytes, isMissing }) => (isMissing ? missingPiece : bytes));
         rows.setFloat32(l * levelBytes, step, true);
-        rows.setUint32(l * levelBytes + 4, residuals.length, true);
-        rows.setUint32(l * levelBytes + 8, write(residuals), true);
+        for (const [i, number] of [residuals.length, write(residuals), sizes.length, write(sizes)].entries())
+          rows.setUint32(l * levelBytes + 4 + 4 * i, number, true);
       }
       const decoded = this.#exports.decode(this.#pointer, levels.length, write(rows), Math.min(maxFaces, 2 ** 30));
       for (const block of blocks) this.#exports.release(block);

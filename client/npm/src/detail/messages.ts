@@ -3,7 +3,7 @@
 import type { DecodedTriangles } from './decoder.js';
 import type { PackedLevel } from './packed_file.js';
 
-export type Residuals = Pick<PackedLevel, 'step' | 'residuals'>;
+export type Residuals = Pick<PackedLevel, 'step' | 'residuals' | 'pieces'>;
 
 export type ToDecoder =
   | { kind: 'open'; module: WebAssembly.Module; base: DecodedTriangles; curves: Uint8Array; levels: Residuals[] }

@@ -14,14 +14,25 @@ import {
   refuseScene,
   whole,
 } from './document.js';
-import { leastTableBytes, type LevelTable, type Reach, readTable, sizeOfTable, writeTable } from './level_table.js';
+import {
+  leastTableBytes,
+  type LevelTable,
+  type Piece,
+  type Reach,
+  readTable,
+  sizeOfRows,
+  sizeOfTable,
+  writeTable,
+} from './level_table.js';
 
-export type { Reach };
+export type { Piece, Reach };
 
 export interface PackedLevel extends Reach {
   /// Of the residuals.
   step: number;
   residuals: Uint8Array<ArrayBuffer>;
+  /// Parts of the residuals, one behind the other. Empty: they are one.
+  pieces: readonly Piece[];
   /// Residuals of the level: the edges that it splits, by the table's count of those of the base.
   residualCount: number;
   /// Of the model with the levels up to this one.
@@ -162,6 +173,8 @@ class Reader {
     if (corners % 3 !== 0) refuse(primitivePlace, 'has indices of other than whole triangles');
     const faces = corners / 3;
     const [most, count] = [this.#options.maxFaces ?? defaultMaxFaces, table.rows.length];
+    if (table.rows.some(({ pieces }) => pieces.length > faces))
+      refuse('the table of levels', 'has more pieces than the base has faces');
     if (faces * 4 ** count > most)
       throw new Problem(
         'result_too_large',
@@ -239,10 +252,13 @@ class Reader {
 
 /// The table at the begin of a view, which it and its streams fill.
 function tableOf({ name, length, bytes }: View): LevelTable {
-  const size = bytes.length < leastTableBytes ? leastTableBytes : sizeOfTable(bytes);
-  if (length < size) refuse(name, 'is too short for its table of levels');
-  if (bytes.length < size) cut('the table of its levels');
-  const table = readTable(bytes);
+  const first = (size: number): Uint8Array => {
+    if (length < size) refuse(name, 'is too short for its table of levels');
+    if (bytes.length < size) cut('the table of its levels');
+    return bytes.subarray(0, size);
+  };
+  const size = sizeOfTable(first(sizeOfRows(first(leastTableBytes))));
+  const table = readTable(first(size));
   const total = table.rows.reduce((sum, row) => sum + row.bytes, size + table.curveBytes);
   if (length !== total) refuse(name, `has ${length} bytes, and its table declares ${total}`);
   return table;
@@ -260,8 +276,8 @@ function levelsOf(
     const residuals = bytes.subarray(at, at + row.bytes);
     if (residuals.length < row.bytes) break;
     at += row.bytes;
-    const { step, rms, largest } = row;
-    wholeOnes.push({ step, rms, largest, residuals, residualCount, faces: 4 * faces, end: begin + at });
+    const { step, rms, largest, pieces } = row;
+    wholeOnes.push({ step, rms, largest, residuals, pieces, residualCount, faces: 4 * faces, end: begin + at });
     residualCount = 2 * residualCount + 3 * faces;
     faces *= 4;
   }

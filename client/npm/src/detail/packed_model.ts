@@ -136,7 +136,9 @@ export class PackedModel {
       const message = `The worker failed: ${event.message || 'it could not be loaded'}.`;
       this.#take({ kind: 'failed', request: this.#running?.request ?? null, code: 'internal', message });
     };
-    const levels = this.#file.levels.map(({ step, residuals }) => ({ step, residuals: residuals.slice() }));
+    const levels = this.#file.levels.map(({ step, residuals, pieces }) => {
+      return { step, residuals: residuals.slice(), pieces };
+    });
     const [base, curves] = [this.#triangles, this.#file.curves.slice()];
     this.#send({ kind: 'open', module: this.#module, base, curves, levels });
   }
