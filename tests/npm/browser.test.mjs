@@ -112,6 +112,29 @@ test('levels come as they are made, and the page is not held up meanwhile', asyn
   await page.close();
 });
 
+test('two workers work at once: what is short does not wait for what is long', async () => {
+  const page = await open();
+  const order = await page.evaluate(async (coarse) => {
+    const order = async (workers) => {
+      const refiner = await papilio.Refiner.start({ workers });
+      const mesh = refiner.open(meshOf(coarse));
+      const ended = [];
+      const note = (name) => () => ended.push(name);
+      const long = refiner.refine(mesh, { levels: 5, tolerance: 1e-5 }).then(note('long'));
+      const short = refiner.refine(mesh, { levels: 1 }).then(note('short'));
+      await Promise.all([long, short]);
+      refiner.close();
+      return ended;
+    };
+    return [await order(1), await order(2)];
+  }, elephant);
+  assert.deepEqual(order, [
+    ['long', 'short'],
+    ['short', 'long'],
+  ]);
+  await page.close();
+});
+
 test('faults have their text, and a missing module is said', async () => {
   const page = await open();
   const seen = await page.evaluate(async (coarse) => {

@@ -136,6 +136,39 @@ test('a frozen view keeps its refinement here too', async () => {
   assert.equal(await facesOf(page, 'view'), faces);
 });
 
+test('what a frozen view saw is drawn: its frustum', async () => {
+  const { page } = await open();
+  await madeHere(page);
+  await page.locator('#stage').focus();
+  for (let i = 0; i < 12; ++i) await page.keyboard.press('-');
+  const withoutOne = (await orangePixels(page)).share;
+  await page.getByLabel(/Freeze the view/).check();
+  await drag(page, 150, 40); // it is seen from elsewhere
+  for (let i = 0; i < 12; ++i) await page.keyboard.press('-');
+  await quiet(page);
+  const { share } = await orangePixels(page);
+  assert.ok(withoutOne < 1e-4 && share > 3e-4, `${withoutOne}, then ${share}`);
+  await page.getByLabel(/Freeze the view/).uncheck();
+  await quiet(page);
+  assert.ok((await orangePixels(page)).share < 1e-4);
+});
+
+/// Of the picture: three.js draws frustums in orange.
+async function orangePixels(page) {
+  const text = (await picture(page, 'view')).toString('base64');
+  return page.evaluate(async (picture) => {
+    const bytes = Uint8Array.from(atob(picture), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    canvas.drawImage(bitmap, 0, 0);
+    const { data } = canvas.getImageData(0, 0, bitmap.width, bitmap.height);
+    let found = 0;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i] > 160 && data[i + 2] < 90 && data[i + 1] > 60 && data[i + 1] < 0.85 * data[i]) ++found;
+    return { share: (4 * found) / data.length };
+  }, text);
+}
+
 test('detail is one slider, hard edges are kept or rounded', async () => {
   const { page, faults } = await open();
   await madeHere(page);
@@ -261,6 +294,44 @@ test('a double click looks at what was clicked, from nearer', async () => {
   for (let i = 0; i < 100 && !(await isThere()); ++i) await page.waitForTimeout(100);
   const after = await distance();
   assert.ok(Math.abs(after / before - 0.5) < 0.01, `${after} of ${before}`);
+});
+
+test('what is under the cursor stays there while the wheel zooms', async () => {
+  const { page } = await open();
+  await madeHere(page);
+  await drag(page, 5, 0); // the link has the camera once it has moved
+  await quiet(page);
+  const box = await page.locator('.panel[data-mode=view]').boundingBox();
+  const camera = () => {
+    const numbers = new URLSearchParams(new URL(page.url()).hash.slice(1)).get('camera').split(',').map(Number);
+    const [eye, target] = [numbers.slice(0, 3), numbers.slice(3)];
+    return { eye, forward: between(eye, target) };
+  };
+  const between = (from, to) => to.map((x, i) => x - from[i]);
+  const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+  const angle = (a, b) => Math.acos(Math.min(1, dot(a, b) / Math.sqrt(dot(a, a) * dot(b, b))));
+  const ways = [];
+  for (const [x, y] of [
+    [-0.6, 0.3],
+    [0.6, 0.3],
+    [0, -0.5],
+  ]) {
+    const before = camera();
+    await page.mouse.move(box.x + (0.5 + x / 2) * box.width, box.y + (0.5 - y / 2) * box.height);
+    for (let i = 0; i < 3; ++i) await page.mouse.wheel(0, -120);
+    for (let i = 0; i < 50 && angle(before.eye, camera().eye) === 0; ++i) await page.waitForTimeout(100);
+    await quiet(page);
+    const after = camera();
+    // The camera goes along the ray through the cursor, and does not turn.
+    const way = between(before.eye, after.eye);
+    const tangent = Math.tan(Math.PI / 8); // of half the angle of view
+    const ofCursor = Math.atan(Math.hypot((x * box.width) / box.height, y) * tangent);
+    assert.ok(Math.abs(angle(way, before.forward) - ofCursor) < 0.02, `${angle(way, before.forward)}, not ${ofCursor}`);
+    assert.ok(angle(before.forward, after.forward) < 0.01);
+    assert.ok(dot(way, way) > 0.01 * dot(before.forward, before.forward));
+    ways.push(way);
+  }
+  assert.ok(angle(ways[0], ways[1]) > 0.3 && angle(ways[0], ways[2]) > 0.3);
 });
 
 test('a fine mesh is refined to the picture, not to millions of faces', async () => {

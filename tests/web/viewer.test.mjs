@@ -287,6 +287,14 @@ test('a .gltf file is opened with the files that it names, or misses them by nam
   const { red, drawn } = await redShare(page, await picture(page, 'uniform'));
   assert.ok(drawn > 0.1 && red > 0.9 * drawn, `${red} of ${drawn} are red`);
   assert.equal(await page.title(), 'cube.glb – Papilio');
+  // A texture of another host is not fetched: the model is shown without it.
+  const [binary, [, document]] = files;
+  const elsewhere = Buffer.from(document.toString().replace('red.png', 'https://textures.example/red.png'));
+  await dropAll(page, [binary, ['elsewhere.gltf', elsewhere]]);
+  await page.waitForFunction(() => document.title === 'elsewhere.glb – Papilio');
+  await done(page);
+  const without = await redShare(page, await picture(page, 'uniform'));
+  assert.ok(without.drawn > 0.1 && without.red < 0.1 * without.drawn, JSON.stringify(without));
   for (const [text, words] of [
     ['OFF\n4 1 0\n0 0 0\n', /fewer vertices and faces than it says/],
     ['OFF\n1 1 0\n0 0 0\n3 0 0 9\n', /names a vertex that is not there/],
