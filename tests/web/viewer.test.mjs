@@ -19,6 +19,7 @@ import {
   redShare,
   refinements,
   run,
+  shades,
   surfaceDistances,
   serverAndBrowser,
 } from './browser.mjs';
@@ -272,6 +273,29 @@ test('a scene is shown with its textures in every panel, and saved as .glb', asy
   const { red, drawn } = await redShare(again.page, await picture(again.page, 'uniform'));
   assert.ok(red > 0.9 * drawn);
   assert.deepEqual([...faults, ...again.faults], []);
+});
+
+test('a metal shows what is round it', async () => {
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
+  await done(page);
+  await page.getByLabel('Shaded').check();
+  const shown = async (metallicFactor, roughnessFactor) => {
+    const name = `${metallicFactor} ${roughnessFactor}`;
+    const change = (json) => {
+      json.materials = [{ pbrMetallicRoughness: { metallicFactor, roughnessFactor } }];
+      json.meshes[0].primitives[0].material = 0;
+    };
+    await drop(page, `${name}.glb`, cubeGlb({ change }));
+    await page.waitForFunction((title) => document.title.startsWith(title), name);
+    await done(page);
+    return shades(page, await picture(page, 'uniform'));
+  };
+  // Without a room round it, it is black but where the lamp is mirrored.
+  const metal = await shown(1, 0.1);
+  const paint = await shown(0, 0.9);
+  assert.ok(metal.drawn > 0.1 && metal.mean > 40 && metal.spread > 10, JSON.stringify([metal, paint]));
+  assert.ok(Math.abs(metal.mean - paint.mean) > 5, `${metal.mean}, ${paint.mean}`);
+  assert.deepEqual(faults, []);
 });
 
 test('a .gltf file is opened with the files that it names, or misses them by name', async () => {
