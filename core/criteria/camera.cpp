@@ -36,7 +36,8 @@ Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
 
 }  // namespace
 
-Camera::Camera(const View& view) : perspective_(view.projection == Projection::perspective), eye_(view.eye) {
+Camera::Camera(const View& view)
+    : perspective_(view.projection == Projection::perspective), two_sided_(view.two_sided), eye_(view.eye) {
   check(view);
   const double distance = length(view.target - view.eye);
   require(distance > 0 && std::isfinite(distance), "view.target",

@@ -36,6 +36,8 @@ class Camera {
     const double along = dot(sight, normal);
     return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
   }
+  /// Whether faces are shown from behind too: then none is hidden for being turned away.
+  [[nodiscard]] bool shows_backs() const { return two_sided_; }
   /// True when it is turned to the viewer, by a normal of any length.
   [[nodiscard]] bool is_towards(Vec3d point, Vec3d normal) const { return dot(sight_to(point), normal) < 0; }
   /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
@@ -66,7 +68,7 @@ class Camera {
   /// However near the near plane is: what it is multiplied by stays a number.
   static constexpr double most_pixels_per_unit = 1e200;
 
-  bool perspective_;
+  bool perspective_, two_sided_;
   Vec3d eye_, right_, up_, forward_;
   double near_;
   double pixels_per_unit_;  ///< at distance 1 (perspective) or at any (orthographic)

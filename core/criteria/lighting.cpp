@@ -54,13 +54,19 @@ double light_weight(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edg
   const Vec3d b = to_double(mesh.positions[mesh.topology.tip(h)]);
   const Vec3d middle = 0.5 * (a + b);
   const Sides faces = sides(mesh, normals, edge);
-  const Shade one = shade(view, faces.normal);
-  const Shade two = shade(view, faces.other);
+  // A back is shaded by the normal that it has seen from there.
+  const auto towards = [&](Vec3d normal) {
+    return camera.shows_backs() && camera.is_away(middle, normal) ? -1.0 * normal : normal;
+  };
+  const Vec3d first = towards(faces.normal);
+  const Vec3d second = towards(faces.other);
+  const Shade one = shade(view, first);
+  const Shade two = shade(view, second);
 
   const double change = std::abs(one.brightness - two.brightness);
   const double slope = 0.5 * (one.slope + two.slope);
   const double facing =
-      0.5 * (std::max(0.0, camera.facing(middle, faces.normal)) + std::max(0.0, camera.facing(middle, faces.other)));
+      0.5 * (std::max(0.0, camera.facing(middle, first)) + std::max(0.0, camera.facing(middle, second)));
   const double shading = 1.3 * (2 * change + slope) * std::sqrt(facing);
 
   double outline = 0;

@@ -52,6 +52,7 @@ class Sight {
     return are_inside[0] | are_inside[1] | are_inside[2];
   }
   [[nodiscard]] bool is_face_away(uint32_t f) const {
+    if (camera_.shows_backs()) return false;
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
     return has_normal(normals_[f]) && camera_.is_away(centroid, to_double(normals_[f]));

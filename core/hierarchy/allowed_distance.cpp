@@ -45,6 +45,7 @@ double scale_at(const LevelChoice& choice, uint32_t face, const Camera& camera) 
       scale = std::max(scale, camera.pixels_per_unit(p));
     }
   if (camera.is_outside(centre, std::sqrt(squared_radius))) return 0;
+  if (camera.shows_backs()) return scale;
   const Vec3d normal = unit_normal(corner);
   const double facing = camera.facing(centre, normal);
   if (facing >= 0) return scale;

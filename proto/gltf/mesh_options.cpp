@@ -49,9 +49,10 @@ Sight sight_of_sphere(const View& view, Vec3d centre, double radius) {
 }
 
 /// Returns the view as it is in a mesh that `map` moves into the scene.
-View view_in_mesh(const View& view, const Affine& map) {
+View view_in_mesh(const View& view, const Affine& map, bool is_two_sided) {
   const Affine inverse = inverse_of_similarity(map);
   View inner = view;
+  inner.two_sided = view.two_sided || is_two_sided;
   inner.eye = inverse.point(view.eye);
   inner.target = inverse.point(view.target);
   inner.up = unit(inverse.direction(view.up));
@@ -120,7 +121,7 @@ std::optional<Options> options_of_mesh(const Options& options, double scene_diag
   std::optional<Options> own = keeps_view ? options : without_view(options);
   detail::end_with_detail(*own, placed.mesh);
   if (keeps_view)
-    own->view = view_in_mesh(*options.view, placed.maps[0][0]);
+    own->view = view_in_mesh(*options.view, placed.maps[0][0], placed.is_two_sided);
   else if (needs.edge_length > 0)
     own->levels = std::min(own->levels, halvings(longest_edge(placed.mesh), needs.edge_length, own->levels));
   const double tolerance = keeps_view ? scene_tolerance / largest_scale(placed.maps[0][0]) : needs.tolerance;

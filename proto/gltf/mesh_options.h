@@ -14,6 +14,7 @@ struct PlacedMesh {
   const Mesh& mesh;
   double diagonal = 0;                           ///< of its box
   const std::vector<std::vector<Affine>>& maps;  ///< by showing and joint (scene.h)
+  bool is_two_sided = false;                     ///< whether backs are shown too
 };
 
 /// Returns the options that refine one mesh as `options` say it for its scene, whose box has the diagonal

@@ -18,6 +18,23 @@ std::optional<Surface> surface_of(const MeshGeometry& geometry, uint32_t number)
   }
 }
 
+/// Whether there are places from which its backs may be seen.
+bool is_open(const Mesh& mesh) {
+  return std::ranges::any_of(mesh.topology.twin, [](uint32_t twin) { return twin == none; });
+}
+
+/// Whether any of a mesh's materials is shown from both sides.
+bool is_two_sided(const Json& document, uint32_t number) {
+  const std::string where = place("meshes", number);
+  const Json& primitives = array_of(element_of(document, "meshes", number, where), "primitives");
+  return std::ranges::any_of(primitives, [&](const Json& primitive) {
+    const auto material = index_member(primitive, "material", where);
+    if (!material) return false;
+    const Json* sides = find_member(element_of(document, "materials", *material, where), "doubleSided", where);
+    return sides != nullptr && sides->is_boolean() && sides->get<bool>();
+  });
+}
+
 }  // namespace
 
 double SceneMesh::scale() const {
@@ -46,6 +63,7 @@ SceneMeshes read_meshes(Views& views, const Limits& limits) {
     mesh.maps = maps_of(scene, m, geometry);
     mesh.geometry = std::move(geometry);
     mesh.surface = std::move(*surface);
+    mesh.is_two_sided = is_open(mesh.surface.mesh) && is_two_sided(views.document().json, m);
     mesh.diagonal = bounding_box(mesh.surface.mesh.positions).diagonal();
   }
   if (out.meshes.empty())

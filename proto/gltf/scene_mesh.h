@@ -18,9 +18,11 @@ struct SceneMesh {
   Surface surface;
   double diagonal = 0;                    ///< of its box
   std::vector<std::vector<Affine>> maps;  ///< by showing and joint
+  bool is_two_sided = false;              ///< whether it is open, and any of its materials shows backs too
 
   /// Returns the largest scale at which the mesh is shown.
   [[nodiscard]] double scale() const;
+  [[nodiscard]] PlacedMesh placed() const { return {surface.mesh, diagonal, maps, is_two_sided}; }
   [[nodiscard]] uint64_t coarse_faces() const { return surface.mesh.topology.face_count(); }
 };
 

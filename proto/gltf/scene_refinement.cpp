@@ -120,7 +120,7 @@ class SceneRefinement::State {
     scene_diagonal_ = decoded().scene.box.diagonal();
     for (const SceneMesh& mesh : meshes()) {
       auto& options = runs_.emplace_back().options;
-      options = options_of_mesh(options_, scene_diagonal_, {mesh.surface.mesh, mesh.diagonal, mesh.maps});
+      options = options_of_mesh(options_, scene_diagonal_, mesh.placed());
       if (options) options->max_faces = 0;
     }
     coarse_faces_ = decoded().coarse_faces();

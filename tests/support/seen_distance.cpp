@@ -18,7 +18,8 @@ template <class Visit>
 void visit_seen(const std::vector<TriangleCorners>& faces, const Camera& camera, const Visit& visit) {
   for (const TriangleCorners& face : faces) {
     const Vec3d normal = cross(face.b - face.a, face.c - face.a);
-    if (!(length(normal) > 0) || camera.is_away(face.a, 1 / length(normal) * normal)) continue;
+    if (!(length(normal) > 0) || (!camera.shows_backs() && camera.is_away(face.a, 1 / length(normal) * normal)))
+      continue;
     for (const Vec3d& sample : samples_of(face))
       if (!camera.is_outside(sample, 0)) visit(sample);
   }

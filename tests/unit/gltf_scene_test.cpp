@@ -306,6 +306,23 @@ TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
   EXPECT_EQ(made.statistics.faces, same.statistics.faces);
 }
 
+TEST(GltfScene, BacksOfOpenMeshesAreSeenWhereTheirMaterialShowsThem) {
+  TriangleMesh sheet = test::grid(6, 6);
+  for (Vec3f& p : sheet.positions) p.z = 0.3F * std::sin(p.x) * std::cos(p.y);
+  const auto faces_from_behind = [](const TriangleMesh& mesh, bool is_double_sided) {
+    GltfScene scene;
+    scene.add_mesh(mesh);
+    scene.json["materials"] = Json::array({{{"doubleSided", is_double_sided}}});
+    scene.json["meshes"][0]["primitives"][0]["material"] = 0;
+    const proto::QueryFields view{
+        {"levels", "3"}, {"view.eye", "3,3,-9"}, {"view.target", "3,3,0"}, {"view.error_pixels", "1"}};
+    return faces_of(refined(scene.glb(), view).bytes);
+  };
+  EXPECT_GT(faces_from_behind(sheet, true), 2 * faces_from_behind(sheet, false));
+  const TriangleMesh closed = test::torus(12, 8);
+  EXPECT_EQ(faces_from_behind(closed, true), faces_from_behind(closed, false));
+}
+
 TEST(GltfScene, LimitsHoldForTheWholeScene) {
   const std::string glb = scene_of_two_scales(1, 1).glb();
   EXPECT_NO_THROW(refined(glb, {{"levels", "2"}}, {.max_output_faces = 640}));

@@ -9,6 +9,7 @@
 #include "tests/support/random_request.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/seen_distance.h"
+#include "tests/support/shapes.h"
 
 // What view.error_pixels promises: nothing that the picture shows of the result or of the uniform one of the same
 // levels is further from the other. Measured with a tree of boxes (seen_distance.h), which knows nothing of levels.
@@ -101,6 +102,40 @@ TEST(VerifiedView, HasTheSplitsOfOneThatIsNotAndMore) {
   const Result not_verified = refine(coarse, options);
   EXPECT_GT(verified.mesh.topology.face_count(), not_verified.mesh.topology.face_count());
   EXPECT_LT(verified.mesh.topology.face_count(), 2 * not_verified.mesh.topology.face_count());
+}
+
+/// A bowl seen from above: of its inside alone without `two_sided`, whose outline is its rim, which is bumpy.
+TEST(VerifiedView, BacksOfOpenMeshesAreShownIfAsked) {
+  TriangleMesh sheet = grid(12, 12);
+  for (Vec3f& p : sheet.positions) p.z = 0.4F * std::sin(0.9F * p.x) * std::cos(0.8F * p.y);
+  TriangleMesh turned = sheet;
+  for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+  const Mesh front = build_mesh(sheet);
+  const Mesh back = build_mesh(turned);
+  for (const bool is_verified : {true, false})
+    for (const std::vector<Vec3d>& lights : {std::vector<Vec3d>{}, std::vector<Vec3d>{{0, 0, 1}}}) {
+      Options options{.levels = 4, .shape = Shape::plain};
+      options.view = View{.eye = {6, 6, 12}, .target = {6, 6, 0}, .viewport = {800, 600}, .edge_pixels = 0};
+      options.view->error_pixels = 0.5;
+      options.view->verify = is_verified;
+      options.view->lights = lights;
+      const uint32_t seen = refine(front, options).mesh.topology.face_count();
+      const uint32_t from_behind = refine(back, options).mesh.topology.face_count();
+      options.view->two_sided = true;
+      const Result two_sided = refine(back, options);
+      EXPECT_LT(2 * from_behind, seen);
+      EXPECT_EQ(two_sided.mesh.topology.face_count(), seen);
+      EXPECT_EQ(refine(front, options).mesh.topology.face_count(), seen);
+      if (is_verified && lights.empty()) expect_kept(back, options, 0.5);
+    }
+}
+
+TEST(VerifiedView, HoldsForTheInsideThatIsSeenThroughHoles) {
+  const Mesh elephant = build_mesh(real_mesh("cgal/elephant-with-holes.off"));
+  std::mt19937 random(31);
+  Options options{.levels = 2, .view = random_view(random, bounding_box(elephant.positions))};
+  options.view->two_sided = true;
+  for (const double pixels : {0.5, 2.0}) expect_kept(elephant, options, pixels);
 }
 
 }  // namespace

@@ -161,6 +161,15 @@ TEST(EdgesShown, KeepsTheFrontAndItsSilhouette) {
   }
 }
 
+TEST(EdgesShown, WithBacksAreAllInside) {
+  const Mesh mesh = build_mesh(cube());
+  View view = looking_down_z();
+  view.eye = {0.5, 0.5, 5};
+  view.target = {0.5, 0.5, 0};
+  view.two_sided = true;
+  EXPECT_EQ(marked_count(seen(mesh, view)), mesh.topology.edge_count());
+}
+
 TEST(EdgesShown, DropsWhatIsOutsideTheFrustum) {
   const Mesh mesh = build_mesh(grid(40, 40));  // edges of length 1 to sqrt 2, in z = 0
   View view = looking_down_z();

@@ -25,6 +25,8 @@ struct View {
   /// and refined further until nothing that the picture shows is further from it than so many pixels. Takes most of the
   /// time.
   bool verify = true;
+  /// Whether backs are shown too, as those of open surfaces seldom are: then no face is turned away.
+  bool two_sided = false;
   /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
   /// over the edge and by whether it is on the silhouette (lighting.h).
   std::vector<Vec3d> lights{};
