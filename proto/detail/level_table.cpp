@@ -37,7 +37,7 @@ Flags flags_of(uint8_t byte) {
   if (byte > (texcoord_flag | piece_flag)) gltf::refuse_document("the table of levels", "has unknown flags");
   return {(byte & texcoord_flag) != 0, (byte & piece_flag) != 0};
 }
-Flags flags_of(const LevelTable& table) { return {table.has_texcoords, table.has_pieces()}; }
+Flags flags_of(const LevelTable& table) { return {table.has_texcoords, table.has_pieces}; }
 
 std::string place_of(size_t level) {
   return level == 0 ? "the base's row" : "the row of level " + std::to_string(level);
@@ -136,10 +136,6 @@ class TableReader {
 
 }  // namespace
 
-bool LevelTable::has_pieces() const {
-  return std::ranges::any_of(rows, [](const LevelRow& row) { return row.pieces.size() > 1; });
-}
-
 uint64_t LevelTable::size() const {
   const Flags flags = flags_of(*this);
   return std::accumulate(rows.begin(), rows.end(), least_table_bytes + rows.size() * flags.row(),
@@ -224,6 +220,7 @@ LevelTable read_table(std::string_view bytes) {
   table.rows.resize(reader.byte());
   const Flags flags = flags_of(reader.byte());
   table.has_texcoords = flags.has_texcoords;
+  table.has_pieces = flags.has_pieces;
   table.edges = reader.number();
   table.curve_bytes = reader.number();
   table.base_reach = reader.reach(place_of(0));

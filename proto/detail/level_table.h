@@ -25,10 +25,9 @@ struct LevelTable {
   uint32_t curve_bytes = 0;  ///< of the base's curves
   DetailReach base_reach;
   bool has_texcoords = false;  ///< whether levels have residuals of texture coordinates
+  bool has_pieces = false;     ///< whether rows count pieces: one where a level has none of its own
   std::vector<LevelRow> rows;  ///< coarse first
 
-  /// Whether a level has several pieces.
-  [[nodiscard]] bool has_pieces() const;
   /// Bytes of the table itself.
   [[nodiscard]] uint64_t size() const;
   /// Bytes of the table and all streams.

@@ -118,6 +118,7 @@ LevelTable table_of(const EncodedDetail& detail) {
                           .texcoord_bytes = static_cast<uint32_t>(stream.texcoords.bytes.size()),
                           .pieces = stream.pieces});
     table.has_texcoords = table.has_texcoords || stream.texcoords.step > 0;
+    table.has_pieces = table.has_pieces || !stream.pieces.empty();
   }
   return table;
 }

@@ -71,6 +71,21 @@ TEST(PackedPieces, ModelsOfOnePieceALevelHaveNoTableOfThem) {
   EXPECT_EQ(in_pieces(made, {1, 1, 1}).glb, made.glb);
 }
 
+TEST(PackedPieces, MayBeCountedThoughEachLevelIsOne) {
+  const PackedFixture made = packed_fixture(test::icosahedron(), 2);
+  LevelTable table = read_table(std::string_view(made.glb).substr(table_begin(made)));
+  EXPECT_FALSE(table.has_pieces);
+  const uint64_t before = table.size();
+  table.has_pieces = true;
+  const std::string counted = write_table(table);
+  EXPECT_EQ(counted.size(), before + 2 * 4);
+  EXPECT_EQ(size_of_rows(counted), counted.size());
+  EXPECT_EQ(size_of_table(counted), counted.size());
+  const LevelTable again = read_table(counted);
+  EXPECT_EQ(again.total(), table.total());
+  EXPECT_TRUE(again.has_pieces && again.rows[0].pieces.empty() && again.rows[1].pieces.empty());
+}
+
 /// With its residuals the texture coordinates of each piece.
 TEST(PackedPieces, LieOneBehindTheOther) {
   const PackedFixture made = textured_levels_in_pieces();
