@@ -161,7 +161,7 @@ TEST(DetailPieces, ThatAreMissingLeaveTheButterfly) {
   EXPECT_NE(decode_detail_mesh(all.base, all.levels).positions, smooth.positions);
 }
 
-/// In groups of about 32 faces of the base: 2 % of this model.
+/// The last level in groups of about 32 faces of the base.
 TEST(DetailPieces, TakeFewMoreBytesThanOneStream) {
   const TriangleMesh bunny = test::real_mesh("bunny.obj");
   const auto packed = [&](uint64_t piece_bytes) {

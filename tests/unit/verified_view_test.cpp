@@ -104,7 +104,7 @@ TEST(VerifiedView, HasTheSplitsOfOneThatIsNotAndMore) {
   EXPECT_LT(verified.mesh.topology.face_count(), 2 * not_verified.mesh.topology.face_count());
 }
 
-/// A bowl seen from above: of its inside alone without `two_sided`, whose outline is its rim, which is bumpy.
+/// A bumpy sheet and the same turned over, from above.
 TEST(VerifiedView, BacksOfOpenMeshesAreShownIfAsked) {
   TriangleMesh sheet = grid(12, 12);
   for (Vec3f& p : sheet.positions) p.z = 0.4F * std::sin(0.9F * p.x) * std::cos(0.8F * p.y);

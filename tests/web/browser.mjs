@@ -131,7 +131,7 @@ export async function picture(page, mode) {
   });
 }
 
-/// Shares of the pixels: `drawn` are not the ground's colour, `red` are red.
+/// Shares of the pixels: `drawn` are not the ground's colour, `red` are red, `orange` are as three.js draws frustums.
 export function redShare(page, picture) {
   return page.evaluate(async (text) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -147,6 +147,7 @@ export function redShare(page, picture) {
     return {
       drawn: count((r, g, b) => [r - data[0], g - data[1], b - data[2]].some((d) => Math.abs(d) > 16)),
       red: count((r, g, b) => r > 2 * g + 16 && r > 2 * b + 16),
+      orange: count((r, g, b) => r > 160 && b < 90 && g > 60 && g < 0.85 * r),
     };
   }, picture.toString('base64'));
 }

@@ -15,6 +15,7 @@ import {
   meshes,
   openPage,
   picture,
+  redShare,
   refinements,
   serverAndBrowser,
 } from './browser.mjs';
@@ -141,33 +142,18 @@ test('what a frozen view saw is drawn: its frustum', async () => {
   await madeHere(page);
   await page.locator('#stage').focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press('-');
-  const withoutOne = (await orangePixels(page)).share;
+  const orange = async () => (await redShare(page, await picture(page, 'view'))).orange;
+  const withoutOne = await orange();
   await page.getByLabel(/Freeze the view/).check();
   await drag(page, 150, 40); // it is seen from elsewhere
   for (let i = 0; i < 12; ++i) await page.keyboard.press('-');
   await quiet(page);
-  const { share } = await orangePixels(page);
+  const share = await orange();
   assert.ok(withoutOne < 1e-4 && share > 3e-4, `${withoutOne}, then ${share}`);
   await page.getByLabel(/Freeze the view/).uncheck();
   await quiet(page);
-  assert.ok((await orangePixels(page)).share < 1e-4);
+  assert.ok((await orange()) < 1e-4);
 });
-
-/// Of the picture: three.js draws frustums in orange.
-async function orangePixels(page) {
-  const text = (await picture(page, 'view')).toString('base64');
-  return page.evaluate(async (picture) => {
-    const bytes = Uint8Array.from(atob(picture), (c) => c.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-    canvas.drawImage(bitmap, 0, 0);
-    const { data } = canvas.getImageData(0, 0, bitmap.width, bitmap.height);
-    let found = 0;
-    for (let i = 0; i < data.length; i += 4)
-      if (data[i] > 160 && data[i + 2] < 90 && data[i + 1] > 60 && data[i + 1] < 0.85 * data[i]) ++found;
-    return { share: (4 * found) / data.length };
-  }, text);
-}
 
 test('detail is one slider, hard edges are kept or rounded', async () => {
   const { page, faults } = await open();
