@@ -177,7 +177,7 @@ TEST(DetailPieces, TakeFewMoreBytesThanOneStream) {
     for (const DetailStream& level : source.levels) bytes += static_cast<double>(level.bytes.size());
     return bytes;
   };
-  EXPECT_LT(bytes_of(pieces), 1.06 * bytes_of(one));
+  EXPECT_LT(bytes_of(pieces), 1.02 * bytes_of(one));
 }
 
 /// Sphere and cone hold the faces of the last level, and the largest move what each piece moves.
