@@ -25,7 +25,7 @@ DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits) {
   translate_errors([&] {
     if (auto model = detail::find_packed(bytes, limits)) {
       TriangleMesh base = model->base.triangles;
-      for (Attribute& texcoords : base.attributes) detail::turn_over(texcoords);
+      detail::turn_over(base.attributes);
       decoded.mesh = build_mesh(base, &decoded.found);
       decoded.attributes = attribute_encoding(decoded.mesh, detail::base_format(base.attributes));
       for (AttributeEncoding::Grid& grid : decoded.attributes.grids) widen(grid);

@@ -6,7 +6,6 @@
 #include "client/cli/progress.h"
 #include "client/lib/file_words.h"
 #include "client/lib/read_materials.h"
-#include "proto/detail/only_material.h"
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
@@ -26,8 +25,6 @@ void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& mode
       (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) + (proto::detail::normals_to_pack(model.mesh) ? 1 : 0);
   if (model.mesh.attributes.size() > packed)
     warnings.push_back(file.name + ": other attributes than texture coordinates and normals are left out.");
-  if (!model.materials.empty() && !proto::detail::only_material(model.materials))
-    warnings.push_back(file.name + ": its faces have several materials, or some have none: materials are left out.");
   if (is_scene(file.format)) {
     const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
     for (const char* part : {"skins", "animations"})
@@ -54,9 +51,8 @@ void print_packed(std::ostream& out, const Packed& packed) {
     if (!level.stream.pieces.empty()) out << " in " << level.stream.pieces.size() << " pieces";
     out << ": " << reach_text(level.reach) << '\n';
   }
-  if (!model.base.triangles.attributes.empty())
-    out << "texture coordinates of the levels " << texcoord_bytes << " bytes\n";
-  if (packed.image_bytes > 0) out << "images of the material " << packed.image_bytes << " bytes\n";
+  if (model.has_texcoords()) out << "texture coordinates of the levels " << texcoord_bytes << " bytes\n";
+  if (packed.image_bytes > 0) out << "images of the materials " << packed.image_bytes << " bytes\n";
   out << "container " << packed.glb.size() - bytes - texcoord_bytes - packed.image_bytes << " bytes\n"
       << "distances are shares of the diagonal; " << packed.folds << " folded faces";
   if (packed.parted > 0) out << "; parted at " << packed.parted << " vertices where the surface touches itself";

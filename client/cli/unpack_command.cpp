@@ -9,6 +9,7 @@
 #include "proto/detail/packed_reader.h"
 #include "proto/detail/plain_draco.h"
 #include "proto/draco_writer.h"
+#include "proto/gltf/material_attribute.h"
 #include "proto/text.h"
 
 namespace papilio::client {
@@ -22,7 +23,7 @@ void save_triangles(const MeshPlace& output, const proto::gltf::MaterialMesh& mo
   save_mesh(output, model);
 }
 
-/// Returns the material of a scene whose mesh is decoded, for all triangles, where the output holds any. A file that is
+/// Returns the materials of a scene whose mesh is decoded, by its triangles, where the output holds any. A file that is
 /// cut lacks what lies behind its levels.
 proto::gltf::Materials material_of(const UnpackFlags& flags, const MeshBytes& file, const TriangleMesh& mesh) {
   if (!holds_materials(flags.output)) return {};
@@ -45,15 +46,19 @@ NormalStyle output_normals(const UnpackFlags& flags, NormalStyle original) {
   return original;
 }
 
-/// Returns the mesh of a file without levels, with its own normals or those of its surface.
-proto::FormattedMesh with_output_normals(const UnpackFlags& flags, const proto::detail::PlainModel& model) {
+/// Gives the mesh of a file without levels normals of its surface, unless it has its own. Degenerate faces go.
+void add_output_normals(const UnpackFlags& flags, NormalStyle original, proto::gltf::MaterialMesh& model) {
   const bool has_own =
       std::ranges::count(model.mesh.format.attributes, proto::AttributeKind::normal, &proto::AttributeFormat::kind) > 0;
-  if (has_own && holds_normals(output_format(flags.output)) && flags.normals.value_or(true)) return model.mesh;
-  const NormalStyle style = output_normals(flags, model.normals);
-  if (model.normals == NormalStyle::absent && style != NormalStyle::absent)
-    return proto::detail::with_normals_of_shape(model.mesh);
-  return proto::detail::with_normals(model.mesh, style);
+  if (has_own && holds_normals(output_format(flags.output)) && flags.normals.value_or(true)) return;
+  const bool has_materials = !model.materials.empty();
+  if (has_materials) proto::gltf::add_material_attribute(model);
+  const NormalStyle style = output_normals(flags, original);
+  model.mesh = original == NormalStyle::absent && style != NormalStyle::absent
+                   ? proto::detail::with_normals_of_shape(std::move(model.mesh))
+                   : proto::detail::with_normals(std::move(model.mesh), style);
+  if (has_materials)
+    model.materials.of_triangle = proto::gltf::take_material_attribute(model.mesh, model.materials.materials.size());
 }
 
 std::ostream& begin_report(const UnpackFlags& flags, const TriangleMesh& mesh) {
@@ -93,8 +98,9 @@ bool unpack_plain(const UnpackFlags& flags, const MeshBytes& file) {
   if (flags.levels.value_or(0) > 0) print_warnings({file.name + " is plain Draco and has no levels."});
   proto::gltf::MaterialMesh decoded;
   in_words_of_the_file(file.name, [&] {
-    decoded.mesh = with_output_normals(flags, *model);
+    decoded.mesh = model->mesh;
     decoded.materials = material_of(flags, file, decoded.mesh);
+    add_output_normals(flags, model->normals, decoded);
   });
   save_triangles(flags.output, decoded);
   begin_report(flags, decoded.mesh) << "plain Draco without levels\n";

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "client/lib/file_words.h"
-#include "client/lib/material_attribute.h"
 #include "client/lib/read_beside.h"
 #include "client/lib/save_obj.h"
 #include "proto/detail/decode_packed.h"
@@ -11,6 +10,7 @@
 #include "proto/draco_reader.h"
 #include "proto/draco_writer.h"
 #include "proto/gltf/flattening.h"
+#include "proto/gltf/material_attribute.h"
 #include "proto/gltf/packing.h"
 #include "proto/text.h"
 
@@ -66,7 +66,7 @@ std::string draco_of(MeshBytes file) {
 }
 
 std::string draco_of(const std::string& name, proto::gltf::MaterialMesh model) {
-  if (!model.materials.empty()) add_material_attribute(model);
+  if (!model.materials.empty()) proto::gltf::add_material_attribute(model);
   return in_words_of_the_file(name, [&] { return proto::write_draco_exact(model.mesh, model.mesh.format); });
 }
 
@@ -96,8 +96,8 @@ void save_mesh(const MeshPlace& place, const proto::gltf::MaterialMesh& model) {
 void save_draco(const MeshPlace& place, std::string_view draco, const proto::gltf::Materials& materials) {
   if (output_format(place) == Format::drc) return save_bytes(place, draco);
   proto::gltf::MaterialMesh model{.mesh = proto::read_draco(draco, own_limits), .materials = materials};
-  if (!materials.empty() && has_material_attribute(model.mesh))
-    model.materials.of_triangle = take_material_attribute(model.mesh, materials.materials.size());
+  if (!materials.empty() && proto::gltf::has_material_attribute(model.mesh))
+    model.materials.of_triangle = proto::gltf::take_material_attribute(model.mesh, materials.materials.size());
   else if (!materials.empty())  // of a packed model, whose faces all have it
     model.materials.of_triangle.assign(model.mesh.triangles.size(), 0);
   save_mesh(place, model);

@@ -67,7 +67,11 @@ MaterialRead read_scene(const MeshPlace& place, const MeshBytes& file) {
 
 proto::gltf::Materials material_of_packed(std::string_view glb, size_t triangles) {
   proto::gltf::Materials materials = proto::gltf::flatten_with_materials(glb, own_limits).materials;
-  if (!materials.empty()) materials.of_triangle.assign(triangles, 0);
+  if (materials.empty()) return materials;
+  const std::vector<uint32_t> of_base = std::move(materials.of_triangle);
+  const size_t below = std::max<size_t>(1, triangles / of_base.size());
+  materials.of_triangle.clear();
+  for (size_t t = 0; t < triangles; ++t) materials.of_triangle.push_back(of_base.at(t / below));
   return materials;
 }
 

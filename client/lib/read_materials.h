@@ -22,7 +22,7 @@ struct MaterialRead {
 [[nodiscard]] MaterialRead read_with_materials(const MeshPlace& place, const MeshBytes& file);
 
 /// Returns the materials of a .glb file whose only mesh is a packed model, or its plain Draco, for so many triangles
-/// that its levels have. Throws `Problem`.
+/// that its levels have: as many in a row below each of the base. Throws `Problem`.
 [[nodiscard]] proto::gltf::Materials material_of_packed(std::string_view glb, size_t triangles);
 
 }  // namespace papilio::client

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "detail/base_attributes.h"
 #include "detail/base_curves.h"
 #include "detail/base_lift.h"
 #include "detail/base_points.h"
@@ -19,7 +20,6 @@
 #include "detail/placement.h"
 #include "detail/residual_fit.h"
 #include "detail/surface_distance.h"
-#include "detail/texcoord_levels.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
 
@@ -133,6 +133,7 @@ class DetailEncoder {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
     normals_ = mark_detail_curves(surface.mesh);
+    require_whole_parts(surface.mesh);
     return std::move(surface.mesh);
   }
   void poll() const {
@@ -343,7 +344,7 @@ class DetailEncoder {
   void add_levels(const Trial& trial, const ResidualFit& fit, EncodedDetail& encoded) const {
     const PieceOrder order(trial.lifted.mesh);
     encoded.levels = encode_pieces(fit, order, options_.piece_bytes, [&](std::span<const uint32_t> piece_counts) {
-      if (trial.lifted.mesh.attributes.empty()) return std::vector<CodedTexcoords>{};
+      if (!has_texcoords(trial.lifted.mesh.attributes.attributes)) return std::vector<CodedTexcoords>{};
       return encode_texcoords(original_, trial.lifted, *sequence_, *trial.base,
                               fit.surface(fit.level_count()).positions, static_cast<float>(options_.texcoord_step),
                               order, piece_counts, poller());
@@ -385,7 +386,7 @@ class DetailEncoder {
 
 EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options, const BaseCoder& code_base) {
   check(options);
-  require_texcoords(without_normals(original.attributes));
+  require_detail_attributes(without_normals(original.attributes));
   return DetailEncoder(original, options, code_base).run();
 }
 

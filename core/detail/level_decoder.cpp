@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "detail/base_attributes.h"
 #include "detail/base_curves.h"
 #include "detail/manifold_surface.h"
 #include "detail/residual_frames.h"
@@ -21,20 +22,21 @@ void require_finite(const Buffer<Vec3f>& positions) {
 }  // namespace
 
 Mesh mesh_of_base(const DetailBase& base) {
-  require_texcoords(base.triangles.attributes);
+  require_detail_attributes(base.triangles.attributes);
   Mesh mesh = build_mesh(base.triangles);
+  require_whole_parts(mesh);
   require_manifold(mesh);
   decode_base_curves(base.curves, mesh.topology);
   return mesh;
 }
 
-LevelDecoder::LevelDecoder(const Mesh& base, bool has_texcoords)
+LevelDecoder::LevelDecoder(const Mesh& base, bool with_texcoords)
     : order_(base),
       needs_(base.topology.vertex_count),
       positions_(base.positions),
       at_vertex_(positions_.size()),
       level_(base.topology, seam_edges(base)) {
-  if (has_texcoords && !base.attributes.empty()) texcoords_.emplace(base, seam_edges(base));
+  if (with_texcoords && has_texcoords(base.attributes.attributes)) texcoords_.emplace(base, seam_edges(base));
 }
 
 const Topology& LevelDecoder::topology() {

@@ -19,7 +19,7 @@ namespace papilio {
 class LevelDecoder {
  public:
   /// Takes what mesh_of_base() returns. Texture coordinates are decoded if asked.
-  explicit LevelDecoder(const Mesh& base, bool has_texcoords = false);
+  explicit LevelDecoder(const Mesh& base, bool with_texcoords = false);
 
   /// Decodes the next level: positions [V] grow to [V + E]. Throws `Error` not_finite.
   void decode(const DetailStream& stream);

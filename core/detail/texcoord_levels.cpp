@@ -56,13 +56,6 @@ DetailLevel cut_level(const Mesh& base, CutSurface cut, Buffer<Vec3f>& values, B
 
 }  // namespace
 
-void require_texcoords(const std::vector<Attribute>& attributes) {
-  if (attributes.empty()) return;
-  if (attributes.size() > 1 || attributes[0].components != 2)
-    throw Error(Fault::bad_option,
-                "Detail carries one attribute of two components, texture coordinates. Leave the others out.");
-}
-
 TexcoordLevels::TexcoordLevels(const Mesh& base, const std::vector<uint32_t>& seams)
     : level_(cut_level(base, cut_at_seams(base, seams), values_, vertices_)),
       at_vertex_{Buffer<int32_t>(values_.size()), Buffer<int32_t>(values_.size())} {}

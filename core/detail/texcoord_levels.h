@@ -12,9 +12,6 @@
 
 namespace papilio {
 
-/// Throws `Error` bad_option unless the attributes are none, or texture coordinates alone: one of two components.
-void require_texcoords(const std::vector<Attribute>& attributes);
-
 /// Texture coordinates of the levels of a base, on the surface that is cut along its seams: what decoder and encoder
 /// compute alike. Each level predicts the coordinates of its new vertices by the rules of the positions within the
 /// charts, corrected for where the positions came to lie, and adds residuals.

@@ -6,15 +6,11 @@
 #include <stdexcept>
 
 #include "papilio/error.h"
-#include "proto/detail/packed_texcoords.h"
-#include "proto/draco_reader.h"
-#include "proto/draco_writer.h"
 #include "proto/problem.h"
 
 namespace papilio::proto::detail {
 namespace {
 
-constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
 constexpr double least_range = 1e-30;  // below, steps per unit overflow in Draco
 
 double longest_side(const Box& box) {
@@ -60,28 +56,25 @@ double tight_grid_distance(const Box& box, int position_bits) {
 CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
   const Mesh mesh = build_mesh(base);
   const Box box = bounding_box(mesh.positions);
-  const QuantizationBox grid = tight_box(box);
   const double most_move = std::min(most_move_, 0.5 * shortest_edge(mesh));
   int bits = fewest_position_bits;
   while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
   for (;; ++bits) {
-    std::string stream = write_draco(mesh, grid, {.position_bits = bits, .speed = 0},
-                                     attribute_encoding(mesh, base_format(base.attributes)));
-    TriangleMesh decoded = read_draco(stream, no_limits);
-    const bool is_sound = keeps_surface(mesh, decoded);
+    PartStreams coded = write_parts(mesh, {.position_bits = bits, .speed = 0});
+    const bool is_sound = keeps_surface(mesh, coded.decoded);
     if (!is_sound && bits < most_position_bits) continue;
     if (!is_sound)
       throw Error(Fault::bad_surface, "Vertices of the base are too close to each other for a grid of " +
                                           std::to_string(most_position_bits) + " bits. Remove slivers.");
-    streams_.push_back(std::move(stream));
-    return {std::move(decoded), streams_.back().size()};
+    coded_.push_back(std::move(coded));
+    return {coded_.back().decoded, coded_.back().bytes()};
   }
 }
 
-const std::string& DracoBaseCoder::stream_of(const TriangleMesh& decoded) const {
-  for (const std::string& stream : streams_)
-    if (static_cast<const TriangleMesh&>(read_draco(stream, no_limits)) == decoded) return stream;
-  throw std::logic_error("stream_of: this base was not coded here");
+const std::vector<std::string>& DracoBaseCoder::streams_of(const TriangleMesh& decoded) const {
+  for (const PartStreams& coded : coded_)
+    if (coded.decoded == decoded) return coded.streams;
+  throw std::logic_error("streams_of: this base was not coded here");
 }
 
 }  // namespace papilio::proto::detail

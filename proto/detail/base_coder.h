@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "papilio/detail.h"
+#include "proto/detail/part_streams.h"
 #include "proto/quantization_box.h"
 
 namespace papilio::proto::detail {
@@ -25,16 +26,17 @@ class DracoBaseCoder {
  public:
   explicit DracoBaseCoder(double most_move) : most_move_(most_move) {}
 
-  /// Codes a base, decodes it as `read_packed` does, and keeps its stream. Throws `Problem`, `Error` like `build_mesh`,
-  /// and bad_surface where the finest grid welds vertices.
+  /// Codes a base, decodes it as `read_packed` does, and keeps its streams. Throws `Problem`, `Error` like
+  /// `build_mesh`, and bad_surface where the finest grid welds vertices.
   [[nodiscard]] CodedBase code(const TriangleMesh& base);
 
-  /// Returns the stream that decodes to this base, which `code` returned. Throws `std::logic_error` for another.
-  [[nodiscard]] const std::string& stream_of(const TriangleMesh& decoded) const;
+  /// Returns the streams, one for each part, that decode to this base, which `code` returned. Throws `std::logic_error`
+  /// for another.
+  [[nodiscard]] const std::vector<std::string>& streams_of(const TriangleMesh& decoded) const;
 
  private:
   double most_move_;
-  std::vector<std::string> streams_;
+  std::vector<PartStreams> coded_;
 };
 
 }  // namespace papilio::proto::detail

@@ -7,8 +7,8 @@ namespace papilio::proto::detail {
 FormattedMesh decode_packed(const PackedModel& model, const DecodeOptions& options) {
   Mesh decoded = decode_detail_mesh(model.base, model.streams(), options.face_limit, options.cancelled);
   FormattedMesh mesh;
-  mesh.format = base_format(model.base.triangles.attributes);
-  for (Attribute& texcoords : decoded.attributes.attributes) turn_over(texcoords);
+  mesh.format = base_format(decoded.attributes.attributes);
+  turn_over(decoded.attributes.attributes);
   if (add_detail_normals(decoded, options.normals.value_or(model.normals))) append_normals(mesh.format);
   static_cast<TriangleMesh&>(mesh) = std::move(decoded).triangles();
   return mesh;

@@ -16,7 +16,8 @@ struct DecodeOptions {
 };
 
 /// Decodes a packed model with its texture coordinates, which count upwards as those of other meshes, and with normals
-/// of the decoded surface (packed_normals.h). Throws `Error` as decode_detail().
+/// of the decoded surface (packed_normals.h). Each face of the base is as many faces in a row. Throws `Error` as
+/// decode_detail().
 [[nodiscard]] FormattedMesh decode_packed(const PackedModel& model, const DecodeOptions& options = {});
 
 }  // namespace papilio::proto::detail

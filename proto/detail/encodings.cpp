@@ -19,10 +19,10 @@ constexpr double base_move = 1;
 
 }  // namespace
 
-Encodings::Encodings(const TriangleMesh& surface, const gltf::Materials& material, const PackOptions& options,
+Encodings::Encodings(const TriangleMesh& surface, const gltf::Materials& materials, const PackOptions& options,
                      size_t most)
     : surface_(surface),
-      material_(material),
+      materials_(materials),
       options_(options),
       diagonal_(bounding_box(surface.positions).diagonal()),
       shares_(std::max(most, size_t{1})) {}
@@ -60,7 +60,7 @@ Encoding Encodings::encode_at(double rms, size_t number) {
   const EncodedDetail encoded =
       encode_detail(surface_, options, [&](const TriangleMesh& base) { return coder.code(base); });
   Encoding made{.wanted_rms = rms, .folds = encoded.folds, .parted = encoded.parted};
-  made.glb = write_packed(encoded, coder.stream_of(encoded.base.triangles), material_);
+  made.glb = write_packed(encoded, coder.streams_of(encoded.base.triangles), materials_);
   made.model = read_packed(made.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
   show(number, 1);
   return made;

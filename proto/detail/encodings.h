@@ -21,9 +21,9 @@ struct Encoding {
 /// Encoder of one surface at several distances. Encodings do not depend on each other, nor on the threads.
 class Encodings {
  public:
-  /// All must outlive this. `material`: that of all faces, or none. `most`: how many encodings there may be, for the
+  /// All must outlive this. `materials`: as of write_packed(). `most`: how many encodings there may be, for the
   /// progress.
-  Encodings(const TriangleMesh& surface, const gltf::Materials& material, const PackOptions& options, size_t most);
+  Encodings(const TriangleMesh& surface, const gltf::Materials& materials, const PackOptions& options, size_t most);
 
   /// Encodes at these distances, up to `PackOptions::jobs` at once. Throws `Error` as encode_detail().
   [[nodiscard]] std::vector<Encoding> encode(std::span<const double> distances);
@@ -35,7 +35,7 @@ class Encodings {
   void show(size_t number, double share);
 
   const TriangleMesh& surface_;
-  const gltf::Materials& material_;
+  const gltf::Materials& materials_;
   const PackOptions& options_;
   double diagonal_;
   size_t count_ = 0;

@@ -8,11 +8,12 @@
 #include "proto/detail/base_coder.h"
 #include "proto/detail/distance_search.h"
 #include "proto/detail/encodings.h"
-#include "proto/detail/only_material.h"
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/detail/plain_original.h"
+#include "proto/detail/used_materials.h"
 #include "proto/error_translation.h"
+#include "proto/gltf/material_attribute.h"
 #include "proto/problem.h"
 #include "proto/text.h"
 
@@ -29,14 +30,12 @@ constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
 class Packer {
  public:
-  Packer(const TriangleMesh& original, std::optional<gltf::Materials> material, const PackOptions& options)
-      : options_(options),
-        mesh_(build_mesh(original, nullptr, rounding_gap)),
-        material_(material ? std::move(*material) : gltf::Materials()) {}
+  Packer(const TriangleMesh& original, gltf::Materials materials, const PackOptions& options)
+      : options_(options), mesh_(build_mesh(original, nullptr, rounding_gap)), materials_(std::move(materials)) {}
 
   Packed run() {
     packed_.wanted_rms = has_other_goal() ? 0 : options_.rms;
-    for (const gltf::Image& image : material_.images) packed_.image_bytes += image.bytes.size();
+    for (const gltf::Image& image : materials_.images) packed_.image_bytes += image.bytes.size();
     try {
       encode();
     } catch (const Error& error) {
@@ -63,7 +62,7 @@ class Packer {
   /// Encodes for the goal, and keeps the best encoding.
   void encode() {
     const TriangleMesh surface = mesh_.triangles();
-    Encodings encodings(surface, material_, options_, has_other_goal() ? most_probes : 1);
+    Encodings encodings(surface, materials_, options_, has_other_goal() ? most_probes : 1);
     const auto encode_round = [&](std::span<const double> distances) {
       std::vector<double> values;
       for (Encoding& made : encodings.encode(distances)) {
@@ -204,7 +203,7 @@ class Packer {
   [[nodiscard]] PlainOptions plain_options(const Mesh& mesh) const {
     const bool has_normals = plain_.has_normals && &mesh == &plain_.mesh;
     return {.poll = [this] { poll(); },
-            .material = &material_,
+            .materials = &materials_,
             .normals = has_normals ? NormalStyle::absent : plain_.normals};
   }
   [[nodiscard]] PlainDraco plain_at(double rms, const Mesh& mesh) const {
@@ -239,25 +238,36 @@ class Packer {
   const PackOptions& options_;
   Mesh mesh_;  ///< moved to `plain_` once it is encoded
   PlainOriginal plain_;
-  gltf::Materials material_;
+  gltf::Materials materials_;
   std::optional<Encoding> best_;
   Packed packed_;
 };
 
+bool has_several(const std::vector<uint32_t>& of_triangle) {
+  return std::ranges::adjacent_find(of_triangle, std::ranges::not_equal_to{}) != of_triangle.end();
+}
+
 }  // namespace
 
 Packed pack(const gltf::MaterialMesh& original, const PackOptions& options) {
-  TriangleMesh surface{original.mesh.positions, original.mesh.triangles};
+  gltf::MaterialMesh surface;
+  surface.materials = used_materials(original.materials);
+  surface.mesh.positions = original.mesh.positions;
+  surface.mesh.triangles = original.mesh.triangles;
   if (std::optional<Attribute> texcoords = texcoords_to_pack(original.mesh))
-    surface.attributes.push_back(std::move(*texcoords));
-  if (std::optional<Attribute> normals = normals_to_pack(original.mesh))
-    surface.attributes.push_back(std::move(*normals));
-  return translate_errors([&] { return Packer(surface, only_material(original.materials), options).run(); });
+    surface.mesh.attributes.push_back(std::move(*texcoords));
+  std::optional<Attribute> normals = normals_to_pack(original.mesh);
+  if (normals) surface.mesh.attributes.push_back(std::move(*normals));
+  if (has_several(surface.materials.of_triangle)) {
+    gltf::add_material_attribute(surface);
+    if (normals) std::swap(surface.mesh.attributes.back(), surface.mesh.attributes[surface.mesh.attributes.size() - 2]);
+  }
+  return translate_errors([&] { return Packer(surface.mesh, std::move(surface.materials), options).run(); });
 }
 
 Packed pack(const TriangleMesh& original, const PackOptions& options) {
   const TriangleMesh surface{original.positions, original.triangles};
-  return translate_errors([&] { return Packer(surface, std::nullopt, options).run(); });
+  return translate_errors([&] { return Packer(surface, {}, options).run(); });
 }
 
 }  // namespace papilio::proto::detail

@@ -45,7 +45,7 @@ struct Packed {
 };
 
 /// Packs an original: its surface, its first texture coordinates of two components, the style of its normals
-/// (`NormalStyle`), and the material of its triangles where they all have the same one. The result is a plain .glb file
+/// (`NormalStyle`), and the materials of its triangles. The result is a plain .glb file
 /// where the surface cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the
 /// largest allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For an RMS
 /// distance a simplified mesh as Draco is compared too, if asked, from 5,000 faces on and if there are neither texture

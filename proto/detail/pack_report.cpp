@@ -16,7 +16,7 @@ void add_reach(Json& json, const DetailReach& reach) {
 Json json_of(const PackedModel& model) {
   Json base{{"vertices", model.base.triangles.positions.size()}, {"faces", model.base.triangles.triangles.size()}};
   base["bytes"] = model.base_bytes;
-  if (!model.base.triangles.attributes.empty()) base["texcoords"] = true;
+  if (model.has_texcoords()) base["texcoords"] = true;
   add_reach(base, model.base_reach);
   if (model.normals != NormalStyle::absent) base["normals"] = name_of(model.normals);
   Json levels = Json::array();

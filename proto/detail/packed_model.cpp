@@ -8,6 +8,11 @@ std::vector<DetailStream> PackedModel::streams() const {
   return out;
 }
 
+bool PackedModel::has_texcoords() const {
+  const std::vector<Attribute>& attributes = base.triangles.attributes;
+  return !attributes.empty() && attributes[0].components == 2;
+}
+
 DetailReach reach_of(const PackedModel& model) {
   return model.levels.empty() ? model.base_reach : model.levels.back().reach;
 }

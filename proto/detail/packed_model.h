@@ -29,6 +29,7 @@ struct PackedModel {
   size_t declared_levels = 0;       ///< those that the file declares
 
   [[nodiscard]] std::vector<DetailStream> streams() const;
+  [[nodiscard]] bool has_texcoords() const;
 };
 
 /// Returns the distance of a model with all levels that were read.

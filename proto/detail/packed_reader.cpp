@@ -1,10 +1,12 @@
 #include "proto/detail/packed_reader.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "proto/detail/level_table.h"
+#include "proto/detail/mesh_parts.h"
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/draco_reader.h"
@@ -20,8 +22,9 @@ namespace {
 using gltf::Json;
 using gltf::refuse_document;
 
-const std::string primitive_place = "meshes[0].primitives[0]";
-const std::string detail_place = primitive_place + ".extensions." + gltf::detail_extension;
+std::string primitive_place(size_t number) { return "meshes[0]." + gltf::place("primitives", number); }
+
+const std::string detail_place = primitive_place(0) + ".extensions." + gltf::detail_extension;
 
 [[noreturn]] void refuse_scene(const std::string& what) {
   throw Problem(Code::mesh_unsupported,
@@ -47,19 +50,34 @@ NormalStyle normals_member(const Json& extension) {
   return *style;
 }
 
+/// Numbers materials in the order of their first use.
+class MaterialNumbers {
+ public:
+  /// Returns the number of the part (mesh_parts.h) that a primitive is.
+  [[nodiscard]] double part_of(const Json& primitive, const std::string& place) {
+    const auto material = gltf::index_member(primitive, "material", place);
+    if (!material) return 0;
+    return number_.try_emplace(*material, static_cast<double>(number_.size() + 1)).first->second;
+  }
+
+ private:
+  std::map<uint32_t, double> number_;
+};
+
 /// Reader of one file.
 class PackedReader {
  public:
   PackedReader(std::string_view glb, const ReadOptions& options)
       : options_(options), document_(options.may_be_cut ? gltf::read_cut_document(glb) : gltf::read_document(glb)) {
     if (!document_.is_glb) throw Problem(Code::mesh_unsupported, "A packed model is a .glb file. Convert it to one.");
-    find_primitive();
+    find_primitives();
   }
 
   PackedModel read() {
-    const Json& extension = *gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place);
+    const Json& extension = *gltf::find_extension(primitives()[0], gltf::detail_extension, primitive_place(0));
     require_version(extension);
-    const std::string_view base = base_stream();
+    std::vector<std::string_view> base;
+    for (size_t p = 0; p < primitives().size(); ++p) base.push_back(base_stream(p));
     const View detail = view_at(gltf::index_member(extension, "bufferView", detail_place), detail_place);
     const LevelTable table = table_of(detail);
     PackedModel model;
@@ -70,18 +88,20 @@ class PackedReader {
     for (const LevelRow& row : table.rows)
       if (row.pieces.size() > faces) refuse_document("the table of levels", "has more pieces than the base has faces");
     model.normals = normals_member(extension);
-    read_base(base, faces, table, model);
+    read_base(base, table, model);
     read_streams(table, detail.bytes.substr(table.size()), model);
     return model;
   }
 
  private:
-  void find_primitive() {
+  [[nodiscard]] const Json& primitives() const { return *primitives_; }
+
+  void find_primitives() {
     const Json& mesh = only(gltf::array_of(document_.json, "meshes"), "mesh");
-    const Json* primitives = gltf::find_member(mesh, "primitives", "meshes[0]");
-    if (primitives == nullptr) refuse_document("meshes[0]", "has no primitives");
-    primitive_ = &only(*primitives, "primitive");
-    if (gltf::find_extension(*primitive_, gltf::detail_extension, primitive_place) == nullptr)
+    primitives_ = gltf::find_member(mesh, "primitives", "meshes[0]");
+    if (primitives_ == nullptr || !primitives_->is_array() || primitives_->empty())
+      refuse_document("meshes[0]", "has no primitives");
+    if (gltf::find_extension(primitives()[0], gltf::detail_extension, primitive_place(0)) == nullptr)
       throw Problem(Code::mesh_unsupported, "The scene has no " + std::string(gltf::detail_extension) +
                                                 ", so it is no packed model. Make one with papilio pack.");
     const Json& node = only(gltf::array_of(document_.json, "nodes"), "node");
@@ -89,8 +109,12 @@ class PackedReader {
       if (gltf::find_member(node, key, "nodes[0]") != nullptr) refuse_scene("a node with " + std::string(key));
     if (document_.buffers.size() != 1 || document_.buffers[0].place() != gltf::BufferPlace::binary_chunk)
       refuse_scene("other than one buffer, the binary chunk");
-    for (const char* key : {"targets", "mode"})
-      if (primitive_->contains(key)) refuse_scene("a primitive with " + std::string(key));
+    for (size_t p = 0; p < primitives().size(); ++p) {
+      for (const char* key : {"targets", "mode"})
+        if (primitives()[p].contains(key)) refuse_scene("a primitive with " + std::string(key));
+      if (p > 0 && gltf::find_extension(primitives()[p], gltf::detail_extension, primitive_place(p)) != nullptr)
+        refuse_scene("several primitives with " + std::string(gltf::detail_extension));
+    }
   }
 
   static void require_version(const Json& extension) {
@@ -101,16 +125,22 @@ class PackedReader {
                         std::to_string(detail_version) + " is supported. Update papilio, or pack the model again.");
   }
 
-  /// Returns the faces that the accessor of the indices declares.
+  /// Returns the faces that the accessors of the indices declare.
   [[nodiscard]] uint64_t declared_faces() const {
-    const uint64_t corners = declared_count(gltf::index_member(*primitive_, "indices", primitive_place));
-    if (corners % 3 != 0) refuse_document(primitive_place, "has indices of other than whole triangles");
+    uint64_t faces = 0;
+    for (size_t p = 0; p < primitives().size(); ++p) faces += declared_faces(p);
+    return faces;
+  }
+  [[nodiscard]] uint64_t declared_faces(size_t primitive) const {
+    const std::string place = primitive_place(primitive);
+    const uint64_t corners = declared_count(gltf::index_member(primitives()[primitive], "indices", place), place);
+    if (corners % 3 != 0) refuse_document(place, "has indices of other than whole triangles");
     return corners / 3;
   }
 
-  [[nodiscard]] uint64_t declared_count(std::optional<uint32_t> accessor) const {
-    if (!accessor) refuse_document(primitive_place, "lacks an accessor of positions or indices");
-    const Json& json = gltf::element_of(document_.json, "accessors", *accessor, primitive_place);
+  [[nodiscard]] uint64_t declared_count(std::optional<uint32_t> accessor, const std::string& place) const {
+    if (!accessor) refuse_document(place, "lacks an accessor of positions or indices");
+    const Json& json = gltf::element_of(document_.json, "accessors", *accessor, place);
     return gltf::whole_number(json, "count", gltf::place("accessors", *accessor));
   }
 
@@ -149,12 +179,12 @@ class PackedReader {
     return view;
   }
 
-  /// Returns the Draco stream of the base.
-  std::string_view base_stream() {
-    const Json* draco = gltf::find_extension(*primitive_, gltf::draco_extension, primitive_place);
-    if (draco == nullptr)
-      refuse_document(primitive_place, "has no base compressed by " + std::string(gltf::draco_extension));
-    const View view = view_at(gltf::index_member(*draco, "bufferView", primitive_place), primitive_place);
+  /// Returns the Draco stream of a primitive of the base.
+  std::string_view base_stream(size_t primitive) {
+    const std::string place = primitive_place(primitive);
+    const Json* draco = gltf::find_extension(primitives()[primitive], gltf::draco_extension, place);
+    if (draco == nullptr) refuse_document(place, "has no base compressed by " + std::string(gltf::draco_extension));
+    const View view = view_at(gltf::index_member(*draco, "bufferView", place), place);
     if (view.bytes.size() < view.length) refuse_cut("its base");
     return view.bytes;
   }
@@ -174,24 +204,43 @@ class PackedReader {
     return table;
   }
 
-  void read_base(std::string_view stream, uint64_t faces, const LevelTable& table, PackedModel& model) {
-    const Json* attributes = gltf::find_member(*primitive_, "attributes", primitive_place);
-    if (attributes == nullptr || !attributes->is_object()) refuse_document(primitive_place, "has no attributes");
-    const bool has_texcoords = attributes->contains("TEXCOORD_0");
-    if (attributes->size() != (has_texcoords ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
-    if (table.has_texcoords && !has_texcoords)
-      refuse_document("the table of levels", "has texture coordinates, and the base has no TEXCOORD_0");
-    const uint64_t vertices = declared_count(gltf::index_member(*attributes, "POSITION", primitive_place));
-    FormattedMesh base = read_draco(stream, options_.limits);
-    if (base.positions.size() != vertices || base.triangles.size() != faces)
-      refuse_document(primitive_place, "declares other counts than its Draco stream has");
-    if (base.format.attributes != (has_texcoords ? one_texcoord(base) : std::vector<AttributeFormat>{}))
-      refuse_scene("a base with other attributes than it declares");
-    if (const uint64_t edges = edges_of(base); table.edges != edges)
+  void read_base(const std::vector<std::string_view>& streams, const LevelTable& table, PackedModel& model) const {
+    std::vector<MeshPart> parts;
+    MaterialNumbers numbers;
+    for (size_t p = 0; p < streams.size(); ++p) {
+      model.base_bytes += streams[p].size();
+      parts.push_back({numbers.part_of(primitives()[p], primitive_place(p)), read_primitive(streams[p], p, table)});
+    }
+    model.base.triangles = join_parts(std::move(parts));
+    if (const uint64_t edges = edges_of(model.base.triangles); table.edges != edges)
       refuse_document("the table of levels",
                       "declares " + std::to_string(table.edges) + " edges, and the base has " + std::to_string(edges));
-    model.base_bytes = stream.size();
-    model.base.triangles = std::move(base);
+  }
+
+  [[nodiscard]] TriangleMesh read_primitive(std::string_view stream, size_t primitive, const LevelTable& table) const {
+    const std::string place = primitive_place(primitive);
+    const bool has_texcoords = has_texture_coordinates(primitives()[0], primitive_place(0));
+    if (has_texture_coordinates(primitives()[primitive], place) != has_texcoords)
+      refuse_scene("primitives of different attributes");
+    if (table.has_texcoords && !has_texcoords)
+      refuse_document("the table of levels", "has texture coordinates, and the base has no TEXCOORD_0");
+    const Json& attributes = *gltf::find_member(primitives()[primitive], "attributes", place);
+    const uint64_t vertices = declared_count(gltf::index_member(attributes, "POSITION", place), place);
+    FormattedMesh part = read_draco(stream, options_.limits);
+    if (part.positions.size() != vertices || part.triangles.size() != declared_faces(primitive))
+      refuse_document(place, "declares other counts than its Draco stream has");
+    if (part.format.attributes != (has_texcoords ? one_texcoord(part) : std::vector<AttributeFormat>{}))
+      refuse_scene("a base with other attributes than it declares");
+    return part;
+  }
+
+  /// Whether a primitive has texture coordinates. Refuses other attributes.
+  static bool has_texture_coordinates(const Json& primitive, const std::string& place) {
+    const Json* attributes = gltf::find_member(primitive, "attributes", place);
+    if (attributes == nullptr || !attributes->is_object()) refuse_document(place, "has no attributes");
+    const bool has_texcoords = attributes->contains("TEXCOORD_0");
+    if (attributes->size() != (has_texcoords ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
+    return has_texcoords;
   }
 
   /// Returns the format of a base's attributes if they are texture coordinates as packed models have them.
@@ -261,7 +310,7 @@ class PackedReader {
 
   const ReadOptions& options_;
   gltf::Document document_;
-  const Json* primitive_ = nullptr;
+  const Json* primitives_ = nullptr;
   uint64_t end_ = 0;  ///< of the last view, in the binary chunk
 };
 

@@ -10,14 +10,14 @@
 
 namespace papilio::proto::detail {
 
-/// Returns the format of the attributes of bases and plain files: of none, of texture coordinates, of normals
-/// (`Attribute::unit_length`), or of both.
+/// Returns the format of the attributes of bases and plain files: texture coordinates, parts (as materials, see
+/// proto/gltf/material_attribute.h), normals (`Attribute::unit_length`), or some of them.
 [[nodiscard]] MeshFormat base_format(const std::vector<Attribute>& attributes);
 
 /// Returns the first texture coordinates of two components, as packed models have them; nothing where there are none.
 [[nodiscard]] std::optional<Attribute> texcoords_to_pack(const FormattedMesh& mesh);
 
-/// Turns texture coordinates from packed models' to other meshes' direction, or back.
-void turn_over(Attribute& texcoords);
+/// Turns the texture coordinates among attributes from packed models' to other meshes' direction, or back.
+void turn_over(std::vector<Attribute>& attributes);
 
 }  // namespace papilio::proto::detail

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "proto/detail/level_table.h"
+#include "proto/detail/mesh_parts.h"
 #include "proto/detail/packed_model.h"
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
@@ -50,13 +51,44 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
     binary += bytes;
     return views.size() - 1;
   }
-  Json& primitive() { return json["meshes"][0]["primitives"][0]; }
-  /// Adds a material that the primitive has, behind all other views.
-  void add_material(const gltf::Materials& material) {
-    if (material.empty()) return;
-    gltf::add_materials(json, material, primitive()["attributes"].contains("TEXCOORD_0"),
+  Json& primitives() { return json["meshes"][0]["primitives"]; }
+  /// Adds an accessor; returns its number.
+  size_t add_accessor(Json accessor) {
+    json["accessors"].push_back(std::move(accessor));
+    return json["accessors"].size() - 1;
+  }
+  /// Adds a primitive with its Draco stream.
+  void add_primitive(const TriangleMesh& mesh, std::string_view stream) {
+    const Box box = bounding_box(mesh.positions);
+    const auto index = mesh.positions.size() <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+    constexpr auto number = static_cast<uint32_t>(ComponentType::float32);
+    Json attributes{{"POSITION", add_accessor({{"componentType", number},
+                                               {"count", mesh.positions.size()},
+                                               {"type", "VEC3"},
+                                               {"min", box_corner(box.min)},
+                                               {"max", box_corner(box.max)}})}};
+    const size_t indices = add_accessor(
+        {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
+    Json extension{{"bufferView", add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
+    for (const AttributeFormat& attribute : base_format(mesh.attributes).attributes) {
+      const bool is_normal = attribute.kind == AttributeKind::normal;
+      const char* const semantic = is_normal ? "NORMAL" : "TEXCOORD_0";
+      extension["attributes"][semantic] = attribute.id;
+      attributes[semantic] = add_accessor(
+          {{"componentType", number}, {"count", mesh.positions.size()}, {"type", is_normal ? "VEC3" : "VEC2"}});
+    }
+    primitives().push_back({{"attributes", std::move(attributes)},
+                            {"indices", indices},
+                            {"extensions", {{gltf::draco_extension, std::move(extension)}}}});
+  }
+  /// Adds the materials that the primitives of these parts have, behind all other views.
+  void add_materials(const gltf::Materials& materials, const std::vector<MeshPart>& parts) {
+    if (materials.empty()) return;
+    gltf::add_materials(json, materials, primitives()[0]["attributes"].contains("TEXCOORD_0"),
                         [this](std::string_view bytes) { return add_view(bytes); });
-    primitive()["material"] = 0;
+    if (parts.size() == 1) primitives()[0]["material"] = 0;
+    for (size_t p = 0; p < parts.size(); ++p)
+      if (parts[p].number > 0) primitives()[p]["material"] = static_cast<uint32_t>(parts[p].number) - 1;
   }
   [[nodiscard]] std::string write() && {
     json["buffers"][0]["byteLength"] = binary.size();
@@ -66,9 +98,9 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   }
 };
 
-Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
-  const Box box = bounding_box(mesh.positions);
-  const auto index = mesh.positions.size() <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+/// A scene of the parts of a mesh, a primitive each.
+Scene scene_of(const std::vector<MeshPart>& parts, const std::vector<std::string>& streams) {
+  if (parts.size() != streams.size()) throw std::invalid_argument("scene_of: parts and streams disagree");
   Scene scene;
   scene.json = {{"asset", {{"version", "2.0"}, {"generator", "papilio"}}},
                 {"extensionsUsed", {gltf::draco_extension}},
@@ -76,31 +108,11 @@ Scene scene_of(const TriangleMesh& mesh, std::string_view stream) {
                 {"scene", 0},
                 {"scenes", Json::array({{{"nodes", {0}}}})},
                 {"nodes", Json::array({{{"mesh", 0}}})},
-                {"meshes", Json::array({{{"primitives", Json::array({Json::object()})}}})},
+                {"meshes", Json::array({{{"primitives", Json::array()}}})},
                 {"accessors", Json::array()},
                 {"bufferViews", Json::array()},
                 {"buffers", Json::array({Json::object()})}};
-  scene.json["accessors"].push_back({{"componentType", static_cast<uint32_t>(ComponentType::float32)},
-                                     {"count", mesh.positions.size()},
-                                     {"type", "VEC3"},
-                                     {"min", box_corner(box.min)},
-                                     {"max", box_corner(box.max)}});
-  scene.json["accessors"].push_back(
-      {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
-  Json extension{{"bufferView", scene.add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
-  Json attributes{{"POSITION", 0}};
-  for (const AttributeFormat& attribute : base_format(mesh.attributes).attributes) {
-    const bool is_normal = attribute.kind == AttributeKind::normal;
-    const char* const semantic = is_normal ? "NORMAL" : "TEXCOORD_0";
-    attributes[semantic] = scene.json["accessors"].size();
-    extension["attributes"][semantic] = attribute.id;
-    scene.json["accessors"].push_back({{"componentType", static_cast<uint32_t>(ComponentType::float32)},
-                                       {"count", mesh.positions.size()},
-                                       {"type", is_normal ? "VEC3" : "VEC2"}});
-  }
-  scene.primitive() = {{"attributes", std::move(attributes)},
-                       {"indices", 1},
-                       {"extensions", {{gltf::draco_extension, std::move(extension)}}}};
+  for (size_t p = 0; p < parts.size(); ++p) scene.add_primitive(parts[p].triangles, streams[p]);
   return scene;
 }
 
@@ -144,24 +156,27 @@ std::string streams_of(const EncodedDetail& detail) {
 
 }  // namespace
 
-std::string write_packed(const EncodedDetail& detail, std::string_view base_stream, const gltf::Materials& material) {
+std::string write_packed(const EncodedDetail& detail, const std::vector<std::string>& base_streams,
+                         const gltf::Materials& materials) {
   if (detail.reach.size() != detail.levels.size() + 1 || detail.levels.size() > most_detail_levels)
     throw std::invalid_argument("write_packed: levels and distances disagree");
-  Scene scene = scene_of(detail.base.triangles, base_stream);
+  const std::vector<MeshPart> parts = split_parts(detail.base.triangles);
+  Scene scene = scene_of(parts, base_streams);
   scene.json["extensionsUsed"].push_back(gltf::detail_extension);
   const size_t view = scene.add_view(streams_of(detail));
   Json extension{{"version", detail_version}, {"bufferView", view}};
   if (detail.normals != NormalStyle::absent) extension["normals"] = name_of(detail.normals);
-  scene.primitive()["extensions"][gltf::detail_extension] = std::move(extension);
-  scene.add_material(material);
+  scene.primitives()[0]["extensions"][gltf::detail_extension] = std::move(extension);
+  scene.add_materials(materials, parts);
   return std::move(scene).write();
 }
 
-std::string write_plain(const TriangleMesh& decoded, std::string_view stream, NormalStyle normals,
-                        const gltf::Materials& material) {
-  Scene scene = scene_of(decoded, stream);
-  if (normals != NormalStyle::absent) scene.primitive()["extras"]["normals"] = name_of(normals);
-  scene.add_material(material);
+std::string write_plain(const TriangleMesh& decoded, const std::vector<std::string>& streams, NormalStyle normals,
+                        const gltf::Materials& materials) {
+  const std::vector<MeshPart> parts = split_parts(decoded);
+  Scene scene = scene_of(parts, streams);
+  if (normals != NormalStyle::absent) scene.primitives()[0]["extras"]["normals"] = name_of(normals);
+  scene.add_materials(materials, parts);
   return std::move(scene).write();
 }
 

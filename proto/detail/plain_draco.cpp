@@ -1,5 +1,6 @@
 #include "proto/detail/plain_draco.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,8 +9,7 @@
 #include "proto/detail/packed_normals.h"
 #include "proto/detail/packed_texcoords.h"
 #include "proto/detail/packed_writer.h"
-#include "proto/draco_reader.h"
-#include "proto/draco_writer.h"
+#include "proto/detail/part_streams.h"
 #include "proto/gltf/document.h"
 #include "proto/gltf/extensions.h"
 #include "proto/gltf/flattening.h"
@@ -40,6 +40,17 @@ NormalStyle style_of(const gltf::Json& primitive) {
   const auto name = extras->find("normals");
   if (name == extras->end() || !name->is_string()) return {};
   return normal_style_named(name->get<std::string>()).value_or(NormalStyle::absent);
+}
+
+/// Whether a primitive is one that a file without levels may have.
+bool is_plain(const gltf::Json& primitive) {
+  if (gltf::find_extension(primitive, gltf::draco_extension, "a primitive") == nullptr ||
+      gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr)
+    return false;
+  const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
+  if (attributes == nullptr || !attributes->is_object()) return false;
+  return attributes->size() ==
+         attributes->count("POSITION") + attributes->count("TEXCOORD_0") + attributes->count("NORMAL");
 }
 
 }  // namespace
@@ -73,13 +84,9 @@ PlainDraco write_plain_draco(const Mesh& mesh, double rms, const PlainOptions& o
 
 PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const PlainOptions& options) {
   PlainDraco plain{.position_bits = position_bits, .rms = grid_rms(mesh, position_bits)};
-  const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
-  const std::string stream =
-      write_draco(mesh, grid, {.position_bits = plain.position_bits, .speed = 0},
-                  attribute_encoding(mesh, base_format(mesh.attributes.attributes)), options.poll);
-  constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
-  plain.glb = write_plain(read_draco(stream, no_limits), stream, options.normals,
-                          options.material == nullptr ? gltf::Materials() : *options.material);
+  const PartStreams coded = write_parts(mesh, {.position_bits = plain.position_bits, .speed = 0}, options.poll);
+  plain.glb = write_plain(coded.decoded, coded.streams, options.normals,
+                          options.materials == nullptr ? gltf::Materials() : *options.materials);
   return plain;
 }
 
@@ -89,18 +96,11 @@ std::optional<PlainModel> read_plain_draco(std::string_view glb, const Limits& l
   const gltf::Json& meshes = gltf::array_of(json, "meshes");
   if (meshes.size() != 1) return std::nullopt;
   const gltf::Json* primitives = gltf::find_member(meshes[0], "primitives", "meshes[0]");
-  if (primitives == nullptr || !primitives->is_array() || primitives->size() != 1) return std::nullopt;
-  const gltf::Json& primitive = (*primitives)[0];
-  if (gltf::find_extension(primitive, gltf::draco_extension, "a primitive") == nullptr ||
-      gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr)
-    return std::nullopt;
-  const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
-  if (attributes == nullptr || !attributes->is_object()) return std::nullopt;
-  const size_t known = attributes->count("POSITION") + attributes->count("TEXCOORD_0") + attributes->count("NORMAL");
-  if (attributes->size() != known) return std::nullopt;
+  if (primitives == nullptr || !primitives->is_array() || primitives->empty()) return std::nullopt;
+  if (!std::ranges::all_of(*primitives, is_plain)) return std::nullopt;
   std::optional<FormattedMesh> mesh = gltf::find_only_mesh(glb, limits);
   if (!mesh) return std::nullopt;
-  return PlainModel{.mesh = std::move(*mesh), .normals = style_of(primitive)};
+  return PlainModel{.mesh = std::move(*mesh), .normals = style_of((*primitives)[0])};
 }
 
 namespace {

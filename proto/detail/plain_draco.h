@@ -21,9 +21,9 @@ struct PlainDraco {
 
 /// What is written besides the mesh.
 struct PlainOptions {
-  std::function<void()> poll{};               ///< called now and then; may throw to stop
-  const gltf::Materials* material = nullptr;  ///< as of write_packed()
-  NormalStyle normals{};                      ///< of the original, for readers of a mesh without
+  std::function<void()> poll{};                ///< called now and then; may throw to stop
+  const gltf::Materials* materials = nullptr;  ///< as of write_packed()
+  NormalStyle normals{};                       ///< of the original, for readers of a mesh without
 };
 
 /// Returns the RMS distance between a surface and the one with positions on the grid of so many bits in its
@@ -32,8 +32,8 @@ struct PlainOptions {
 [[nodiscard]] double grid_rms(const Mesh& mesh, int position_bits);
 
 /// Writes the mesh as Draco at speed 0 with the fewest bits, from 6 to 20, whose `grid_rms` is at most `rms`; with 20
-/// where none is. Of attributes, texture coordinates as packed models have them may be there, and normals. Throws
-/// `Problem`.
+/// where none is. Of attributes, texture coordinates and parts as packed models have them may be there, and normals.
+/// Throws `Problem`.
 [[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const PlainOptions& options = {});
 
 /// Writes the mesh as write_plain_draco() does, with so many bits of a coordinate.
@@ -45,9 +45,9 @@ struct PlainModel {
   NormalStyle normals{};  ///< of the original, where the file has none
 };
 
-/// Reads the mesh of a file without levels: a .glb scene that shows one primitive once, of positions and perhaps
-/// texture coordinates and normals, compressed by Draco. Nothing for other files. Throws `Problem` for a damaged one,
-/// and mesh_too_large.
+/// Reads the mesh of a file without levels: a .glb scene that shows one mesh once, whose primitives are of positions
+/// and perhaps texture coordinates and normals, compressed by Draco. Nothing for other files. Throws `Problem` for a
+/// damaged one, and mesh_too_large.
 [[nodiscard]] std::optional<PlainModel> read_plain_draco(std::string_view glb, const Limits& limits);
 
 /// Gives a mesh of a file without levels normals of a style in place of its own: smooth ones, or split at the edges

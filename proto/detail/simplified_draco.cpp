@@ -51,7 +51,7 @@ std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& origin
   const std::optional<SimplifiedDetail> made =
       simplify_detail(original, options, [&](const TriangleMesh& mesh, int bits) { return coder.code(mesh, bits); });
   if (!made) return std::nullopt;
-  SimplifiedDraco simplified{.glb = write_plain(made->triangles, coder.stream_of(*made), normals),
+  SimplifiedDraco simplified{.glb = write_plain(made->triangles, {coder.stream_of(*made)}, normals),
                              .faces = made->triangles.triangles.size(),
                              .position_bits = made->position_bits,
                              .reach = made->reach};

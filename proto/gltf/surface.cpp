@@ -75,16 +75,20 @@ uint32_t Combination::nearest() const {
 }
 
 void add_texcoords(const MeshGeometry& geometry, Surface& surface) {
-  if (geometry.sets.size() != 1) return;
-  const VertexStream* stream = geometry.sets[0].find("TEXCOORD_0");
-  if (stream == nullptr || stream->elements.format != ElementFormat{ComponentType::float32, 2, false}) return;
+  std::vector<const VertexStream*> streams;  // by set
+  for (const VertexSet& set : geometry.sets) {
+    const VertexStream* stream = streams.emplace_back(set.find("TEXCOORD_0"));
+    if (stream == nullptr || stream->elements.format != ElementFormat{ComponentType::float32, 2, false}) return;
+  }
   PointAttributes& points = surface.mesh.attributes;
   Attribute texcoords{.components = 2, .values = std::vector<double>(size_t{2} * points.point_count)};
   for (uint32_t point = 0; point < points.point_count; ++point) {
     const double* place = &points.attributes[provenance].values[size_t{point} * provenance_numbers];
     const uint32_t corner = place[1] == 1 ? 1 : place[2] == 1 ? 2 : 0;
-    const uint32_t vertex = surface.vertices_of[static_cast<size_t>(place[0])][corner];
-    for (uint32_t i = 0; i < 2; ++i) texcoords.values[2 * point + i] = stream->elements.number(vertex, i);
+    const auto face = static_cast<size_t>(place[0]);
+    const uint32_t vertex = surface.vertices_of[face][corner];
+    const VertexStream& stream = *streams[geometry.primitives[surface.primitive_of[face]].set];
+    for (uint32_t i = 0; i < 2; ++i) texcoords.values[2 * point + i] = stream.elements.number(vertex, i);
   }
   surface.texcoords = points.attributes.size();
   points.attributes.push_back(std::move(texcoords));

@@ -33,7 +33,7 @@ struct Surface {
 /// Joins the triangles of all primitives by position. Throws `Error`: not_finite, no_faces, out_of_memory.
 [[nodiscard]] Surface join_primitives(const MeshGeometry& geometry);
 
-/// Adds the texture coordinates of a surface of one set, TEXCOORD_0, as an attribute of the mesh. Leaves a surface
+/// Adds the texture coordinates of a surface, TEXCOORD_0, as an attribute of the mesh. Leaves a surface with sets
 /// without them, or with others than two floats each, as it is.
 void add_texcoords(const MeshGeometry& geometry, Surface& surface);
 

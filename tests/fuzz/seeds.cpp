@@ -145,12 +145,15 @@ void add_scenes(Seeds& seeds) {
 void add_packed_models(Seeds& seeds) {
   TriangleMesh charted = test::charted_cube();
   charted.attributes.erase(charted.attributes.begin());  // texture coordinates are left
-  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted})
-    for (const char choice : {'\x20', '\x21', '\x33'}) {
-      const test::PackedFixture whole = test::packed_fixture(shape, 3);
-      for (const std::string& glb : {whole.glb, test::in_pieces(whole, {2, 1, 4}).glb})
-        seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
-    }
+  std::vector<std::string> models{test::parted_fixture().glb};
+  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted}) {
+    const test::PackedFixture whole = test::packed_fixture(shape, 3);
+    models.push_back(whole.glb);
+    models.push_back(test::in_pieces(whole, {2, 1, 4}).glb);
+  }
+  for (const std::string& glb : models)
+    for (const char choice : {'\x20', '\x21', '\x33'})
+      seeds.add("detail", choice + test::json_of_glb(glb).dump() + '\0' + test::binary_of_glb(glb));
 }
 
 void add_parameters(Seeds& seeds) {

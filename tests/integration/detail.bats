@@ -287,11 +287,12 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   run --separate-stderr "$papilio" pack smooth.obj -o smooth.glb
   [ "$status" = 0 ]
   [ "$stderr" = "$(grep 'plain Draco' <<<"$stderr")" ] # nothing of normals
-  printf '%s\n' 'newmtl red' 'newmtl blue' >two.mtl
-  sed -e '1i mtllib two.mtl' -e 's/f 2/usemtl red\nf 2/; s/f 3/usemtl blue\nf 3/; s,//1,,g; /vn/d' smooth.obj >two.obj
-  run --separate-stderr "$papilio" pack two.obj -o two.glb
+  printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \
+    'property uchar red' 'property uchar green' 'property uchar blue' 'element face 1' \
+    'property list uchar int vertex_indices' end_header '0 0 0 9 9 9' '1 0 0 9 9 9' '0 1 0 9 9 9' '3 0 1 2' >red.ply
+  run --separate-stderr "$papilio" pack red.ply -o red.glb
   [ "$status" = 0 ]
-  [[ $stderr == *"materials are left out"* ]]
+  [[ $stderr == *"other attributes than texture coordinates and normals are left out"* ]]
 }
 
 # textured_ball: a small surface with a texture, whose charts meet at seams.
@@ -341,6 +342,50 @@ textured_ball() {
   grep -qx 'usemtl wood' mesh.obj
   [ "$(grep -c '^f ' mesh.obj)" = "$(grep -c '^f ' unpack.obj)" ]
   cmp "$(sed -n 's/^map_Kd //p' mesh.mtl)" wood.png
+}
+
+# faces_of FILE MATERIAL: faces of an .obj file that have the material.
+faces_of() { awk -v name="$2" '$1 == "usemtl" { material = $2 } $1 == "f" && material == name' "$1" | wc -l; }
+# two_materials: a cube of wood at its ends and of steel round it, behind a crumb of wood that a coarse grid loses.
+two_materials() {
+  printf '%s\n' 'newmtl wood' 'Kd 0.8 0.6 0.4' 'newmtl steel' 'Kd 0.5 0.5 0.5' >two.mtl
+  printf '%s\n' 'mtllib two.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 0 0 1' 'v 1 0 1' 'v 1 1 1' 'v 0 1 1' \
+    'v 0.3 0.3 0.3' 'v 0.30001 0.3 0.3' 'v 0.3 0.30001 0.3' 'v 0.3 0.3 0.30001' 'usemtl wood' ${1:+'f 9 11 10'} \
+    ${1:+'f 9 10 12'} ${1:+'f 9 12 11'} ${1:+'f 10 11 12'} 'f 4 3 2 1' 'f 5 6 7 8' 'usemtl steel' 'f 1 2 6 5' \
+    'f 3 4 8 7' 'f 2 3 7 6' 'f 4 1 5 8' >two.obj
+}
+
+@test "a model of several materials keeps them, as base, unpacked and refined" {
+  two_materials
+  "$papilio" refine two.obj -o ball.obj --levels 5 --tension off --shape plain
+  run --separate-stderr "$papilio" pack ball.obj -o ball.glb --rms 0.002 --json
+  [ "$status" = 0 ]
+  [ "$stderr" = "" ]
+  [ "$(jq -r .format <<<"$output")" = packed ]
+  [ "$("$papilio" info --json ball.glb | jq -c '[.materials, .meshes[0].primitives]')" = '[2,2]' ]
+  "$papilio" unpack ball.glb -o out.obj
+  "$papilio" convert ball.glb convert.obj
+  "$papilio" refine ball.glb -o refine.obj --levels 1
+  "$papilio" refine ball.glb -o refine.glb --levels 1
+  "$papilio" convert refine.glb scene.obj
+  for file in out convert refine scene; do
+    is_within "$(distance ball.obj $file.obj rms)" 0.01
+    steel=$(faces_of $file.obj steel)
+    wood=$(faces_of $file.obj wood)
+    [ $((steel + wood)) = "$(grep -c '^f ' $file.obj)" ]
+    is_within "1.7 * $wood" "$steel" # twice as many, about
+    is_within "$steel" "2.3 * $wood"
+  done
+}
+
+@test "a plain file of several materials keeps them where faces are lost" {
+  two_materials and-a-crumb
+  "$papilio" pack two.obj -o two.glb --rms 0.01 2>/dev/null
+  [ "$("$papilio" info --json two.glb | jq -c '[.materials, .detail]')" = '[2,null]' ]
+  "$papilio" unpack two.glb -o out.glb # with normals, for which degenerate faces go
+  "$papilio" convert out.glb out.obj
+  [ "$(faces_of out.obj steel)" = 8 ]
+  [ "$(faces_of out.obj wood)" = 4 ]
 }
 
 @test "a signal ends a search without a file" {

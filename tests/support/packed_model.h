@@ -1,11 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "proto/detail/base_coder.h"
+#include "proto/detail/packed_reader.h"
 #include "proto/detail/packed_writer.h"
+#include "proto/gltf/container.h"
+#include "proto/gltf/material_attribute.h"
+#include "proto/problem.h"
+#include "tests/support/gltf_scene.h"
+#include "tests/support/shapes.h"
 
 namespace papilio::test {
 
@@ -23,7 +30,7 @@ inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, siz
   PackedFixture made;
   proto::detail::DracoBaseCoder coder(1e-3);
   made.detail.base = {coder.code(base).triangles};
-  made.base_stream = coder.stream_of(made.detail.base.triangles);
+  made.base_stream = coder.streams_of(made.detail.base.triangles).at(0);
   made.detail.reach.push_back({0.01, 0.0625});
   for (size_t l = 0; l < levels; ++l) {
     DetailStream& stream = made.detail.levels.emplace_back();
@@ -38,8 +45,52 @@ inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, siz
     }
     made.detail.reach.push_back({0.00123456 / static_cast<double>(l + 1), 0.02 / static_cast<double>(l + 1)});
   }
-  made.glb = proto::detail::write_packed(made.detail, made.base_stream);
+  made.glb = proto::detail::write_packed(made.detail, {made.base_stream});
   return made;
+}
+
+/// A packed model of two parts, as it was written.
+struct PartedFixture {
+  EncodedDetail detail;
+  std::vector<std::string> base_streams{};
+  std::string glb{};
+};
+
+/// Packs the octahedron, each half of another material, with two levels of random bytes.
+inline PartedFixture parted_fixture() {
+  proto::gltf::MaterialMesh shape{.mesh = {}};
+  static_cast<TriangleMesh&>(shape.mesh) = octahedron();
+  shape.materials.materials = {{.name = "upper"}, {.name = "lower"}};
+  for (const auto& [a, b, c] : shape.mesh.triangles) {
+    const auto height = [&](uint32_t point) { return shape.mesh.positions[point].z; };
+    shape.materials.of_triangle.push_back(height(a) + height(b) + height(c) > 0 ? 0 : 1);
+  }
+  proto::gltf::add_material_attribute(shape);
+  proto::detail::DracoBaseCoder coder(1e-3);
+  PartedFixture made{.detail = packed_fixture(octahedron(), 2).detail};
+  made.detail.base.triangles = coder.code(shape.mesh).triangles;
+  made.base_streams = coder.streams_of(made.detail.base.triangles);
+  made.glb = proto::detail::write_packed(made.detail, made.base_streams, shape.materials);
+  return made;
+}
+
+/// The model with its JSON changed.
+inline std::string with_json(const std::string& glb, const std::function<void(GltfScene::Json&)>& change) {
+  GltfScene::Json json = json_of_glb(glb);
+  change(json);
+  std::vector<proto::gltf::Piece> pieces;
+  pieces.push_back({{}, binary_of_glb(glb)});
+  return proto::gltf::write_glb(json.dump(), std::move(pieces), {});
+}
+
+/// Returns the code with which the model is refused whose JSON is changed so; "read" where it is not.
+inline std::string refusal_of(const std::string& glb, const std::function<void(GltfScene::Json&)>& change) {
+  try {
+    (void)proto::detail::read_packed(with_json(glb, change));
+    return "read";
+  } catch (const proto::Problem& problem) {
+    return std::string(proto::problem_kind(problem.code()).name);
+  }
 }
 
 /// The model again, its levels in so many pieces, with some bounds.
@@ -60,7 +111,7 @@ inline PackedFixture in_pieces(PackedFixture made, const std::vector<uint32_t>& 
                                          .least_cosine = 1 / number - 1}});
     }
   }
-  made.glb = proto::detail::write_packed(made.detail, made.base_stream);
+  made.glb = proto::detail::write_packed(made.detail, {made.base_stream});
   return made;
 }
 

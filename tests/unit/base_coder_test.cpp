@@ -18,11 +18,11 @@ TEST(BaseCoder, TheCodedBaseIsWhatItsStreamDecodesTo) {
   const CodedBase torus = coder.code(test::torus(9, 7));
   const CodedBase icosahedron = coder.code(test::icosahedron());
   for (const CodedBase* coded : {&torus, &icosahedron}) {
-    const std::string& stream = coder.stream_of(coded->triangles);
+    const std::string& stream = coder.streams_of(coded->triangles).at(0);
     EXPECT_EQ(stream.size(), coded->bytes);
     EXPECT_EQ(static_cast<TriangleMesh>(read_draco(stream, {})), coded->triangles);
   }
-  EXPECT_THROW((void)coder.stream_of(test::cube()), std::logic_error);
+  EXPECT_THROW((void)coder.streams_of(test::cube()), std::logic_error);
 }
 
 TEST(BaseCoder, NoVertexMovesFurtherThanAllowed) {

@@ -290,11 +290,21 @@ TEST(DetailTexcoords, BelowTheLastLevelAreInterpolated) {
 }
 
 TEST(DetailTexcoords, OtherAttributesAreRefused) {
-  TriangleMesh mesh = charted_box(3);
-  mesh.attributes[0].components = 1;
-  mesh.attributes[0].values.resize(mesh.positions.size());
-  EXPECT_THROW((void)encode_detail(mesh, {}, [](const TriangleMesh& base) { return CodedBase{base, 1}; }), Error);
-  EXPECT_THROW((void)decode_detail({mesh}, {}), Error);
+  const TriangleMesh box = charted_box(3);
+  const auto expect_refused = [](const TriangleMesh& mesh) {
+    EXPECT_THROW((void)encode_detail(mesh, {}, [](const TriangleMesh& base) { return CodedBase{base, 1}; }), Error);
+    EXPECT_THROW((void)decode_detail({mesh}, {}), Error);
+  };
+  TriangleMesh mesh = box;
+  mesh.attributes.push_back(mesh.attributes[0]);
+  expect_refused(mesh);
+  Attribute parts{.components = 1, .values = std::vector<double>(mesh.positions.size())};
+  mesh.attributes = {parts, box.attributes[0]};
+  expect_refused(mesh);
+  mesh.attributes = {box.attributes[0], parts};
+  EXPECT_NO_THROW((void)decode_detail({mesh}, {}));
+  mesh.attributes[1].values[0] = 1;
+  expect_refused(mesh);
 }
 
 TEST(ManifoldSurface, PartsAttributesToo) {

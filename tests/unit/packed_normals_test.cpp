@@ -70,14 +70,14 @@ TEST(PackedNormals, StyleComesBack) {
   EXPECT_EQ(read_packed(made.glb).normals, NormalStyle::absent);
   for (const NormalStyle style : {NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
     made.detail.normals = style;
-    EXPECT_EQ(read_packed(write_packed(made.detail, made.base_stream)).normals, style);
+    EXPECT_EQ(read_packed(write_packed(made.detail, {made.base_stream})).normals, style);
   }
 }
 
 TEST(PackedNormals, OfAnUnknownStyleAreRefused) {
   test::PackedFixture made = test::packed_fixture(test::cube(), 1);
   made.detail.normals = NormalStyle::smooth;
-  const std::string glb = write_packed(made.detail, made.base_stream);
+  const std::string glb = write_packed(made.detail, {made.base_stream});
   const std::string known = R"("normals":"smooth")";
   for (const std::string_view other : {R"("normals":"smOoth")", R"("normals": 1234567)", R"("normals":["othe"])"}) {
     std::string changed = glb;
@@ -114,7 +114,7 @@ TEST(PackedNormals, AreThoseOfRefinementsToo) {
   for (const NormalStyle style :
        {NormalStyle::absent, NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
     made.detail.normals = style;
-    const std::string glb = write_packed(made.detail, made.base_stream);
+    const std::string glb = write_packed(made.detail, {made.base_stream});
     const Parameters parameters = parse_query({{"levels", "1"}, {"output.compress", "same"}});
     const FormattedMesh mesh = read_draco(Refinement(glb, parameters, {}).run().bytes, {});
     EXPECT_EQ(mesh.attributes.size(), has_detail_normals(style) ? 1U : 0U);

@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "proto/detail/decode_packed.h"
-#include "proto/detail/only_material.h"
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
 #include "proto/detail/packed_texcoords.h"
+#include "proto/detail/used_materials.h"
 #include "proto/gltf/container.h"
 #include "proto/gltf/flattening.h"
 #include "proto/problem.h"
@@ -22,6 +22,7 @@
 namespace papilio::proto::detail {
 namespace {
 
+using test::refusal_of;
 using TexturedJson = test::GltfScene::Json;
 
 /// A cube of six charts, with its texture coordinates alone.
@@ -40,19 +41,6 @@ gltf::Materials one_material() {
   made.materials.push_back({.name = "tree", .roughness = 0.5});
   made.materials[0].image(gltf::ImageUse::base_color) = 0;
   return made;
-}
-
-std::string refusal_of(const std::string& glb, const std::function<void(TexturedJson&)>& change) {
-  TexturedJson json = test::json_of_glb(glb);
-  change(json);
-  std::vector<gltf::Piece> pieces;
-  pieces.push_back({{}, test::binary_of_glb(glb)});
-  try {
-    (void)read_packed(gltf::write_glb(json.dump(), std::move(pieces), {}));
-    return "read";
-  } catch (const Problem& problem) {
-    return std::string(problem_kind(problem.code()).name);
-  }
 }
 
 /// Bytes of the table, and where it has the step and the size of the first level's texture coordinates.
@@ -120,7 +108,7 @@ TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
 TEST(PackedTexcoords, OfALevelMayBeAbsent) {
   test::PackedFixture made = textured_fixture();
   made.detail.levels[0].texcoords = {};
-  const PackedModel model = read_packed(write_packed(made.detail, made.base_stream));
+  const PackedModel model = read_packed(write_packed(made.detail, {made.base_stream}));
   EXPECT_EQ(model.levels.at(0).stream.texcoords.step, 0);
   EXPECT_EQ(model.levels.at(1).stream.texcoords.step, made.detail.levels[1].texcoords.step);
 }
@@ -142,35 +130,38 @@ TEST(PackedTexcoords, ThatAreNoneAreRefused) {
          [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0; });
   test::PackedFixture plain = test::packed_fixture(test::cube(), 1);
   plain.detail.levels[0].texcoords.step = 0.1F;
-  EXPECT_EQ(refusal_of(write_packed(plain.detail, plain.base_stream), [](TexturedJson&) {}), "mesh_not_gltf");
+  EXPECT_EQ(refusal_of(write_packed(plain.detail, {plain.base_stream}), [](TexturedJson&) {}), "mesh_not_gltf");
   EXPECT_EQ(refusal_of(plain.glb,
                        [](TexturedJson& json) { json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 0; }),
             "mesh_unsupported");
 }
 
-TEST(PackedMaterial, IsThatOfAllTriangles) {
+TEST(PackedMaterial, UnusedOnesAreLeftOut) {
   gltf::Materials several = one_material();
   several.materials.push_back({.name = "other"});
   several.images.insert(several.images.begin(), {.name = "unused", .bytes = "x"});
   several.materials[0].image(gltf::ImageUse::base_color) = 1;
   several.materials[0].image(gltf::ImageUse::emissive) = 1;
   several.of_triangle = {0, 0, 0};
-  const std::optional<gltf::Materials> only = only_material(several);
-  ASSERT_TRUE(only);
+  const gltf::Materials only = used_materials(several);
   gltf::Materials expected = one_material();
   expected.materials[0].image(gltf::ImageUse::emissive) = 0;
-  EXPECT_EQ(only->materials, expected.materials);
-  EXPECT_EQ(only->images, expected.images);
-  several.of_triangle = {0, 1, 0};
-  EXPECT_FALSE(only_material(several));
-  several.of_triangle = {0, none, 0};
-  EXPECT_FALSE(only_material(several));
-  EXPECT_FALSE(only_material({}));
+  EXPECT_EQ(only.materials, expected.materials);
+  EXPECT_EQ(only.images, expected.images);
+  several.of_triangle = {1, none, 1};
+  const gltf::Materials other = used_materials(several);
+  ASSERT_EQ(other.materials.size(), 1U);
+  EXPECT_EQ(other.materials[0].name, "other");
+  EXPECT_TRUE(other.images.empty());
+  EXPECT_EQ(other.of_triangle, (std::vector<uint32_t>{0, none, 0}));
+  several.of_triangle = {none, none};
+  EXPECT_TRUE(used_materials(several).of_triangle.empty());
+  EXPECT_TRUE(used_materials({}).empty());
 }
 
 TEST(PackedMaterial, KeepsItsImagesToTheByteBehindTheLevels) {
   const test::PackedFixture made = textured_fixture();
-  const std::string glb = write_packed(made.detail, made.base_stream, one_material());
+  const std::string glb = write_packed(made.detail, {made.base_stream}, one_material());
   const gltf::MaterialMesh read = gltf::flatten_with_materials(glb, {});
   EXPECT_EQ(read.materials.images, one_material().images);
   EXPECT_EQ(read.materials.materials, one_material().materials);

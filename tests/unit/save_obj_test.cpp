@@ -1,9 +1,9 @@
 #include "client/lib/save_obj.h"
 
-#include "client/lib/material_attribute.h"
 #include "client/lib/read_materials.h"
 #include "proto/draco_reader.h"
 #include "proto/gltf/flattening.h"
+#include "proto/gltf/material_attribute.h"
 #include "proto/refinement.h"
 #include "tests/support/images.h"
 #include "tests/support/mesh_file_fixture.h"
@@ -11,6 +11,9 @@
 
 namespace papilio::client {
 namespace {
+
+using proto::gltf::add_material_attribute;
+using proto::gltf::take_material_attribute;
 
 using proto::gltf::Image;
 using proto::gltf::ImageUse;

@@ -22,8 +22,9 @@ inline constexpr int most_detail_levels = 10;
 
 /// Coarse mesh that levels refine.
 struct DetailBase {
-  /// Manifold; edges with one face are boundaries. Without attributes, or with texture coordinates alone: one attribute
-  /// of two components, which may have seams.
+  /// Manifold; edges with one face are boundaries. Attributes may be texture coordinates, of two components, and behind
+  /// them the numbers of parts, of one component: those of materials, say, the same at the corners of each face. Both
+  /// may have seams.
   TriangleMesh triangles;
   std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
 
@@ -86,7 +87,8 @@ struct DetailReach {
 };
 
 /// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams, with
-/// the attributes of the base. `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every
+/// the texture coordinates of the base. Each face of the base is as many faces in a row, which are of its part.
+/// `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every
 /// processor, and of each vertex whose piece can be decoded whatever other pieces are there (decodable_pieces()).
 /// Throws `Error`: bad_option (no step, too many levels, other attributes, pieces that are not those of the bytes),
 /// not_finite, result_too_large beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
@@ -198,8 +200,8 @@ struct EncodedDetail {
   NormalStyle normals{};           ///< of the original
 };
 
-/// Encodes an original without attributes, or with texture coordinates, an attribute of two components, whose seams
-/// become seams of the base, and with normals, whose style alone is kept. Boundaries become curves of the base, and so
+/// Encodes an original without attributes, or with texture coordinates and parts as a base has them, whose seams become
+/// seams of the base, and with normals, whose style alone is kept. Boundaries become curves of the base, and so
 /// do the creases of mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it
 /// is parted, by at most a tenth of the wanted distance. The number of base faces, of levels and the steps are those,
 /// of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached they come nearest to

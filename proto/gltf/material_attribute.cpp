@@ -1,13 +1,13 @@
-#include "client/lib/material_attribute.h"
+#include "proto/gltf/material_attribute.h"
 
 #include <algorithm>
 #include <unordered_map>
 
-namespace papilio::client {
+namespace papilio::proto::gltf {
 namespace {
 
 /// Gives each material points of its own. Returns the material of each point.
-std::vector<uint32_t> divide_points(proto::FormattedMesh& mesh, const std::vector<uint32_t>& of_triangle) {
+std::vector<uint32_t> divide_points(FormattedMesh& mesh, const std::vector<uint32_t>& of_triangle) {
   std::vector<uint32_t> owner(mesh.positions.size(), none);
   std::vector<bool> is_owned(mesh.positions.size());
   std::unordered_map<uint64_t, uint32_t> copies;  // of points that another material owns, by point and material
@@ -33,31 +33,32 @@ std::vector<uint32_t> divide_points(proto::FormattedMesh& mesh, const std::vecto
   return owner;
 }
 
-bool is_material(const proto::AttributeFormat& format) {
-  return format.kind == proto::AttributeKind::generic && format.name == material_attribute_name;
+bool is_material(const AttributeFormat& format) {
+  return format.kind == AttributeKind::generic && format.name == material_attribute_name;
 }
 
 }  // namespace
 
-bool has_material_attribute(const proto::FormattedMesh& mesh) {
+AttributeFormat material_format(uint32_t id) {
+  return {.kind = AttributeKind::generic, .type = ValueType::int32, .id = id, .name = material_attribute_name};
+}
+
+bool has_material_attribute(const FormattedMesh& mesh) {
   return std::ranges::any_of(mesh.format.attributes, is_material);
 }
 
-void add_material_attribute(proto::gltf::MaterialMesh& model) {
+void add_material_attribute(MaterialMesh& model) {
   const std::vector<uint32_t> owner = divide_points(model.mesh, model.materials.of_triangle);
   uint32_t id = 0;
-  for (const proto::AttributeFormat& format : model.mesh.format.attributes) id = std::max(id, format.id);
+  for (const AttributeFormat& format : model.mesh.format.attributes) id = std::max(id, format.id);
   Attribute& attribute = model.mesh.attributes.emplace_back();
   attribute.values.reserve(owner.size());
   for (const uint32_t material : owner)
     attribute.values.push_back(material == none ? 0.0 : static_cast<double>(material) + 1);
-  model.mesh.format.attributes.push_back({.kind = proto::AttributeKind::generic,
-                                          .type = proto::ValueType::int32,
-                                          .id = id + 1,
-                                          .name = material_attribute_name});
+  model.mesh.format.attributes.push_back(material_format(id + 1));
 }
 
-std::vector<uint32_t> take_material_attribute(proto::FormattedMesh& mesh, size_t count) {
+std::vector<uint32_t> take_material_attribute(FormattedMesh& mesh, size_t count) {
   std::vector<uint32_t> of_triangle(mesh.triangles.size(), none);
   const auto format = std::ranges::find_if(mesh.format.attributes, is_material);
   if (format == mesh.format.attributes.end()) return of_triangle;
@@ -71,4 +72,4 @@ std::vector<uint32_t> take_material_attribute(proto::FormattedMesh& mesh, size_t
   return of_triangle;
 }
 
-}  // namespace papilio::client
+}  // namespace papilio::proto::gltf

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "proto/gltf/materials.h"
+
+namespace papilio::proto::detail {
+
+/// Returns the materials that triangles have, in the order of their numbers, with their images; none where no triangle
+/// has one.
+[[nodiscard]] gltf::Materials used_materials(const gltf::Materials& materials);
+
+}  // namespace papilio::proto::detail
