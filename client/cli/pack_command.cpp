@@ -21,10 +21,13 @@ using proto::detail::Packed;
 /// Says what a packed model does not hold.
 void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& model) {
   std::vector<std::string> warnings;
-  const size_t packed =
-      (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) + (proto::detail::normals_to_pack(model.mesh) ? 1 : 0);
+  const size_t packed = (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) +
+                        (proto::detail::colours_to_pack(model.mesh) ? 1 : 0) +
+                        (proto::detail::normals_to_pack(model.mesh) ? 1 : 0);
   if (model.mesh.attributes.size() > packed)
-    warnings.push_back(file.name + ": other attributes than texture coordinates and normals are left out.");
+    warnings.push_back(file.name + ": other attributes than texture coordinates, colours and normals are left out.");
+  if (proto::detail::has_opacity(model.mesh))
+    warnings.push_back(file.name + ": the opacity of its colours is left out.");
   if (is_scene(file.format)) {
     const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
     for (const char* part : {"skins", "animations"})
@@ -51,7 +54,10 @@ void print_packed(std::ostream& out, const Packed& packed) {
     if (!level.stream.pieces.empty()) out << " in " << level.stream.pieces.size() << " pieces";
     out << ": " << reach_text(level.reach) << '\n';
   }
-  if (model.has_texcoords()) out << "texture coordinates of the levels " << texcoord_bytes << " bytes\n";
+  const char* const values = !model.has_colours()    ? "texture coordinates"
+                             : model.has_texcoords() ? "texture coordinates and colours"
+                                                     : "colours";
+  if (model.has_texcoords() || model.has_colours()) out << values << " of the levels " << texcoord_bytes << " bytes\n";
   if (packed.image_bytes > 0) out << "images of the materials " << packed.image_bytes << " bytes\n";
   out << "container " << packed.glb.size() - bytes - texcoord_bytes - packed.image_bytes << " bytes\n"
       << "distances are shares of the diagonal; " << packed.folds << " folded faces";

@@ -5,12 +5,13 @@
 namespace papilio {
 
 void require_detail_attributes(const std::vector<Attribute>& attributes) {
-  size_t known = has_texcoords(attributes) ? 1 : 0;
-  if (attributes.size() > known && attributes[known].components == 1) ++known;
+  size_t known = 0;
+  for (const uint32_t components : {2U, 3U, 1U})
+    if (known < attributes.size() && attributes[known].components == components) ++known;
   if (attributes.size() > known)
     throw Error(Fault::bad_option,
-                "Detail carries texture coordinates, an attribute of two components, and behind them parts, one of one "
-                "component. Leave the others out.");
+                "Detail carries texture coordinates, an attribute of two components, then colours, of three, then "
+                "parts, of one. Leave the others out.");
 }
 
 void require_whole_parts(const Mesh& mesh) {

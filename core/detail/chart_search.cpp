@@ -71,25 +71,13 @@ ChartSearch::Found ChartSearch::nearest(std::span<const uint32_t> starts, Vec3d 
       if (queue_.size() > before) std::ranges::push_heap(queue_, is_farther);
     }
   }
-  return {best.face, texcoord(best.face, point)};
+  return {best.face, nearest_weights(point, original_.tree().corners(best.face))};
 }
 
 void ChartSearch::push(uint32_t face, Vec3d point) {
   if (seen_[face] == search_) return;
   seen_[face] = search_;
   queue_.push_back({squared_distance(point, original_.tree().corners(face)), face});
-}
-
-Vec3f ChartSearch::texcoord(uint32_t face, Vec3d point) const {
-  const PointAttributes& attributes = original_.mesh().attributes;
-  const std::array<double, 3> weights = nearest_weights(point, original_.tree().corners(face));
-  double u = 0, v = 0;
-  for (uint32_t i = 0; i < 3; ++i) {
-    const double* value = &attributes.attributes[0].values[size_t{2} * attributes.point[size_t{3} * face + i]];
-    u += weights[i] * value[0];
-    v += weights[i] * value[1];
-  }
-  return {static_cast<float>(u), static_cast<float>(v), 0};
 }
 
 }  // namespace papilio

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,18 +10,18 @@
 
 namespace papilio {
 
-/// Finds texture coordinates of an original near points, within the chart where the search begins: no seam is crossed.
+/// Finds the places of an original near points, within the chart where the search begins: no seam is crossed.
 class ChartSearch {
  public:
-  /// The original must have texture coordinates, and outlive this.
+  /// The original must have attributes, and outlive this.
   explicit ChartSearch(const OriginalSurface& original);
 
   struct Found {
     uint32_t face;
-    Vec3f texcoord;  ///< (u, v, 0)
+    std::array<double, 3> weights;  ///< of its corners
   };
   /// Looks from these faces on, the nearest first, for the face that is nearest to the point, until several in a row
-  /// are no nearer. Returns its texture coordinates at its point nearest to the point.
+  /// are no nearer. Returns its point nearest to the point.
   [[nodiscard]] Found nearest(std::span<const uint32_t> starts, Vec3d point);
 
  private:
@@ -29,7 +30,6 @@ class ChartSearch {
     uint32_t face;
   };
   void push(uint32_t face, Vec3d point);
-  [[nodiscard]] Vec3f texcoord(uint32_t face, Vec3d point) const;
 
   const OriginalSurface& original_;
   std::vector<bool> is_seam_;     // [E]

@@ -12,7 +12,7 @@
 #include "detail/base_points.h"
 #include "detail/collapse_sequence.h"
 #include "detail/encode_pieces.h"
-#include "detail/encode_texcoords.h"
+#include "detail/encode_values.h"
 #include "detail/error_weights.h"
 #include "detail/manifold_surface.h"
 #include "detail/original_surface.h"
@@ -344,10 +344,9 @@ class DetailEncoder {
   void add_levels(const Trial& trial, const ResidualFit& fit, EncodedDetail& encoded) const {
     const PieceOrder order(trial.lifted.mesh);
     encoded.levels = encode_pieces(fit, order, options_.piece_bytes, [&](std::span<const uint32_t> piece_counts) {
-      if (!has_texcoords(trial.lifted.mesh.attributes.attributes)) return std::vector<CodedTexcoords>{};
-      return encode_texcoords(original_, trial.lifted, *sequence_, *trial.base,
-                              fit.surface(fit.level_count()).positions, static_cast<float>(options_.texcoord_step),
-                              order, piece_counts, poller());
+      if (!has_values(trial.lifted.mesh.attributes.attributes)) return std::vector<CodedValues>{};
+      return encode_values(original_, trial.lifted, *sequence_, *trial.base, fit.surface(fit.level_count()).positions,
+                           static_cast<float>(options_.texcoord_step), order, piece_counts, poller());
     });
     for (const DetailStream& level : encoded.levels) {
       encoded.texcoord_bytes += level.texcoords.bytes.size();

@@ -104,19 +104,19 @@ uint32_t append(std::vector<uint8_t>& all, const std::vector<uint8_t>& piece) {
 }
 
 std::vector<DetailStream> streams_of(const ResidualFit& fit, const PieceOrder& order,
-                                     std::span<const uint32_t> piece_counts, const TexcoordCoder& code_texcoords) {
+                                     std::span<const uint32_t> piece_counts, const ValueCoder& code_values) {
   const auto residuals = fit.code(order, piece_counts);
-  const std::vector<CodedTexcoords> texcoords = code_texcoords(piece_counts);
+  const std::vector<CodedValues> values = code_values(piece_counts);
   std::vector<DetailStream> made;
   for (size_t l = 0; l < fit.level_count(); ++l) {
     DetailStream& stream = made.emplace_back();
     stream.step = fit.step(l);
     stream.pieces.resize(piece_counts[l]);
-    if (!texcoords.empty()) stream.texcoords.step = texcoords[l].step;
+    if (!values.empty()) stream.texcoords.step = values[l].step;
     for (uint32_t p = 0; p < piece_counts[l]; ++p) {
       stream.pieces[p].bytes = append(stream.bytes, residuals[l][p]);
       if (stream.texcoords.step > 0)
-        stream.pieces[p].texcoord_bytes = append(stream.texcoords.bytes, texcoords[l].pieces[p]);
+        stream.pieces[p].texcoord_bytes = append(stream.texcoords.bytes, values[l].pieces[p]);
     }
   }
   return made;
@@ -125,16 +125,16 @@ std::vector<DetailStream> streams_of(const ResidualFit& fit, const PieceOrder& o
 }  // namespace
 
 std::vector<DetailStream> encode_pieces(const ResidualFit& fit, const PieceOrder& order, uint64_t piece_bytes,
-                                        const TexcoordCoder& code_texcoords) {
+                                        const ValueCoder& code_values) {
   std::vector<uint32_t> counts(fit.level_count(), 1);
-  std::vector<DetailStream> streams = streams_of(fit, order, counts, code_texcoords);
+  std::vector<DetailStream> streams = streams_of(fit, order, counts, code_values);
   const auto most = std::min<uint64_t>(order.corners().size() / 3, most_detail_pieces);
   for (size_t l = 0; l < counts.size(); ++l) {
     const uint64_t bytes = streams[l].bytes.size() + streams[l].texcoords.bytes.size();
     counts[l] = static_cast<uint32_t>(std::clamp<uint64_t>((bytes + piece_bytes / 2) / piece_bytes, 1, most));
   }
   if (std::ranges::any_of(counts, [](uint32_t count) { return count > 1; }))
-    streams = streams_of(fit, order, counts, code_texcoords);
+    streams = streams_of(fit, order, counts, code_values);
   const TriangleMesh surface = fit.surface(fit.level_count());
   for (size_t l = 0; l < counts.size(); ++l) {
     std::vector<DetailPiece>& pieces = streams[l].pieces;

@@ -30,13 +30,13 @@ Mesh mesh_of_base(const DetailBase& base) {
   return mesh;
 }
 
-LevelDecoder::LevelDecoder(const Mesh& base, bool with_texcoords)
+LevelDecoder::LevelDecoder(const Mesh& base, bool with_values)
     : order_(base),
       needs_(base.topology.vertex_count),
       positions_(base.positions),
       at_vertex_(positions_.size()),
       level_(base.topology, seam_edges(base)) {
-  if (with_texcoords && has_texcoords(base.attributes.attributes)) texcoords_.emplace(base, seam_edges(base));
+  if (with_values && has_values(base.attributes.attributes)) values_.emplace(base, seam_edges(base));
 }
 
 const Topology& LevelDecoder::topology() {
@@ -57,11 +57,11 @@ void LevelDecoder::decode(const DetailStream& stream) {
                        at_vertex_, positions_, *models_);
   displace(level_, normals, residuals, positions_);
   require_finite(positions_);
-  if (texcoords_) {
-    texcoords_->predict(level_.topology(), positions_);
-    texcoords_->decode(edges.on_cut(level_.topology(), texcoords_->level().topology()),
-                       piece_bytes(stream.texcoords.bytes, pieces, &DetailPiece::texcoord_bytes, is_decoded),
-                       stream.texcoords.step);
+  if (values_) {
+    values_->predict(level_.topology(), positions_);
+    values_->decode(edges.on_cut(level_.topology(), values_->level().topology()),
+                    piece_bytes(stream.texcoords.bytes, pieces, &DetailPiece::texcoord_bytes, is_decoded),
+                    stream.texcoords.step);
   }
   at_vertex_.insert(at_vertex_.end(), residuals.along_normal.begin(), residuals.along_normal.end());
   is_split_ = true;
@@ -70,7 +70,7 @@ void LevelDecoder::decode(const DetailStream& stream) {
 Mesh LevelDecoder::take_mesh() {
   (void)topology();  // makes the finest level
   Mesh made{.topology = std::move(level_).take_topology(), .positions = std::move(positions_)};
-  if (texcoords_) made.attributes = texcoords_->points();
+  if (values_) made.attributes = values_->points();
   return made;
 }
 

@@ -53,6 +53,10 @@ class StreamedDetail final : public Detail {
     const Level& decoded = decoded_to(level, cancelled);
     return {decoded.texcoords.data(), decoded.texcoords.size()};
   }
+  [[nodiscard]] std::span<const Colour> new_colours(int level, const std::function<bool()>& cancelled) const override {
+    const Level& decoded = decoded_to(level, cancelled);
+    return {decoded.colours.data(), decoded.colours.size()};
+  }
   [[nodiscard]] double largest_move(int level, const std::function<bool()>& cancelled) const override {
     return decoded_to(level, cancelled).largest_move;
   }
@@ -62,12 +66,13 @@ class StreamedDetail final : public Detail {
   struct Level {
     Buffer<Vec3f> vertices;
     Buffer<Texcoord> texcoords;  ///< [H] of the mesh that is split, or none
+    Buffer<Colour> colours;      ///< likewise
     double largest_move = 0;
   };
 
   static uint64_t bytes_while_decoding(const LevelDecoder& decoder, const Topology& t, size_t vertices) {
-    const TexcoordLevels* texcoords = decoder.texcoords();
-    return (texcoords != nullptr ? texcoords->bytes() : 0) + t.half_edge_count() * 3 * sizeof(uint32_t) +
+    const ValueLevels* values = decoder.values();
+    return (values != nullptr ? values->bytes() : 0) + t.half_edge_count() * 3 * sizeof(uint32_t) +
            t.edge_count() * (sizeof(uint32_t) + sizeof(EdgeKind)) + vertices * (sizeof(Vec3f) + sizeof(int32_t));
   }
 
@@ -92,13 +97,17 @@ class StreamedDetail final : public Detail {
     const Buffer<Vec3f>& positions = decoder->positions();
     Level& made = levels_[count_];
     made.largest_move = largest_move_of(t, positions);
-    if (const TexcoordLevels* texcoords = decoder->texcoords()) made.texcoords = texcoords->on_half_edges();
+    if (const ValueLevels* values = decoder->values()) {
+      made.texcoords = values->on_half_edges<2>();
+      made.colours = values->on_half_edges<3>();
+    }
     made.vertices.assign(positions.begin() + t.vertex_count, positions.end());
     ++count_;
     const bool is_done = count_ == streams_.size();
     bytes_ = fixed_bytes_ + positions.size() * sizeof(Vec3f) +
              (is_done ? 0 : bytes_while_decoding(*decoder, t, positions.size()));
-    for (const Level& level : levels_) bytes_ += level.texcoords.size() * sizeof(Texcoord);
+    for (const Level& level : levels_)
+      bytes_ += level.texcoords.size() * sizeof(Texcoord) + level.colours.size() * sizeof(Colour);
     if (!is_done) decoder_ = std::move(decoder);
   }
 

@@ -22,15 +22,29 @@ Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& 
   return trial;
 }
 
-void add_texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
-                             Displacements& displaced, const std::function<bool()>& cancelled) {
+namespace {
+
+/// The numbers of a span of arrays.
+template <size_t Components>
+std::span<const float> numbers_of(std::span<const std::array<float, Components>> values) {
+  return values.empty() ? std::span<const float>{} : std::span(values[0].data(), values.size() * Components);
+}
+
+}  // namespace
+
+void add_values_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
+                          Displacements& displaced, const std::function<bool()>& cancelled) {
   const std::vector<Attribute>& attributes = mesh.attributes.attributes;
-  for (uint32_t a = 0; a < attributes.size(); ++a) {
-    if (attributes[a].components != 2) continue;
-    const std::span<const Texcoord> given = detail.new_texcoords(number, cancelled);
-    if (!given.empty()) displaced.push_back({a, {}, given, parent});
-    return;
-  }
+  const auto add = [&](uint32_t components, std::span<const float> given) {
+    if (given.empty()) return;
+    for (auto a = static_cast<uint32_t>(attributes.size()); a-- > 0;) {
+      if (attributes[a].components != components || attributes[a].unit_length) continue;
+      displaced.push_back({a, {}, given, components, parent});
+      return;
+    }
+  };
+  add(2, numbers_of(detail.new_texcoords(number, cancelled)));
+  add(3, numbers_of(detail.new_colours(number, cancelled)));
 }
 
 DecodedSize decoded_size(const Mesh& coarse, int level, const MemoryPlan& plan) {

@@ -17,11 +17,11 @@ namespace papilio {
 [[nodiscard]] Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& options,
                               const TrialContext& context, const std::function<bool()>& cancelled = {});
 
-/// Adds the texture coordinates that a detail gives the points on the half-edges of the whole level that `number`
-/// levels give, if it does and the mesh has such an attribute. `parent`: as of Displacement. Throws `Error` as
-/// Detail::new_texcoords().
-void add_texcoords_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
-                             Displacements& displaced, const std::function<bool()>& cancelled = {});
+/// Adds the texture coordinates and colours that a detail gives the points on the half-edges of the whole level that
+/// `number` levels give, if it does, to the last attributes of two components and of three that are no normals.
+/// `parent`: as of Displacement. Throws `Error` as Detail::new_texcoords().
+void add_values_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
+                          Displacements& displaced, const std::function<bool()>& cancelled = {});
 
 /// Whole level of a mesh with detail.
 struct DecodedSize {

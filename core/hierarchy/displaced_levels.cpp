@@ -54,8 +54,8 @@ std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels,
   for (size_t k = 0; k < levels.size(); ++k) {
     const HierarchyLevel& level = *levels[k].level;
     if (level.detail_levels > 0)
-      add_texcoords_of_detail(coarse, *coarse.detail, coarse.detail->level_count() - level.detail_levels,
-                              level.in_whole.parent, of_levels[k]);
+      add_values_of_detail(coarse, *coarse.detail, coarse.detail->level_count() - level.detail_levels,
+                           level.in_whole.parent, of_levels[k]);
   }
   return of_levels;
 }

@@ -126,7 +126,7 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
     for (const Displacement& displacement : displaced) {
       std::vector<double>& values = attributes.attributes[displacement.attribute].values;
       if (!displacement.given.empty())
-        std::ranges::copy(displacement.given_at(h), values.end() - 2);
+        std::ranges::copy(displacement.given_at(h), values.end() - displacement.components);
       else if (const Vec3d at = displacement.at[mesh.edge[h]]; is_known(at))
         std::ranges::copy(std::array{at.x, at.y, at.z}, values.end() - 3);
     }

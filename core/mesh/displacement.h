@@ -15,15 +15,17 @@ namespace papilio {
 struct Displacement {
   uint32_t attribute;  ///< number in the mesh
   Buffer<Vec3d> at;    ///< [V] at the vertices; or [E] at the new vertices of the edges
-  /// In place of `at`: texture coordinates of the points on the half-edges [H] of a whole level, which must outlive
-  /// this. The attribute is no displacement, and has two components.
-  std::span<const std::array<float, 2>> given{};
+  /// In place of `at`: values of the points on the half-edges of a whole level [H * components], which must outlive
+  /// this. The attribute is no displacement.
+  std::span<const float> given{};
+  uint32_t components = 0;  ///< of `given`
   /// Where not all of the level is at hand: the faces above, in the whole level, of every twelve half-edges.
   std::span<const uint32_t> parent{};
 
   /// Returns what is given on a half-edge of the level at hand.
-  [[nodiscard]] const std::array<float, 2>& given_at(uint32_t half_edge) const {
-    return given[parent.empty() ? half_edge : 12 * parent[half_edge / 12] + half_edge % 12];
+  [[nodiscard]] std::span<const float> given_at(uint32_t half_edge) const {
+    const size_t whole = parent.empty() ? half_edge : 12 * parent[half_edge / 12] + half_edge % 12;
+    return given.subspan(whole * components, components);
   }
 };
 using Displacements = std::vector<Displacement>;

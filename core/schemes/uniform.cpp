@@ -83,7 +83,7 @@ class Uniform {
       const SplitPlan plan = everything();
       Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
       if (detail_ && level_ <= detail_->level_count())
-        add_texcoords_of_detail(mesh_, *detail_, level_ - 1, {}, displaced, progress_.cancelled());
+        add_values_of_detail(mesh_, *detail_, level_ - 1, {}, displaced, progress_.cancelled());
       Topology below = papilio::split(topology, plan, mesh_.positions, mesh_.attributes, displaced);
       append_new_vertices(displacements_, displaced, plan);
       keep_parents(std::exchange(topology, std::move(below)));

@@ -9,6 +9,7 @@ FormattedMesh decode_packed(const PackedModel& model, const DecodeOptions& optio
   FormattedMesh mesh;
   mesh.format = base_format(decoded.attributes.attributes);
   turn_over(decoded.attributes.attributes);
+  round_colours(decoded.attributes.attributes);
   if (add_detail_normals(decoded, options.normals.value_or(model.normals))) append_normals(mesh.format);
   static_cast<TriangleMesh&>(mesh) = std::move(decoded).triangles();
   return mesh;

@@ -15,9 +15,9 @@ struct DecodeOptions {
   std::function<bool()> cancelled{};     ///< asked now and then; true stops with `Fault::cancelled`
 };
 
-/// Decodes a packed model with its texture coordinates, which count upwards as those of other meshes, and with normals
-/// of the decoded surface (packed_normals.h). Each face of the base is as many faces in a row. Throws `Error` as
-/// decode_detail().
+/// Decodes a packed model with its texture coordinates, which count upwards as those of other meshes, its colours, and
+/// normals of the decoded surface (packed_normals.h). Each face of the base is as many faces in a row. Throws `Error`
+/// as decode_detail().
 [[nodiscard]] FormattedMesh decode_packed(const PackedModel& model, const DecodeOptions& options = {});
 
 }  // namespace papilio::proto::detail

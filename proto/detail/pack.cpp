@@ -256,6 +256,8 @@ Packed pack(const gltf::MaterialMesh& original, const PackOptions& options) {
   surface.mesh.triangles = original.mesh.triangles;
   if (std::optional<Attribute> texcoords = texcoords_to_pack(original.mesh))
     surface.mesh.attributes.push_back(std::move(*texcoords));
+  if (std::optional<Attribute> colours = colours_to_pack(original.mesh))
+    surface.mesh.attributes.push_back(std::move(*colours));
   std::optional<Attribute> normals = normals_to_pack(original.mesh);
   if (normals) surface.mesh.attributes.push_back(std::move(*normals));
   if (has_several(surface.materials.of_triangle)) {

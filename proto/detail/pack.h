@@ -44,13 +44,13 @@ struct Packed {
   uint32_t parted = 0;                          ///< vertices at which the original touches itself, which were parted
 };
 
-/// Packs an original: its surface, its first texture coordinates of two components, the style of its normals
-/// (`NormalStyle`), and the materials of its triangles. The result is a plain .glb file
-/// where the surface cannot be packed, and where plain Draco is as good: at the RMS distance that was reached or at the
-/// largest allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For an RMS
-/// distance a simplified mesh as Draco is compared too, if asked, from 5,000 faces on and if there are neither texture
-/// coordinates nor normals of hard edges, which it would lose. Throws `Problem`: result_too_large where no file found
-/// is so small; and as the coders.
+/// Packs an original: its surface, its first texture coordinates of two components, its first colours without
+/// their opacity, the style of its normals (`NormalStyle`), and the materials of its triangles. The result is a plain
+/// .glb file where the surface cannot be packed, and where plain Draco is as good: at the RMS distance that was reached
+/// or at the largest allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For
+/// an RMS distance a simplified mesh as Draco is compared too, if asked, from 5,000 faces on and if there are neither
+/// texture coordinates nor normals of hard edges, which it would lose. Throws `Problem`: result_too_large where no file
+/// found is so small; and as the coders.
 [[nodiscard]] Packed pack(const gltf::MaterialMesh& original, const PackOptions& options);
 /// Packs a surface; its attributes are left out.
 [[nodiscard]] Packed pack(const TriangleMesh& original, const PackOptions& options);

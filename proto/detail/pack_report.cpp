@@ -17,6 +17,7 @@ Json json_of(const PackedModel& model) {
   Json base{{"vertices", model.base.triangles.positions.size()}, {"faces", model.base.triangles.triangles.size()}};
   base["bytes"] = model.base_bytes;
   if (model.has_texcoords()) base["texcoords"] = true;
+  if (model.has_colours()) base["colours"] = true;
   add_reach(base, model.base_reach);
   if (model.normals != NormalStyle::absent) base["normals"] = name_of(model.normals);
   Json levels = Json::array();

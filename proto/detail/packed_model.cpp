@@ -1,5 +1,7 @@
 #include "proto/detail/packed_model.h"
 
+#include <algorithm>
+
 namespace papilio::proto::detail {
 
 std::vector<DetailStream> PackedModel::streams() const {
@@ -11,6 +13,10 @@ std::vector<DetailStream> PackedModel::streams() const {
 bool PackedModel::has_texcoords() const {
   const std::vector<Attribute>& attributes = base.triangles.attributes;
   return !attributes.empty() && attributes[0].components == 2;
+}
+
+bool PackedModel::has_colours() const {
+  return std::ranges::count(base.triangles.attributes, 3U, &Attribute::components) > 0;
 }
 
 DetailReach reach_of(const PackedModel& model) {

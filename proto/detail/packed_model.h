@@ -30,6 +30,7 @@ struct PackedModel {
 
   [[nodiscard]] std::vector<DetailStream> streams() const;
   [[nodiscard]] bool has_texcoords() const;
+  [[nodiscard]] bool has_colours() const;
 };
 
 /// Returns the distance of a model with all levels that were read.

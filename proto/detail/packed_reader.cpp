@@ -219,36 +219,42 @@ class PackedReader {
 
   [[nodiscard]] TriangleMesh read_primitive(std::string_view stream, size_t primitive, const LevelTable& table) const {
     const std::string place = primitive_place(primitive);
-    const bool has_texcoords = has_texture_coordinates(primitives()[0], primitive_place(0));
-    if (has_texture_coordinates(primitives()[primitive], place) != has_texcoords)
-      refuse_scene("primitives of different attributes");
-    if (table.has_texcoords && !has_texcoords)
-      refuse_document("the table of levels", "has texture coordinates, and the base has no TEXCOORD_0");
+    const std::vector<std::string> values = values_of(primitives()[0], primitive_place(0));
+    if (values_of(primitives()[primitive], place) != values) refuse_scene("primitives of different attributes");
+    if (table.has_texcoords && values.empty())
+      refuse_document(
+          "the table of levels",
+          "has residuals of texture coordinates or colours, and the base has neither TEXCOORD_0 nor COLOR_0");
     const Json& attributes = *gltf::find_member(primitives()[primitive], "attributes", place);
     const uint64_t vertices = declared_count(gltf::index_member(attributes, "POSITION", place), place);
     FormattedMesh part = read_draco(stream, options_.limits);
     if (part.positions.size() != vertices || part.triangles.size() != declared_faces(primitive))
       refuse_document(place, "declares other counts than its Draco stream has");
-    if (part.format.attributes != (has_texcoords ? one_texcoord(part) : std::vector<AttributeFormat>{}))
-      refuse_scene("a base with other attributes than it declares");
+    require_values(part, values);
     return part;
   }
 
-  /// Whether a primitive has texture coordinates. Refuses other attributes.
-  static bool has_texture_coordinates(const Json& primitive, const std::string& place) {
+  /// Returns the attributes of a primitive besides its positions, in the order of a base's. Refuses others.
+  static std::vector<std::string> values_of(const Json& primitive, const std::string& place) {
     const Json* attributes = gltf::find_member(primitive, "attributes", place);
     if (attributes == nullptr || !attributes->is_object()) refuse_document(place, "has no attributes");
-    const bool has_texcoords = attributes->contains("TEXCOORD_0");
-    if (attributes->size() != (has_texcoords ? 2 : 1)) refuse_scene("other attributes than POSITION and TEXCOORD_0");
-    return has_texcoords;
+    std::vector<std::string> values;
+    for (const char* name : {"TEXCOORD_0", "COLOR_0"})
+      if (attributes->contains(name)) values.emplace_back(name);
+    if (attributes->size() != 1 + values.size()) refuse_scene("other attributes than POSITION, TEXCOORD_0 and COLOR_0");
+    return values;
   }
 
-  /// Returns the format of a base's attributes if they are texture coordinates as packed models have them.
-  static std::vector<AttributeFormat> one_texcoord(const FormattedMesh& base) {
-    if (base.attributes.size() != 1 || base.attributes[0].components != 2) refuse_scene("no texture coordinates");
-    std::vector<AttributeFormat> expected = base_format(base.attributes).attributes;
-    expected[0].id = base.format.attributes[0].id;
-    return expected;
+  /// Refuses a part of the base unless its attributes are these, in formats that packed models have.
+  static void require_values(const FormattedMesh& part, const std::vector<std::string>& values) {
+    bool is_sound = part.attributes.size() == values.size();
+    for (size_t a = 0; is_sound && a < values.size(); ++a)
+      is_sound = part.attributes[a].components == (values[a] == "COLOR_0" ? 3 : 2);
+    if (!is_sound) refuse_scene("a base with other attributes than it declares");
+    std::vector<AttributeFormat> expected = base_format(part.attributes).attributes;
+    for (size_t a = 0; a < values.size(); ++a) expected[a].id = part.format.attributes[a].id;
+    if (part.format.attributes != expected)
+      refuse_scene("a base whose attributes have other formats than those of papilio");
   }
 
   /// Returns the edges of a base. Refuses one that is not manifold.

@@ -1,12 +1,30 @@
 #include "proto/detail/packed_texcoords.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "proto/gltf/material_attribute.h"
 
 namespace papilio::proto::detail {
 namespace {
 
-/// Draco's unique ids of texture coordinates in a base, and of parts in a mesh; that of the positions is 0.
-constexpr uint32_t texcoord_id = 1, part_id = 2;
+/// Draco's unique ids of texture coordinates and colours in a base, and of parts in a mesh; that of the positions is 0.
+constexpr uint32_t texcoord_id = 1, part_id = 2, colour_id = 3;
+constexpr double most_of_byte = 255;
+
+/// Whether an attribute of a base is its colours.
+bool are_colours(const Attribute& attribute) { return attribute.components == 3 && !attribute.unit_length; }
+
+/// Returns the number of the first colours of a mesh, or that of its attributes.
+size_t find_colours(const FormattedMesh& mesh) {
+  size_t a = 0;
+  while (a < mesh.attributes.size() &&
+         (mesh.format.attributes[a].kind != AttributeKind::color || mesh.attributes[a].components < 3))
+    ++a;
+  return a;
+}
+
+double to_byte(double value) { return std::clamp(std::floor(value + 0.5), 0.0, most_of_byte); }
 
 void turn_values_over(Attribute& texcoords) {
   for (size_t i = 1; i < texcoords.values.size(); i += 2) texcoords.values[i] = 1 - texcoords.values[i];
@@ -26,10 +44,38 @@ MeshFormat base_format(const std::vector<Attribute>& attributes) {
       append_normals(format);
     else if (attribute.components == 1)
       format.attributes.push_back(gltf::material_format(part_id));
+    else if (are_colours(attribute))
+      format.attributes.push_back(
+          {.kind = AttributeKind::color, .type = ValueType::uint8, .normalized = true, .id = colour_id});
     else
       format.attributes.push_back({.kind = AttributeKind::tex_coord, .type = ValueType::float32, .id = texcoord_id});
   }
   return format;
+}
+
+std::optional<Attribute> colours_to_pack(const FormattedMesh& mesh) {
+  const size_t a = find_colours(mesh);
+  if (a == mesh.attributes.size()) return std::nullopt;
+  const Attribute& of = mesh.attributes[a];
+  const double unit = unit_value(mesh.format.attributes[a]);
+  Attribute colours{.components = 3, .values = {}};
+  for (size_t i = 0; i < of.values.size(); ++i)
+    if (i % of.components < 3) colours.values.push_back(to_byte(of.values[i] / unit * most_of_byte));
+  return colours;
+}
+
+bool has_opacity(const FormattedMesh& mesh) {
+  const size_t a = find_colours(mesh);
+  if (a == mesh.attributes.size() || mesh.attributes[a].components != 4) return false;
+  const std::vector<double>& values = mesh.attributes[a].values;
+  for (size_t i = 3; i < values.size(); i += 4)
+    if (values[i] < unit_value(mesh.format.attributes[a])) return true;
+  return false;
+}
+
+void round_colours(std::vector<Attribute>& attributes) {
+  for (Attribute& attribute : attributes)
+    if (are_colours(attribute)) std::ranges::transform(attribute.values, attribute.values.begin(), to_byte);
 }
 
 std::optional<Attribute> texcoords_to_pack(const FormattedMesh& mesh) {

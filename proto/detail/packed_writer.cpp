@@ -71,11 +71,15 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
         {{"componentType", static_cast<uint32_t>(index)}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}});
     Json extension{{"bufferView", add_view(stream)}, {"attributes", {{"POSITION", 0}}}};
     for (const AttributeFormat& attribute : base_format(mesh.attributes).attributes) {
-      const bool is_normal = attribute.kind == AttributeKind::normal;
-      const char* const semantic = is_normal ? "NORMAL" : "TEXCOORD_0";
+      const bool is_texcoord = attribute.kind == AttributeKind::tex_coord;
+      const bool is_colour = attribute.kind == AttributeKind::color;
+      const char* const semantic = is_texcoord ? "TEXCOORD_0" : is_colour ? "COLOR_0" : "NORMAL";
       extension["attributes"][semantic] = attribute.id;
-      attributes[semantic] = add_accessor(
-          {{"componentType", number}, {"count", mesh.positions.size()}, {"type", is_normal ? "VEC3" : "VEC2"}});
+      Json accessor{{"componentType", is_colour ? static_cast<uint32_t>(ComponentType::uint8) : number},
+                    {"count", mesh.positions.size()},
+                    {"type", is_texcoord ? "VEC2" : "VEC3"}};
+      if (is_colour) accessor["normalized"] = true;
+      attributes[semantic] = add_accessor(std::move(accessor));
     }
     primitives().push_back({{"attributes", std::move(attributes)},
                             {"indices", indices},

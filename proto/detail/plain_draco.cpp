@@ -49,8 +49,8 @@ bool is_plain(const gltf::Json& primitive) {
     return false;
   const gltf::Json* attributes = gltf::find_member(primitive, "attributes", "a primitive");
   if (attributes == nullptr || !attributes->is_object()) return false;
-  return attributes->size() ==
-         attributes->count("POSITION") + attributes->count("TEXCOORD_0") + attributes->count("NORMAL");
+  return attributes->size() == attributes->count("POSITION") + attributes->count("TEXCOORD_0") +
+                                   attributes->count("COLOR_0") + attributes->count("NORMAL");
 }
 
 }  // namespace

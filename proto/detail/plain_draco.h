@@ -32,7 +32,7 @@ struct PlainOptions {
 [[nodiscard]] double grid_rms(const Mesh& mesh, int position_bits);
 
 /// Writes the mesh as Draco at speed 0 with the fewest bits, from 6 to 20, whose `grid_rms` is at most `rms`; with 20
-/// where none is. Of attributes, texture coordinates and parts as packed models have them may be there, and normals.
+/// where none is. Of attributes, those of packed models may be there, and normals.
 /// Throws `Problem`.
 [[nodiscard]] PlainDraco write_plain_draco(const Mesh& mesh, double rms, const PlainOptions& options = {});
 
@@ -46,8 +46,8 @@ struct PlainModel {
 };
 
 /// Reads the mesh of a file without levels: a .glb scene that shows one mesh once, whose primitives are of positions
-/// and perhaps texture coordinates and normals, compressed by Draco. Nothing for other files. Throws `Problem` for a
-/// damaged one, and mesh_too_large.
+/// and perhaps texture coordinates, colours and normals, compressed by Draco. Nothing for other files. Throws `Problem`
+/// for a damaged one, and mesh_too_large.
 [[nodiscard]] std::optional<PlainModel> read_plain_draco(std::string_view glb, const Limits& limits);
 
 /// Gives a mesh of a file without levels normals of a style in place of its own: smooth ones, or split at the edges

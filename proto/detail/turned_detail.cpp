@@ -30,6 +30,9 @@ class TurnedDetail final : public Detail {
     }
     return {turned.data(), turned.size()};
   }
+  [[nodiscard]] std::span<const Colour> new_colours(int level, const std::function<bool()>& cancelled) const override {
+    return detail_->new_colours(level, cancelled);
+  }
   [[nodiscard]] double largest_move(int level, const std::function<bool()>& cancelled) const override {
     return detail_->largest_move(level, cancelled);
   }

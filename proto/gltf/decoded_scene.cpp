@@ -24,7 +24,7 @@ void attach_detail(std::string_view bytes, const Limits& limits, DecodedScene& d
   auto model = detail::find_packed(bytes, limits);
   if (!model) return;
   SceneMesh& mesh = decoded.scene.meshes.at(0);
-  add_texcoords(mesh.geometry, mesh.surface);
+  add_packed_values(mesh.geometry, mesh.surface);
   mesh.surface.normals = model->normals;
   detail::attach_levels(mesh.surface.mesh, std::move(*model));
   decoded.is_packed = true;

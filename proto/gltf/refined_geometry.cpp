@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,13 +14,13 @@ namespace papilio::proto::gltf {
 
 namespace {
 
-/// Gives vertices the texture coordinates of levels of detail, in place of the interpolated ones.
-void put_texcoords(const RefinedVertices& vertices, const Attribute& texcoords, VertexSet& set) {
-  const auto stream = std::ranges::find(set.attributes, "TEXCOORD_0", &VertexStream::semantic);
+/// Gives vertices the values of levels of detail, in place of the interpolated ones.
+void put_values(const RefinedVertices& vertices, const Attribute& given, std::string_view semantic, VertexSet& set) {
+  const auto stream = std::ranges::find(set.attributes, semantic, &VertexStream::semantic);
   if (stream == set.attributes.end()) return;
   for (size_t i = 0; i < vertices.size(); ++i)
-    for (uint32_t c = 0; c < 2; ++c)
-      stream->elements.set_number(i, c, texcoords.values[size_t{2} * vertices.numbers[i] + c]);
+    for (uint32_t c = 0; c < given.components; ++c)
+      stream->elements.set_number(i, c, given.values[size_t{given.components} * vertices.numbers[i] + c]);
 }
 
 }  // namespace
@@ -48,8 +49,11 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
   for (size_t s = 0; s < mesh.geometry.sets.size(); ++s) {
     const RefinedVertices vertices = std::exchange(parts.sets[s], {});
     made.geometry.sets.push_back(interpolate_vertices(mesh.geometry.sets[s], vertices, targets, adds_normals));
+    const std::vector<Attribute>& attributes = refined.attributes.attributes;
     if (const auto texcoords = mesh.surface.texcoords)
-      put_texcoords(vertices, refined.attributes.attributes[*texcoords], made.geometry.sets.back());
+      put_values(vertices, attributes[*texcoords], "TEXCOORD_0", made.geometry.sets.back());
+    if (const auto colours = mesh.surface.colours)
+      put_values(vertices, attributes[*colours], "COLOR_0", made.geometry.sets.back());
   }
   for (size_t p = 0; p < mesh.geometry.primitives.size(); ++p)
     if (!parts.triangles[p].empty())

@@ -74,24 +74,36 @@ uint32_t Combination::nearest() const {
   return vertex[static_cast<size_t>(std::ranges::max_element(weight) - weight.begin())];
 }
 
-void add_texcoords(const MeshGeometry& geometry, Surface& surface) {
+namespace {
+
+/// Adds an attribute of all sets to the mesh; returns its number, or nothing where a set has not that of this format.
+std::optional<size_t> add_values(const MeshGeometry& geometry, Surface& surface, const std::string& semantic,
+                                 const ElementFormat& format) {
   std::vector<const VertexStream*> streams;  // by set
   for (const VertexSet& set : geometry.sets) {
-    const VertexStream* stream = streams.emplace_back(set.find("TEXCOORD_0"));
-    if (stream == nullptr || stream->elements.format != ElementFormat{ComponentType::float32, 2, false}) return;
+    const VertexStream* stream = streams.emplace_back(set.find(semantic));
+    if (stream == nullptr || stream->elements.format != format) return std::nullopt;
   }
   PointAttributes& points = surface.mesh.attributes;
-  Attribute texcoords{.components = 2, .values = std::vector<double>(size_t{2} * points.point_count)};
+  Attribute added{.components = format.components, .values = {}};
+  added.values.reserve(size_t{points.point_count} * format.components);
   for (uint32_t point = 0; point < points.point_count; ++point) {
     const double* place = &points.attributes[provenance].values[size_t{point} * provenance_numbers];
     const uint32_t corner = place[1] == 1 ? 1 : place[2] == 1 ? 2 : 0;
     const auto face = static_cast<size_t>(place[0]);
     const uint32_t vertex = surface.vertices_of[face][corner];
     const VertexStream& stream = *streams[geometry.primitives[surface.primitive_of[face]].set];
-    for (uint32_t i = 0; i < 2; ++i) texcoords.values[2 * point + i] = stream.elements.number(vertex, i);
+    for (uint32_t c = 0; c < format.components; ++c) added.values.push_back(stream.elements.number(vertex, c));
   }
-  surface.texcoords = points.attributes.size();
-  points.attributes.push_back(std::move(texcoords));
+  points.attributes.push_back(std::move(added));
+  return points.attributes.size() - 1;
+}
+
+}  // namespace
+
+void add_packed_values(const MeshGeometry& geometry, Surface& surface) {
+  surface.texcoords = add_values(geometry, surface, "TEXCOORD_0", {ComponentType::float32, 2, false});
+  surface.colours = add_values(geometry, surface, "COLOR_0", {ComponentType::uint8, 3, true});
 }
 
 Surface join_primitives(const MeshGeometry& geometry) {

@@ -23,8 +23,9 @@ struct Surface {
   Buffer<Triangle> vertices_of;  ///< of them: in the set of the primitive; equal vertices are one
   bool has_normals = false;      ///< whether any set has them: the second attribute
   size_t target_count = 0;       ///< of morph targets: the attributes behind are their displacements
-  /// Number of the attribute with the texture coordinates of a packed model, the last one, which its levels give.
-  std::optional<size_t> texcoords{};
+  /// Numbers of the attributes with the texture coordinates and colours of a packed model, the last ones, which its
+  /// levels give.
+  std::optional<size_t> texcoords{}, colours{};
   NormalStyle normals{};  ///< of a packed model's original
 
   [[nodiscard]] size_t first_displacement() const { return has_normals ? 2 : 1; }
@@ -33,9 +34,9 @@ struct Surface {
 /// Joins the triangles of all primitives by position. Throws `Error`: not_finite, no_faces, out_of_memory.
 [[nodiscard]] Surface join_primitives(const MeshGeometry& geometry);
 
-/// Adds the texture coordinates of a surface, TEXCOORD_0, as an attribute of the mesh. Leaves a surface with sets
-/// without them, or with others than two floats each, as it is.
-void add_texcoords(const MeshGeometry& geometry, Surface& surface);
+/// Adds the texture coordinates of a packed model's surface, TEXCOORD_0, and its colours, COLOR_0, as attributes of the
+/// mesh. Leaves those out that not all sets have as packed models do.
+void add_packed_values(const MeshGeometry& geometry, Surface& surface);
 
 /// A vertex of the result as a mean of up to three of the input, in ascending order; unused ones have no weight.
 struct Combination {

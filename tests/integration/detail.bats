@@ -288,11 +288,15 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [ "$status" = 0 ]
   [ "$stderr" = "$(grep 'plain Draco' <<<"$stderr")" ] # nothing of normals
   printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \
-    'property uchar red' 'property uchar green' 'property uchar blue' 'element face 1' \
-    'property list uchar int vertex_indices' end_header '0 0 0 9 9 9' '1 0 0 9 9 9' '0 1 0 9 9 9' '3 0 1 2' >red.ply
+    'property uchar red' 'property uchar green' 'property uchar blue' 'property uchar alpha' 'element face 1' \
+    'property list uchar int vertex_indices' end_header '0 0 0 9 9 9 8' '1 0 0 9 9 9 8' '0 1 0 9 9 9 8' '3 0 1 2' >red.ply
   run --separate-stderr "$papilio" pack red.ply -o red.glb
   [ "$status" = 0 ]
-  [[ $stderr == *"other attributes than texture coordinates and normals are left out"* ]]
+  [[ $stderr == *"the opacity of its colours is left out"* ]]
+  printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 0 0 1' 's 1' 'f 1 2 3' 's 2' 'f 1 3 4' >group.obj
+  run --separate-stderr "$papilio" pack group.obj -o group.glb
+  [ "$status" = 0 ]
+  [[ $stderr == *"other attributes than texture coordinates, colours and normals are left out"* ]]
 }
 
 # textured_ball: a small surface with a texture, whose charts meet at seams.
@@ -342,6 +346,31 @@ textured_ball() {
   grep -qx 'usemtl wood' mesh.obj
   [ "$(grep -c '^f ' mesh.obj)" = "$(grep -c '^f ' unpack.obj)" ]
   cmp "$(sed -n 's/^map_Kd //p' mesh.mtl)" wood.png
+}
+
+@test "a coloured scan keeps its colours" {
+  "$papilio" convert "$fine" plain.obj
+  awk '/^v /{ printf "v %s %s %s\n", $2, $3, $4; next } /^f /' plain.obj >bare.obj
+  n=$(grep -c '^v ' bare.obj)
+  m=$(grep -c '^f ' bare.obj)
+  { # red along y, from 0 to 255
+    printf '%s\n' ply 'format ascii 1.0' "element vertex $n" 'property float x' 'property float y' 'property float z' \
+      'property uchar red' 'property uchar green' 'property uchar blue' "element face $m" \
+      'property list uchar int vertex_indices' end_header
+    awk 'NR == FNR { if ($1 == "v") { if ($3 < low || !seen) low = $3; if ($3 > high || !seen) high = $3; seen = 1 } next }
+      $1 == "v" { print $2, $3, $4, int(255 * ($3 - low) / (high - low)), 40, 200 }
+      $1 == "f" { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); print 3, a[1] - 1, b[1] - 1, c[1] - 1 }' bare.obj bare.obj
+  } >scan.ply
+  run --separate-stderr "$papilio" pack scan.ply -o scan.glb --rms 0.003 --no-simplify --json
+  [ "$status" = 0 ]
+  [ "$stderr" = "" ]
+  [ "$(jq -c '[.format, .base.colours]' <<<"$output")" = '["packed",true]' ]
+  [ "$(attributes scan.glb)" = '["COLOR_0","POSITION"]' ]
+  "$papilio" unpack scan.glb -o out.glb --normals false
+  [ "$(attributes out.glb)" = '["COLOR_0","POSITION"]' ]
+  "$papilio" unpack scan.glb -o out.ply
+  grep -aq '^property uchar blue' out.ply
+  is_within "$(distance scan.ply out.ply rms)" 0.0033
 }
 
 # faces_of FILE MATERIAL: faces of an .obj file that have the material.

@@ -1,9 +1,10 @@
 #include "tests/support/packed_levels.h"
 
+#include "core/detail/base_attributes.h"
 #include "core/detail/base_curves.h"
 #include "core/detail/base_points.h"
 #include "core/detail/collapse_sequence.h"
-#include "core/detail/encode_texcoords.h"
+#include "core/detail/encode_values.h"
 #include "core/detail/sharp_curves.h"
 
 namespace papilio::test {
@@ -22,9 +23,9 @@ DetailSource pack_levels(const TriangleMesh& triangles, const PackedLevels& opti
   const PieceOrder order(lifted.mesh);
   return {{lifted.mesh.triangles(), encode_base_curves(lifted.mesh.topology)},
           encode_pieces(fit, order, options.piece_bytes, [&](std::span<const uint32_t> piece_counts) {
-            if (lifted.mesh.attributes.empty()) return std::vector<CodedTexcoords>{};
-            return encode_texcoords(original, lifted, sequence, base, fit.surface(fit.level_count()).positions,
-                                    options.texcoord_step, order, piece_counts, {});
+            if (!has_values(lifted.mesh.attributes.attributes)) return std::vector<CodedValues>{};
+            return encode_values(original, lifted, sequence, base, fit.surface(fit.level_count()).positions,
+                                 options.texcoord_step, order, piece_counts, {});
           })};
 }
 

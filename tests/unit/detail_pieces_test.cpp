@@ -88,9 +88,9 @@ uint64_t expect_same_where_decoded(const DetailSource& some, const DetailSource&
       ++compared;
       EXPECT_EQ(decoder.positions()[t.vertex_count + e], whole.positions()[t.vertex_count + e]) << l << ' ' << e;
     }
-    if (decoder.texcoords() == nullptr) continue;
-    const Buffer<Texcoord> got = decoder.texcoords()->on_half_edges();
-    const Buffer<Texcoord> expected = whole.texcoords()->on_half_edges();
+    if (decoder.values() == nullptr) continue;
+    const Buffer<Texcoord> got = decoder.values()->on_half_edges<2>();
+    const Buffer<Texcoord> expected = whole.values()->on_half_edges<2>();
     for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
       if (is_decoded[l][edges.of_edge[t.edge[h]]] == 0) continue;
       EXPECT_EQ(got[h], expected[h]) << l << ' ' << h;

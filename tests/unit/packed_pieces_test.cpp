@@ -27,7 +27,7 @@ PackedFixture levels_in_pieces() { return in_pieces(packed_fixture(test::icosahe
 PackedFixture textured_levels_in_pieces() { return in_pieces(packed_fixture(test::charted_box(2), 3), {2, 1, 7}); }
 
 /// First byte of the table in the file.
-size_t table_begin(const PackedFixture& made) {
+size_t begin_of_table(const PackedFixture& made) {
   return made.glb.size() - test::binary_of_glb(made.glb).size() + made.base_stream.size();
 }
 /// Bytes of the table of pieces begin behind the rows.
@@ -37,14 +37,14 @@ constexpr size_t count_at = 18 + 20 + 16;  // of the second level's pieces
 /// The model again with another number in its table.
 std::string with_number(const PackedFixture& made, size_t at, uint32_t number) {
   std::string glb = made.glb;
-  for (unsigned i = 0; i < 4; ++i) glb[table_begin(made) + at + i] = static_cast<char>(number >> (8 * i) & 0xFF);
+  for (unsigned i = 0; i < 4; ++i) glb[begin_of_table(made) + at + i] = static_cast<char>(number >> (8 * i) & 0xFF);
   return glb;
 }
 std::string with_number(const PackedFixture& made, size_t at, float number) {
   return with_number(made, at, std::bit_cast<uint32_t>(number));
 }
 
-std::string refusal(const std::string& glb) {
+std::string refusal_of_pieces(const std::string& glb) {
   try {
     (void)read_packed(glb);
     return "read";
@@ -73,7 +73,7 @@ TEST(PackedPieces, ModelsOfOnePieceALevelHaveNoTableOfThem) {
 
 TEST(PackedPieces, MayBeCountedThoughEachLevelIsOne) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2);
-  LevelTable table = read_table(std::string_view(made.glb).substr(table_begin(made)));
+  LevelTable table = read_table(std::string_view(made.glb).substr(begin_of_table(made)));
   EXPECT_FALSE(table.has_pieces);
   const uint64_t before = table.size();
   table.has_pieces = true;
@@ -104,8 +104,8 @@ TEST(PackedPieces, LieOneBehindTheOther) {
 
 TEST(PackedPieces, OfAPrefixAreThoseThatAreWhole) {
   for (const PackedFixture& made : {levels_in_pieces(), textured_levels_in_pieces()}) {
-    const LevelTable table = read_table(std::string_view(made.glb).substr(table_begin(made)));
-    size_t end = table_begin(made) + table.size();
+    const LevelTable table = read_table(std::string_view(made.glb).substr(begin_of_table(made)));
+    size_t end = begin_of_table(made) + table.size();
     for (size_t l = 0; l < 3; ++l) {
       const DetailStream& level = made.detail.levels[l];
       const size_t count = std::max<size_t>(1, level.pieces.size());
@@ -132,19 +132,19 @@ TEST(PackedPieces, OfAPrefixAreThoseThatAreWhole) {
 
 TEST(PackedPieces, OfOtherCountsAreRefused) {
   const PackedFixture made = levels_in_pieces();
-  EXPECT_EQ(refusal(with_number(made, count_at, 3U)), "read");
+  EXPECT_EQ(refusal_of_pieces(with_number(made, count_at, 3U)), "read");
   for (const uint32_t count : {0U, 1U, 2U, 4U, 65535U, 65536U, 0xFFFFFFFFU})
-    EXPECT_EQ(refusal(with_number(made, count_at, count)), "mesh_not_gltf") << count;
+    EXPECT_EQ(refusal_of_pieces(with_number(made, count_at, count)), "mesh_not_gltf") << count;
   const PackedFixture many = in_pieces(packed_fixture(test::tetrahedron(), 1), {5});  // of 4 faces
-  EXPECT_EQ(refusal(many.glb), "mesh_not_gltf");
+  EXPECT_EQ(refusal_of_pieces(many.glb), "mesh_not_gltf");
 }
 
 TEST(PackedPieces, OfOtherBytesAreRefused) {
   const PackedFixture made = levels_in_pieces();
   const uint32_t bytes = made.detail.levels[1].pieces[0].bytes;
-  EXPECT_EQ(refusal(with_number(made, pieces_at, bytes)), "read");
+  EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at, bytes)), "read");
   for (const uint32_t other : {0U, bytes + 1, 0xFFFFFFFFU})
-    EXPECT_EQ(refusal(with_number(made, pieces_at, other)), "mesh_not_gltf") << other;
+    EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at, other)), "mesh_not_gltf") << other;
 }
 
 TEST(PackedPieces, OfBoundsThatAreNoneAreRefused) {
@@ -152,13 +152,14 @@ TEST(PackedPieces, OfBoundsThatAreNoneAreRefused) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto refused = [&](size_t number, const std::vector<float>& values) {
     for (const float value : values)
-      EXPECT_EQ(refusal(with_number(made, pieces_at + 4 * number, value)), "mesh_not_gltf") << number << ' ' << value;
+      EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at + 4 * number, value)), "mesh_not_gltf")
+          << number << ' ' << value;
   };
   for (size_t number = 1; number < 10; ++number) refused(number, {infinity, -infinity, std::nanf("")});
   refused(1, {-0.1F});                                                      // the largest move
   refused(5, {-0.1F});                                                      // the radius
   for (const size_t number : {6, 7, 8, 9}) refused(number, {-1.1F, 1.1F});  // axis and cosine
-  EXPECT_EQ(refusal(with_number(made, pieces_at + 4 * 9, -1.0F)), "read");
+  EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at + 4 * 9, -1.0F)), "read");
 }
 
 TEST(PackedPieces, AreInTheDescription) {

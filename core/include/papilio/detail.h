@@ -22,9 +22,9 @@ inline constexpr int most_detail_levels = 10;
 
 /// Coarse mesh that levels refine.
 struct DetailBase {
-  /// Manifold; edges with one face are boundaries. Attributes may be texture coordinates, of two components, and behind
-  /// them the numbers of parts, of one component: those of materials, say, the same at the corners of each face. Both
-  /// may have seams.
+  /// Manifold; edges with one face are boundaries. Attributes may be, in this order: texture coordinates, of two
+  /// components; colours, of three, 0..255; the numbers of parts, of one component: those of materials, say, the same
+  /// at the corners of each face. All may have seams.
   TriangleMesh triangles;
   std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
 
@@ -39,9 +39,10 @@ enum class NormalStyle : uint8_t {
   faceted,  ///< at most edges: the normals of the faces
 };
 
-/// Residuals of texture coordinates on one level.
+/// Residuals of texture coordinates and colours on one level.
 struct TexcoordStream {
-  float step = 0;                ///< quantization step, in the unit of the coordinates; 0: there are no residuals
+  /// Quantization step, in the unit of texture coordinates; of colours 2048 times that; 0: there are no residuals.
+  float step = 0;
   std::vector<uint8_t> bytes{};  ///< entropy-coded residuals
 };
 
@@ -75,7 +76,7 @@ inline constexpr uint32_t most_detail_pieces = 65535;
 struct DetailStream {
   float step = 0;              ///< quantization step, in the mesh's unit; > 0
   std::vector<uint8_t> bytes;  ///< entropy-coded residuals: of each piece in the order of the edges that are split
-  TexcoordStream texcoords{};  ///< where the base has texture coordinates
+  TexcoordStream texcoords{};  ///< where the base has texture coordinates or colours
   /// In the order of their bytes, at most as many as the base has faces; empty: all is one piece.
   std::vector<DetailPiece> pieces{};
 };
@@ -87,11 +88,11 @@ struct DetailReach {
 };
 
 /// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams, with
-/// the texture coordinates of the base. Each face of the base is as many faces in a row, which are of its part.
-/// `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every
-/// processor, and of each vertex whose piece can be decoded whatever other pieces are there (decodable_pieces()).
-/// Throws `Error`: bad_option (no step, too many levels, other attributes, pieces that are not those of the bytes),
-/// not_finite, result_too_large beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
+/// the texture coordinates and colours of the base. Each face of the base is as many faces in a row, which are of its
+/// part. `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every processor, and of each
+/// vertex whose piece can be decoded whatever other pieces are there (decodable_pieces()). Throws `Error`: bad_option
+/// (no step, too many levels, other attributes, pieces that are not those of the bytes), not_finite, result_too_large
+/// beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
@@ -110,6 +111,8 @@ struct DetailReach {
 
 /// Texture coordinates of a point.
 using Texcoord = std::array<float, 2>;
+/// Colour of a point: red, green, blue, about 0..255.
+using Colour = std::array<float, 3>;
 
 /// New vertices of the uniform levels of a mesh (`Mesh::attach_detail`). Thread-safe.
 class Detail {
@@ -134,6 +137,13 @@ class Detail {
   /// new_vertices(), and throws as that.
   [[nodiscard]] virtual std::span<const Texcoord> new_texcoords(int level,
                                                                 const std::function<bool()>& cancelled = {}) const {
+    (void)level;
+    (void)cancelled;
+    return {};
+  }
+  /// Returns the colours of those points, as new_texcoords().
+  [[nodiscard]] virtual std::span<const Colour> new_colours(int level,
+                                                            const std::function<bool()>& cancelled = {}) const {
     (void)level;
     (void)cancelled;
     return {};
@@ -181,7 +191,7 @@ using BaseCoder = std::function<CodedBase(const TriangleMesh&)>;
 struct DetailOptions {
   double rms = 1e-4;  ///< wanted RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
   /// Of texture coordinates on the last level, whose largest error at vertices is 3/4 of it; > 0. On a subdivided duck
-  /// the RMS error of the whole is then a texel of a texture of 2048 by 2048.
+  /// the RMS error of the whole is then a texel of a texture of 2048 by 2048. That of colours is 2048 times as large.
   double texcoord_step = 1.0 / 512;
   uint64_t face_limit = 8'000'000;            ///< faces of the last level
   uint64_t piece_bytes = 16'384;              ///< of a piece of a level, about; > 0
@@ -200,13 +210,13 @@ struct EncodedDetail {
   NormalStyle normals{};           ///< of the original
 };
 
-/// Encodes an original without attributes, or with texture coordinates and parts as a base has them, whose seams become
-/// seams of the base, and with normals, whose style alone is kept. Boundaries become curves of the base, and so
-/// do the creases of mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it
-/// is parted, by at most a tenth of the wanted distance. The number of base faces, of levels and the steps are those,
-/// of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached they come nearest to
-/// it (`reach`). Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled,
-/// out_of_memory, and what build_mesh() throws.
+/// Encodes an original without attributes, or with those that a base may have, whose seams become seams of the base,
+/// and with normals, whose style alone is kept. Boundaries become curves of the base, and so do the creases of
+/// mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it is parted, by at
+/// most a tenth of the wanted distance. The number of base faces, of levels and the steps are those, of the ones tried,
+/// that take the fewest bytes for the wanted distance; where it is not reached they come nearest to it (`reach`).
+/// Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory,
+/// and what build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

@@ -1,0 +1,63 @@
+#include "detail/value_residuals.h"
+
+#include "detail/binary_coder.h"
+
+namespace papilio {
+namespace {
+
+/// What the residuals of a level are coded by.
+struct ValuePass {
+  const DetailLevel& level;
+  const EdgePieces& pieces;
+  std::span<const ValueChannel> channels;
+  ValueResiduals& residuals;
+  const ValueResiduals& at_vertex;
+  const Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< none is
+
+  /// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
+  template <class Code>
+  void run(uint32_t piece, ValueModels& models, const Code& code) {
+    for (const uint32_t e : pieces.edges_of(piece))
+      for (size_t c = 0; c < channels.size(); ++c) {
+        Buffer<int32_t>& of = residuals[c];
+        of[e] = models[c].code(level.context(e, {of, is_free, pieces.of_edge}, at_vertex[c],
+                                             channels[c].predicted->data(), channels[c].step),
+                               of[e], code);
+      }
+  }
+};
+
+}  // namespace
+
+std::vector<std::vector<uint8_t>> encode_value_residuals(const DetailLevel& level, const EdgePieces& pieces,
+                                                         std::span<const ValueChannel> channels,
+                                                         const ValueResiduals& residuals,
+                                                         const ValueResiduals& at_vertex, ValueModels& models) {
+  ValueResiduals copy = residuals;
+  ValuePass pass{level, pieces, channels, copy, at_vertex};
+  std::vector<std::vector<uint8_t>> made;
+  code_pieces(pieces.count(), models, [&](uint32_t piece, ValueModels& own) {
+    BinaryEncoder encoder;
+    pass.run(piece, own, [&](bool bit, uint32_t probability) {
+      encoder.code(bit, probability);
+      return bit;
+    });
+    made.push_back(encoder.finish());
+  });
+  return made;
+}
+
+ValueResiduals decode_value_residuals(const DetailLevel& level, const EdgePieces& pieces,
+                                      std::span<const ValueChannel> channels, const PieceBytes& bytes,
+                                      const ValueResiduals& at_vertex, ValueModels& models) {
+  ValueResiduals residuals(channels.size(), Buffer<int32_t>(level.topology().edge_count()));
+  ValuePass pass{level, pieces, channels, residuals, at_vertex};
+  code_pieces(pieces.count(), models, [&](uint32_t piece, ValueModels& own) {
+    if (!bytes[piece]) return;
+    BinaryDecoder decoder(*bytes[piece]);
+    pass.run(piece, own, [&](bool, uint32_t probability) { return decoder.code(probability); });
+  });
+  return residuals;
+}
+
+}  // namespace papilio
