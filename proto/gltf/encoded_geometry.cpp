@@ -26,9 +26,9 @@ const Json* find_meshopt(const Json& view) { return find_extension(view, meshopt
 /// Returns whether a buffer has the uncompressed bytes of a compressed view. They have none as a rule.
 bool has_uncompressed_views(const Document& document) {
   return std::ranges::any_of(array_of(document.json, "bufferViews"), [&](const Json& view) {
-    const uint64_t buffer = view.value("buffer", uint64_t{UINT64_MAX});
-    return find_meshopt(view) != nullptr && buffer < document.buffers.size() &&
-           document.buffers[buffer].place() != BufferPlace::fallback;
+    if (find_meshopt(view) == nullptr) return false;
+    const auto buffer = index_member(view, "buffer", "a view");
+    return buffer && *buffer < document.buffers.size() && document.buffers[*buffer].place() != BufferPlace::fallback;
   });
 }
 

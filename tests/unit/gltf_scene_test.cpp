@@ -346,6 +346,23 @@ TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
   EXPECT_THROW(refined(scene.glb(), {}), Problem);
 }
 
+TEST(GltfScene, AnUnusedViewOfNoBufferIsRefused) {
+  for (const Json& buffer : {Json("zero"), Json::array({0})})
+    for (const bool is_compressed : {false, true}) {
+      GltfScene scene;
+      scene.add_mesh(test::icosahedron());
+      Json view{{"buffer", buffer}, {"byteLength", 4}};
+      if (is_compressed) view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0}, {"byteLength", 4}};
+      scene.json["bufferViews"].push_back(view);
+      try {
+        refined(scene.glb(), {{"levels", "1"}});
+        ADD_FAILURE() << view << " was not refused";
+      } catch (const Problem& problem) {
+        EXPECT_EQ(problem.code(), Code::mesh_not_gltf) << problem.what();
+      }
+    }
+}
+
 TEST(GltfScene, NormalsAreAddedOnRequest) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
