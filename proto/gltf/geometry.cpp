@@ -180,6 +180,11 @@ const VertexStream* VertexSet::find(const std::string& semantic) const {
   return found == attributes.end() ? nullptr : &*found;
 }
 
+const Elements* find_vectors(const std::vector<VertexStream>& streams, std::string_view semantic) {
+  const auto found = std::ranges::find(streams, semantic, &VertexStream::semantic);
+  return found != streams.end() && found->elements.format.components == 3 ? &found->elements : nullptr;
+}
+
 uint64_t bytes_of_vertex(const VertexSet& set) {
   uint64_t bytes = 0;
   for (const VertexStream& stream : set.attributes) bytes += stream.elements.format.bytes();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "papilio/mesh.h"
@@ -29,6 +30,9 @@ struct VertexSet {
   /// Returns the attribute of this name; null if there is none.
   [[nodiscard]] const VertexStream* find(const std::string& semantic) const;
 };
+
+/// Returns the elements of this name; null if there are none of three numbers each.
+[[nodiscard]] const Elements* find_vectors(const std::vector<VertexStream>& streams, std::string_view semantic);
 
 /// Returns the bytes of a vertex's attributes and morph targets.
 [[nodiscard]] uint64_t bytes_of_vertex(const VertexSet& set);

@@ -55,14 +55,33 @@ bool holds_vectors(const ElementFormat& format, const Vertices& vertices, const 
   return true;
 }
 
-/// Returns positions or displacements; vertices of the input keep their own.
+Vec3d position_of(const RefinedVertex& vertex) { return to_double(vertex.position); }
+
+auto displacement_of(const RefinedTarget& target) {
+  return [&target](const RefinedVertex& vertex) { return target.displacement[vertex.point]; };
+}
+
+/// Returns whether the vectors that `elements_of` finds in the sets have one format, which can store the new ones.
+template <class ElementsOf, class VectorOf>
+bool keep_format(const std::vector<Vertices>& vertices, const ElementsOf& elements_of, const VectorOf& vector_of) {
+  const Elements* first = nullptr;
+  for (size_t s = 0; s < vertices.size(); ++s) {
+    const Elements* elements = elements_of(s);
+    if (elements == nullptr) continue;
+    if (first == nullptr) first = elements;
+    if (elements->format != first->format || !holds_vectors(elements->format, vertices[s], vector_of)) return false;
+  }
+  return true;
+}
+
+/// Returns positions or displacements; vertices of the input keep their bytes where the format is kept.
 template <class VectorOf>
-Elements vector_elements(const Elements& input, const Vertices& vertices, const VectorOf& vector_of) {
-  const bool keeps_format = holds_vectors(input.format, vertices, vector_of);
-  Elements out =
-      zero_elements(keeps_format ? input.format : ElementFormat{ComponentType::float32, 3, false}, vertices.size());
+Elements vector_elements(const Elements& input, const Vertices& vertices, bool keeps_format,
+                         const VectorOf& vector_of) {
+  const ElementFormat format = keeps_format ? input.format : ElementFormat{ComponentType::float32, 3, false};
+  Elements out = zero_elements(format, vertices.size());
   for (size_t i = 0; i < vertices.size(); ++i) {
-    if (keeps_format && vertices[i].of.is_original()) {
+    if (format == input.format && vertices[i].of.is_original()) {
       copy_element(input, vertices[i].of.vertex[0], out, i);
       continue;
     }
@@ -110,21 +129,21 @@ bool identifies(const VertexStream& stream) {
   return stream.semantic.starts_with("_") && format.type != ComponentType::float32 && !format.normalized;
 }
 
-Elements interpolate_stream(const VertexStream& stream, const Vertices& vertices, bool has_normals) {
+Elements interpolate_stream(const VertexStream& stream, const Vertices& vertices, bool keeps_position_format,
+                            bool has_normals) {
   const uint32_t components = stream.elements.format.components;
   if (stream.semantic == "POSITION")
-    return vector_elements(stream.elements, vertices,
-                           [](const RefinedVertex& vertex) { return to_double(vertex.position); });
+    return vector_elements(stream.elements, vertices, keeps_position_format, position_of);
   if (stream.semantic == "NORMAL" && components == 3) return normal_elements(stream.elements.format, vertices);
   if (stream.semantic == "TANGENT" && components == 4) return tangent_elements(stream.elements, vertices, has_normals);
   return identifies(stream) ? take_nearest(stream.elements, vertices) : interpolate(stream.elements, vertices);
 }
 
-Elements interpolate_target(const VertexStream& stream, const Vertices& vertices, const RefinedTarget& target) {
+Elements interpolate_target(const VertexStream& stream, const Vertices& vertices, const RefinedTarget& target,
+                            bool keeps_format) {
   const Elements& input = stream.elements;
   if (input.format.components == 3 && stream.semantic == "POSITION")
-    return vector_elements(input, vertices,
-                           [&](const RefinedVertex& vertex) { return target.displacement[vertex.point]; });
+    return vector_elements(input, vertices, keeps_format, displacement_of(target));
   if (input.format.components != 3 || stream.semantic != "NORMAL" || target.turn.empty())
     return interpolate(input, vertices);
   Elements out = zero_elements(input.format, vertices.size());
@@ -137,22 +156,39 @@ Elements interpolate_target(const VertexStream& stream, const Vertices& vertices
 
 }  // namespace
 
+KeptFormats find_kept_formats(const MeshGeometry& geometry, const std::vector<Vertices>& vertices,
+                              const std::vector<RefinedTarget>& targets) {
+  KeptFormats kept;
+  kept.positions = keep_format(
+      vertices, [&](size_t s) { return find_vectors(geometry.sets[s].attributes, "POSITION"); }, position_of);
+  for (size_t t = 0; t < targets.size(); ++t) {
+    const auto displacements = [&](size_t s) {
+      const auto& of_set = geometry.sets[s].targets;
+      return t < of_set.size() ? find_vectors(of_set[t], "POSITION") : nullptr;
+    };
+    kept.displacements.push_back(keep_format(vertices, displacements, displacement_of(targets[t])));
+  }
+  return kept;
+}
+
 VertexSet interpolate_vertices(const VertexSet& input, const Vertices& vertices,
-                               const std::vector<RefinedTarget>& targets, bool adds_normals) {
+                               const std::vector<RefinedTarget>& targets, const KeptFormats& kept, bool adds_normals) {
   VertexSet out;
   out.count = vertices.size();
   const VertexStream* normals = input.find("NORMAL");
   const bool has_normals = normals != nullptr || adds_normals;
   for (const VertexStream& stream : input.attributes)
     if (!is_joint_stream(input, stream.semantic))
-      out.attributes.push_back({stream.semantic, stream.accessor, interpolate_stream(stream, vertices, has_normals)});
+      out.attributes.push_back(
+          {stream.semantic, stream.accessor, interpolate_stream(stream, vertices, kept.positions, has_normals)});
   for (VertexStream& stream : interpolate_joints(input, vertices)) out.attributes.push_back(std::move(stream));
   if (normals == nullptr && adds_normals)
     out.attributes.push_back({"NORMAL", std::nullopt, normal_elements({ComponentType::float32, 3, false}, vertices)});
   for (size_t t = 0; t < input.targets.size(); ++t) {
     auto& streams = out.targets.emplace_back();
     for (const VertexStream& stream : input.targets[t])
-      streams.push_back({stream.semantic, stream.accessor, interpolate_target(stream, vertices, targets[t])});
+      streams.push_back(
+          {stream.semantic, stream.accessor, interpolate_target(stream, vertices, targets[t], kept.displacements[t])});
   }
   return out;
 }

@@ -45,10 +45,11 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
   refined.topology = {};  // not needed any more, and large
   RefinedPrimitives parts = part_primitives(mesh.geometry, points, refined);
   poll();
+  const KeptFormats kept = find_kept_formats(mesh.geometry, parts.sets, targets);
   NewGeometry made{mesh.number, {}, quantization_box(mesh.surface.mesh.positions)};
   for (size_t s = 0; s < mesh.geometry.sets.size(); ++s) {
     const RefinedVertices vertices = std::exchange(parts.sets[s], {});
-    made.geometry.sets.push_back(interpolate_vertices(mesh.geometry.sets[s], vertices, targets, adds_normals));
+    made.geometry.sets.push_back(interpolate_vertices(mesh.geometry.sets[s], vertices, targets, kept, adds_normals));
     const std::vector<Attribute>& attributes = refined.attributes.attributes;
     if (const auto texcoords = mesh.surface.texcoords)
       put_values(vertices, attributes[*texcoords], "TEXCOORD_0", made.geometry.sets.back());

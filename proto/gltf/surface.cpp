@@ -1,7 +1,6 @@
 #include "proto/gltf/surface.h"
 
 #include <algorithm>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -27,11 +26,6 @@ Vec3d vector_at(const Elements* elements, uint32_t vertex) {
   if (elements == nullptr) return {};
   const double unit = elements->format.unit();
   return {elements->number(vertex, 0) * unit, elements->number(vertex, 1) * unit, elements->number(vertex, 2) * unit};
-}
-
-const Elements* find_vectors(const std::vector<VertexStream>& streams, std::string_view semantic) {
-  const auto found = std::ranges::find(streams, semantic, &VertexStream::semantic);
-  return found != streams.end() && found->elements.format.components == 3 ? &found->elements : nullptr;
 }
 
 std::vector<SetVertices> vertices_of_sets(const MeshGeometry& geometry) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -215,19 +216,24 @@ TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
   }
 }
 
+/// Appends vectors, times `scale`, as int16. Returns the accessor.
+size_t add_quantized(GltfScene& scene, const Buffer<Vec3f>& vectors, double scale) {
+  std::vector<int16_t> numbers;
+  for (const Vec3f& p : vectors)
+    for (const float x : {p.x, p.y, p.z, 0.F}) numbers.push_back(static_cast<int16_t>(x * scale));
+  const size_t accessor = scene.add_accessor(numbers, "VEC4");
+  scene.json["accessors"][accessor]["type"] = "VEC3";
+  scene.json["bufferViews"].back()["byteStride"] = 8;
+  scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
+  return accessor;
+}
+
 TEST(GltfScene, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
   const TriangleMesh shape = test::icosahedron();
   const auto scene_with = [&](double scale) {
     GltfScene scene;
     scene.add_mesh(shape);
-    std::vector<int16_t> numbers;
-    for (const Vec3f& p : shape.positions)
-      for (const float x : {p.x, p.y, p.z, 0.F}) numbers.push_back(static_cast<int16_t>(x * scale));
-    const size_t accessor = scene.add_accessor(numbers, "VEC4");
-    scene.json["accessors"][accessor]["type"] = "VEC3";
-    scene.json["bufferViews"].back()["byteStride"] = 8;
-    scene.primitive()["attributes"]["POSITION"] = accessor;
-    scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
+    scene.primitive()["attributes"]["POSITION"] = add_quantized(scene, shape.positions, scale);
     return scene.glb();
   };
   const MeshGeometry kept = geometry_of(refined(scene_with(1000), {{"levels", "2"}}).bytes);
@@ -238,6 +244,43 @@ TEST(GltfScene, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
   const MeshGeometry widened = geometry_of(refined(scene_with(32767 / largest), {{"levels", "2"}}).bytes);
   EXPECT_EQ(widened.sets[0].find("POSITION")->elements.format.type, ComponentType::float32);
   EXPECT_EQ(open_edges(widened), 0U);
+}
+
+/// An icosahedron whose upper half alone bulges beyond y = 1, its triangles from top to bottom.
+TriangleMesh raised_icosahedron() {
+  TriangleMesh shape = test::icosahedron();
+  const auto height = [&](const Triangle& t) {
+    return shape.positions[t[0]].y + shape.positions[t[1]].y + shape.positions[t[2]].y;
+  };
+  std::ranges::sort(shape.triangles, std::greater(), height);
+  float top = 0;
+  for (const Vec3f& p : shape.positions) top = std::max(top, p.y);
+  for (Vec3f& p : shape.positions) p = {p.x / (2 * top), p.y / (2 * top) + 0.5F, p.z / (2 * top)};
+  return shape;
+}
+
+TEST(GltfScene, QuantizedBordersStayClosedWhereOnePrimitiveBecomesFloats) {
+  const TriangleMesh shape = raised_icosahedron();
+  constexpr double full_range = 32767;
+  GltfScene scene = scene_of_two_materials(shape);
+  for (size_t part = 0; part < 2; ++part)
+    scene.primitive(0, part)["attributes"]["POSITION"] = add_quantized(scene, shape.positions, full_range);
+  for (const Compression compression : {Compression::same, Compression::none, Compression::meshopt}) {
+    const MeshGeometry made = geometry_of(
+        refined(scene.glb(), {{"levels", "2"}, {"output.compress", std::string(name_of(compression))}}).bytes);
+    for (const VertexSet& set : made.sets)
+      EXPECT_EQ(set.find("POSITION")->elements.format.type, ComponentType::float32);
+    EXPECT_EQ(open_edges(made), 0U) << name_of(compression);
+  }
+}
+
+TEST(GltfScene, BordersBetweenQuantizedAndFloatPositionsStayClosed) {
+  TriangleMesh shape = test::icosahedron();
+  for (Vec3f& p : shape.positions)
+    for (float* x : {&p.x, &p.y, &p.z}) *x = std::trunc(1000 * *x);  // the same numbers in both types
+  GltfScene scene = scene_of_two_materials(shape);
+  scene.primitive(0, 1)["attributes"]["POSITION"] = add_quantized(scene, shape.positions, 1);
+  EXPECT_EQ(open_edges(geometry_of(refined(scene.glb(), {{"levels", "2"}}).bytes)), 0U);
 }
 
 /// A scene with two nodes of two equal meshes, at different scales.
