@@ -26,11 +26,19 @@ constexpr std::array flat_attributes{FlatAttribute{"NORMAL", AttributeKind::norm
                                      FlatAttribute{"TEXCOORD_0", AttributeKind::tex_coord, 2},
                                      FlatAttribute{"COLOR_0", AttributeKind::color, 4}};
 
+bool is_mirrored(const Affine& map) { return dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0; }
+
+/// Returns a triangle as it faces once it is moved: mirrored maps turn it over.
+Triangle wound(Triangle triangle, const Affine& map) {
+  if (is_mirrored(map)) std::swap(triangle[1], triangle[2]);
+  return triangle;
+}
+
 /// Returns the direction of a normal on a surface that is moved.
 Vec3d moved_normal(const Affine& map, Vec3d normal) {
   const auto& [x, y, z] = map.axes;
   Vec3d moved = normal.x * cross(y, z) + normal.y * cross(z, x) + normal.z * cross(x, y);
-  if (dot(cross(x, y), z) < 0) moved = -1.0 * moved;
+  if (is_mirrored(map)) moved = -1.0 * moved;
   const double size = length(moved);
   return size > 0 ? 1 / size * moved : normal;
 }
@@ -40,6 +48,15 @@ const VertexStream* find_stream(const VertexSet& set, const FlatAttribute& attri
   if (attribute.kind != AttributeKind::tex_coord || map.set == 0) return set.find(attribute.semantic);
   return set.find("TEXCOORD_" + std::to_string(map.set));
 }
+
+/// A set of vertices, and where a node shows it.
+struct PlacedSet {
+  const VertexSet& set;
+  Buffer<Vec3f> positions;
+  const Affine& map;
+
+  [[nodiscard]] Vec3d point(uint32_t vertex) const { return map.point(to_double(positions[vertex])); }
+};
 
 /// Vertices of a set in the result, with the texture coordinates of one map.
 struct PlacedVertices {
@@ -62,23 +79,16 @@ class Flattener {
 
   void add(const SceneMesh& mesh, const std::vector<Affine>& maps) {
     for (const VertexSet& set : mesh.geometry.sets) {
-      const Buffer<Vec3f> positions = vertex_positions(set);
+      const PlacedSet from{set, vertex_positions(set), maps[0]};
       const auto number = static_cast<uint32_t>(&set - mesh.geometry.sets.data());
       std::vector<PlacedVertices> placed;
       for (const TrianglePrimitive& primitive : mesh.geometry.primitives) {
         if (primitive.set != number) continue;
         const TextureMap map = map_of(mesh, primitive);
-        auto found = std::ranges::find(placed, map, &PlacedVertices::map);
-        if (found == placed.end()) {
-          placed.push_back({.map = map, .is_whole = placed.empty(), .first = point_count()});
-          found = placed.end() - 1;
-          for (uint32_t i = 0; found->is_whole && i < set.count; ++i) add_vertex(set, i, positions[i], maps[0], map);
-        }
-        if (!found->is_whole)
-          for (const Triangle& triangle : primitive.triangles)
-            for (const uint32_t v : triangle)
-              if (found->numbers.try_emplace(v, point_count()).second) add_vertex(set, v, positions[v], maps[0], map);
-        add_triangles(primitive.triangles, *found, maps[0]);
+        if (lacks_normals(set))
+          add_facets(from, primitive.triangles, map);
+        else
+          add_triangles(primitive.triangles, place_vertices(from, primitive.triangles, map, placed), maps[0]);
         if (reader_ != nullptr) materials_.resize(out_.triangles.size(), material_of(mesh, primitive));
       }
     }
@@ -101,9 +111,46 @@ class Flattener {
     return reader_ == nullptr ? TextureMap{} : reader_->map_of(material_of(mesh, primitive));
   }
 
-  void add_vertex(const VertexSet& set, uint32_t vertex, Vec3f position, const Affine& map, const TextureMap& texture) {
-    out_.positions.push_back(to_float(map.point(to_double(position))));
-    for (size_t a = 0; a < used_.size(); ++a) append(a, set, vertex, map, texture);
+  /// Returns whether the result has normals and the set has none.
+  [[nodiscard]] bool lacks_normals(const VertexSet& set) const {
+    return set.find("NORMAL") == nullptr &&
+           std::ranges::find(used_, AttributeKind::normal, &FlatAttribute::kind) != used_.end();
+  }
+
+  /// Adds the vertices that the triangles have and `placed` has not yet. Returns where they are.
+  const PlacedVertices& place_vertices(const PlacedSet& from, const Buffer<Triangle>& triangles, const TextureMap& map,
+                                       std::vector<PlacedVertices>& placed) {
+    auto found = std::ranges::find(placed, map, &PlacedVertices::map);
+    if (found == placed.end()) {
+      placed.push_back({.map = map, .is_whole = placed.empty(), .first = point_count()});
+      found = placed.end() - 1;
+      for (uint32_t i = 0; found->is_whole && i < from.set.count; ++i) add_vertex(from, i, map);
+    }
+    if (!found->is_whole)
+      for (const Triangle& triangle : triangles)
+        for (const uint32_t v : triangle)
+          if (found->numbers.try_emplace(v, point_count()).second) add_vertex(from, v, map);
+    return *found;
+  }
+
+  /// Adds triangles with vertices of their own and the normals of their planes, as glTF shows triangles without
+  /// normals.
+  void add_facets(const PlacedSet& from, const Buffer<Triangle>& triangles, const TextureMap& map) {
+    for (const Triangle& t : triangles) {
+      const auto [a, b, c] = std::array{from.point(t[0]), from.point(t[1]), from.point(t[2])};
+      const Vec3d across = cross(b - a, c - a);
+      const double size = length(across);
+      const Vec3d normal = size > 0 ? (is_mirrored(from.map) ? -1 : 1) / size * across : Vec3d{0, 0, 1};
+      const uint32_t first = point_count();
+      for (const uint32_t v : t) add_vertex(from, v, map, normal);
+      out_.triangles.push_back(wound({first, first + 1, first + 2}, from.map));
+    }
+  }
+
+  /// Adds a vertex. `normal`: its normal in the result where the set has none.
+  void add_vertex(const PlacedSet& from, uint32_t vertex, const TextureMap& texture, Vec3d normal = {}) {
+    out_.positions.push_back(to_float(from.point(vertex)));
+    for (size_t a = 0; a < used_.size(); ++a) append(a, from, vertex, texture, normal);
   }
 
   void add_attribute(const FlatAttribute& attribute) {
@@ -118,14 +165,16 @@ class Flattener {
                                       .id = static_cast<uint32_t>(used_.size())});
   }
 
-  void append(size_t number, const VertexSet& set, uint32_t vertex, const Affine& map, const TextureMap& texture) {
+  void append(size_t number, const PlacedSet& from, uint32_t vertex, const TextureMap& texture, Vec3d normal) {
     const FlatAttribute& attribute = used_[number];
-    const VertexStream* stream = find_stream(set, attribute, texture);
-    std::array<double, 4> value{0, 0, 0, attribute.kind == AttributeKind::color ? 1.0 : 0.0};
+    const VertexStream* stream = find_stream(from.set, attribute, texture);
+    std::array<double, 4> value{};
+    if (attribute.kind == AttributeKind::color) value = {1, 1, 1, 1};  // changes nothing of the material's
+    if (attribute.kind == AttributeKind::normal) value = {normal.x, normal.y, normal.z, 0};
     const uint32_t given = stream == nullptr ? 0 : std::min(stream->elements.format.components, attribute.components);
     for (uint32_t c = 0; c < given; ++c) value[c] = stream->elements.number(vertex, c) * stream->elements.format.unit();
     if (attribute.kind == AttributeKind::normal && given > 0) {
-      const Vec3d moved = moved_normal(map, {value[0], value[1], value[2]});
+      const Vec3d moved = moved_normal(from.map, {value[0], value[1], value[2]});
       value = {moved.x, moved.y, moved.z, 0};
     }
     if (attribute.kind == AttributeKind::tex_coord) {
@@ -139,15 +188,10 @@ class Flattener {
                                                               : value[c]);
   }
 
-  /// Mirrored maps turn triangles over.
   void add_triangles(const Buffer<Triangle>& triangles, const PlacedVertices& placed, const Affine& map) {
-    const bool is_mirrored = dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0;
     const auto number = [&](uint32_t v) { return placed.is_whole ? placed.first + v : placed.numbers.at(v); };
-    for (const Triangle& t : triangles) {
-      Triangle moved{number(t[0]), number(t[1]), number(t[2])};
-      if (is_mirrored) std::swap(moved[1], moved[2]);
-      out_.triangles.push_back(moved);
-    }
+    for (const Triangle& t : triangles)
+      out_.triangles.push_back(wound({number(t[0]), number(t[1]), number(t[2])}, map));
   }
 
   MaterialReader* reader_;

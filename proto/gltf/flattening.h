@@ -15,8 +15,9 @@ namespace papilio::proto::gltf {
 
 /// Returns all triangles that the nodes of a .glb scene show, moved to where they are, skinned meshes as
 /// the first joint that they use moves them. The
-/// attributes are NORMAL, TEXCOORD_0 and COLOR_0, where any primitive has them; zero elsewhere. Materials are left out.
-/// Throws `Problem`, also for more faces than the limit once each node has its own.
+/// attributes are NORMAL, TEXCOORD_0 and COLOR_0, where any primitive has them. Elsewhere each triangle has the normal
+/// of its plane, texture coordinates are zero, and colours white. Materials are left out. Throws `Problem`, also for
+/// more faces than the limit once each node has its own.
 [[nodiscard]] FormattedMesh flatten_scene(std::string_view glb, const Limits& limits);
 
 /// `flatten_scene` with the materials that the triangles have (material_reader.h). The texture coordinates are those at

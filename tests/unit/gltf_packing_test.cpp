@@ -94,6 +94,44 @@ TEST(GltfFlattening, EveryNodeHasItsTriangles) {
   EXPECT_FALSE(find_only_mesh(scene.glb(), {}));
 }
 
+TEST(GltfFlattening, TrianglesWithoutNormalsHaveThoseOfTheirPlanes) {
+  const TriangleMesh shape = test::icosahedron();
+  GltfScene scene;
+  scene.add_mesh(shape);
+  scene.primitive()["attributes"]["NORMAL"] = scene.add_positions(shape.positions);
+  scene.add_mesh(shape);  // without normals
+  scene.json["nodes"][1]["scale"] = {-2, 1, 1};
+  const FormattedMesh flat = flatten_scene(scene.glb(), {});
+  ASSERT_EQ(flat.triangles.size(), 40U);
+  ASSERT_EQ(flat.attributes.size(), 1U);
+  EXPECT_EQ(flat.positions.size(), shape.positions.size() + 3 * shape.triangles.size());
+  for (size_t t = shape.triangles.size(); t < flat.triangles.size(); ++t) {
+    const auto [a, b, c] = flat.triangles[t];
+    const Vec3d at = to_double(flat.positions[a]);
+    const Vec3d across = cross(to_double(flat.positions[b]) - at, to_double(flat.positions[c]) - at);
+    EXPECT_GT(dot(across, at), 0) << "wound outwards";
+    for (const uint32_t v : {a, b, c}) {
+      const double* n = &flat.attributes[0].values[size_t{3} * v];
+      EXPECT_LT(length(1 / length(across) * across - Vec3d{n[0], n[1], n[2]}), 1e-6);
+    }
+  }
+}
+
+TEST(GltfFlattening, VerticesWithoutColoursAreWhite) {
+  const TriangleMesh shape = test::icosahedron();
+  GltfScene scene;
+  scene.add_mesh(shape);
+  scene.primitive()["attributes"]["COLOR_0"] =
+      scene.add_accessor(std::vector<float>(3 * shape.positions.size(), 0.4F), "VEC3");
+  scene.add_mesh(shape);  // without colours
+  const FormattedMesh flat = flatten_scene(scene.glb(), {});
+  ASSERT_EQ(flat.attributes.size(), 1U);
+  const std::vector<double>& colors = flat.attributes[0].values;
+  ASSERT_EQ(colors.size(), 8 * shape.positions.size());
+  EXPECT_NEAR(colors[0], 0.4 * 255, 1e-4);
+  for (size_t i = colors.size() / 2; i < colors.size(); ++i) EXPECT_EQ(colors[i], 255);
+}
+
 TEST(GltfFlattening, AMeshSurvivesAsASceneOfOne) {
   FormattedMesh mesh{test::icosahedron(), {}};
   mesh.attributes = {{.components = 2, .unit_length = false, .values = std::vector<double>(24, 0.25)},
