@@ -72,6 +72,11 @@ std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, u
   return made;
 }
 
+/// Returns whether a grid would spoil an attribute: weights would not add up to 1, and IDs would be others.
+bool needs_exact_numbers(const std::string& semantic) {
+  return semantic.starts_with("WEIGHTS_") || semantic.starts_with("_FEATURE_ID_");
+}
+
 /// Returns whether the arrays of a primitive are so large that memory matters more than the time to get it again.
 bool is_worth_giving_back(const VertexSet& set, const Buffer<Triangle>& triangles) {
   return set.count * bytes_of_vertex(set) + triangles.size() * sizeof(Triangle) >= worth_giving_back;
@@ -105,7 +110,7 @@ edgebreaker::WrittenStream compress(const Json& document, VertexSet& set, Buffer
     attribute.values = pointed.values_of(stream.elements);
     std::string().swap(stream.elements.bytes);
     AttributeEncoding::Grid grid = grid_of(attribute);
-    if (stream.semantic.starts_with("WEIGHTS_")) grid.range = 0;  // on a grid they would not add up to 1
+    if (needs_exact_numbers(stream.semantic)) grid.range = 0;
     if (!points) points.emplace(pointed.mesh);
     attributes.push_back(output_attribute(attribute, format, grid, *points));
     ElementSummary summary{.accessor = stream.accessor, .format = stream.elements.format};

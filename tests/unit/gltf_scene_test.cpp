@@ -216,6 +216,23 @@ TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
   }
 }
 
+TEST(GltfScene, FeatureIdsSurviveDracoToTheBit) {
+  const TriangleMesh shape = test::icosahedron();
+  GltfScene scene;
+  scene.add_mesh(shape);
+  std::vector<float> numbers;
+  for (size_t i = 0; i < shape.positions.size(); ++i) numbers.push_back(100'003.F * static_cast<float>(i));
+  scene.primitive()["attributes"]["_FEATURE_ID_0"] = scene.add_accessor(numbers, "SCALAR");
+  for (const char* levels : {"0", "2"}) {
+    const MeshGeometry made =
+        geometry_of(refined(scene.glb(), {{"levels", levels}, {"output.compress", "draco"}}).bytes);
+    const Elements& ids = made.sets[0].find("_FEATURE_ID_0")->elements;
+    std::set<double> found;
+    for (uint64_t i = 0; i < ids.count; ++i) found.insert(ids.number(i, 0));
+    EXPECT_EQ(found, std::set<double>(numbers.begin(), numbers.end())) << levels;
+  }
+}
+
 /// Appends vectors, times `scale`, as int16. Returns the accessor.
 size_t add_quantized(GltfScene& scene, const Buffer<Vec3f>& vectors, double scale) {
   std::vector<int16_t> numbers;
