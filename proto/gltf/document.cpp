@@ -79,6 +79,18 @@ SceneBuffer read_buffer(const Json& buffer, size_t number, const std::optional<s
   return owned_buffer(BufferPlace::external, resolve(uri), length, where);
 }
 
+bool find_uncompressed_views(const Document& document) {
+  const Json& views = array_of(document.json, "bufferViews");
+  for (size_t v = 0; v < views.size(); ++v) {
+    const std::string where = place("bufferViews", v);
+    if (find_extension(views[v], meshopt_extension, where) == nullptr) continue;
+    const auto buffer = index_member(views[v], "buffer", where);
+    if (buffer && *buffer < document.buffers.size() && document.buffers[*buffer].place() != BufferPlace::fallback)
+      return true;
+  }
+  return false;
+}
+
 Document read(std::string_view bytes, const Resolver& resolve, Cut cut) {
   Document document;
   std::optional<std::string_view> chunk;
@@ -99,6 +111,7 @@ Document read(std::string_view bytes, const Resolver& resolve, Cut cut) {
   require_within(buffers.size(), most_buffers, "buffers", "Export the scene with one buffer.");
   for (size_t i = 0; i < buffers.size(); ++i)
     document.buffers.push_back(read_buffer(buffers[i], i, chunk, resolve, cut));
+  document.has_uncompressed_views = find_uncompressed_views(document);
   return document;
 }
 

@@ -42,6 +42,8 @@ struct Document {  // NOLINT(bugprone-exception-escape): moving JSON cannot thro
   std::vector<SceneBuffer> buffers;
   std::vector<ExtraChunk> extra;  ///< of a .glb file
   bool is_glb = false;
+  /// Whether a buffer has the uncompressed bytes of a view that EXT_meshopt_compression compresses. None has as a rule.
+  bool has_uncompressed_views = false;
 };
 
 /// Returns whether the bytes are a .glb file, or JSON that may be a glTF document.

@@ -1,6 +1,5 @@
 #include "proto/gltf/encoded_geometry.h"
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -23,19 +22,10 @@ std::string strided(Elements elements, uint32_t stride) {
 /// Returns the extension of a view that is compressed; null for others.
 const Json* find_meshopt(const Json& view) { return find_extension(view, meshopt_extension, "a view"); }
 
-/// Returns whether a buffer has the uncompressed bytes of a compressed view. They have none as a rule.
-bool has_uncompressed_views(const Document& document) {
-  return std::ranges::any_of(array_of(document.json, "bufferViews"), [&](const Json& view) {
-    if (find_meshopt(view) == nullptr) return false;
-    const auto buffer = index_member(view, "buffer", "a view");
-    return buffer && *buffer < document.buffers.size() && document.buffers[*buffer].place() != BufferPlace::fallback;
-  });
-}
-
 class GeometryEncoder {
  public:
   GeometryEncoder(const Document& document, const GeometryEncoding& encoding)
-      : json_(document.json), encoding_(encoding), keeps_uncompressed_(has_uncompressed_views(document)) {}
+      : json_(document.json), encoding_(encoding), keeps_uncompressed_(document.has_uncompressed_views) {}
 
   EncodedGeometry run(NewGeometry mesh) {
     EncodedGeometry out{.mesh = mesh.mesh, .sets = {}, .primitives = {}};
