@@ -26,13 +26,20 @@ void require_version(const Json& document) {
                 "The document has glTF version " + quote(version) + "; 2.0 is supported. Export it as glTF 2.0.");
 }
 
+[[noreturn]] void refuse_newer_meshopt(const std::string& what) {
+  throw Problem(Code::mesh_unsupported, what + " " + std::string(newer_meshopt_extension) +
+                                            ", which cannot be read. Compress it with " +
+                                            std::string(meshopt_extension) + ", or not at all.");
+}
+
 void require_extensions(const Json& document) {
-  const Json& required = array_of(document, "extensionsRequired");
-  for (const Json& name : required)
-    if (name == newer_meshopt_extension)
-      throw Problem(Code::mesh_unsupported, "The scene requires " + std::string(newer_meshopt_extension) +
-                                                ", which cannot be read. Compress it with " +
-                                                std::string(meshopt_extension) + ", or not at all.");
+  for (const Json& name : array_of(document, "extensionsRequired"))
+    if (name == newer_meshopt_extension) refuse_newer_meshopt("The scene requires");
+  // A view that is readable without would keep the compressed bytes of what it held before.
+  const Json& views = array_of(document, "bufferViews");
+  for (size_t v = 0; v < views.size(); ++v)
+    if (find_extension(views[v], newer_meshopt_extension, place("bufferViews", v)) != nullptr)
+      refuse_newer_meshopt(place("bufferViews", v) + " has");
 }
 
 [[noreturn]] void refuse_external(const std::string& where, const std::string& uri) {

@@ -116,6 +116,10 @@ TEST(GltfDocument, OtherVersionsAndNewerCompressionAreRefusedByName) {
   const Problem newer = refusal_of(text_document(R"(,"extensionsRequired":["KHR_meshopt_compression"])"));
   EXPECT_EQ(newer.code(), Code::mesh_unsupported);
   EXPECT_NE(std::string(newer.what()).find("KHR_meshopt_compression"), std::string::npos);
+  const Problem optional =
+      refusal_of(text_document(R"(,"bufferViews":[{"extensions":{"KHR_meshopt_compression":{}}}])"));
+  EXPECT_EQ(optional.code(), Code::mesh_unsupported);
+  EXPECT_NE(std::string(optional.what()).find("bufferViews[0] has KHR_meshopt_compression"), std::string::npos);
 }
 
 TEST(GltfDocument, KindsOfFilesConvertIntoEachOther) {
