@@ -3,6 +3,7 @@
 
 #include <string>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "client/c/papilio.h"
@@ -18,22 +19,38 @@ using papilio::TriangleMesh;
 
 namespace {
 
+/// Sizes of a piece of a level, as the caller writes them.
+struct Piece {
+  uint32_t bytes;
+  uint32_t texcoord_bytes;
+
+  static constexpr uint32_t missing = 0xFFFFFFFF;  ///< for `bytes`
+};
+
 /// Residuals of one level, as the caller writes them.
 struct Level {
   float step;
+  float texcoord_step;
   uint32_t length;
-  const uint8_t* bytes;
-  uint32_t piece_count;         ///< 0: one
-  const uint32_t* piece_bytes;  ///< [piece_count]
-
-  static constexpr uint32_t missing_piece = 0xFFFFFFFF;
+  const uint8_t* bytes;  ///< [length] of each piece, and after them of its texture coordinates
+  uint32_t piece_count;
+  const Piece* pieces;  ///< [piece_count]
 
   [[nodiscard]] DetailStream stream() const {
-    DetailStream made{step, {bytes, bytes + length}};
+    DetailStream made{.step = step, .bytes = {}, .texcoords = {.step = texcoord_step}};
+    const uint8_t* at = bytes;
+    const auto take = [&](uint32_t count, std::vector<uint8_t>& to) {
+      if (count > static_cast<size_t>(bytes + length - at))
+        throw Error(Fault::bad_option, "The pieces of a level of detail have other bytes than the level.", "pieces");
+      to.insert(to.end(), at, at + count);
+      at += count;
+    };
     for (uint32_t p = 0; p < piece_count; ++p) {
       papilio::DetailPiece& piece = made.pieces.emplace_back();
-      piece.is_missing = piece_bytes[p] == missing_piece;
-      if (!piece.is_missing) piece.bytes = piece_bytes[p];
+      piece.is_missing = pieces[p].bytes == Piece::missing;
+      if (piece.is_missing) continue;
+      take(piece.bytes = pieces[p].bytes, made.bytes);
+      take(piece.texcoord_bytes = pieces[p].texcoord_bytes, made.texcoords.bytes);
     }
     return made;
   }
@@ -45,21 +62,29 @@ struct Decoded {
   uint32_t face_count;
   const papilio::Vec3f* positions;
   const papilio::Triangle* triangles;
+  const float* texcoords;  ///< [points * 2]; null: there are none
+  const float* normals;    ///< [points * 3]; null: there are none
   TriangleMesh mesh;
+  std::vector<float> texcoord_values;
+  std::vector<float> normal_values;
 };
 
 }  // namespace
 
 extern "C" {
 
-/// Copies a base of `point_count` positions and `face_count` triangles, with its coded curves.
+/// Copies a base of `point_count` positions and `face_count` triangles, with its coded curves, and with texture
+/// coordinates of its points unless that is null.
 PAPILIO_EXPORTED(base_create)
 DetailBase* module_base_create(uint32_t point_count, const papilio::Vec3f* positions, uint32_t face_count,
-                               const papilio::Triangle* triangles, uint32_t curve_bytes, const uint8_t* curves) {
+                               const papilio::Triangle* triangles, uint32_t curve_bytes, const uint8_t* curves,
+                               const float* texcoords) {
   auto* base = new DetailBase();
   base->triangles.positions.assign(positions, positions + point_count);
   base->triangles.triangles.assign(triangles, triangles + face_count);
   base->curves.assign(curves, curves + curve_bytes);
+  if (texcoords != nullptr)
+    base->triangles.attributes.push_back({.components = 2, .values = {texcoords, texcoords + size_t{2} * point_count}});
   return base;
 }
 PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete base; }
@@ -68,23 +93,33 @@ PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete bas
 PAPILIO_EXPORTED(base_edges) uint32_t module_base_edges(const DetailBase* base) {
   papilio::BuildReport found;
   const papilio::Mesh mesh = papilio::build_mesh(base->triangles, &found);
-  const uint32_t changed = found.welded_points + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+  const uint32_t welded = base->triangles.attributes.empty() ? found.welded_points : 0;  // at seams points are
+  const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
   if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
     throw Error(Fault::bad_surface, "The base is not a manifold surface. Pack the original again.");
   return mesh.topology.edge_count();
 }
 
-/// Decodes these levels.
+/// Decodes these levels, with normals of a style (`NormalStyle`).
 PAPILIO_EXPORTED(decode)
-Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level* levels, uint32_t face_limit) {
+Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level* levels, uint32_t face_limit,
+                       uint32_t normals) {
   std::vector<DetailStream> streams;
   streams.reserve(level_count);
   for (uint32_t l = 0; l < level_count; ++l) streams.push_back(levels[l].stream());
-  auto* made = new Decoded{.mesh = papilio::decode_detail(*base, streams, face_limit)};
+  papilio::Mesh mesh = papilio::decode_detail_mesh(*base, streams, face_limit);
+  papilio::add_detail_normals(mesh, static_cast<papilio::NormalStyle>(normals));
+  auto* made = new Decoded{.mesh = std::move(mesh).triangles()};
   made->point_count = static_cast<uint32_t>(made->mesh.positions.size());
   made->face_count = static_cast<uint32_t>(made->mesh.triangles.size());
   made->positions = made->mesh.positions.data();
   made->triangles = made->mesh.triangles.data();
+  for (papilio::Attribute& attribute : made->mesh.attributes) {
+    std::vector<float>& values = attribute.unit_length ? made->normal_values : made->texcoord_values;
+    values.assign(attribute.values.begin(), attribute.values.end());
+    (attribute.unit_length ? made->normals : made->texcoords) = values.data();
+    attribute.values = {};
+  }
   return made;
 }
 PAPILIO_EXPORTED(decoded_free) void module_decoded_free(Decoded* decoded) { delete decoded; }

@@ -6,8 +6,9 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { brotliCompressSync, constants } from 'node:zlib';
+import { assertRefused, compareDamaged, edited, withTable } from './damaged.mjs';
 import { decodeDraco, originals, pack, unpack } from './packed.mjs';
-import { areSame, randomNumbers, root } from './requests.mjs';
+import { areSame, root } from './requests.mjs';
 
 const { compileDecoder, DetailDecoder, isPacked, readPacked, withLevels } = await import(
   path.join(root, 'build/npm/dist/detail.js')
@@ -132,30 +133,6 @@ test('the decoder says what is wrong, and goes on', async () => {
   refused((copy) => copy.triangles.subarray(0, 3).reverse(), /not a manifold surface/);
 });
 
-/// The file with other bytes in the table of its levels.
-function withTable(file, change) {
-  const bytes = Buffer.from(file);
-  const { draco } = readPacked(new Uint8Array(file)).base;
-  change(bytes.subarray(draco.byteOffset + draco.length));
-  return new Uint8Array(bytes);
-}
-
-/// The file with another document.
-function edited(file, change) {
-  const bytes = Buffer.from(file);
-  const end = 20 + bytes.readUInt32LE(12);
-  const json = JSON.parse(bytes.toString('utf8', 20, end));
-  const detail = json.meshes[0].primitives[0].extensions.PAPILIO_detail;
-  change({ json, detail, primitive: json.meshes[0].primitives[0] });
-  let text = JSON.stringify(json);
-  text = text.padEnd(Math.ceil(text.length / 4) * 4);
-  const head = Buffer.from(bytes.subarray(0, 20));
-  head.writeUInt32LE(text.length, 12);
-  const made = Buffer.concat([head, Buffer.from(text), bytes.subarray(end)]);
-  made.writeUInt32LE(made.length, 8);
-  return new Uint8Array(made);
-}
-
 test('damaged and foreign documents are refused, with the place in them', () => {
   const file = bytesOf(torus);
   const refusals = [
@@ -175,7 +152,11 @@ test('damaged and foreign documents are refused, with the place in them', () => 
     [({ json }) => (json.nodes[0].scale = [2, 2, 2]), 'mesh_unsupported', /a node with scale/],
     [({ json }) => (json.asset.version = '1.0'), 'mesh_unsupported', /glTF version/],
     [({ primitive }) => (primitive.mode = 5), 'mesh_unsupported', /a primitive with mode/],
-    [({ primitive }) => (primitive.attributes.NORMAL = 0), 'mesh_unsupported', /other attributes than POSITION/],
+    [
+      ({ primitive }) => (primitive.attributes.NORMAL = 0),
+      'mesh_unsupported',
+      /other attributes than POSITION and TEXCOORD_0/,
+    ],
     [({ primitive }) => delete primitive.extensions.PAPILIO_detail, 'mesh_unsupported', /no PAPILIO_detail/],
     [({ primitive }) => delete primitive.extensions.KHR_draco_mesh_compression, 'mesh_not_gltf', /no base compressed/],
     [({ json }) => ++json.accessors[1].count, 'mesh_not_gltf', /whole triangles/],
@@ -185,23 +166,12 @@ test('damaged and foreign documents are refused, with the place in them', () => 
   assert.equal(readPacked(edited(file, () => {})).levels.length, readPacked(file).levels.length);
 });
 
-function assertRefused(file, code, message, change) {
-  assert.throws(
-    () => readPacked(file),
-    (error) => {
-      assert.equal(error.name, 'Problem', String(change));
-      assert.deepEqual([error.code, message.test(error.message)], [code, true], `${change}: ${error.message}`);
-      return true;
-    },
-  );
-}
-
 test('damaged tables of levels are refused', () => {
   const file = bytesOf(torus);
   const refusals = [
     [(table) => (table[0] = 11), 'mesh_not_gltf', /has 11 of them; at most 10/],
     [(table) => --table[0], 'mesh_not_gltf', /its table declares/],
-    [(table) => (table[1] = 1), 'mesh_unsupported', /texture coordinates/],
+    [(table) => (table[1] = 1), 'mesh_not_gltf', /step|TEXCOORD_0|declares/],
     [(table) => (table[1] = 2), 'mesh_not_gltf', /pieces; 1 to 65535 are allowed/],
     [(table) => (table[1] = 4), 'mesh_not_gltf', /unknown flags/],
     [(table) => ++table[6], 'mesh_not_gltf', /its table declares/],
@@ -258,65 +228,9 @@ test('damaged containers are refused', () => {
 });
 
 test('of files damaged at random the same are refused as by the native reader, others have its bits', async () => {
-  for (const pieceBytes of [null, 64]) await compareDamaged(readFileSync(pack('vase', folder, { pieceBytes }).packed));
+  for (const pieceBytes of [null, 64])
+    await compareDamaged(pack('vase', folder, { pieceBytes }).packed, { module, assertSame });
 });
-
-async function compareDamaged(file) {
-  const random = randomNumbers(7);
-  const below = (n) => Math.floor(n * random());
-  const jsonEnd = 20 + file.readUInt32LE(12);
-  // Damage to the Draco stream is for its decoder to find.
-  const streams = jsonEnd + 8 + readPacked(new Uint8Array(file)).base.draco.length;
-  const damaged = path.join(folder, 'damaged.glb');
-  const seen = { decoded: 0, refused: 0 };
-  for (let i = 0; i < 150; ++i) {
-    const bytes = Buffer.from(file);
-    for (let k = below(3); k >= 0; --k)
-      if (i % 2 === 0) {
-        let at = 20 + below(jsonEnd - 20);
-        while (random() < 0.8 && !/\d/.test(String.fromCharCode(bytes[at]))) at = 20 + below(jsonEnd - 20);
-        bytes[at] = '0123456789.-eE",:{}[] '.charCodeAt(below(random() < 0.7 ? 10 : 22));
-      } else if (random() < 0.1) bytes[below(20)] = below(256);
-      else bytes[streams + below(bytes.length - streams)] = below(256);
-    if (!isPacked(new Uint8Array(bytes))) {
-      assert.throws(() => readPacked(new Uint8Array(bytes)), { name: 'Problem' });
-      continue; // papilio unpack reads plain scenes too
-    }
-    writeFileSync(damaged, bytes);
-    let native = null;
-    try {
-      native = unpack(damaged, 3);
-    } catch (error) {
-      assert.equal(error.status, 1, error.stderr);
-    }
-    let made = null;
-    try {
-      made = await decodeAsDeclared(new Uint8Array(bytes), 3);
-    } catch (error) {
-      if (error.cause === 'draco') continue;
-      assert.ok(error.name === 'Problem' || error.name === 'AssertionError', error.stack);
-    }
-    assert.equal(made !== null, native !== null, `file ${i}`);
-    if (made !== null) assertSame(made, native, `file ${i}`);
-    ++seen[made === null ? 'refused' : 'decoded'];
-  }
-  assert.ok(seen.decoded >= 20 && seen.refused >= 20, JSON.stringify(seen));
-}
-
-/// As openPacked does it.
-async function decodeAsDeclared(bytes, count) {
-  const { base, curves, levels } = readPacked(bytes, { maxFaces: 2 ** 30 });
-  const triangles = await decodeDraco(base.draco);
-  assert.deepEqual([triangles.positions.length, triangles.triangles.length], [3 * base.vertices, 3 * base.faces]);
-  const decoder = new DetailDecoder(module, triangles, curves);
-  let [edges, { faces }] = [decoder.countEdges(), base];
-  for (const { residualCount } of levels) {
-    assert.equal(residualCount, edges);
-    edges = 2 * edges + 3 * faces;
-    faces *= 4;
-  }
-  return decoder.decode(levels.slice(0, count));
-}
 
 test('every prefix of a file is refused, or has fewer whole levels', () => {
   const file = bytesOf(torus);
@@ -364,12 +278,11 @@ test('packed models are told from other files', () => {
   const file = bytesOf(torus);
   assert.ok(isPacked(file));
   assert.ok(!isPacked(edited(file, ({ primitive }) => delete primitive.extensions.PAPILIO_detail)));
-  assert.ok(!isPacked(edited(file, ({ primitive }) => (primitive.attributes.TEXCOORD_0 = 0))));
   for (const bytes of [new Uint8Array(), file.slice(1), file.slice(0, 30), readFileSync(`${torus}.ply`)])
     assert.ok(!isPacked(new Uint8Array(bytes)));
 });
 
 test('the module is small', () => {
   const packed = brotliCompressSync(wasm, { params: { [constants.BROTLI_PARAM_QUALITY]: 11 } });
-  assert.ok(packed.length <= 38_000, `${packed.length} bytes`);
+  assert.ok(packed.length <= 40_000, `${packed.length} bytes`);
 });

@@ -33,11 +33,15 @@ const html = pageOf(`<script type="module">
 const folder = mkdtempSync(path.join(tmpdir(), 'papilio-detail-'));
 const { packed, report } = pack('vase', folder);
 const glb = readFileSync(packed);
+const textured = pack('cushion', folder, { isTextured: true });
 
 let files;
 let browser;
 before(async () => {
-  [files, browser] = await Promise.all([startFiles({ '/page.html': html, '/vase.glb': glb }), launch()]);
+  [files, browser] = await Promise.all([
+    startFiles({ '/page.html': html, '/vase.glb': glb, '/textured.glb': readFileSync(textured.packed) }),
+    launch(),
+  ]);
 });
 after(async () => {
   await browser.close();
@@ -172,5 +176,44 @@ test('PapilioLoader shows a packed model with all its levels', async () => {
     return model.statistics.faces;
   });
   assert.equal(faces, report.levels.at(-1).faces);
+  await page.close();
+});
+
+test('PapilioLoader shows a textured one with its material, and refines it', async () => {
+  const { page } = await open();
+  const seen = await page.evaluate(async () => {
+    const model = await new PapilioLoader().loadAsync('/textured.glb');
+    let mesh;
+    model.traverse((object) => (mesh = object.isMesh ? object : mesh));
+    const { geometry, material } = mesh;
+    const [uv, normal, position] = ['uv', 'normal', 'position'].map((name) => geometry.attributes[name]);
+    const { image } = material.map;
+    const shown = {
+      faces: model.statistics.faces,
+      counts: [uv.count === position.count, normal.count === position.count],
+      image: [image.width, image.height],
+      isFlat: material.flatShading,
+      digest: await digest({ positions: position.array, triangles: geometry.index.array }),
+      texcoords: Array.from(uv.array, (value, i) => Math.fround(i % 2 === 0 ? value : 1 - value)),
+    };
+    const renderer = new THREE.WebGLRenderer();
+    renderer.setSize(256, 256);
+    const camera = new THREE.PerspectiveCamera(45, 1, 0.1, 100);
+    camera.position.set(0, 0, 5);
+    renderer.render(new THREE.Scene().add(model), camera);
+    await model.settled();
+    return { ...shown, refined: model.statistics.faces, hasUv: mesh.geometry.hasAttribute('uv') };
+  });
+  const { positions, triangles, texcoords, normals } = unpack(textured.packed, 10, '--normals', true);
+  const digest = (...arrays) =>
+    arrays.reduce((hash, { buffer }) => hash.update(new Uint8Array(buffer)), createHash('sha256')).digest('hex');
+  assert.equal(seen.faces, textured.report.levels.at(-1).faces);
+  assert.deepEqual(seen.counts, [true, true]);
+  assert.deepEqual(seen.image, [32, 32]);
+  assert.equal(seen.isFlat, false);
+  assert.equal(seen.digest, digest(positions, triangles));
+  assert.equal(normals.length, positions.length);
+  assert.deepEqual(Float32Array.from(seen.texcoords), texcoords);
+  assert.ok(seen.hasUv && seen.refined >= seen.faces, `${seen.refined}`);
   await page.close();
 });

@@ -2,7 +2,7 @@
 
 export { PapilioLoader } from './three/loader.js';
 export type { PapilioLoaderOptions } from './three/loader.js';
-export { dracoDecoder, geometryOf } from './three/packed.js';
+export { dracoDecoder, geometryOf, sceneNormals, showLevel } from './three/packed.js';
 export { isInstanced, Parts, smooth } from './three/parts.js';
 export type { Part, RefinedPart } from './three/parts.js';
 export { RefinedModel } from './three/refined_model.js';

@@ -66,6 +66,8 @@ interface EncoderModule {
   Mesh: new () => unknown;
   DracoInt8Array: new () => DracoBytes;
   POSITION: number;
+  TEX_COORD: number;
+  NORMAL: number;
   MESH_EDGEBREAKER_ENCODING: number;
   MESH_SEQUENTIAL_ENCODING: number;
   destroy(object: unknown): void;
@@ -88,8 +90,16 @@ async function loadEncoder(): Promise<EncoderModule> {
   return globalThis.DracoEncoderModule!({ locateFile: () => encoderWasmUrl });
 }
 
-/// Positions [vertices * 3] and triangles [faces * 3 vertices] as a Draco mesh, positions on a grid of 16 bits.
-export async function encode(positions: Float32Array, triangles: Uint32Array): Promise<Bytes> {
+/// What is encoded: positions [vertices * 3] and triangles [faces * 3 vertices], and if they are there [vertices * 2 and 3].
+interface Surface {
+  positions: Float32Array;
+  triangles: Uint32Array;
+  texcoords?: Float32Array;
+  normals?: Float32Array;
+}
+
+/// As a Draco mesh, positions on a grid of 16 bits. Its attributes have the unique ids 0, 1, 2 in the order of the surface's.
+export async function encode({ positions, triangles, texcoords, normals }: Surface): Promise<Bytes> {
   encoderModule ??= loadEncoder();
   encoderModule.catch(() => (encoderModule = undefined)); // the next try fetches it again
   const module = await encoderModule;
@@ -99,9 +109,15 @@ export async function encode(positions: Float32Array, triangles: Uint32Array): P
   const out = new module.DracoInt8Array();
   try {
     builder.AddFacesToMesh(mesh, triangles.length / 3, triangles);
-    builder.AddFloatAttributeToMesh(mesh, module.POSITION, positions.length / 3, 3, positions);
+    const vertices = positions.length / 3;
+    const add = (type: number, components: number, values: Float32Array, bits: number) => {
+      builder.AddFloatAttributeToMesh(mesh, type, vertices, components, values);
+      encoder.SetAttributeQuantization(type, bits);
+    };
+    add(module.POSITION, 3, positions, 16);
+    if (texcoords) add(module.TEX_COORD, 2, texcoords, 14);
+    if (normals) add(module.NORMAL, 3, normals, 10);
     encoder.SetSpeedOptions(5, 5);
-    encoder.SetAttributeQuantization(module.POSITION, 16);
     let length = 0;
     for (const method of [module.MESH_EDGEBREAKER_ENCODING, module.MESH_SEQUENTIAL_ENCODING]) {
       encoder.SetEncodingMethod(method);

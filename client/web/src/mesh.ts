@@ -25,8 +25,9 @@ export class OpenMesh {
     return this.decoded.geometry;
   }
 
+  /// A packed model with a material is one, too.
   get isScene(): boolean {
-    return this.encoded.kind === 'scene';
+    return this.decoded.scene !== null;
   }
 
   /// What the server is sent.
@@ -75,5 +76,6 @@ export class OpenMesh {
   close(): void {
     this.dispose();
     this.packed?.model.close();
+    this.packed?.base?.dispose();
   }
 }

@@ -43,7 +43,7 @@ export async function readMeshFile(file: File, files: readonly File[], maxBytes:
   if (triangles.length === 0) throw new Problem('empty', `There are no triangles in ${file.name}.`);
   if (!positions.every(Number.isFinite))
     throw new Problem('mesh_unusable', `${file.name} has positions that are no numbers.`);
-  return { kind: 'draco', bytes: await encode(positions, triangles) };
+  return { kind: 'draco', bytes: await encode({ positions, triangles }) };
 }
 
 async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeometry[]> {

@@ -6,21 +6,34 @@ import { Problem } from '../client.js';
 /// Residuals of a level.
 export interface CodedLevel {
   step: number;
-  /// Of the pieces that are there, one behind the other.
+  /// Of the pieces that are there, one behind the other: of each its residuals, then those of its texture coordinates.
   residuals: Uint8Array;
+  /// Quantization step of the residuals of texture coordinates. Left out, or 0: there are none.
+  texcoordStep?: number;
+  /// Of those residuals, among `residuals`.
+  texcoordBytes?: number;
   /// Empty: the residuals are one piece. The vertices of one that is missing, and of those that need it, are the smooth
   /// ones: a piece needs all pieces of the level before with a face at a vertex of its faces of the base, and the first
   /// of its level.
-  pieces: readonly { bytes: number; isMissing?: boolean }[];
+  pieces: readonly { bytes: number; texcoordBytes?: number; isMissing?: boolean }[];
 }
 
-/// Indexed triangles, counter-clockwise seen from outside.
+/// Indexed triangles, counter-clockwise seen from outside. Points of the same position are one vertex.
 export interface DecodedTriangles {
   /// [points * 3]
   positions: Float32Array<ArrayBuffer>;
   /// [faces * 3]
   triangles: Uint32Array<ArrayBuffer>;
+  /// [points * 2] as glTF has them, downwards; left out where there are none.
+  texcoords?: Float32Array<ArrayBuffer>;
+  /// [points * 3]; left out where there are none.
+  normals?: Float32Array<ArrayBuffer>;
 }
+
+/// How normals are split: not at all, at creases, or at all edges, which needs none. `absent`: the original has none.
+export type NormalStyle = (typeof normalStyles)[number];
+/// In the order of papilio/detail.h.
+export const normalStyles = ['absent', 'smooth', 'creased', 'faceted'] as const;
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -34,14 +47,15 @@ interface Exports {
     triangles: number,
     bytes: number,
     curves: number,
+    texcoords: number,
   ): number;
   base_edges(base: number): number;
   base_free(base: number): void;
-  decode(base: number, levels: number, rows: number, maxFaces: number): number;
+  decode(base: number, levels: number, rows: number, maxFaces: number, normals: number): number;
   decoded_free(decoded: number): void;
 }
 
-const levelBytes = 20;
+const levelBytes = 24;
 const missingPiece = 2 ** 32 - 1;
 // papilio.h
 const codes = ['bad_parameter', 'mesh_unusable', 'result_too_large', 'cancelled', 'out_of_memory'];
@@ -82,19 +96,22 @@ export class DetailDecoder {
     return this.#guarded(() => this.#exports.base_edges(this.#pointer));
   }
 
-  /// The surface with these levels, to the bits that the native library decodes. Throws Problem.
-  decode(levels: readonly CodedLevel[], maxFaces = 2 ** 30): DecodedTriangles {
+  /// The surface with these levels, to the bits that the native library decodes, with texture coordinates where the base
+  /// has them. `normals`: those of this style, `smooth` or `creased`, which has points apart at creases. Throws Problem.
+  decode(levels: readonly CodedLevel[], maxFaces = 2 ** 30, normals: NormalStyle = 'absent'): DecodedTriangles {
     const made = this.#guarded(() => {
       const blocks: number[] = [];
       const write = (bytes: ArrayBufferView) => blocks[blocks.push(this.#write(bytes)) - 1]!;
       const rows = new DataView(new ArrayBuffer(levels.length * levelBytes));
-      for (const [l, { step, residuals, pieces }] of levels.entries()) {
-        const sizes = Uint32Array.from(pieces, ({ bytes, isMissing }) => (isMissing ? missingPiece : bytes));
-        rows.setFloat32(l * levelBytes, step, true);
-        for (const [i, number] of [residuals.length, write(residuals), sizes.length, write(sizes)].entries())
-          rows.setUint32(l * levelBytes + 4 + 4 * i, number, true);
+      for (const [l, level] of levels.entries()) {
+        const sizes = sizesOf(level);
+        const { step, texcoordStep = 0, residuals } = level;
+        for (const [i, number] of [step, texcoordStep].entries()) rows.setFloat32(l * levelBytes + 4 * i, number, true);
+        for (const [i, number] of [residuals.length, write(residuals), sizes.length / 2, write(sizes)].entries())
+          rows.setUint32(l * levelBytes + 8 + 4 * i, number, true);
       }
-      const decoded = this.#exports.decode(this.#pointer, levels.length, write(rows), Math.min(maxFaces, 2 ** 30));
+      const [limit, style] = [Math.min(maxFaces, 2 ** 30), normalStyles.indexOf(normals)];
+      const decoded = this.#exports.decode(this.#pointer, levels.length, write(rows), limit, style);
       for (const block of blocks) this.#exports.release(block);
       const copy = this.#read(decoded);
       this.#exports.decoded_free(decoded);
@@ -135,11 +152,14 @@ export class DetailDecoder {
     });
     this.#exports = this.#instance.exports as unknown as Exports;
     this.#exports._initialize();
-    const { positions, triangles } = this.#base;
-    const blocks = [positions, triangles, this.#curves].map((array) => this.#write(array)) as [number, number, number];
-    const [points, faces] = [Math.floor(positions.length / 3), Math.floor(triangles.length / 3)];
-    this.#pointer = this.#exports.base_create(points, blocks[0], faces, blocks[1], this.#curves.length, blocks[2]);
-    for (const block of blocks) this.#exports.release(block);
+    const { positions, triangles, texcoords } = this.#base;
+    const [at, faces, curves, coordinates] = [positions, triangles, this.#curves, texcoords].map((array) =>
+      array === undefined ? 0 : this.#write(array),
+    ) as [number, number, number, number];
+    const counts = [positions, triangles].map(({ length }) => Math.floor(length / 3)) as [number, number];
+    const { length } = this.#curves;
+    this.#pointer = this.#exports.base_create(counts[0], at, counts[1], faces, length, curves, coordinates);
+    for (const block of [at, faces, curves, coordinates]) if (block !== 0) this.#exports.release(block);
   }
 
   /// Returns where the copy lies.
@@ -153,15 +173,18 @@ export class DetailDecoder {
   /// Copies the triangles out.
   #read(decoded: number): DecodedTriangles {
     const { buffer } = this.#exports.memory;
-    const [points, faces, positions, triangles] = new Uint32Array(buffer, decoded, 4) as unknown as [
-      number,
-      number,
-      number,
-      number,
-    ];
+    const [points, faces, positions, triangles, texcoords, normals] = new Uint32Array(
+      buffer,
+      decoded,
+      6,
+    ) as unknown as [number, number, number, number, number, number];
+    const floats = (at: number, count: number) =>
+      new Float32Array(buffer, at, count).slice() as Float32Array<ArrayBuffer>;
     return {
-      positions: new Float32Array(buffer, positions, 3 * points).slice() as Float32Array<ArrayBuffer>,
+      positions: floats(positions, 3 * points),
       triangles: new Uint32Array(buffer, triangles, 3 * faces).slice() as Uint32Array<ArrayBuffer>,
+      ...(texcoords !== 0 && { texcoords: floats(texcoords, 2 * points) }),
+      ...(normals !== 0 && { normals: floats(normals, 3 * points) }),
     };
   }
 
@@ -170,4 +193,14 @@ export class DetailDecoder {
     const bytes = new Uint8Array(this.#exports.memory.buffer, at);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
+}
+
+/// [pieces * 2] the bytes of each piece's residuals, and of those of its texture coordinates.
+function sizesOf({ residuals, texcoordBytes = 0, pieces }: CodedLevel): Uint32Array {
+  if (pieces.length === 0) return new Uint32Array([residuals.length - texcoordBytes, texcoordBytes]);
+  return new Uint32Array(
+    pieces.flatMap(({ bytes, texcoordBytes = 0, isMissing }) =>
+      isMissing ? [missingPiece, 0] : [bytes, texcoordBytes],
+    ),
+  );
 }

@@ -1,6 +1,6 @@
-// The table of a packed model's streams (proto/detail.md), without texture coordinates.
+// The table of a packed model's streams (proto/detail.md).
 
-import { refuse, refuseScene } from './document.js';
+import { refuse } from './document.js';
 
 /// Distances to the original, the larger of both directions, as shares of the diagonal of its bounding box.
 export interface Reach {
@@ -14,6 +14,8 @@ export interface Reach {
 export interface Piece {
   /// Of its residuals.
   bytes: number;
+  /// Of its residuals of texture coordinates, which follow.
+  texcoordBytes: number;
   /// Upper bound of how far its residuals move a vertex.
   largestMove: number;
   /// A sphere that holds the surface.
@@ -29,6 +31,10 @@ export interface LevelRow extends Reach {
   step: number;
   /// Of the residuals.
   bytes: number;
+  /// Quantization step of the residuals of texture coordinates; 0: all of them are 0.
+  texcoordStep: number;
+  /// Of those residuals.
+  texcoordBytes: number;
   /// In the order of their bytes. Empty: the level is one.
   pieces: readonly Piece[];
 }
@@ -37,6 +43,8 @@ export interface LevelTable extends Reach {
   /// Of the base.
   edges: number;
   curveBytes: number;
+  /// Whether levels have texture coordinates.
+  hasTexcoords: boolean;
   /// Coarse first.
   rows: LevelRow[];
 }
@@ -44,35 +52,51 @@ export interface LevelTable extends Reach {
 /// Bytes from which sizeOfRows knows.
 export const leastTableBytes = 18;
 const rowBytes = 16;
+const texcoordRowBytes = 8;
 const pieceCountBytes = 4;
 const pieceBytes = 40;
+const texcoordPieceBytes = 4;
 const mostLevels = 10;
 const mostPieces = 65535;
 const mostCoordinate = 1e18;
 const mostFloat = 2 ** 128;
 
-/// Bytes of a row, by the flags of the table.
-function bytesOfRow(flags: number): number {
-  if (flags % 2 === 1) refuseScene('levels of texture coordinates');
+/// What rows have besides, and their bytes.
+interface Layout {
+  hasTexcoords: boolean;
+  hasPieces: boolean;
+  row: number;
+  piece: number;
+}
+
+function layoutOf(hasTexcoords: boolean, hasPieces: boolean): Layout {
+  const row = rowBytes + (hasTexcoords ? texcoordRowBytes : 0) + (hasPieces ? pieceCountBytes : 0);
+  return { hasTexcoords, hasPieces, row, piece: pieceBytes + (hasTexcoords ? texcoordPieceBytes : 0) };
+}
+
+/// By the flags of the table.
+function layoutIn(bytes: Uint8Array): Layout {
+  const flags = bytes[1]!;
   if (flags > 3) refuse('the table of levels', 'has unknown flags');
-  return rowBytes + (flags === 2 ? pieceCountBytes : 0);
+  return layoutOf(flags % 2 === 1, flags >= 2);
 }
 const nameOf = (level: number) => `the row of level ${level + 1}`;
 
 /// Bytes of a table up to the end of its levels' rows, by its first ones. Throws Problem where it has too many levels.
 export function sizeOfRows(bytes: Uint8Array): number {
-  const [levels, flags] = [bytes[0]!, bytes[1]!];
+  const levels = bytes[0]!;
+  const { row } = layoutIn(bytes);
   if (levels > mostLevels) refuse('the table of levels', `has ${levels} of them; at most ${mostLevels} are allowed`);
-  return leastTableBytes + levels * bytesOfRow(flags);
+  return leastTableBytes + levels * row;
 }
 
 /// Pieces of each level, by the bytes up to the end of the rows; 0 where it is not parted.
 function pieceCounts(bytes: Uint8Array): number[] {
-  const size = bytesOfRow(bytes[1]!);
+  const { row, hasPieces } = layoutIn(bytes);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   return Array.from({ length: bytes[0]! }, (_, l) => {
-    if (size === rowBytes) return 0;
-    const count = view.getUint32(leastTableBytes + l * size + rowBytes, true);
+    if (!hasPieces) return 0;
+    const count = view.getUint32(leastTableBytes + (l + 1) * row - pieceCountBytes, true);
     if (count < 1 || count > mostPieces) refuse(nameOf(l), `has ${count} pieces; 1 to ${mostPieces} are allowed`);
     return count > 1 ? count : 0;
   });
@@ -80,39 +104,57 @@ function pieceCounts(bytes: Uint8Array): number[] {
 
 /// Bytes of a table, by those up to the end of its rows. Throws Problem where a level has no or too many pieces.
 export function sizeOfTable(bytes: Uint8Array): number {
-  return pieceCounts(bytes).reduce((sum, count) => sum + count * pieceBytes, sizeOfRows(bytes));
+  const { piece } = layoutIn(bytes);
+  return pieceCounts(bytes).reduce((sum, count) => sum + count * piece, sizeOfRows(bytes));
 }
 
 /// Of all its bytes. Throws Problem: mesh_not_gltf (a step, distance or bound out of its range, pieces of other bytes than
 /// their level).
 export function readTable(bytes: Uint8Array): LevelTable {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
-  const reachAt = (at: number, where: string): Reach => {
-    const [rms, largest] = [view.getFloat32(at, true), view.getFloat32(at + 4, true)];
-    for (const distance of [rms, largest])
-      if (!(distance >= 0 && distance < Infinity)) refuse(where, 'has a distance that is negative or not finite');
-    return { rms, largest };
-  };
+  const layout = layoutIn(bytes);
   const counts = pieceCounts(bytes);
-  const rows = counts.map((_, l) => {
-    const [at, where] = [leastTableBytes + l * bytesOfRow(bytes[1]!), nameOf(l)];
-    const step = view.getFloat32(at, true);
-    if (!(step > 0 && step <= mostCoordinate)) refuse(where, 'has a step that is not above 0 and at most 1e18');
-    return { step, ...reachAt(at + 4, where), bytes: view.getUint32(at + 12, true), pieces: [] as Piece[] };
-  });
+  const rows = counts.map((_, l) => rowAt(view, leastTableBytes + l * layout.row, layout, nameOf(l)));
   let at = sizeOfRows(bytes);
   for (const [l, row] of rows.entries()) {
-    for (let p = 0; p < counts[l]!; ++p, at += pieceBytes) row.pieces.push(pieceAt(view, at, nameOf(l)));
-    if (counts[l]! > 0 && row.pieces.reduce((sum, piece) => sum + piece.bytes, 0) !== row.bytes)
+    const pieces: Piece[] = [];
+    for (let p = 0; p < counts[l]!; ++p, at += layout.piece) pieces.push(pieceAt(view, at, layout, nameOf(l)));
+    const sum = (of: 'bytes' | 'texcoordBytes') => pieces.reduce((total, piece) => total + piece[of], 0);
+    if (pieces.length > 0 && (sum('bytes') !== row.bytes || sum('texcoordBytes') !== row.texcoordBytes))
       refuse(nameOf(l), 'has other bytes than its pieces together');
+    row.pieces = pieces;
   }
   const [edges, curveBytes] = [view.getUint32(2, true), view.getUint32(6, true)];
-  return { edges, curveBytes, ...reachAt(10, "the base's row"), rows };
+  const { hasTexcoords } = layout;
+  return { edges, curveBytes, hasTexcoords, ...reachAt(view, 10, "the base's row"), rows };
 }
 
-function pieceAt(view: DataView, at: number, where: string): Piece {
+function reachAt(view: DataView, at: number, where: string): Reach {
+  const [rms, largest] = [view.getFloat32(at, true), view.getFloat32(at + 4, true)];
+  for (const distance of [rms, largest])
+    if (!(distance >= 0 && distance < Infinity)) refuse(where, 'has a distance that is negative or not finite');
+  return { rms, largest };
+}
+
+/// Without its pieces.
+function rowAt(view: DataView, at: number, { hasTexcoords }: Layout, where: string): LevelRow {
+  const stepAt = (place: number, mayBeZero: boolean) => {
+    const step = view.getFloat32(place, true);
+    if (!(step > 0 || (mayBeZero && step === 0)) || step > mostCoordinate)
+      refuse(where, 'has a step that is not above 0 and at most 1e18');
+    return step;
+  };
+  const row = { step: stepAt(at, false), ...reachAt(view, at + 4, where), bytes: view.getUint32(at + 12, true) };
+  const texcoordStep = hasTexcoords ? stepAt(at + rowBytes, true) : 0;
+  const texcoordBytes = hasTexcoords ? view.getUint32(at + rowBytes + 4, true) : 0;
+  if (texcoordStep === 0 && texcoordBytes > 0) refuse(where, 'has texture coordinates without a step');
+  return { ...row, texcoordStep, texcoordBytes, pieces: [] };
+}
+
+function pieceAt(view: DataView, at: number, { hasTexcoords }: Layout, where: string): Piece {
+  const begin = at + (hasTexcoords ? texcoordPieceBytes : 0);
   const [largestMove, x, y, z, radius, u, v, w, leastCosine] = Array.from({ length: 9 }, (_, i) =>
-    view.getFloat32(at + 4 + 4 * i, true),
+    view.getFloat32(begin + 4 + 4 * i, true),
   ) as [number, number, number, number, number, number, number, number, number];
   const bounds = { largestMove, radius, leastCosine };
   const within = (number: number, least: number, most: number) => number >= least && number <= most;
@@ -121,17 +163,27 @@ function pieceAt(view: DataView, at: number, where: string): Piece {
     [x, y, z].every((number) => Math.abs(number) < mostFloat) &&
     [u, v, w, leastCosine].every((number) => within(number, -1, 1));
   if (!are) refuse(where, 'has a bound that is not finite or out of its range');
-  return { bytes: view.getUint32(at, true), ...bounds, centre: [x, y, z], axis: [u, v, w] };
+  const texcoordBytes = hasTexcoords ? view.getUint32(at + 4, true) : 0;
+  return { bytes: view.getUint32(at, true), texcoordBytes, ...bounds, centre: [x, y, z], axis: [u, v, w] };
 }
 
-export function writeTable({ edges, curveBytes, rms, largest, rows }: LevelTable): Uint8Array<ArrayBuffer> {
-  const parted = rows.some(({ pieces }) => pieces.length > 0);
-  const sizeOfRow = bytesOfRow(parted ? 2 : 0);
+export function writeTable({
+  edges,
+  curveBytes,
+  hasTexcoords,
+  rms,
+  largest,
+  rows,
+}: LevelTable): Uint8Array<ArrayBuffer> {
+  const layout = layoutOf(
+    hasTexcoords,
+    rows.some(({ pieces }) => pieces.length > 0),
+  );
   const pieces = rows.flatMap((row) => row.pieces);
-  const bytes = new Uint8Array(leastTableBytes + rows.length * sizeOfRow + pieces.length * pieceBytes);
+  const bytes = new Uint8Array(leastTableBytes + rows.length * layout.row + pieces.length * layout.piece);
   const view = new DataView(bytes.buffer);
   bytes[0] = rows.length;
-  bytes[1] = parted ? 2 : 0;
+  bytes[1] = (hasTexcoords ? 1 : 0) + (layout.hasPieces ? 2 : 0);
   view.setUint32(2, edges, true);
   view.setUint32(6, curveBytes, true);
   const put = (at: number, ...numbers: number[]) => {
@@ -139,15 +191,19 @@ export function writeTable({ edges, curveBytes, rms, largest, rows }: LevelTable
   };
   put(10, rms, largest);
   for (const [l, row] of rows.entries()) {
-    const at = leastTableBytes + l * sizeOfRow;
+    const at = leastTableBytes + l * layout.row;
     put(at, row.step, row.rms, row.largest);
     view.setUint32(at + 12, row.bytes, true);
-    if (parted) view.setUint32(at + rowBytes, Math.max(1, row.pieces.length), true);
+    if (hasTexcoords) put(at + rowBytes, row.texcoordStep);
+    if (hasTexcoords) view.setUint32(at + rowBytes + 4, row.texcoordBytes, true);
+    if (layout.hasPieces) view.setUint32(at + layout.row - pieceCountBytes, Math.max(1, row.pieces.length), true);
   }
   for (const [p, piece] of pieces.entries()) {
-    const at = leastTableBytes + rows.length * sizeOfRow + p * pieceBytes;
+    const at = leastTableBytes + rows.length * layout.row + p * layout.piece;
     view.setUint32(at, piece.bytes, true);
-    put(at + 4, piece.largestMove, ...piece.centre, piece.radius, ...piece.axis, piece.leastCosine);
+    if (hasTexcoords) view.setUint32(at + 4, piece.texcoordBytes, true);
+    const bounds = [piece.largestMove, ...piece.centre, piece.radius, ...piece.axis, piece.leastCosine];
+    put(at + layout.piece - 4 * bounds.length, ...bounds);
   }
   return bytes;
 }

@@ -1,7 +1,9 @@
-// The parts of a packed model (proto/detail.md): the Draco stream of its base, its curves, and the residuals of each level.
+// Reads the parts of a packed model (proto/detail.md): the Draco stream of its base, its curves, and the residuals of each
+// level.
 
 import { Problem } from '../client.js';
-import { isGlb, readContainer, writeContainer } from './container.js';
+import { isGlb, readContainer } from './container.js';
+import { type NormalStyle, normalStyles } from './decoder.js';
 import {
   arrayOf,
   element,
@@ -16,13 +18,13 @@ import {
 } from './document.js';
 import {
   leastTableBytes,
+  type LevelRow,
   type LevelTable,
   type Piece,
   type Reach,
   readTable,
   sizeOfRows,
   sizeOfTable,
-  writeTable,
 } from './level_table.js';
 
 export type { Piece, Reach };
@@ -30,7 +32,12 @@ export type { Piece, Reach };
 export interface PackedLevel extends Reach {
   /// Of the residuals.
   step: number;
+  /// Of each piece its residuals, then those of its texture coordinates.
   residuals: Uint8Array<ArrayBuffer>;
+  /// Quantization step of the residuals of texture coordinates; 0: all of them are 0.
+  texcoordStep: number;
+  /// Of those, among `residuals`.
+  texcoordBytes: number;
   /// Parts of the residuals, one behind the other. Empty: they are one.
   pieces: readonly Piece[];
   /// Residuals of the level: the edges that it splits, by the table's count of those of the base.
@@ -42,13 +49,26 @@ export interface PackedLevel extends Reach {
 }
 
 export interface PackedFile {
-  base: Reach & { draco: Uint8Array<ArrayBuffer>; vertices: number; faces: number; edges: number; end: number };
+  base: Reach & {
+    draco: Uint8Array<ArrayBuffer>;
+    vertices: number;
+    faces: number;
+    edges: number;
+    hasTexcoords: boolean;
+    end: number;
+  };
+  /// How the original's normals are split.
+  normals: NormalStyle;
+  /// Whether the document has a material for the faces.
+  hasMaterial: boolean;
   /// Empty: the base has no creases and no corners.
   curves: Uint8Array<ArrayBuffer>;
   /// Whole ones, coarse first.
   levels: PackedLevel[];
   /// Levels that the file declares: more than `levels` where it is cut.
   declaredLevels: number;
+  /// Whether the table has texture coordinates.
+  hasTexcoordLevels: boolean;
 }
 
 export interface ReadOptions {
@@ -61,24 +81,21 @@ export interface ReadOptions {
 /// Of the last level that `papilio pack` makes at most.
 export const defaultMaxFaces = 8_000_000;
 
-const dracoExtension = 'KHR_draco_mesh_compression';
-const detailExtension = 'PAPILIO_detail';
-const primitivePlace = 'meshes[0].primitives[0]';
+export const dracoExtension = 'KHR_draco_mesh_compression';
+export const detailExtension = 'PAPILIO_detail';
+export const primitivePlace = 'meshes[0].primitives[0]';
 const detailPlace = `${primitivePlace}.extensions.${detailExtension}`;
 const version = 2;
 
-/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive, and without texture coordinates there: their
-/// residuals are not decoded here, so that such a model is a scene, which shows its textured base. Reads the JSON alone.
+/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads the JSON alone.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   if (!isGlb(bytes)) return false;
   try {
     const json = objectOf(readContainer(bytes, true).json, 'the JSON');
     return arrayOf(json, 'meshes').some((mesh) =>
-      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some((primitive) => {
-        const of = objectOf(primitive, 'a primitive');
-        if (extensionOf(of, detailExtension, 'a primitive') === null) return false;
-        return objectOf(of.attributes ?? {}, 'attributes').TEXCOORD_0 === undefined;
-      }),
+      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some(
+        (primitive) => extensionOf(objectOf(primitive, 'a primitive'), detailExtension, 'a primitive') !== null,
+      ),
     );
   } catch {
     return false;
@@ -91,43 +108,10 @@ export function readPacked(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions 
   return new Reader(bytes, options).read();
 }
 
-/// The file of a packed model with its first `count` levels alone. Throws as readPacked.
-export function withLevels(bytes: Uint8Array<ArrayBuffer>, count: number): Uint8Array<ArrayBuffer> {
-  const { base, curves, levels } = readPacked(bytes, { maxFaces: Infinity });
-  const document = objectOf(readContainer(bytes, false).json, 'the JSON');
-  const kept = levels.slice(0, count);
-  const table = writeTable({
-    ...base,
-    curveBytes: curves.length,
-    rows: kept.map((level) => ({ ...level, bytes: level.residuals.length })),
-  });
-  const detail = joined([table, curves, ...kept.map(({ residuals }) => residuals)]);
-  const primitive = primitiveOf(document);
-  extensionOf(primitive, dracoExtension, primitivePlace)!.bufferView = 0;
-  detailOf(primitive)!.bufferView = 1;
-  const binary = joined([base.draco, detail]);
-  const views = [
-    { buffer: 0, byteLength: base.draco.length },
-    { buffer: 0, byteOffset: base.draco.length, byteLength: detail.length },
-  ];
-  Object.assign(document, { bufferViews: views, buffers: [{ byteLength: binary.length }] });
-  return writeContainer(document, binary);
-}
-
-function joined(parts: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
-  const all = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
-  let at = 0;
-  for (const part of parts) {
-    all.set(part, at);
-    at += part.length;
-  }
-  return all;
-}
-
-function primitiveOf(json: JsonObject): JsonObject {
+export function primitiveOf(json: JsonObject): JsonObject {
   return only(only(json, 'meshes', 'mesh'), 'primitives', 'primitive');
 }
-function detailOf(primitive: JsonObject): JsonObject | null {
+export function detailOf(primitive: JsonObject): JsonObject | null {
   return extensionOf(primitive, detailExtension, primitivePlace);
 }
 
@@ -166,13 +150,15 @@ class Reader {
         'mesh_unsupported',
         `${detailExtension} has version ${found}; version ${version} is supported. Update papilio, or pack the model again.`,
       );
-    const { draco, vertices } = this.#base(primitive);
+    const { draco, vertices, hasTexcoords } = this.#base(primitive);
     const view = this.#view(index(detail, 'bufferView', detailPlace), detailPlace);
     const table = tableOf(view);
     const corners = this.#count(index(primitive, 'indices', primitivePlace));
     if (corners % 3 !== 0) refuse(primitivePlace, 'has indices of other than whole triangles');
     const faces = corners / 3;
     const [most, count] = [this.#options.maxFaces ?? defaultMaxFaces, table.rows.length];
+    if (table.hasTexcoords && !hasTexcoords)
+      refuse('the table of levels', 'has texture coordinates, and the base has no TEXCOORD_0');
     if (table.rows.some(({ pieces }) => pieces.length > faces))
       refuse('the table of levels', 'has more pieces than the base has faces');
     if (faces * 4 ** count > most)
@@ -185,10 +171,13 @@ class Reader {
     if (levelsBegin > view.bytes.length) cut('the curves of its base');
     const { rms, largest, edges } = table;
     return {
-      base: { rms, largest, draco, vertices, faces, edges, end: begin + levelsBegin },
+      base: { rms, largest, draco, vertices, faces, edges, hasTexcoords, end: begin + levelsBegin },
+      normals: normalsOf(detail),
+      hasMaterial: primitive.material !== undefined,
       curves: view.bytes.subarray(levelsBegin - table.curveBytes, levelsBegin),
       levels: levelsOf(table, view.bytes, { begin, levelsBegin, faces }),
       declaredLevels: count,
+      hasTexcoordLevels: table.hasTexcoords,
     };
   }
 
@@ -220,16 +209,18 @@ class Reader {
     return whole(element(this.#json, 'accessors', accessor), 'count', `accessors[${accessor}]`);
   }
 
-  #base(primitive: JsonObject): { draco: Uint8Array<ArrayBuffer>; vertices: number } {
+  #base(primitive: JsonObject): { draco: Uint8Array<ArrayBuffer>; vertices: number; hasTexcoords: boolean } {
     const draco = extensionOf(primitive, dracoExtension, primitivePlace);
     if (draco === null || primitive.attributes === undefined)
       refuse(primitivePlace, `has no base compressed by ${dracoExtension}`);
     const attributes = objectOf(primitive.attributes, `${primitivePlace}.attributes`);
-    if (Object.keys(attributes).join() !== 'POSITION') refuseScene('other attributes than POSITION');
+    const hasTexcoords = attributes.TEXCOORD_0 !== undefined;
+    if (Object.keys(attributes).some((name) => name !== 'POSITION' && name !== 'TEXCOORD_0'))
+      refuseScene('other attributes than POSITION and TEXCOORD_0');
     const vertices = this.#count(index(attributes, 'POSITION', primitivePlace));
     const view = this.#view(index(draco, 'bufferView', primitivePlace), primitivePlace);
     if (view.bytes.length < view.length) cut('its base');
-    return { draco: view.bytes, vertices };
+    return { draco: view.bytes, vertices, hasTexcoords };
   }
 
   /// A view, which begins at or after the end of the view before.
@@ -259,7 +250,7 @@ function tableOf({ name, length, bytes }: View): LevelTable {
   };
   const size = sizeOfTable(first(sizeOfRows(first(leastTableBytes))));
   const table = readTable(first(size));
-  const total = table.rows.reduce((sum, row) => sum + row.bytes, size + table.curveBytes);
+  const total = table.rows.reduce((sum, row) => sum + row.bytes + row.texcoordBytes, size + table.curveBytes);
   if (length !== total) refuse(name, `has ${length} bytes, and its table declares ${total}`);
   return table;
 }
@@ -273,15 +264,26 @@ function levelsOf(
   const wholeOnes: PackedLevel[] = [];
   let [at, residualCount] = [levelsBegin, table.edges];
   for (const row of table.rows) {
-    const residuals = bytes.subarray(at, at + row.bytes);
-    if (residuals.length < row.bytes) break;
-    at += row.bytes;
-    const { step, rms, largest, pieces } = row;
-    wholeOnes.push({ step, rms, largest, residuals, pieces, residualCount, faces: 4 * faces, end: begin + at });
+    const length = row.bytes + row.texcoordBytes;
+    const residuals = bytes.subarray(at, at + length);
+    if (residuals.length < length) break;
+    at += length;
+    wholeOnes.push({ ...withoutBytes(row), residuals, residualCount, faces: 4 * faces, end: begin + at });
     residualCount = 2 * residualCount + 3 * faces;
     faces *= 4;
   }
   return wholeOnes;
+}
+
+function withoutBytes({ bytes: _, ...row }: LevelRow): Omit<LevelRow, 'bytes'> {
+  return row;
+}
+
+function normalsOf(detail: JsonObject): NormalStyle {
+  const name = detail.normals;
+  if (name === undefined) return 'absent';
+  const style = normalStyles.find((one) => one === name && one !== 'absent');
+  return style ?? refuse(`${detailPlace}.normals`, 'must be "smooth", "creased" or "faceted"');
 }
 
 function cut(where: string): never {

@@ -1,19 +1,20 @@
 // A packed model that is open: decoded in a worker, level by level.
 
 import { Problem } from '../client.js';
-import { compileDecoder, type DecodedTriangles } from './decoder.js';
+import { compileDecoder, type DecodedTriangles, type NormalStyle } from './decoder.js';
 import type { FromDecoder, ToDecoder } from './messages.js';
 import { type PackedFile, type Reach, type ReadOptions, readPacked } from './packed_file.js';
 
 export interface OpenOptions extends ReadOptions {
-  /// Decodes the Draco stream of the base: three.js's DRACOLoader, or draco3d. Positions and triangles in its order.
+  /// Decodes the Draco stream of the base: three.js's DRACOLoader, or draco3d. Positions, triangles, and texture coordinates
+  /// where it has them, in its order.
   decodeDraco: (draco: Uint8Array<ArrayBuffer>) => Promise<DecodedTriangles>;
   /// papilio-detail.wasm: its bytes, what `fetch` gives, or compiled. Left out: the file beside this one.
   wasm?: BufferSource | Response | Promise<Response> | WebAssembly.Module;
 }
 
 export interface LevelInfo extends Reach {
-  /// Of the level's residuals; of the base its Draco stream and its curves.
+  /// Of the level's residuals, those of texture coordinates included; of the base its Draco stream and its curves.
   bytes: number;
   /// Bytes of the file up to here: what has to come for this level.
   fileBytes: number;
@@ -24,11 +25,14 @@ export interface LevelInfo extends Reach {
 export interface DecodeOptions {
   /// Gives the levels up; the promise is rejected with the signal's reason.
   signal?: AbortSignal;
+  /// How normals are split. Left out: as the original's are, and none where it has none.
+  normals?: NormalStyle;
 }
 
 interface Task {
   request: number;
   levels: number;
+  normals: NormalStyle;
   resolve: (triangles: DecodedTriangles) => void;
   reject: (reason: unknown) => void;
 }
@@ -49,11 +53,7 @@ export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOp
   const compiled =
     wasm === undefined ? sharedModule() : wasm instanceof WebAssembly.Module ? wasm : compileDecoder(wasm);
   const [module, base] = await Promise.all([compiled, options.decodeDraco(file.base.draco)]);
-  if (base.positions.length !== 3 * file.base.vertices || base.triangles.length !== 3 * file.base.faces)
-    throw new Problem(
-      'mesh_not_gltf',
-      'The base declares other counts than its Draco stream has. Pack the model again.',
-    );
+  requireAsDeclared(base, file);
   const model = new PackedModel(module, file, base);
   try {
     await model.opened;
@@ -64,12 +64,27 @@ export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOp
   return model;
 }
 
+function requireAsDeclared({ positions, triangles, texcoords }: DecodedTriangles, { base }: PackedFile): void {
+  const refuse = (what: string): never => {
+    throw new Problem('mesh_not_gltf', `${what} Pack the model again.`);
+  };
+  if (positions.length !== 3 * base.vertices || triangles.length !== 3 * base.faces)
+    refuse('The base declares other counts than its Draco stream has.');
+  if ((texcoords?.length ?? 0) !== (base.hasTexcoords ? 2 * base.vertices : 0))
+    refuse(`The base declares ${base.hasTexcoords ? '' : 'no '}texture coordinates, unlike its Draco stream.`);
+}
+
 export class PackedModel {
   readonly base: LevelInfo;
   /// Whole ones, coarse first.
   readonly levels: readonly LevelInfo[];
   /// Levels that the file declares: more than `levels` where it is cut.
   readonly declaredLevels: number;
+  /// How the original's normals are split.
+  readonly normals: NormalStyle;
+  readonly hasTexcoords: boolean;
+  /// Whether the file has a material for the faces: it is a scene to GLTFLoader, too.
+  readonly hasMaterial: boolean;
   /// Rejects where the base is not what the file declares.
   readonly opened: Promise<void>;
   readonly #module: WebAssembly.Module;
@@ -87,7 +102,8 @@ export class PackedModel {
     this.#module = module;
     this.#file = file;
     this.#triangles = base;
-    this.declaredLevels = file.declaredLevels;
+    ({ declaredLevels: this.declaredLevels, normals: this.normals, hasMaterial: this.hasMaterial } = file);
+    this.hasTexcoords = file.base.hasTexcoords;
     const { rms, largest, vertices, faces, draco, end } = file.base;
     this.base = { rms, largest, bytes: draco.length + file.curves.length, fileBytes: end, vertices, faces };
     let points = vertices;
@@ -103,15 +119,15 @@ export class PackedModel {
     this.#start();
   }
 
-  /// The surface with the first `levels` levels, 0 for the base: the same bits as `papilio unpack` writes. Rejects with
+  /// The surface with the first `levels` levels, 0 for the base, to the bits that `papilio unpack` writes. Rejects with
   /// Problem, or with the signal's reason.
-  decode(levels: number, { signal }: DecodeOptions = {}): Promise<DecodedTriangles> {
+  decode(levels: number, { signal, normals = this.normals }: DecodeOptions = {}): Promise<DecodedTriangles> {
     return new Promise((resolve, reject) => {
       if (this.#isClosed) return reject(new Error('The packed model was closed.'));
       if (!Number.isInteger(levels) || levels < 0 || levels > this.levels.length)
         return reject(new RangeError(`The model has ${this.levels.length} levels, not ${levels}.`));
       if (signal?.aborted) return reject(signal.reason);
-      const task: Task = { request: ++this.#requests, levels, resolve, reject };
+      const task: Task = { request: ++this.#requests, levels, normals, resolve, reject };
       signal?.addEventListener('abort', () => this.#abort(task, signal), { once: true });
       this.#waiting.push(task);
       this.#next();
@@ -136,8 +152,8 @@ export class PackedModel {
       const message = `The worker failed: ${event.message || 'it could not be loaded'}.`;
       this.#take({ kind: 'failed', request: this.#running?.request ?? null, code: 'internal', message });
     };
-    const levels = this.#file.levels.map(({ step, residuals, pieces }) => {
-      return { step, residuals: residuals.slice(), pieces };
+    const levels = this.#file.levels.map(({ step, residuals, texcoordStep, texcoordBytes, pieces }) => {
+      return { step, residuals: residuals.slice(), texcoordStep, texcoordBytes, pieces };
     });
     const [base, curves] = [this.#triangles, this.#file.curves.slice()];
     this.#send({ kind: 'open', module: this.#module, base, curves, levels });
@@ -148,8 +164,8 @@ export class PackedModel {
     this.#running = this.#waiting.shift() ?? null;
     if (this.#running === null) return;
     if (this.#worker === null) this.#start();
-    const { request, levels } = this.#running;
-    this.#send({ kind: 'decode', request, levels });
+    const { request, levels, normals } = this.#running;
+    this.#send({ kind: 'decode', request, levels, normals });
   }
 
   #take(message: FromDecoder): void {

@@ -18,8 +18,8 @@ function answer(data: ToDecoder): void {
     send({ kind: 'opened', edges: decoder.countEdges() });
     return;
   }
-  const triangles = decoder.decode(levels.slice(0, data.levels));
-  const transfer = [triangles.positions.buffer, triangles.triangles.buffer];
+  const triangles = decoder.decode(levels.slice(0, data.levels), undefined, data.normals);
+  const transfer = Object.values(triangles).map(({ buffer }: Float32Array<ArrayBuffer>) => buffer);
   send({ kind: 'decoded', request: data.request, triangles }, transfer);
 }
 

@@ -16,10 +16,11 @@ import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 
 import { Client, type Encoded, Problem } from '../client.js';
 import { isPacked } from '../detail/packed_file.js';
+import { openPacked } from '../detail/packed_model.js';
 import type { Parameters } from '../parameters.js';
 import { Refiner } from '../refiner.js';
 import { computedNormals } from './arrays.js';
-import { decodePacked, dracoDecoder } from './packed.js';
+import { dracoDecoder, geometryOf, sceneNormals, showLevel } from './packed.js';
 import { RefinedModel } from './refined_model.js';
 
 export interface PapilioLoaderOptions {
@@ -31,6 +32,8 @@ export interface PapilioLoaderOptions {
   parameters?: Parameters;
   manager?: LoadingManager;
 }
+
+type Loaded = Pick<GLTF, 'animations'> & { scene: Object3D };
 
 let shared: Promise<Refiner> | null = null;
 
@@ -99,13 +102,8 @@ export class PapilioLoader extends Loader<RefinedModel> {
     return model;
   }
 
-  async #decode(
-    file: ArrayBuffer,
-    type: string | undefined,
-    folder: string,
-  ): Promise<Pick<GLTF, 'animations'> & { scene: Object3D }> {
-    if (type === 'model/gltf-binary' && isPacked(new Uint8Array(file)))
-      return meshOf(await decodePacked(new Uint8Array(file), { decodeDraco: dracoDecoder(this.#draco) }));
+  async #decode(file: ArrayBuffer, type: string | undefined, folder: string): Promise<Loaded> {
+    if (type === 'model/gltf-binary' && isPacked(new Uint8Array(file))) return this.#decodePacked(file, folder);
     if (type !== 'application/x-draco') return this.#gltf.parseAsync(file, folder);
     const geometry = await new Promise<BufferGeometry>((resolve, reject) =>
       // The decoder's worker takes the bytes for good.
@@ -115,9 +113,25 @@ export class PapilioLoader extends Loader<RefinedModel> {
     );
     return meshOf(geometry);
   }
+
+  /// The surface with all its levels, with the file's material if it has one.
+  async #decodePacked(file: ArrayBuffer, folder: string): Promise<Loaded> {
+    const model = await openPacked(new Uint8Array(file), { decodeDraco: dracoDecoder(this.#draco) });
+    try {
+      if (!model.hasMaterial) return meshOf(geometryOf(await model.decode(model.levels.length)));
+      const [loaded, surface] = await Promise.all([
+        this.#gltf.parseAsync(file, folder),
+        model.decode(model.levels.length, { normals: sceneNormals(model) }),
+      ]);
+      showLevel(loaded.scene, geometryOf(surface));
+      return loaded;
+    } finally {
+      model.close();
+    }
+  }
 }
 
-function meshOf(geometry: BufferGeometry): Pick<GLTF, 'animations'> & { scene: Object3D } {
+function meshOf(geometry: BufferGeometry): Loaded {
   if (!geometry.hasAttribute('normal')) {
     geometry.computeVertexNormals();
     geometry.userData[computedNormals] = true;
