@@ -12,7 +12,7 @@ import { compare, drop, facesOf, openPage, picture, serverAndBrowser } from './b
 const shared = serverAndBrowser();
 const folder = mkdtempSync(join(tmpdir(), 'papilio-packed-'));
 after(() => rmSync(folder, { recursive: true }));
-const { packed, report } = pack('cushion', folder, { isTextured: true });
+const { packed, original, report } = pack('cushion', folder, { isTextured: true });
 const glb = readFileSync(packed);
 const levels = [report.base, ...report.levels];
 const last = levels.length - 1;
@@ -112,6 +112,21 @@ test('Save gives a packed model of the levels that are shown, with its image', a
   writeFileSync(saved, readFileSync(await download.path()));
   assert.ok(readFileSync(saved).includes(checkerPng()));
   assert.deepEqual(unpack(saved, 10), unpack(packed, 1));
+});
+
+test('colours by the distance to the original take the place of the texture, and give it back', async () => {
+  const { page, faults } = await open();
+  await page.locator('#wipe').fill('1000');
+  await page.getByLabel('Compare with the original…').setInputFiles(original);
+  await page.locator('#compare-words').getByText('RMS distance').waitFor();
+  const colour = page.getByLabel('Colour the model by this distance');
+  await colour.check();
+  await page.locator('.panel[data-mode=coarse] .legend').getByText('largest here').waitFor();
+  const { orange } = await shares(page, await picture(page, 'view'));
+  assert.ok(orange < 0.01, `${orange}`);
+  await colour.uncheck();
+  await requireTexture(page, 'view');
+  assert.deepEqual(faults, []);
 });
 
 test('a damaged image is told of, and what is open stays', async () => {

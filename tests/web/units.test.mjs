@@ -22,6 +22,7 @@ const { boundaryOf, partsOf } = await load('../../npm/src/multipart');
 const link = await load('link');
 const { faultOf, rangeOf, queryOf } = await load('parameters');
 const { valuesFor } = await load('requests');
+const { MeasuredOriginal } = await load('two_sided');
 
 const answer = Buffer.from(
   '--b\r\nContent-Type: a/b\r\nContent-Length: 6\r\n\r\n\r\n--b\r\r\n--b\r\nContent-Type: c/d\r\nContent-Length: 0\r\n\r\n\r\n--b--\r\n',
@@ -156,4 +157,55 @@ test('what chooses where to refine has no part in the uniform result, nor a view
   // Surfaces are not compared while the camera moves, unless the user says so.
   assert.equal(valuesFor('view', pixels, view, 100).get('view.verify'), 'false');
   assert.equal(valuesFor('view', new Map([...pixels, ['view.verify', 'true']]), view, 100).get('view.verify'), 'true');
+});
+
+/// A square of n by n cells in the plane z = height, from 0 to `side`.
+function square(n, height, side = 1) {
+  const positions = [];
+  for (let i = 0; i <= n; ++i) for (let j = 0; j <= n; ++j) positions.push((side * i) / n, (side * j) / n, height);
+  const triangles = [];
+  for (let i = 0; i < n; ++i)
+    for (let j = 0; j < n; ++j) {
+      const a = i * (n + 1) + j;
+      triangles.push(a, a + n + 1, a + n + 2, a, a + n + 2, a + 1);
+    }
+  return { positions: new Float32Array(positions), triangles: new Uint32Array(triangles) };
+}
+
+test('the distance between parallel squares is their height, of all faces', () => {
+  const { rms, largest, diagonal, ofFaces } = new MeasuredOriginal(square(1, 0)).measure(square(3, 0.25));
+  for (const distance of [rms, largest, ...ofFaces]) assert.ok(Math.abs(distance - 0.25) < 1e-9, `${distance}`);
+  assert.ok(Math.abs(diagonal - Math.SQRT2) < 1e-9);
+  assert.equal(ofFaces.length, 18);
+});
+
+test('the distance is the larger of both directions, and that of a face is what lies nearest to it', () => {
+  // From the small square to the large one it is 0. From 0..2 to 0..1 it is by x and y beyond 1.
+  const small = square(2, 0);
+  const large = square(8, 0, 2);
+  // The integral of the squared distance over the corner and both strips, by the area.
+  const rms = Math.sqrt((1 / 3 + 1 / 3 + 2 / 3) / 4);
+  for (const made of [new MeasuredOriginal(large).measure(small), new MeasuredOriginal(small).measure(large)]) {
+    assert.ok(Math.abs(made.rms - rms) < 0.002 * rms, `${made.rms}, not ${rms}`);
+    assert.ok(Math.abs(made.largest - Math.SQRT2) < 1e-6);
+  }
+  const { ofFaces } = new MeasuredOriginal(small).measure(large);
+  assert.ok(ofFaces[0] < 1e-9 && Math.abs(Math.max(...ofFaces) - Math.SQRT2) < 1e-6);
+  const marked = new MeasuredOriginal(large).measure(small).ofFaces;
+  assert.ok(Math.max(...marked) > 1.3 && marked[0] < 0.01, `${marked}`);
+});
+
+test('points that no face has, and faces without an area, are not measured', () => {
+  const { positions, triangles } = square(1, 0);
+  const more = {
+    positions: new Float32Array([...positions, 9, 9, 9]),
+    triangles: new Uint32Array([...triangles, 0, 0, 1]),
+  };
+  for (const made of [
+    new MeasuredOriginal(more).measure(square(1, 0)),
+    new MeasuredOriginal(square(1, 0)).measure(more),
+  ]) {
+    assert.ok(made.largest < 1e-9 && made.rms < 1e-9, `${made.largest}`);
+    assert.ok(Math.abs(made.diagonal - Math.SQRT2) < 1e-9);
+  }
 });

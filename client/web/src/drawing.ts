@@ -131,11 +131,15 @@ export function coloured(geometry: BufferGeometry, shares: ArrayLike<number>): O
   const corners = geometry.index!.array;
   const positions = new Float32Array(3 * corners.length);
   const colours = new Float32Array(3 * corners.length);
-  const colour = new Color();
-  for (let i = 0; i < corners.length; ++i) {
-    positions.set([position.getX(corners[i]), position.getY(corners[i]), position.getZ(corners[i])], 3 * i);
-    if (i % 3 === 0) colour.set(rampColour(shares[i / 3]));
-    colours.set([colour.r, colour.g, colour.b], 3 * i);
+  const table = Array.from({ length: 256 }, (_, i) => new Color(rampColour(i / 255)));
+  for (let i = 0, to = 0; i < corners.length; ++i, to += 3) {
+    const { r, g, b } = table[Math.round(255 * Math.min(Math.max(shares[Math.floor(i / 3)], 0), 1))];
+    colours[to] = r;
+    colours[to + 1] = g;
+    colours[to + 2] = b;
+    positions[to] = position.getX(corners[i]);
+    positions[to + 1] = position.getY(corners[i]);
+    positions[to + 2] = position.getZ(corners[i]);
   }
   const faces = new BufferGeometry();
   faces.setAttribute('position', new BufferAttribute(positions, 3));

@@ -26,7 +26,8 @@ export function listenToKeys(surface: HTMLElement, stage: Stage): void {
   });
 }
 
-/// Files that are picked, or dropped anywhere on the page. `onFiles`: with none where what was dropped is no file.
+/// Files that are picked, or dropped anywhere on the page but where something else takes them. `onFiles`: with none where
+/// what was dropped is no file.
 export function listenToFiles(onFiles: (files: File[]) => void): void {
   const picked = find<HTMLInputElement>('file');
   picked.addEventListener('change', () => {
@@ -35,15 +36,25 @@ export function listenToFiles(onFiles: (files: File[]) => void): void {
   });
   const hint = find('drop-hint');
   document.addEventListener('dragover', (event) => {
+    hint.hidden = event.defaultPrevented;
     event.preventDefault();
-    hint.hidden = false;
   });
   document.addEventListener('dragleave', (event) => {
     if (event.relatedTarget === null) hint.hidden = true;
   });
   document.addEventListener('drop', (event) => {
-    event.preventDefault();
     hint.hidden = true;
+    if (event.defaultPrevented) return;
+    event.preventDefault();
+    onFiles([...(event.dataTransfer?.files ?? [])]);
+  });
+}
+
+/// Files that are dropped on an element, which takes them before the page does.
+export function takeDrops(element: HTMLElement, onFiles: (files: File[]) => void): void {
+  element.addEventListener('dragover', (event) => event.preventDefault());
+  element.addEventListener('drop', (event) => {
+    event.preventDefault();
     onFiles([...(event.dataTransfer?.files ?? [])]);
   });
 }

@@ -2,6 +2,7 @@
 
 import type { LevelInfo } from 'papilio/detail';
 
+import { ComparePanel } from './compare_panel';
 import './packed.css';
 import { element } from './elements';
 import type { OpenMesh } from './mesh';
@@ -14,6 +15,7 @@ export class PackedPanel {
   /// Another level is to be shown, and has been decoded.
   onLevel: (mesh: OpenMesh) => void = () => {};
   onProblem: (error: unknown) => void = () => {};
+  readonly compare: ComparePanel;
   #mesh: OpenMesh | null = null;
   #wanted = 0;
   #isDecoding = false;
@@ -51,11 +53,13 @@ export class PackedPanel {
     this.#section.hidden = true;
     this.#section.append(title, row, this.#words, scroll, note);
     place.append(this.#section);
+    this.compare = new ComparePanel(place);
   }
 
   /// `mesh`: what has been opened; hides the panel where that is no packed model.
   show(mesh: OpenMesh): void {
     this.#mesh = mesh.packed && mesh;
+    this.compare.show(mesh);
     this.#section.hidden = mesh.packed === null;
     if (mesh.packed === null) return;
     const { level, model } = mesh.packed;
@@ -84,6 +88,7 @@ export class PackedPanel {
       if (made === null || from !== this.#mesh) continue; // another file may be open by now
       this.#mesh = made;
       this.onLevel(made);
+      this.compare.follow(made);
     }
     this.#isDecoding = false;
     this.#section.setAttribute('aria-busy', 'false');

@@ -7,9 +7,20 @@ import { coloured, rampColour, shaded, withEdges } from './drawing';
 import { element } from './elements';
 import type { Look } from './link';
 import type { OpenMesh } from './mesh';
+import type { Decoded } from './model';
 import type { Panel, Shown } from './panel';
 import type { Stage } from './stage';
 import { hide, type Path } from './tree';
+
+/// What is drawn in colours by distance, whatever the look: the level of a packed model by that to its original.
+export interface DistanceColours {
+  /// Other colours have another one.
+  id: number;
+  decoded: Decoded;
+  /// [faces] in the unit of `diagonal`.
+  ofFaces: Float32Array;
+  diagonal: number;
+}
 
 export class Pictures {
   /// By what they are of, to which uniform mesh, and [faces] in the mesh's units.
@@ -30,11 +41,19 @@ export class Pictures {
 
   /// Draws these panels; what was being drawn is given up. `levels`: as many as were asked for. `uniform`: what distances
   /// are to, or why that is not there. Rejects where a mesh cannot be decoded.
-  async draw(panels: Panel[], look: Look, levels: number, uniform: Shown | string): Promise<void> {
+  async draw(
+    panels: Panel[],
+    look: Look,
+    levels: number,
+    uniform: Shown | string,
+    colours: DistanceColours | null,
+  ): Promise<void> {
     this.#abort.abort();
     this.#abort = new AbortController();
     const { signal } = this.#abort;
-    const pictures = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
+    const all = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
+    for (const picture of all) if (picture.shown.decoded === colours?.decoded) this.#drawColours(picture, colours);
+    const pictures = all.filter(({ shown }) => shown.decoded !== colours?.decoded);
     try {
       if (look === 'level') await this.#drawLevels(pictures, Math.max(levels, 1), signal);
       else if (look === 'distance' && typeof uniform !== 'string') await this.#drawDistances(pictures, uniform, signal);
@@ -47,6 +66,13 @@ export class Pictures {
   #drawPlain({ panel, shown }: Picture, look: Look, words: string): void {
     this.#put({ panel, shown }, look, () => (look === 'wireframe' ? withEdges(shown.decoded) : shaded(shown.decoded)));
     panel.setLegend(words === '' ? [] : [element('span', '', words)]);
+  }
+
+  #drawColours({ panel, shown }: Picture, { id, ofFaces, diagonal }: DistanceColours): void {
+    const most = ofFaces.reduce((a, b) => Math.max(a, b), 0);
+    const shares = () => ofFaces.map((distance) => Math.sqrt(distance / (most || 1)));
+    this.#put({ panel, shown }, `colours ${id}`, () => coloured(shown.geometry, shares()));
+    panel.setLegend(distanceLegend(most / diagonal, most / diagonal));
   }
 
   async #drawLevels(pictures: Picture[], levels: number, signal: AbortSignal): Promise<void> {

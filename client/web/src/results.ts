@@ -5,7 +5,7 @@ import { figures } from './figures';
 import type { Look } from './link';
 import type { OpenMesh } from './mesh';
 import type { Panel } from './panel';
-import type { Pictures } from './pictures';
+import type { DistanceColours, Pictures } from './pictures';
 import { costOf } from './strip';
 
 export class Results {
@@ -15,7 +15,14 @@ export class Results {
 
   /// `uniform`: the panel with the uniform result of so many levels, which others are compared with, on screen or not.
   /// Rejects where a mesh cannot be decoded.
-  async show(mesh: OpenMesh | null, panels: Panel[], uniform: Panel, levels: number, look: Look): Promise<void> {
+  async show(
+    mesh: OpenMesh | null,
+    panels: Panel[],
+    uniform: Panel,
+    levels: number,
+    look: Look,
+    colours: DistanceColours | null,
+  ): Promise<void> {
     const latest = uniform.shown;
     const reference = latest !== null && latest.mesh === mesh && latest.summary !== null ? latest : null;
     const { problem } = uniform;
@@ -31,6 +38,6 @@ export class Results {
         setChildren(find('figures'), figures(current, faces, reference?.encoded?.bytes.length ?? null));
       }, 100);
     }
-    await this.pictures.draw(panels, look, levels, reference ?? missing);
+    await this.pictures.draw(panels, look, levels, reference ?? missing, colours);
   }
 }

@@ -13,7 +13,7 @@ import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest,
 import type { OpenMesh } from './mesh';
 import { MeshSelect } from './mesh_select';
 import type { Encoded } from './model';
-import { extensions, meshAmong, readMeshFile } from './open_file';
+import { meshAmong, noFile, readMeshFile } from './open_file';
 import { openMesh } from './opening';
 import { PackedPanel } from './packed_panel';
 import { Panel } from './panel';
@@ -231,8 +231,9 @@ export class Viewer {
 
   #showResults(): void {
     const levels = levelsOf(this.#state.values, this.#mesh?.decoded.faces ?? 0);
+    const uniform = this.#panels.get('uniform')!;
     this.#results
-      .show(this.#mesh, this.#visible(), this.#panels.get('uniform')!, levels, this.#look())
+      .show(this.#mesh, this.#visible(), uniform, levels, this.#look(), this.#packed.compare.colours)
       .catch((error: unknown) => this.#tell(error));
   }
 
@@ -317,16 +318,14 @@ export class Viewer {
   #listen(): void {
     const stage = this.#stage;
     this.#select.onChoice = (name) => void this.#openNamed(name);
-    this.#packed.onProblem = (error) => this.#tell(error);
+    this.#packed.onProblem = this.#packed.compare.onProblem = (error) => this.#tell(error);
+    this.#packed.compare.onColours = () => this.#showResults();
     this.#packed.onLevel = (mesh) => {
       this.#mesh?.dispose();
       this.#take(mesh);
       this.#refresh();
     };
-    listenToFiles((files) => {
-      if (files.length > 0) void this.#openFiles(files);
-      else this.#alert.show(`That is no file. Drop one of ${extensions.join(', ')}.`);
-    });
+    listenToFiles((files) => (files.length > 0 ? void this.#openFiles(files) : this.#tell(noFile())));
     listenToKeys(find('stage'), stage);
     const frozen = find<HTMLInputElement>('frozen');
     frozen.addEventListener('change', () => {
