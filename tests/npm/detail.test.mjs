@@ -278,6 +278,12 @@ test('packed models are told from other files', () => {
   const file = bytesOf(torus);
   assert.ok(isPacked(file));
   assert.ok(!isPacked(edited(file, ({ primitive }) => delete primitive.extensions.PAPILIO_detail)));
+  // Of several materials: a scene.
+  const several = edited(file, ({ json, primitive }) =>
+    json.meshes[0].primitives.push({ ...primitive, extensions: {} }),
+  );
+  assert.ok(!isPacked(several));
+  assert.throws(() => readPacked(several), { code: 'mesh_unsupported', message: /other than one primitive/ });
   for (const bytes of [new Uint8Array(), file.slice(1), file.slice(0, 30), readFileSync(`${torus}.ply`)])
     assert.ok(!isPacked(new Uint8Array(bytes)));
 });

@@ -87,16 +87,17 @@ export const primitivePlace = 'meshes[0].primitives[0]';
 const detailPlace = `${primitivePlace}.extensions.${detailExtension}`;
 const version = 2;
 
-/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads the JSON alone.
+/// Whether the bytes are a .glb file with PAPILIO_detail on the only primitive of a mesh. Models of several primitives, one
+/// for each material, are scenes here, which show their base. Reads the JSON alone.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   if (!isGlb(bytes)) return false;
   try {
     const json = objectOf(readContainer(bytes, true).json, 'the JSON');
-    return arrayOf(json, 'meshes').some((mesh) =>
-      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some(
-        (primitive) => extensionOf(objectOf(primitive, 'a primitive'), detailExtension, 'a primitive') !== null,
-      ),
-    );
+    return arrayOf(json, 'meshes').some((mesh) => {
+      const primitives = arrayOf(objectOf(mesh, 'a mesh'), 'primitives');
+      const first = objectOf(primitives[0], 'a primitive');
+      return primitives.length === 1 && extensionOf(first, detailExtension, 'a primitive') !== null;
+    });
   } catch {
     return false;
   }
