@@ -121,7 +121,8 @@ std::vector<ValueChannel> ValueLevels::channels(float step) const {
 }
 
 ValueResiduals ValueLevels::no_residuals() {
-  return ValueResiduals(models_.size(), Buffer<int32_t>(level().topology().edge_count()));
+  ValueResiduals made(models_.size(), Buffer<int32_t>(level().topology().edge_count()));
+  return made;
 }
 
 void ValueLevels::decode(const EdgePieces& pieces, const PieceBytes& bytes, float step) {
