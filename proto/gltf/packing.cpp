@@ -71,8 +71,14 @@ void move_to_buffer(Json& holder, const std::vector<std::pair<uint32_t, uint64_t
   if (offset > 0) holder["byteOffset"] = holder.value("byteOffset", uint64_t{0}) + offset;
 }
 
-/// Joins all buffers with bytes into the first, which becomes the binary chunk. `owners`: those that the pieces borrow
-/// from.
+/// Whether a buffer says something of its own that another one says, too, so that one of both cannot hold it.
+bool has_own_words(const Json& buffer, const Json& other) {
+  return std::ranges::any_of(std::array{"extras", "extensions"},
+                             [&](const char* key) { return buffer.contains(key) && other.contains(key); });
+}
+
+/// Joins the buffers with bytes into the first, which becomes the binary chunk; those with words of their own stay, in
+/// the document. `owners`: those that the pieces borrow from.
 BufferPieces join_buffers(Document& document, BufferPieces pieces, std::vector<SceneBuffer>& owners) {
   constexpr uint64_t alignment = 8;
   std::vector<std::pair<uint32_t, uint64_t>> moved;  // new buffer, and where the old one begins in it
@@ -89,12 +95,19 @@ BufferPieces join_buffers(Document& document, BufferPieces pieces, std::vector<S
       joined.emplace_back();
       continue;
     }
+    buffer.erase("uri");
+    if (has_own_words(buffer, buffers[0])) {
+      moved.emplace_back(static_cast<uint32_t>(buffers.size()), 0);
+      buffers.push_back(std::move(buffer));
+      places.emplace_back(BufferPlace::data_uri, std::string_view());
+      joined.push_back(std::move(pieces[b]));
+      continue;
+    }
     const uint64_t begin = (size + alignment - 1) / alignment * alignment;
     if (begin > size) joined[0].push_back({{}, std::string(begin - size, '\0')});
     size = begin + buffer["byteLength"].get<uint64_t>();
     moved.emplace_back(0, begin);
     for (Piece& piece : pieces[b]) joined[0].push_back(std::move(piece));
-    buffer.erase("uri");
     for (auto& [key, value] : buffer.items()) buffers[0].emplace(key, std::move(value));  // the first one's stay
   }
   buffers[0]["byteLength"] = size;

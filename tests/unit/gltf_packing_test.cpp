@@ -73,6 +73,30 @@ TEST(GltfPacking, BuffersAndImagesBecomeOneChunk) {
   EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
 }
 
+TEST(GltfPacking, ABufferWithExtrasOfItsOwnStaysOne) {
+  GltfScene scene;
+  scene.add_mesh(test::icosahedron());
+  Json json = scene.json;
+  json["buffers"] = {{{"byteLength", scene.binary.size()}, {"uri", "a.bin"}, {"extras", "first"}},
+                     {{"byteLength", 5}, {"uri", "b.bin"}, {"extras", {{"number", 2}}}, {"name", "second"}},
+                     {{"byteLength", 5}, {"uri", "b.bin"}}};
+  json["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 1}, {"byteLength", 3}});
+  json["bufferViews"].push_back({{"buffer", 2}, {"byteOffset", 1}, {"byteLength", 3}});
+  const auto buffer = [&](const std::string& uri) { return uri == "a.bin" ? scene.binary : "12345"; };
+  const std::string glb = pack_scene(json.dump(), buffer, [](const std::string&) { return std::nullopt; });
+  const Json packed = test::json_of_glb(glb);
+  ASSERT_EQ(packed["buffers"].size(), 2U);
+  EXPECT_EQ(packed["buffers"][0]["extras"], "first");
+  EXPECT_EQ(packed["buffers"][1]["extras"], (Json{{"number", 2}}));
+  EXPECT_EQ(packed["buffers"][1]["name"], "second");
+  EXPECT_EQ(decode_data_uri(packed["buffers"][1]["uri"].get<std::string>()), "12345");
+  EXPECT_EQ(packed["bufferViews"][2]["buffer"], 1);
+  EXPECT_EQ(packed["bufferViews"][2]["byteOffset"], 1);
+  EXPECT_EQ(packed["bufferViews"][3]["buffer"], 0);
+  EXPECT_EQ(test::view_of_glb(glb, 3), "234");
+  EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
+}
+
 TEST(GltfPacking, AGlbFileIsPackedAlready) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
