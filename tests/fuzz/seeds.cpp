@@ -146,7 +146,9 @@ void add_packed_models(Seeds& seeds) {
   TriangleMesh charted = test::charted_cube();
   charted.attributes.erase(charted.attributes.begin());  // texture coordinates are left
   std::vector<std::string> models{test::parted_fixture().glb};
-  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted}) {
+  TriangleMesh coloured = test::icosahedron();
+  coloured.attributes.push_back({.components = 3, .values = std::vector<double>(3 * coloured.positions.size(), 99)});
+  for (const TriangleMesh& shape : {test::tetrahedron(), test::torus(6, 4), test::icosahedron(), charted, coloured}) {
     const test::PackedFixture whole = test::packed_fixture(shape, 3);
     models.push_back(whole.glb);
     models.push_back(test::in_pieces(whole, {2, 1, 4}).glb);
