@@ -8,7 +8,8 @@
 #include "tests/fuzz/fuzz.h"
 
 // A document and its binary chunk, apart by a zero, as a packed model: what is read has whole levels, and decodes to
-// the faces that it declares, with their values. The first byte: whether the file may be cut, and how many levels are read.
+// the faces that it declares, with their values. The first byte: whether the file may be cut, and how many levels are
+// read.
 
 using namespace papilio;
 
