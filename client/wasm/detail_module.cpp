@@ -1,6 +1,8 @@
 // The decoder of packed models (papilio/detail.h) as a WebAssembly module of its own, papilio-detail.wasm: pages fetch
 // it with the first packed model. Its callers write arrays into its memory, and read results there.
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "papilio/detail.h"
 #include "papilio/error.h"
 
+using papilio::Attribute;
 using papilio::DetailBase;
 using papilio::DetailStream;
 using papilio::Error;
@@ -19,10 +22,41 @@ using papilio::TriangleMesh;
 
 namespace {
 
+/// Base, as the caller writes it.
+struct Base {
+  uint32_t point_count;
+  const papilio::Vec3f* positions;
+  uint32_t face_count;
+  const papilio::Triangle* triangles;
+  uint32_t curve_bytes;
+  const uint8_t* curves;
+  const float* texcoords;  ///< [points * 2]; null: there are none
+  const uint8_t* colours;  ///< [points * 3]; null: there are none
+  const uint32_t* parts;   ///< [points] numbers of their parts; null: there is one
+};
+
+/// Appends values of the points unless they are null.
+template <typename Value>
+void append_attribute(TriangleMesh& mesh, uint32_t components, const Value* values) {
+  if (values == nullptr) return;
+  mesh.attributes.push_back(
+      {.components = components, .values = {values, values + mesh.positions.size() * components}});
+}
+
+/// Rounds colours to bytes.
+std::vector<uint8_t> bytes_of(const Attribute& colours) {
+  constexpr double most_of_byte = 255;
+  std::vector<uint8_t> bytes;
+  bytes.reserve(colours.values.size());
+  for (const double value : colours.values)
+    bytes.push_back(static_cast<uint8_t>(std::clamp(std::floor(value + 0.5), 0.0, most_of_byte)));
+  return bytes;
+}
+
 /// Sizes of a piece of a level, as the caller writes them.
 struct Piece {
   uint32_t bytes;
-  uint32_t texcoord_bytes;
+  uint32_t texcoord_bytes;  ///< of texture coordinates and colours
 
   static constexpr uint32_t missing = 0xFFFFFFFF;  ///< for `bytes`
 };
@@ -32,7 +66,7 @@ struct Level {
   float step;
   float texcoord_step;
   uint32_t length;
-  const uint8_t* bytes;  ///< [length] of each piece, and after them of its texture coordinates
+  const uint8_t* bytes;  ///< [length] of each piece, and after them of its texture coordinates and colours
   uint32_t piece_count;
   const Piece* pieces;  ///< [piece_count]
 
@@ -63,9 +97,11 @@ struct Decoded {
   const papilio::Vec3f* positions;
   const papilio::Triangle* triangles;
   const float* texcoords;  ///< [points * 2]; null: there are none
+  const uint8_t* colours;  ///< [points * 3]; null: there are none
   const float* normals;    ///< [points * 3]; null: there are none
   TriangleMesh mesh;
   std::vector<float> texcoord_values;
+  std::vector<uint8_t> colour_values;
   std::vector<float> normal_values;
 };
 
@@ -73,18 +109,16 @@ struct Decoded {
 
 extern "C" {
 
-/// Copies a base of `point_count` positions and `face_count` triangles, with its coded curves, and with texture
-/// coordinates of its points unless that is null.
-PAPILIO_EXPORTED(base_create)
-DetailBase* module_base_create(uint32_t point_count, const papilio::Vec3f* positions, uint32_t face_count,
-                               const papilio::Triangle* triangles, uint32_t curve_bytes, const uint8_t* curves,
-                               const float* texcoords) {
+/// Copies a base.
+PAPILIO_EXPORTED(base_create) DetailBase* module_base_create(const Base* from) {
   auto* base = new DetailBase();
-  base->triangles.positions.assign(positions, positions + point_count);
-  base->triangles.triangles.assign(triangles, triangles + face_count);
-  base->curves.assign(curves, curves + curve_bytes);
-  if (texcoords != nullptr)
-    base->triangles.attributes.push_back({.components = 2, .values = {texcoords, texcoords + size_t{2} * point_count}});
+  TriangleMesh& mesh = base->triangles;
+  mesh.positions.assign(from->positions, from->positions + from->point_count);
+  mesh.triangles.assign(from->triangles, from->triangles + from->face_count);
+  base->curves.assign(from->curves, from->curves + from->curve_bytes);
+  append_attribute(mesh, 2, from->texcoords);
+  append_attribute(mesh, 3, from->colours);
+  append_attribute(mesh, 1, from->parts);
   return base;
 }
 PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete base; }
@@ -114,7 +148,13 @@ Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level
   made->face_count = static_cast<uint32_t>(made->mesh.triangles.size());
   made->positions = made->mesh.positions.data();
   made->triangles = made->mesh.triangles.data();
-  for (papilio::Attribute& attribute : made->mesh.attributes) {
+  for (Attribute& attribute : made->mesh.attributes) {
+    if (attribute.components == 3 && !attribute.unit_length) {
+      made->colour_values = bytes_of(attribute);
+      made->colours = made->colour_values.data();
+      attribute.values = {};
+      continue;
+    }
     std::vector<float>& values = attribute.unit_length ? made->normal_values : made->texcoord_values;
     values.assign(attribute.values.begin(), attribute.values.end());
     (attribute.unit_length ? made->normals : made->texcoords) = values.data();

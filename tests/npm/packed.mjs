@@ -1,11 +1,12 @@
 // Packed models for the tests: shapes made by formula, what `papilio pack` makes of a mesh, and what `papilio unpack` reads.
 
+import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { deflateSync } from 'node:zlib';
-import { build, root } from './requests.mjs';
+import { areSame, build, root } from './requests.mjs';
 
 const files = process.env.PAPILIO_MESHES ?? path.join(root, 'build/deps/meshes');
 const draco3d = createRequire(path.join(root, 'client/web/package.json'))('draco3d');
@@ -104,10 +105,34 @@ export function checkerPng() {
   ]);
 }
 
-/// An OBJ file of a shape; `isTextured`: with texture coordinates and a material in a file of this name.
-function objOf({ points, faces, texcoords }, isTextured, materials) {
+/// Materials of the files of originals: of the faces to one side of a plane that cuts all shapes, and of the others.
+export const materialNames = ['checker', 'plain'];
+const coordinatesOf = (point) => point.split(' ').map(Number);
+const materialOf = ({ points }, face) => {
+  const corners = face.map((v) => coordinatesOf(points[v]));
+  const [x, y, z] = [0, 1, 2].map((axis) => corners.reduce((sum, corner) => sum + corner[axis] / 3, 0));
+  return x + 0.3 * y + 0.2 * z < 0.4 ? 0 : 1;
+};
+
+/// Lines of an OBJ file for faces, each with its text, under their materials.
+function facesWithMaterials(shape, texts, isParted) {
+  let last = null;
+  return texts.flatMap((text, f) => {
+    const material = materialNames[isParted ? materialOf(shape, shape.faces[f]) : 0];
+    const lines = [...(material === last ? [] : [`usemtl ${material}`]), `f ${text}`];
+    last = material;
+    return lines;
+  });
+}
+
+/// An OBJ file of a shape; `isTextured`: with texture coordinates and a material in a file of this name; `isParted`: with two
+/// materials there.
+function objOf(shape, { isTextured, isParted }, materials) {
+  const { points, faces, texcoords } = shape;
   const lines = points.map((point) => `v ${point}`);
-  if (!isTextured) return [...lines, ...faces.map((face) => `f ${face.map((v) => v + 1).join(' ')}`)].join('\n');
+  const plain = faces.map((face) => face.map((v) => v + 1).join(' '));
+  if (!isTextured && !isParted) return [...lines, ...plain.map((face) => `f ${face}`)].join('\n');
+  if (!isTextured) return [`mtllib ${materials}`, ...lines, ...facesWithMaterials(shape, plain, true)].join('\n');
   const numbers = new Map();
   const numberOf = (u, v) => {
     if (!numbers.has(`${u} ${v}`)) numbers.set(`${u} ${v}`, numbers.size + 1);
@@ -120,20 +145,45 @@ function objOf({ points, faces, texcoords }, isTextured, materials) {
     `mtllib ${materials}`,
     ...lines,
     ...[...numbers.keys()].map((texcoord) => `vt ${texcoord}`),
-    'usemtl checker',
-    ...corners.map((face) => `f ${face}`),
+    ...facesWithMaterials(shape, corners, isParted),
+  ].join('\n');
+}
+
+/// A PLY file of a shape with colours: waves of red and green, steps of blue. `isTextured`: with texture coordinates, for which
+/// each corner of a face is a point.
+function plyOf({ points, faces, texcoords }, isTextured) {
+  const row = (v) => {
+    const [x, y, z] = coordinatesOf(points[v]);
+    const [red, green] = [Math.sin(4 * x), Math.cos(3 * y + z)].map((wave) => Math.round(127.5 + 127.5 * wave));
+    return `${x} ${y} ${z} ${red} ${green} ${z > 0.1 ? 230 : 20}`;
+  };
+  const rows = isTextured
+    ? faces.flatMap((face, f) => face.map((v, i) => `${row(v)} ${texcoords[f][2 * i]} ${texcoords[f][2 * i + 1]}`))
+    : points.map((_, v) => row(v));
+  const properties = ['float x', 'float y', 'float z', 'uchar red', 'uchar green', 'uchar blue'];
+  if (isTextured) properties.push('float s', 'float t');
+  return [
+    ...['ply', 'format ascii 1.0', `element vertex ${rows.length}`, ...properties.map((one) => `property ${one}`)],
+    ...[`element face ${faces.length}`, 'property list uchar int vertex_indices', 'end_header', ...rows],
+    ...faces.map((face, f) => `3 ${(isTextured ? [3 * f, 3 * f + 1, 3 * f + 2] : face).join(' ')}`),
+    '',
   ].join('\n');
 }
 
 /// The file of the original, and that of the packed model, in `folder`, its levels in pieces of so many bytes if asked.
-/// `isTextured`: of a shape with texture coordinates and a material with an image.
-export function pack(name, folder, { rms = 0.001, pieceBytes = null, isTextured = false } = {}) {
+/// `isTextured`: of a shape with texture coordinates and a material with an image; `isParted`: with two materials;
+/// `isColoured`: with colours of vertices, and no materials.
+export function pack(name, folder, options = {}) {
+  const { rms = 0.001, pieceBytes = null, isTextured = false, isParted = false, isColoured = false } = options;
   const shape = originals[name];
-  const stem = `${path.basename(name, path.extname(name))}${isTextured ? '-textured' : ''}`;
-  const original = shape ? path.join(folder, `${stem}.obj`) : path.join(files, name);
-  if (shape) writeFileSync(original, objOf(shape, isTextured, `${stem}.mtl`));
-  if (isTextured) {
-    writeFileSync(path.join(folder, `${stem}.mtl`), 'newmtl checker\nKd 1 1 1\nmap_Kd checker.png\n');
+  const kinds = [...(isTextured ? ['-textured'] : []), ...(isParted ? ['-parted'] : [])].join('');
+  const stem = `${path.basename(name, path.extname(name))}${kinds}${isColoured ? '-coloured' : ''}`;
+  const original = shape ? path.join(folder, `${stem}.${isColoured ? 'ply' : 'obj'}`) : path.join(files, name);
+  const text = () => (isColoured ? plyOf(shape, isTextured) : objOf(shape, { isTextured, isParted }, `${stem}.mtl`));
+  if (shape) writeFileSync(original, text());
+  if (!isColoured && (isTextured || isParted)) {
+    const image = isTextured ? 'Kd 1 1 1\nmap_Kd checker.png' : 'Kd 0.9 0.4 0.05';
+    writeFileSync(path.join(folder, `${stem}.mtl`), `newmtl checker\n${image}\nnewmtl plain\nKd 0.05 0.2 0.8\n`);
     writeFileSync(path.join(folder, 'checker.png'), checkerPng());
   }
   const packed = path.join(folder, `${stem}-${rms}-${pieceBytes ?? 'whole'}.glb`);
@@ -157,21 +207,37 @@ export function unpack(packed, levels, ...more) {
   const end = bytes.indexOf('end_header\n') + 11;
   const head = bytes.toString('latin1', 0, end);
   const [vertices, faces] = ['vertex', 'face'].map((of) => Number(new RegExp(`element ${of} (\\d+)`).exec(head)[1]));
-  const properties = [...head.matchAll(/^property float (\w+)$/gm)].map(([, name]) => name);
-  const begin = bytes.byteOffset + end;
-  const values = new Float32Array(bytes.buffer.slice(begin, begin + 4 * properties.length * vertices));
-  const only = (...names) => {
-    const columns = names.map((name) => properties.indexOf(name));
-    if (columns.includes(-1)) return undefined;
-    return Float32Array.from({ length: names.length * vertices }, (_, i) => {
-      return values[Math.floor(i / names.length) * properties.length + columns[i % names.length]];
+  const places = new Map();
+  let stride = 0;
+  for (const [, type, name] of head.matchAll(/^property (float|uchar) (\w+)$/gm)) {
+    places.set(name, stride);
+    stride += type === 'float' ? 4 : 1;
+  }
+  const read = (Values, names, valueAt) => {
+    if (names.some((name) => !places.has(name))) return undefined;
+    return Values.from({ length: names.length * vertices }, (_, i) => {
+      return valueAt(end + Math.floor(i / names.length) * stride + places.get(names[i % names.length]));
     });
   };
+  const only = (...names) => read(Float32Array, names, (at) => bytes.readFloatLE(at));
   const triangles = new Uint32Array(3 * faces);
-  for (let f = 0, at = end + values.byteLength; f < faces; ++f, at += 13)
+  for (let f = 0, at = end + stride * vertices; f < faces; ++f, at += 13)
     for (let i = 0; i < 3; ++i) triangles[3 * f + i] = bytes.readUInt32LE(at + 1 + 4 * i);
   const [positions, texcoords, normals] = [only('x', 'y', 'z'), only('s', 't'), only('nx', 'ny', 'nz')];
-  return { head, positions, triangles, texcoords, normals };
+  const colours = read(Uint8Array, ['red', 'green', 'blue'], (at) => bytes.readUInt8(at));
+  return { head, positions, triangles, texcoords, colours, normals };
+}
+
+/// As meshes other than glTF have them, upwards.
+export const turnedOver = (values) => values?.map((value, i) => (i % 2 === 0 ? value : 1 - value));
+
+/// `made`: by papilio/detail; `expected`: by `unpack`.
+export function assertSame(made, expected, what) {
+  for (const name of ['triangles', 'positions', 'texcoords', 'colours', 'normals']) {
+    const own = name === 'texcoords' ? turnedOver(made[name]) : made[name];
+    assert.equal(own?.length, expected[name]?.length, `${name}: ${what}`);
+    if (own) assert.ok(areSame(own, expected[name]), `${name}: ${what}`);
+  }
 }
 
 /// As openPacked takes it.
@@ -183,12 +249,13 @@ export async function decodeDraco(draco) {
   const mesh = new module.Mesh();
   const status = decoder.DecodeBufferToMesh(buffer, mesh);
   if (!status.ok()) throw new Error(status.error_msg(), { cause: 'draco' });
-  const valuesOf = (kind) => {
+  const valuesOf = (kind, Values = Float32Array) => {
     const id = decoder.GetAttributeId(mesh, kind);
     if (id < 0) return undefined;
-    const values = new module.DracoFloat32Array();
-    decoder.GetAttributeFloatForAllPoints(mesh, decoder.GetAttribute(mesh, id), values);
-    return Float32Array.from({ length: values.size() }, (_, i) => values.GetValue(i));
+    const values = Values === Float32Array ? new module.DracoFloat32Array() : new module.DracoUInt8Array();
+    const take = `GetAttribute${Values === Float32Array ? 'Float' : 'UInt8'}ForAllPoints`;
+    decoder[take](mesh, decoder.GetAttribute(mesh, id), values);
+    return Values.from({ length: values.size() }, (_, i) => values.GetValue(i));
   };
   const bytes = 12 * mesh.num_faces();
   const pointer = module._malloc(bytes);
@@ -197,5 +264,6 @@ export async function decodeDraco(draco) {
     positions: valuesOf(module.POSITION),
     triangles: new Uint32Array(module.HEAPU32.buffer, pointer, bytes / 4).slice(),
     texcoords: valuesOf(module.TEX_COORD),
+    colours: valuesOf(module.COLOR, Uint8Array),
   };
 }

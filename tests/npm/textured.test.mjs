@@ -8,10 +8,10 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { assertRefused, compareDamaged, edited, withTable } from './damaged.mjs';
-import { checkerPng, decodeDraco, originals, pack, unpack } from './packed.mjs';
+import { assertSame, checkerPng, decodeDraco, originals, pack, unpack } from './packed.mjs';
 import { areSame, build, root } from './requests.mjs';
 
-const { compileDecoder, DetailDecoder, isPacked, readPacked, withLevels, withSurface } = await import(
+const { compileDecoder, decodeBase, DetailDecoder, isPacked, readPacked, withLevels, withSurfaces } = await import(
   path.join(root, 'build/npm/dist/detail.js')
 );
 const folder = mkdtempSync(path.join(tmpdir(), 'papilio-textured-'));
@@ -27,20 +27,9 @@ before(async () => {
 
 const bytesOf = (file) => new Uint8Array(readFileSync(file));
 
-/// As meshes other than glTF have them, upwards.
-const turnedOver = (values) => values?.map((value, i) => (i % 2 === 0 ? value : 1 - value));
-
-function assertSame(made, expected, what) {
-  for (const name of ['triangles', 'positions']) assert.ok(areSame(made[name], expected[name]), `${name}: ${what}`);
-  assert.equal(made.texcoords?.length, expected.texcoords?.length, what);
-  if (expected.texcoords) assert.ok(areSame(turnedOver(made.texcoords), expected.texcoords), `texcoords: ${what}`);
-  assert.equal(made.normals?.length, expected.normals?.length, what);
-  if (expected.normals) assert.ok(areSame(made.normals, expected.normals), `normals: ${what}`);
-}
-
 async function open(packed) {
   const file = readPacked(bytesOf(packed));
-  return { file, decoder: new DetailDecoder(module, await decodeDraco(file.base.draco), file.curves) };
+  return { file, decoder: new DetailDecoder(module, await decodeBase(file.base, decodeDraco), file.curves) };
 }
 
 const seen = { compared: 0, seams: 0, moved: 0 };
@@ -131,7 +120,7 @@ test('every prefix of a file is refused, or has its whole levels', async () => {
       const { levels, base, curves } = readPacked(prefix, { mayBeCut: true });
       assert.equal(levels.length, length === end ? l + 1 : l);
       writeFileSync(cut, prefix);
-      const decoder = new DetailDecoder(module, await decodeDraco(base.draco), curves);
+      const decoder = new DetailDecoder(module, await decodeBase(base, decodeDraco), curves);
       assertSame(decoder.decode(levels), unpack(cut, levels.length, '--truncated'), `${length} bytes`);
       ++compared;
     }
@@ -163,7 +152,11 @@ test('damaged tables and documents are refused', () => {
     /has a bound/,
   );
   for (const [change, code, message] of [
-    [({ primitive }) => delete primitive.attributes.TEXCOORD_0, 'mesh_not_gltf', /the base has no TEXCOORD_0/],
+    [
+      ({ primitive }) => delete primitive.attributes.TEXCOORD_0,
+      'mesh_not_gltf',
+      /the base has neither TEXCOORD_0 nor COLOR_0/,
+    ],
     [({ primitive }) => (primitive.attributes.TEXCOORD_1 = 0), 'mesh_unsupported', /other attributes than/],
     [({ detail }) => (detail.normals = 'round'), 'mesh_not_gltf', /must be "smooth", "creased" or "faceted"/],
   ])
@@ -214,8 +207,14 @@ test('a file of fewer levels keeps its texture, and the native library reads it'
 test('a scene of another surface keeps the texture, and is no packed model', () => {
   const file = bytesOf(cushion);
   const { base } = readPacked(file);
-  const surface = { draco: base.draco, points: base.vertices, faces: base.faces, min: [-2, -2, -2], max: [2, 2, 2] };
-  const scene = withSurface(file, { ...surface, attributes: { POSITION: 0, TEXCOORD_0: 1 } });
+  const surface = {
+    draco: base.primitives[0].draco,
+    points: base.vertices,
+    faces: base.faces,
+    min: [-2, -2, -2],
+    max: [2, 2, 2],
+  };
+  const scene = withSurfaces(file, [{ ...surface, attributes: { POSITION: 0, TEXCOORD_0: 1 } }]);
   assert.ok(!isPacked(scene) && contains(scene, checkerPng()) && scene.length < file.length);
   const written = path.join(folder, 'scene.glb');
   writeFileSync(written, scene);

@@ -3,7 +3,7 @@
 
 import encoderWasmUrl from 'draco3d/draco_encoder.wasm?url';
 import encoderUrl from 'draco3d/draco_encoder_nodejs.js?url';
-import type { BufferGeometry } from 'three';
+import { type Box3, type BufferGeometry, Vector3 } from 'three';
 import { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';
 
 import type { Bytes, Decoded } from './model';
@@ -52,6 +52,13 @@ interface Encoder {
   SetSpeedOptions(encoding: number, decoding: number): void;
   SetEncodingMethod(method: number): void;
   SetAttributeQuantization(attribute: number, bits: number): void;
+  SetAttributeExplicitQuantization(
+    type: number,
+    bits: number,
+    components: number,
+    origin: number[],
+    range: number,
+  ): void;
   EncodeMeshToDracoBuffer(mesh: unknown, out: DracoBytes): number;
 }
 interface DracoBytes {
@@ -62,11 +69,13 @@ interface EncoderModule {
   MeshBuilder: new () => {
     AddFacesToMesh(mesh: unknown, count: number, faces: Uint32Array): void;
     AddFloatAttributeToMesh(mesh: unknown, type: number, count: number, components: number, values: Float32Array): void;
+    AddUInt8Attribute(mesh: unknown, type: number, count: number, components: number, values: Uint8Array): void;
   };
   Mesh: new () => unknown;
   DracoInt8Array: new () => DracoBytes;
   POSITION: number;
   TEX_COORD: number;
+  COLOR: number;
   NORMAL: number;
   MESH_EDGEBREAKER_ENCODING: number;
   MESH_SEQUENTIAL_ENCODING: number;
@@ -90,16 +99,20 @@ async function loadEncoder(): Promise<EncoderModule> {
   return globalThis.DracoEncoderModule!({ locateFile: () => encoderWasmUrl });
 }
 
-/// What is encoded: positions [vertices * 3] and triangles [faces * 3 vertices], and if they are there [vertices * 2 and 3].
-interface Surface {
+/// What is encoded: positions [vertices * 3] and triangles [faces * 3 vertices], and if they are there texture coordinates
+/// [vertices * 2], colours and normals [vertices * 3].
+export interface Surface {
   positions: Float32Array;
   triangles: Uint32Array;
   texcoords?: Float32Array;
+  colours?: Uint8Array;
   normals?: Float32Array;
 }
 
 /// As a Draco mesh, positions on a grid of 16 bits. Its attributes have the unique ids 0, 1, 2 in the order of the surface's.
-export async function encode({ positions, triangles, texcoords, normals }: Surface): Promise<Bytes> {
+/// `box`: of the grid; left out: of the positions. Surfaces that meet need one grid.
+export async function encode(surface: Surface, box?: Box3): Promise<Bytes> {
+  const { positions, triangles, texcoords, colours, normals } = surface;
   encoderModule ??= loadEncoder();
   encoderModule.catch(() => (encoderModule = undefined)); // the next try fetches it again
   const module = await encoderModule;
@@ -115,7 +128,10 @@ export async function encode({ positions, triangles, texcoords, normals }: Surfa
       encoder.SetAttributeQuantization(type, bits);
     };
     add(module.POSITION, 3, positions, 16);
+    const range = Math.max(...(box?.getSize(new Vector3()).toArray() ?? []));
+    if (box) encoder.SetAttributeExplicitQuantization(module.POSITION, 16, 3, box.min.toArray(), range);
     if (texcoords) add(module.TEX_COORD, 2, texcoords, 14);
+    if (colours) builder.AddUInt8Attribute(mesh, module.COLOR, vertices, 3, colours);
     if (normals) add(module.NORMAL, 3, normals, 10);
     encoder.SetSpeedOptions(5, 5);
     let length = 0;

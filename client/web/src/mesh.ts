@@ -25,7 +25,7 @@ export class OpenMesh {
     return this.decoded.geometry;
   }
 
-  /// A packed model with a material is one, too.
+  /// A packed model with materials or colours is one, too.
   get isScene(): boolean {
     return this.decoded.scene !== null;
   }

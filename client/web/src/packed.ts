@@ -1,10 +1,10 @@
 // Packed models: each of their levels as a mesh that is open.
 
-import { type DecodedTriangles, isPacked, openPacked, type PackedModel, withLevels, withSurface } from 'papilio/detail';
+import { isPacked, openPacked, type PackedModel, withLevels, withSurfaces } from 'papilio/detail';
 import { dracoDecoder, geometryOf, sceneNormals, showLevel } from 'papilio/three';
-import { Box3, type BufferGeometry, type Object3D } from 'three';
+import { Box3, type BufferAttribute, type BufferGeometry, type Object3D } from 'three';
 
-import { encode, fetchDecoder } from './draco';
+import { encode, fetchDecoder, type Surface } from './draco';
 import { OpenMesh } from './mesh';
 import type { Bytes, Decoded } from './model';
 import { decodeScene } from './scene';
@@ -16,7 +16,7 @@ interface Opened {
   readonly model: PackedModel;
   /// The whole file.
   readonly file: Bytes;
-  /// The base as a scene with its material; null where the file has none.
+  /// The base as a scene with its materials and colours; null where the file has none.
   readonly base: Decoded | null;
 }
 
@@ -24,7 +24,7 @@ interface Opened {
 export interface PackedLevel extends Opened {
   /// How many levels are shown; 0: the base.
   readonly level: number;
-  /// Its surface for the server: with a material a scene.
+  /// Its surface for the server: with materials or colours a scene.
   encode(): Promise<Bytes>;
 }
 
@@ -35,7 +35,7 @@ const mostFacesAtFirst = 300_000;
 export async function openPackedMesh(name: string, file: Bytes): Promise<OpenMesh> {
   const model = await openPacked(file, { decodeDraco: async (draco) => dracoDecoder(await fetchDecoder())(draco) });
   try {
-    const base = model.hasMaterial ? await decodeScene(file) : null;
+    const base = model.hasMaterial || model.hasColours ? await decodeScene(file) : null;
     const level = model.levels.filter(({ faces }) => faces <= mostFacesAtFirst).length;
     return await levelOf(name, { model, file, base }, level);
   } catch (error) {
@@ -48,35 +48,60 @@ export async function openPackedMesh(name: string, file: Bytes): Promise<OpenMes
 export async function levelOf(name: string, { model, file, base }: Opened, level: number): Promise<OpenMesh> {
   const surface = await model.decode(level, base ? { normals: sceneNormals(model) } : {});
   const geometry = geometryOf(surface);
+  const shown = base === null ? null : sceneWith(base, geometry);
   const decoded = {
     geometry,
     vertices: surface.positions.length / 3,
     faces: surface.triangles.length / 3,
-    ...(base === null ? { scene: null, missing: [], dispose: () => geometry.dispose() } : sceneWith(base, geometry)),
+    scene: shown?.scene ?? null,
+    missing: base?.missing ?? [],
+    dispose: () => [geometry, ...(shown?.geometries ?? [])].forEach((one) => one.dispose()),
   };
-  const encodeLevel = () => (base === null ? encode(surface) : encodeScene(file, surface, geometry));
+  const encodeLevel = () => (shown === null ? encode(surface) : encodeScene(file, shown.geometries));
   const packed = { model, file, base, level, encode: encodeLevel };
   return new OpenMesh(name, { kind: 'packed', bytes: withLevels(file, level) }, decoded, packed);
 }
 
-/// A copy of the base's scene with another surface; materials and images are the base's.
-function sceneWith(base: Decoded, level: BufferGeometry): Pick<Decoded, 'scene' | 'missing' | 'dispose'> {
+/// A copy of the base's scene with the surfaces of a level, one for each primitive; materials and images are the base's.
+function sceneWith(base: Decoded, level: BufferGeometry): { scene: Object3D; geometries: BufferGeometry[] } {
   const scene: Object3D = base.scene!.clone(true);
-  const geometries = showLevel(scene, level);
-  const dispose = () => [level, ...geometries].forEach((geometry) => geometry.dispose());
-  return { scene, missing: base.missing, dispose };
+  return { scene, geometries: showLevel(scene, level) };
 }
 
-async function encodeScene(file: Bytes, surface: DecodedTriangles, geometry: BufferGeometry): Promise<Bytes> {
-  const draco = await encode(surface);
-  const { min, max } = new Box3().setFromBufferAttribute(geometry.getAttribute('position') as never);
-  const names = ['POSITION', ...(surface.texcoords ? ['TEXCOORD_0'] : []), ...(surface.normals ? ['NORMAL'] : [])];
-  return withSurface(file, {
-    draco,
-    points: surface.positions.length / 3,
-    faces: surface.triangles.length / 3,
-    attributes: Object.fromEntries(names.map((name, id) => [name, id])),
-    min: min.toArray(),
-    max: max.toArray(),
-  });
+async function encodeScene(file: Bytes, geometries: readonly BufferGeometry[]): Promise<Bytes> {
+  const boxes = geometries.map((one) =>
+    new Box3().setFromBufferAttribute(one.getAttribute('position') as BufferAttribute),
+  );
+  const whole = boxes.reduce((all, box) => all.clone().union(box));
+  const surfaces = [];
+  for (const [g, geometry] of geometries.entries()) {
+    const names = ['position', 'uv', 'color', 'normal'].filter((name) => geometry.hasAttribute(name));
+    surfaces.push({
+      draco: await encode(surfaceOf(geometry), whole),
+      points: geometry.getAttribute('position').count,
+      faces: geometry.index!.count / 3,
+      attributes: Object.fromEntries(names.map((name, id) => [gltfNames[name], id])),
+      min: boxes[g].min.toArray(),
+      max: boxes[g].max.toArray(),
+    });
+  }
+  return withSurfaces(file, surfaces);
+}
+
+const gltfNames: Record<string, string> = {
+  position: 'POSITION',
+  uv: 'TEXCOORD_0',
+  color: 'COLOR_0',
+  normal: 'NORMAL',
+};
+
+function surfaceOf(geometry: BufferGeometry): Surface {
+  const { position, uv, color, normal } = geometry.attributes;
+  return {
+    positions: position.array as Float32Array,
+    triangles: geometry.index!.array as Uint32Array,
+    ...(uv && { texcoords: uv.array as Float32Array }),
+    ...(color && { colours: color.array as Uint8Array }),
+    ...(normal && { normals: normal.array as Float32Array }),
+  };
 }

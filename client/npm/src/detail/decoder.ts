@@ -6,9 +6,10 @@ import { Problem } from '../client.js';
 /// Residuals of a level.
 export interface CodedLevel {
   step: number;
-  /// Of the pieces that are there, one behind the other: of each its residuals, then those of its texture coordinates.
+  /// Of the pieces that are there, one behind the other: of each its residuals, then those of its texture coordinates and
+  /// colours.
   residuals: Uint8Array;
-  /// Quantization step of the residuals of texture coordinates. Left out, or 0: there are none.
+  /// Quantization step of the residuals of texture coordinates; of colours 2048 times that. Left out, or 0: there are none.
   texcoordStep?: number;
   /// Of those residuals, among `residuals`.
   texcoordBytes?: number;
@@ -26,8 +27,16 @@ export interface DecodedTriangles {
   triangles: Uint32Array<ArrayBuffer>;
   /// [points * 2] as glTF has them, downwards; left out where there are none.
   texcoords?: Float32Array<ArrayBuffer>;
+  /// [points * 3] red, green and blue, as glTF's COLOR_0 has them; left out where there are none.
+  colours?: Uint8Array<ArrayBuffer>;
   /// [points * 3]; left out where there are none.
   normals?: Float32Array<ArrayBuffer>;
+}
+
+/// The base, as joinPrimitives makes it of its Draco streams.
+export interface BaseTriangles extends DecodedTriangles {
+  /// [points] the number of the part that each is of, where there are several: seams are between parts.
+  parts?: Uint32Array<ArrayBuffer>;
 }
 
 /// How normals are split: not at all, at creases, or at all edges, which needs none. `absent`: the original has none.
@@ -40,15 +49,7 @@ interface Exports {
   _initialize(): void;
   allocate(bytes: number): number;
   release(block: number): void;
-  base_create(
-    points: number,
-    positions: number,
-    faces: number,
-    triangles: number,
-    bytes: number,
-    curves: number,
-    texcoords: number,
-  ): number;
+  base_create(base: number): number;
   base_edges(base: number): number;
   base_free(base: number): void;
   decode(base: number, levels: number, rows: number, maxFaces: number, normals: number): number;
@@ -69,7 +70,7 @@ export async function compileDecoder(source: BufferSource | Response | Promise<R
 /// Decodes the levels of one base. Its arrays must not change.
 export class DetailDecoder {
   readonly #module: WebAssembly.Module;
-  readonly #base: DecodedTriangles;
+  readonly #base: BaseTriangles;
   readonly #curves: Uint8Array;
   readonly #mostBytes: number;
   #instance: WebAssembly.Instance | null = null;
@@ -77,9 +78,9 @@ export class DetailDecoder {
   /// In the memory of this instance.
   #pointer = 0;
 
-  /// `base`: as its Draco stream is decoded. `mostBytes`: memory never shrinks, so an instance that has come to hold more
+  /// `base`: as its Draco streams are decoded. `mostBytes`: memory never shrinks, so an instance that has come to hold more
   /// than this is given up after it has decoded.
-  constructor(module: WebAssembly.Module, base: DecodedTriangles, curves: Uint8Array, mostBytes = 64 * 2 ** 20) {
+  constructor(module: WebAssembly.Module, base: BaseTriangles, curves: Uint8Array, mostBytes = 64 * 2 ** 20) {
     this.#module = module;
     this.#base = base;
     this.#curves = curves;
@@ -96,8 +97,8 @@ export class DetailDecoder {
     return this.#guarded(() => this.#exports.base_edges(this.#pointer));
   }
 
-  /// The surface with these levels, to the bits that the native library decodes, with texture coordinates where the base
-  /// has them. `normals`: those of this style, `smooth` or `creased`, which has points apart at creases. Throws Problem.
+  /// The surface with these levels, to the bits that the native library decodes, with texture coordinates and colours
+  /// where the base has them. `normals`: those of this style, `smooth` or `creased`, which has points apart at creases. Throws Problem.
   decode(levels: readonly CodedLevel[], maxFaces = 2 ** 30, normals: NormalStyle = 'absent'): DecodedTriangles {
     const made = this.#guarded(() => {
       const blocks: number[] = [];
@@ -152,14 +153,16 @@ export class DetailDecoder {
     });
     this.#exports = this.#instance.exports as unknown as Exports;
     this.#exports._initialize();
-    const { positions, triangles, texcoords } = this.#base;
-    const [at, faces, curves, coordinates] = [positions, triangles, this.#curves, texcoords].map((array) =>
+    const { positions, triangles, texcoords, colours, parts } = this.#base;
+    const [points, faces] = [positions, triangles].map(({ length }) => Math.floor(length / 3)) as [number, number];
+    const blocks = [positions, triangles, this.#curves, texcoords, colours, parts].map((array) =>
       array === undefined ? 0 : this.#write(array),
-    ) as [number, number, number, number];
-    const counts = [positions, triangles].map(({ length }) => Math.floor(length / 3)) as [number, number];
-    const { length } = this.#curves;
-    this.#pointer = this.#exports.base_create(counts[0], at, counts[1], faces, length, curves, coordinates);
-    for (const block of [at, faces, curves, coordinates]) if (block !== 0) this.#exports.release(block);
+    ) as [number, number, number, number, number, number];
+    const [at, corners, curves, ...values] = blocks;
+    const words = new Uint32Array([points, at, faces, corners, this.#curves.length, curves, ...values]);
+    const base = this.#write(words);
+    this.#pointer = this.#exports.base_create(base);
+    for (const block of [...blocks, base]) if (block !== 0) this.#exports.release(block);
   }
 
   /// Returns where the copy lies.
@@ -173,17 +176,18 @@ export class DetailDecoder {
   /// Copies the triangles out.
   #read(decoded: number): DecodedTriangles {
     const { buffer } = this.#exports.memory;
-    const [points, faces, positions, triangles, texcoords, normals] = new Uint32Array(
+    const [points, faces, positions, triangles, texcoords, colours, normals] = new Uint32Array(
       buffer,
       decoded,
-      6,
-    ) as unknown as [number, number, number, number, number, number];
+      7,
+    ) as unknown as [number, number, number, number, number, number, number];
     const floats = (at: number, count: number) =>
       new Float32Array(buffer, at, count).slice() as Float32Array<ArrayBuffer>;
     return {
       positions: floats(positions, 3 * points),
       triangles: new Uint32Array(buffer, triangles, 3 * faces).slice() as Uint32Array<ArrayBuffer>,
       ...(texcoords !== 0 && { texcoords: floats(texcoords, 2 * points) }),
+      ...(colours !== 0 && { colours: new Uint8Array(buffer, colours, 3 * points).slice() as Uint8Array<ArrayBuffer> }),
       ...(normals !== 0 && { normals: floats(normals, 3 * points) }),
     };
   }
@@ -195,7 +199,7 @@ export class DetailDecoder {
   }
 }
 
-/// [pieces * 2] the bytes of each piece's residuals, and of those of its texture coordinates.
+/// [pieces * 2] the bytes of each piece's residuals, and of those of its texture coordinates and colours.
 function sizesOf({ residuals, texcoordBytes = 0, pieces }: CodedLevel): Uint32Array {
   if (pieces.length === 0) return new Uint32Array([residuals.length - texcoordBytes, texcoordBytes]);
   return new Uint32Array(

@@ -14,7 +14,7 @@ export interface Reach {
 export interface Piece {
   /// Of its residuals.
   bytes: number;
-  /// Of its residuals of texture coordinates, which follow.
+  /// Of its residuals of texture coordinates and colours, which follow.
   texcoordBytes: number;
   /// Upper bound of how far its residuals move a vertex.
   largestMove: number;
@@ -31,7 +31,7 @@ export interface LevelRow extends Reach {
   step: number;
   /// Of the residuals.
   bytes: number;
-  /// Quantization step of the residuals of texture coordinates; 0: all of them are 0.
+  /// Quantization step of the residuals of texture coordinates, of colours 2048 times that; 0: all of them are 0.
   texcoordStep: number;
   /// Of those residuals.
   texcoordBytes: number;
@@ -43,7 +43,7 @@ export interface LevelTable extends Reach {
   /// Of the base.
   edges: number;
   curveBytes: number;
-  /// Whether levels have texture coordinates.
+  /// Whether levels have residuals of texture coordinates or colours.
   hasTexcoords: boolean;
   /// Coarse first.
   rows: LevelRow[];

@@ -1,12 +1,12 @@
 // What the page and the worker that decodes a packed model tell each other.
 
-import type { DecodedTriangles, NormalStyle } from './decoder.js';
+import type { BaseTriangles, DecodedTriangles, NormalStyle } from './decoder.js';
 import type { PackedLevel } from './packed_file.js';
 
 export type Residuals = Pick<PackedLevel, 'step' | 'residuals' | 'texcoordStep' | 'texcoordBytes' | 'pieces'>;
 
 export type ToDecoder =
-  | { kind: 'open'; module: WebAssembly.Module; base: DecodedTriangles; curves: Uint8Array; levels: Residuals[] }
+  | { kind: 'open'; module: WebAssembly.Module; base: BaseTriangles; curves: Uint8Array; levels: Residuals[] }
   | { kind: 'decode'; request: number; levels: number; normals: NormalStyle };
 
 /// The answer to `open` counts the edges of the base.

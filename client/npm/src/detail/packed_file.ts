@@ -1,4 +1,4 @@
-// Reads the parts of a packed model (proto/detail.md): the Draco stream of its base, its curves, and the residuals of each
+// Reads the parts of a packed model (proto/detail.md): the Draco streams of its base, its curves, and the residuals of each
 // level.
 
 import { Problem } from '../client.js';
@@ -32,9 +32,9 @@ export type { Piece, Reach };
 export interface PackedLevel extends Reach {
   /// Of the residuals.
   step: number;
-  /// Of each piece its residuals, then those of its texture coordinates.
+  /// Of each piece its residuals, then those of its texture coordinates and colours.
   residuals: Uint8Array<ArrayBuffer>;
-  /// Quantization step of the residuals of texture coordinates; 0: all of them are 0.
+  /// Quantization step of the residuals of texture coordinates, of colours 2048 times that; 0: all of them are 0.
   texcoordStep: number;
   /// Of those, among `residuals`.
   texcoordBytes: number;
@@ -48,18 +48,30 @@ export interface PackedLevel extends Reach {
   end: number;
 }
 
+/// Faces of the base with the same material.
+export interface PackedPrimitive {
+  draco: Uint8Array<ArrayBuffer>;
+  vertices: number;
+  faces: number;
+  /// Number of its part: 0 without a material, else 1 and the number of its material in the order of their first use.
+  part: number;
+}
+
 export interface PackedFile {
   base: Reach & {
-    draco: Uint8Array<ArrayBuffer>;
+    /// In the order of the faces.
+    primitives: readonly PackedPrimitive[];
+    /// Of all primitives: a vertex between two counts in both.
     vertices: number;
     faces: number;
     edges: number;
     hasTexcoords: boolean;
+    hasColours: boolean;
     end: number;
   };
   /// How the original's normals are split.
   normals: NormalStyle;
-  /// Whether the document has a material for the faces.
+  /// Whether the document has a material for any of the faces.
   hasMaterial: boolean;
   /// Empty: the base has no creases and no corners.
   curves: Uint8Array<ArrayBuffer>;
@@ -67,7 +79,7 @@ export interface PackedFile {
   levels: PackedLevel[];
   /// Levels that the file declares: more than `levels` where it is cut.
   declaredLevels: number;
-  /// Whether the table has texture coordinates.
+  /// Whether levels have residuals of texture coordinates or colours.
   hasTexcoordLevels: boolean;
 }
 
@@ -83,21 +95,20 @@ export const defaultMaxFaces = 8_000_000;
 
 export const dracoExtension = 'KHR_draco_mesh_compression';
 export const detailExtension = 'PAPILIO_detail';
-export const primitivePlace = 'meshes[0].primitives[0]';
-const detailPlace = `${primitivePlace}.extensions.${detailExtension}`;
+export const placeOf = (primitive: number) => `meshes[0].primitives[${primitive}]`;
+const detailPlace = `${placeOf(0)}.extensions.${detailExtension}`;
 const version = 2;
 
-/// Whether the bytes are a .glb file with PAPILIO_detail on the only primitive of a mesh. Models of several primitives, one
-/// for each material, are scenes here, which show their base. Reads the JSON alone.
+/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads the JSON alone.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   if (!isGlb(bytes)) return false;
   try {
     const json = objectOf(readContainer(bytes, true).json, 'the JSON');
-    return arrayOf(json, 'meshes').some((mesh) => {
-      const primitives = arrayOf(objectOf(mesh, 'a mesh'), 'primitives');
-      const first = objectOf(primitives[0], 'a primitive');
-      return primitives.length === 1 && extensionOf(first, detailExtension, 'a primitive') !== null;
-    });
+    return arrayOf(json, 'meshes').some((mesh) =>
+      arrayOf(objectOf(mesh, 'a mesh'), 'primitives').some(
+        (primitive) => extensionOf(objectOf(primitive, 'a primitive'), detailExtension, 'a primitive') !== null,
+      ),
+    );
   } catch {
     return false;
   }
@@ -109,11 +120,14 @@ export function readPacked(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions 
   return new Reader(bytes, options).read();
 }
 
-export function primitiveOf(json: JsonObject): JsonObject {
-  return only(only(json, 'meshes', 'mesh'), 'primitives', 'primitive');
+export function primitivesOf(json: JsonObject): JsonObject[] {
+  const primitives = arrayOf(only(json, 'meshes', 'mesh'), 'primitives');
+  if (primitives.length === 0) refuse('meshes[0]', 'has no primitives');
+  return primitives.map((primitive, p) => objectOf(primitive, placeOf(p)));
 }
-export function detailOf(primitive: JsonObject): JsonObject | null {
-  return extensionOf(primitive, detailExtension, primitivePlace);
+/// Of the first primitive.
+export function detailOf(primitives: readonly JsonObject[]): JsonObject | null {
+  return extensionOf(primitives[0]!, detailExtension, placeOf(0));
 }
 
 /// Of whose bytes a file that is cut has the first ones.
@@ -143,38 +157,52 @@ class Reader {
 
   read(): PackedFile {
     this.#requireVersionOfGltf();
-    const primitive = this.#primitive();
-    const detail = detailOf(primitive)!;
+    const primitives = this.#primitives();
+    const detail = detailOf(primitives)!;
     const found = whole(detail, 'version', detailPlace);
     if (found !== version)
       throw new Problem(
         'mesh_unsupported',
         `${detailExtension} has version ${found}; version ${version} is supported. Update papilio, or pack the model again.`,
       );
-    const { draco, vertices, hasTexcoords } = this.#base(primitive);
+    const streams = primitives.map((primitive, p) => this.#stream(primitive, placeOf(p)));
     const view = this.#view(index(detail, 'bufferView', detailPlace), detailPlace);
     const table = tableOf(view);
-    const corners = this.#count(index(primitive, 'indices', primitivePlace));
-    if (corners % 3 !== 0) refuse(primitivePlace, 'has indices of other than whole triangles');
-    const faces = corners / 3;
+    const faceCounts = primitives.map((primitive, p) => this.#faces(primitive, placeOf(p)));
+    const faces = sumOf(faceCounts);
     const [most, count] = [this.#options.maxFaces ?? defaultMaxFaces, table.rows.length];
-    if (table.hasTexcoords && !hasTexcoords)
-      refuse('the table of levels', 'has texture coordinates, and the base has no TEXCOORD_0');
-    if (table.rows.some(({ pieces }) => pieces.length > faces))
-      refuse('the table of levels', 'has more pieces than the base has faces');
     if (faces * 4 ** count > most)
       throw new Problem(
         'result_too_large',
         `The base of ${faces} faces has ${faces * 4 ** count} at level ${count}; the limit is ${most}.`,
       );
+    if (table.rows.some(({ pieces }) => pieces.length > faces))
+      refuse('the table of levels', 'has more pieces than the base has faces');
+    const normals = normalsOf(detail);
+    const values = valuesOf(primitives);
+    if (table.hasTexcoords && values.length === 0)
+      refuse(
+        'the table of levels',
+        'has residuals of texture coordinates or colours, and the base has neither TEXCOORD_0 nor COLOR_0',
+      );
+    const partOf = partNumbers();
+    const made = primitives.map((primitive, p) => {
+      const vertices = this.#vertices(primitive, placeOf(p));
+      return { draco: streams[p]!, vertices, faces: faceCounts[p]!, part: partOf(primitive, placeOf(p)) };
+    });
     const begin = this.#offset + view.offset;
     const levelsBegin = sizeOfTable(view.bytes) + table.curveBytes;
     if (levelsBegin > view.bytes.length) cut('the curves of its base');
     const { rms, largest, edges } = table;
     return {
-      base: { rms, largest, draco, vertices, faces, edges, hasTexcoords, end: begin + levelsBegin },
-      normals: normalsOf(detail),
-      hasMaterial: primitive.material !== undefined,
+      base: {
+        ...{ rms, largest, primitives: made, faces, edges, end: begin + levelsBegin },
+        vertices: sumOf(made.map(({ vertices }) => vertices)),
+        hasTexcoords: values.includes('TEXCOORD_0'),
+        hasColours: values.includes('COLOR_0'),
+      },
+      normals,
+      hasMaterial: primitives.some(({ material }) => material !== undefined),
       curves: view.bytes.subarray(levelsBegin - table.curveBytes, levelsBegin),
       levels: levelsOf(table, view.bytes, { begin, levelsBegin, faces }),
       declaredLevels: count,
@@ -189,39 +217,48 @@ class Reader {
       throw new Problem('mesh_unsupported', 'The document has another glTF version than 2.0, which is supported.');
   }
 
-  #primitive(): JsonObject {
-    const primitive = primitiveOf(this.#json);
-    if (detailOf(primitive) === null) refuseScene(`no ${detailExtension}`);
+  #primitives(): JsonObject[] {
+    const primitives = primitivesOf(this.#json);
+    if (detailOf(primitives) === null) refuseScene(`no ${detailExtension}`);
     const node = only(this.#json, 'nodes', 'node');
     for (const key of ['matrix', 'translation', 'rotation', 'scale', 'skin', 'extensions'])
       if (node[key] !== undefined) refuseScene(`a node with ${key}`);
-    for (const key of ['targets', 'mode']) if (primitive[key] !== undefined) refuseScene(`a primitive with ${key}`);
     const buffer = only(this.#json, 'buffers', 'buffer');
     if (buffer.uri !== undefined) refuseScene('other than one buffer, the binary chunk');
     const length = whole(buffer, 'byteLength', 'buffers[0]');
     if (length > this.#binary.length && !this.#options.mayBeCut)
       refuse('buffers[0]', `declares ${length} bytes, and there are ${this.#binary.length}`);
-    return primitive;
+    for (const [p, primitive] of primitives.entries()) {
+      for (const key of ['targets', 'mode']) if (primitive[key] !== undefined) refuseScene(`a primitive with ${key}`);
+      if (p > 0 && extensionOf(primitive, detailExtension, placeOf(p)) !== null)
+        refuseScene(`several primitives with ${detailExtension}`);
+    }
+    return primitives;
   }
 
   /// Of an accessor.
-  #count(accessor: number | null): number {
-    if (accessor === null) refuse(primitivePlace, 'lacks an accessor of positions or indices');
+  #count(accessor: number | null, place: string): number {
+    if (accessor === null) refuse(place, 'lacks an accessor of positions or indices');
     return whole(element(this.#json, 'accessors', accessor), 'count', `accessors[${accessor}]`);
   }
 
-  #base(primitive: JsonObject): { draco: Uint8Array<ArrayBuffer>; vertices: number; hasTexcoords: boolean } {
-    const draco = extensionOf(primitive, dracoExtension, primitivePlace);
-    if (draco === null || primitive.attributes === undefined)
-      refuse(primitivePlace, `has no base compressed by ${dracoExtension}`);
-    const attributes = objectOf(primitive.attributes, `${primitivePlace}.attributes`);
-    const hasTexcoords = attributes.TEXCOORD_0 !== undefined;
-    if (Object.keys(attributes).some((name) => name !== 'POSITION' && name !== 'TEXCOORD_0'))
-      refuseScene('other attributes than POSITION and TEXCOORD_0');
-    const vertices = this.#count(index(attributes, 'POSITION', primitivePlace));
-    const view = this.#view(index(draco, 'bufferView', primitivePlace), primitivePlace);
+  #vertices(primitive: JsonObject, place: string): number {
+    return this.#count(index(attributesOf(primitive, place), 'POSITION', place), place);
+  }
+
+  #faces(primitive: JsonObject, place: string): number {
+    const corners = this.#count(index(primitive, 'indices', place), place);
+    if (corners % 3 !== 0) refuse(place, 'has indices of other than whole triangles');
+    return corners / 3;
+  }
+
+  /// The Draco stream of a primitive.
+  #stream(primitive: JsonObject, place: string): Uint8Array<ArrayBuffer> {
+    const draco = extensionOf(primitive, dracoExtension, place);
+    if (draco === null) refuse(place, `has no base compressed by ${dracoExtension}`);
+    const view = this.#view(index(draco, 'bufferView', place), place);
     if (view.bytes.length < view.length) cut('its base');
-    return { draco: view.bytes, vertices, hasTexcoords };
+    return view.bytes;
   }
 
   /// A view, which begins at or after the end of the view before.
@@ -241,6 +278,37 @@ class Reader {
     return { name, offset, length, bytes: this.#binary.subarray(offset, this.#end) };
   }
 }
+
+function attributesOf(primitive: JsonObject, place: string): JsonObject {
+  if (primitive.attributes === undefined) refuse(place, 'has no attributes');
+  return objectOf(primitive.attributes, `${place}.attributes`);
+}
+
+/// Attributes of the base besides its positions, in its order. Refuses others.
+function valuesOf(primitives: readonly JsonObject[]): string[] {
+  const all = primitives.map((primitive, p) => {
+    const attributes = attributesOf(primitive, placeOf(p));
+    const values = ['TEXCOORD_0', 'COLOR_0'].filter((name) => attributes[name] !== undefined);
+    if (Object.keys(attributes).length !== 1 + values.length)
+      refuseScene('other attributes than POSITION, TEXCOORD_0 and COLOR_0');
+    return values;
+  });
+  if (all.some((values) => values.join() !== all[0]!.join())) refuseScene('primitives of different attributes');
+  return all[0]!;
+}
+
+/// Numbers materials in the order of their first use, for the part that each primitive is.
+function partNumbers(): (primitive: JsonObject, place: string) => number {
+  const numbers = new Map<number, number>();
+  return (primitive, place) => {
+    const material = index(primitive, 'material', place);
+    if (material === null) return 0;
+    if (!numbers.has(material)) numbers.set(material, numbers.size + 1);
+    return numbers.get(material)!;
+  };
+}
+
+const sumOf = (numbers: readonly number[]) => numbers.reduce((sum, number) => sum + number, 0);
 
 /// The table at the begin of a view, which it and its streams fill.
 function tableOf({ name, length, bytes }: View): LevelTable {

@@ -1,20 +1,19 @@
 // A packed model that is open: decoded in a worker, level by level.
 
 import { Problem } from '../client.js';
-import { compileDecoder, type DecodedTriangles, type NormalStyle } from './decoder.js';
+import { decodeBase, type DracoDecoder } from './base.js';
+import { type BaseTriangles, compileDecoder, type DecodedTriangles, type NormalStyle } from './decoder.js';
 import type { FromDecoder, ToDecoder } from './messages.js';
 import { type PackedFile, type Reach, type ReadOptions, readPacked } from './packed_file.js';
 
 export interface OpenOptions extends ReadOptions {
-  /// Decodes the Draco stream of the base: three.js's DRACOLoader, or draco3d. Positions, triangles, and texture coordinates
-  /// where it has them, in its order.
-  decodeDraco: (draco: Uint8Array<ArrayBuffer>) => Promise<DecodedTriangles>;
+  decodeDraco: DracoDecoder;
   /// papilio-detail.wasm: its bytes, what `fetch` gives, or compiled. Left out: the file beside this one.
   wasm?: BufferSource | Response | Promise<Response> | WebAssembly.Module;
 }
 
 export interface LevelInfo extends Reach {
-  /// Of the level's residuals, those of texture coordinates included; of the base its Draco stream and its curves.
+  /// Of the level's residuals, those of texture coordinates and colours included; of the base its Draco streams and its curves.
   bytes: number;
   /// Bytes of the file up to here: what has to come for this level.
   fileBytes: number;
@@ -52,8 +51,7 @@ export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOp
   const { wasm } = options;
   const compiled =
     wasm === undefined ? sharedModule() : wasm instanceof WebAssembly.Module ? wasm : compileDecoder(wasm);
-  const [module, base] = await Promise.all([compiled, options.decodeDraco(file.base.draco)]);
-  requireAsDeclared(base, file);
+  const [module, base] = await Promise.all([compiled, decodeBase(file.base, options.decodeDraco)]);
   const model = new PackedModel(module, file, base);
   try {
     await model.opened;
@@ -62,16 +60,6 @@ export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOp
     throw error;
   }
   return model;
-}
-
-function requireAsDeclared({ positions, triangles, texcoords }: DecodedTriangles, { base }: PackedFile): void {
-  const refuse = (what: string): never => {
-    throw new Problem('mesh_not_gltf', `${what} Pack the model again.`);
-  };
-  if (positions.length !== 3 * base.vertices || triangles.length !== 3 * base.faces)
-    refuse('The base declares other counts than its Draco stream has.');
-  if ((texcoords?.length ?? 0) !== (base.hasTexcoords ? 2 * base.vertices : 0))
-    refuse(`The base declares ${base.hasTexcoords ? '' : 'no '}texture coordinates, unlike its Draco stream.`);
 }
 
 export class PackedModel {
@@ -83,13 +71,14 @@ export class PackedModel {
   /// How the original's normals are split.
   readonly normals: NormalStyle;
   readonly hasTexcoords: boolean;
-  /// Whether the file has a material for the faces: it is a scene to GLTFLoader, too.
+  readonly hasColours: boolean;
+  /// Whether the file has a material for any of the faces: it is a scene to GLTFLoader, too.
   readonly hasMaterial: boolean;
   /// Rejects where the base is not what the file declares.
   readonly opened: Promise<void>;
   readonly #module: WebAssembly.Module;
   readonly #file: PackedFile;
-  readonly #triangles: DecodedTriangles;
+  readonly #triangles: BaseTriangles;
   #worker: Worker | null = null;
   #running: Task | null = null;
   #waiting: Task[] = [];
@@ -98,14 +87,15 @@ export class PackedModel {
   #settle!: { resolve: () => void; reject: (reason: unknown) => void };
 
   /// For openPacked.
-  constructor(module: WebAssembly.Module, file: PackedFile, base: DecodedTriangles) {
+  constructor(module: WebAssembly.Module, file: PackedFile, base: BaseTriangles) {
     this.#module = module;
     this.#file = file;
     this.#triangles = base;
     ({ declaredLevels: this.declaredLevels, normals: this.normals, hasMaterial: this.hasMaterial } = file);
-    this.hasTexcoords = file.base.hasTexcoords;
-    const { rms, largest, vertices, faces, draco, end } = file.base;
-    this.base = { rms, largest, bytes: draco.length + file.curves.length, fileBytes: end, vertices, faces };
+    const { rms, largest, vertices, faces, primitives, end } = file.base;
+    ({ hasTexcoords: this.hasTexcoords, hasColours: this.hasColours } = file.base);
+    const bytes = primitives.reduce((sum, { draco }) => sum + draco.length, file.curves.length);
+    this.base = { rms, largest, bytes, fileBytes: end, vertices, faces };
     let points = vertices;
     this.levels = file.levels.map((level) => ({
       rms: level.rms,

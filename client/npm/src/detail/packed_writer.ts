@@ -1,9 +1,9 @@
-// Files made of a packed model: with fewer levels, or with another surface in place of all of them.
+// Files made of a packed model: with fewer levels, or with other surfaces in place of all of them.
 
 import { type Json, readContainer, writeContainer } from './container.js';
 import { arrayOf, extensionOf, index, type JsonObject, objectOf, whole } from './document.js';
 import { writeTable } from './level_table.js';
-import { detailExtension, detailOf, dracoExtension, primitiveOf, primitivePlace, readPacked } from './packed_file.js';
+import { detailExtension, detailOf, dracoExtension, placeOf, primitivesOf, readPacked } from './packed_file.js';
 
 /// A surface as Draco, whose unique ids are those of glTF's attributes here.
 export interface DracoSurface {
@@ -29,35 +29,47 @@ export function withLevels(bytes: Uint8Array<ArrayBuffer>, count: number): Uint8
   });
   const detail = joined([table, curves, ...kept.map(({ residuals }) => residuals)]);
   const { json, binary } = openDocument(bytes);
-  const view = index(detailOf(primitiveOf(json))!, 'bufferView', primitivePlace)!;
+  const view = index(detailOf(primitivesOf(json))!, 'bufferView', placeOf(0))!;
   return withViews(json, binary, new Map([[view, detail]]));
 }
 
-/// The scene of a packed model, with its material and images, of this surface: no packed model. Throws as readPacked.
-export function withSurface(bytes: Uint8Array<ArrayBuffer>, surface: DracoSurface): Uint8Array<ArrayBuffer> {
+/// The scene of a packed model, with its materials and images, of these surfaces, one for each of its primitives: no packed
+/// model. Throws as readPacked.
+export function withSurfaces(
+  bytes: Uint8Array<ArrayBuffer>,
+  surfaces: readonly DracoSurface[],
+): Uint8Array<ArrayBuffer> {
   readPacked(bytes, { maxFaces: Infinity });
   const { json, binary } = openDocument(bytes);
-  const primitive = primitiveOf(json);
-  const [draco, detail] = [extensionOf(primitive, dracoExtension, primitivePlace)!, detailOf(primitive)!];
-  const views = new Map<number, Uint8Array | null>([
-    [index(draco, 'bufferView', primitivePlace)!, surface.draco],
-    [index(detail, 'bufferView', primitivePlace)!, null],
-  ]);
-  delete objectOf(primitive.extensions, primitivePlace)[detailExtension];
+  const primitives = primitivesOf(json);
+  if (surfaces.length !== primitives.length)
+    throw new RangeError(`The model has ${primitives.length} primitives, not ${surfaces.length}.`);
+  const views = new Map<number, Uint8Array | null>([[index(detailOf(primitives)!, 'bufferView', placeOf(0))!, null]]);
+  delete objectOf(primitives[0]!.extensions, placeOf(0))[detailExtension];
   json.extensionsUsed = arrayOf(json, 'extensionsUsed').filter((name) => name !== detailExtension);
-  draco.attributes = { ...surface.attributes };
-  const { points, faces, min, max } = surface;
-  const accessors: Json[] = [{ componentType: 5125, count: 3 * faces, type: 'SCALAR' }];
-  primitive.indices = 0;
-  primitive.attributes = Object.fromEntries(
-    Object.keys(surface.attributes).map((name) => {
-      const type = name.startsWith('TEXCOORD') ? 'VEC2' : 'VEC3';
-      const box = name === 'POSITION' ? { min: [...min], max: [...max] } : {};
-      return [name, accessors.push({ componentType: 5126, count: points, type, ...box }) - 1];
-    }),
-  );
+  const accessors: Json[] = [];
+  for (const [p, { draco, points, faces, min, max, attributes }] of surfaces.entries()) {
+    const primitive = primitives[p]!;
+    const extension = extensionOf(primitive, dracoExtension, placeOf(p))!;
+    views.set(index(extension, 'bufferView', placeOf(p))!, draco);
+    extension.attributes = { ...attributes };
+    const add = (accessor: JsonObject) => accessors.push(accessor) - 1;
+    primitive.indices = add({ componentType: 5125, count: 3 * faces, type: 'SCALAR' });
+    const box = { min: [...min], max: [...max] };
+    primitive.attributes = Object.fromEntries(
+      Object.keys(attributes).map((name) => {
+        return [name, add({ ...formatOf(name), count: points, ...(name === 'POSITION' && box) })];
+      }),
+    );
+  }
   json.accessors = accessors;
   return withViews(json, binary, views);
+}
+
+/// Of an attribute, by glTF's name.
+function formatOf(name: string): JsonObject {
+  if (name.startsWith('COLOR')) return { componentType: 5121, normalized: true, type: 'VEC3' };
+  return { componentType: 5126, type: name.startsWith('TEXCOORD') ? 'VEC2' : 'VEC3' };
 }
 
 function openDocument(bytes: Uint8Array<ArrayBuffer>): { json: JsonObject; binary: Uint8Array } {

@@ -19,7 +19,7 @@ function answer(data: ToDecoder): void {
     return;
   }
   const triangles = decoder.decode(levels.slice(0, data.levels), undefined, data.normals);
-  const transfer = Object.values(triangles).map(({ buffer }: Float32Array<ArrayBuffer>) => buffer);
+  const transfer = Object.values(triangles).map(({ buffer }: Uint8Array<ArrayBuffer>) => buffer);
   send({ kind: 'decoded', request: data.request, triangles }, transfer);
 }
 
