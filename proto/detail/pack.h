@@ -48,8 +48,8 @@ struct Packed {
 /// their opacity, the style of its normals (`NormalStyle`), and the materials of its triangles. The result is a plain
 /// .glb file where the surface cannot be packed, and where plain Draco is as good: at the RMS distance that was reached
 /// or at the largest allowed distance it takes no more bytes, or in as many bytes it has no larger an RMS distance. For
-/// an RMS distance a simplified mesh as Draco is compared too, if asked, from 5,000 faces on and if there is none of what
-/// it would lose: texture coordinates, colours, several materials, normals of hard edges. Throws `Problem`:
+/// an RMS distance a simplified mesh as Draco is compared too, if asked, from 5,000 faces on and if there is none of
+/// what it would lose: texture coordinates, colours, several materials, normals of hard edges. Throws `Problem`:
 /// result_too_large where no file found is so small; and as the coders.
 [[nodiscard]] Packed pack(const gltf::MaterialMesh& original, const PackOptions& options);
 /// Packs a surface; its attributes are left out.
