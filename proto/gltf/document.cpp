@@ -34,8 +34,7 @@ void require_version(const Json& document) {
 
 void require_extensions(const Json& document) {
   for (const Json& name : array_of(document, "extensionsRequired"))
-    if (name.is_string() && name.get_ref<const std::string&>() == newer_meshopt_extension)
-      refuse_newer_meshopt("The scene requires");
+    if (is_text(name, newer_meshopt_extension)) refuse_newer_meshopt("The scene requires");
   // A view that is readable without would keep the compressed bytes of what it held before.
   const Json& views = array_of(document, "bufferViews");
   for (size_t v = 0; v < views.size(); ++v)

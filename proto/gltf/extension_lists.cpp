@@ -6,8 +6,6 @@
 #include "proto/gltf/extensions.h"
 
 namespace papilio::proto::gltf {
-namespace {}  // namespace
-
 bool uses_extension(const Json& value, const char* name) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) {
@@ -24,7 +22,7 @@ namespace {
 
 bool is_listed(const Json& document, const char* list, const char* name) {
   const Json& names = array_of(document, list);
-  return std::ranges::find(names, name) != names.end();
+  return std::ranges::any_of(names, [&](const Json& known) { return is_text(known, name); });
 }
 
 void put_listed(Json& document, const char* list, const char* name, bool listed) {
@@ -35,7 +33,7 @@ void put_listed(Json& document, const char* list, const char* name, bool listed)
   }
   Json rest = Json::array();
   for (const Json& known : document[list])
-    if (known != name) rest.push_back(known);
+    if (!is_text(known, name)) rest.push_back(known);
   if (rest.empty())
     document.erase(list);
   else
@@ -57,8 +55,9 @@ void list_extensions(Json& document) {
 }
 
 bool uses_compression(const Json& document) {
-  return std::ranges::any_of(array_of(document, "extensionsUsed"),
-                             [](const Json& name) { return name == draco_extension || name == meshopt_extension; });
+  return std::ranges::any_of(array_of(document, "extensionsUsed"), [](const Json& name) {
+    return is_text(name, draco_extension) || is_text(name, meshopt_extension);
+  });
 }
 
 }  // namespace papilio::proto::gltf

@@ -19,6 +19,11 @@ using Json = nlohmann::ordered_json;
 /// Throws `Problem` mesh_not_gltf: "WHERE WHAT. Export the scene again."
 [[noreturn]] void refuse_document(const std::string& where, const std::string& what);
 
+/// Whether a value is this text. (GCC 12 takes the comparison of JSON with text for one beyond an array.)
+[[nodiscard]] inline bool is_text(const Json& value, std::string_view text) {
+  return value.is_string() && value.get_ref<const std::string&>() == text;
+}
+
 /// Returns a member of an object; null if it is absent. `where` names the object in the error for other values.
 [[nodiscard]] const Json* find_member(const Json& object, const char* key, const std::string& where);
 [[nodiscard]] Json* find_member(Json& object, const char* key, const std::string& where);

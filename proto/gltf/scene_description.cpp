@@ -12,7 +12,7 @@ namespace {
 
 bool uses(const Json& document, const char* extension) {
   for (const Json& name : array_of(document, "extensionsUsed"))
-    if (name == extension) return true;
+    if (is_text(name, extension)) return true;
   return false;
 }
 
