@@ -22,6 +22,7 @@ const { boundaryOf, partsOf } = await load('../../npm/src/multipart');
 const link = await load('link');
 const { faultOf, rangeOf, queryOf } = await load('parameters');
 const { valuesFor } = await load('requests');
+const { edgesOf } = await load('mesh_edges');
 const { MeasuredOriginal } = await load('two_sided');
 
 const answer = Buffer.from(
@@ -207,5 +208,53 @@ test('points that no face has, and faces without an area, are not measured', () 
   ]) {
     assert.ok(made.largest < 1e-9 && made.rms < 1e-9, `${made.largest}`);
     assert.ok(Math.abs(made.diagonal - Math.SQRT2) < 1e-9);
+  }
+});
+
+/// Each edge of a mesh as 'a b', a < b, by a table.
+function edgesByTable(corners) {
+  const edges = new Set();
+  corners.forEach((a, i) => {
+    const b = corners[i % 3 < 2 ? i + 1 : i - 2];
+    edges.add(`${Math.min(a, b)} ${Math.max(a, b)}`);
+  });
+  return [...edges].sort();
+}
+
+function edgesAsText(ends) {
+  const edges = [];
+  for (let i = 0; i < ends.length; i += 2)
+    edges.push(`${Math.min(ends[i], ends[i + 1])} ${Math.max(ends[i], ends[i + 1])}`);
+  return edges.sort();
+}
+
+/// A grid of n x n squares, cut in halves; closed to a torus.
+function gridOf(n, isClosed) {
+  const side = isClosed ? n : n + 1;
+  const at = (x, y) => (x % side) + side * (y % side);
+  const corners = [];
+  for (let y = 0; y < n; ++y)
+    for (let x = 0; x < n; ++x)
+      corners.push(at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y), at(x + 1, y + 1), at(x, y + 1));
+  return { corners, vertices: side * side };
+}
+
+test('each edge of a closed surface is drawn once', () => {
+  const { corners, vertices } = gridOf(40, true);
+  const edges = edgesAsText(edgesOf(corners, vertices));
+  assert.equal(edges.length, 3 * vertices);
+  assert.deepEqual(edges, edgesByTable(corners));
+});
+
+test('no edge is left out at borders, at one that three faces share, and where faces are turned', () => {
+  const { corners, vertices } = gridOf(9, false);
+  const fin = [...corners, 33, 34, vertices];
+  const turned = fin.flatMap((_, i) =>
+    i % 3 ? [] : (i / 3) % 5 ? fin.slice(i, i + 3) : fin.slice(i, i + 3).reverse(),
+  );
+  for (const mesh of [corners, fin, turned]) {
+    const edges = edgesAsText(edgesOf(mesh, vertices + 1));
+    assert.deepEqual([...new Set(edges)], edgesByTable(mesh));
+    assert.ok(edges.length < mesh.length);
   }
 });

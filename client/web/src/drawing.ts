@@ -18,6 +18,7 @@ import {
   Vector4,
 } from 'three';
 
+import { edgesOf } from './mesh_edges';
 import type { Decoded } from './model';
 
 function material(options: MeshStandardMaterialParameters): MeshStandardMaterial {
@@ -51,9 +52,9 @@ export function withEdges(decoded: Decoded): Object3D {
   scene?.traverse((object) => isPlain(object) && meshes.push(object));
   const isPlainScene =
     scene !== null && meshes.reduce((sum, { geometry }) => sum + facesOf(geometry), 0) === decoded.faces;
-  if (!isPlainScene) return all.add(edgesOf(decoded.geometry));
+  if (!isPlainScene) return all.add(drawnEdges(decoded.geometry));
   for (const mesh of meshes) {
-    const edges = edgesOf(mesh.geometry);
+    const edges = drawnEdges(mesh.geometry);
     edges.matrixAutoUpdate = false;
     edges.matrix.copy(mesh.matrixWorld);
     all.add(edges);
@@ -72,20 +73,8 @@ const facesOf = (geometry: BufferGeometry) => Math.floor(geometry.index!.count /
 
 /// Fainter where they are close to each other in the picture, so that the surface is seen through them: those of a scene
 /// as the first that is drawn.
-function edgesOf(geometry: BufferGeometry): LineSegments {
-  const corners = geometry.index!.array;
-  const ends = new Uint32Array(2 * corners.length);
-  for (let i = 0, to = 0; i + 2 < corners.length; i += 3) {
-    const a = corners[i];
-    const b = corners[i + 1];
-    const c = corners[i + 2];
-    ends[to++] = a;
-    ends[to++] = b;
-    ends[to++] = b;
-    ends[to++] = c;
-    ends[to++] = c;
-    ends[to++] = a;
-  }
+function drawnEdges(geometry: BufferGeometry): LineSegments {
+  const ends = edgesOf(geometry.index!.array, geometry.getAttribute('position').count);
   const edges = new BufferGeometry();
   edges.setAttribute('position', geometry.getAttribute('position'));
   edges.setIndex(new BufferAttribute(ends, 1));

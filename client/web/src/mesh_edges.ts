@@ -1,0 +1,36 @@
+// The edges of a mesh, to be drawn as lines.
+
+/// The ends of each edge; `corners` [faces * 3] are vertices below `vertices`. An edge of two faces comes once where they
+/// run along it in opposite directions, as on an oriented surface; one between two vertices of borders may come twice.
+/// O(F), without a table of edges: inside a surface each neighbour of a vertex is met once on the way out and once on the
+/// way in, so that their marks cancel.
+export function edgesOf(corners: ArrayLike<number>, vertices: number): Uint32Array {
+  const marks = new Int32Array(vertices); // sums; 0 inside
+  const whole = corners.length - (corners.length % 3);
+  for (let i = 0; i < whole; i += 3) {
+    const a = corners[i];
+    const b = corners[i + 1];
+    const c = corners[i + 2];
+    const [ofA, ofB, ofC] = [markOf(a), markOf(b), markOf(c)];
+    marks[a] += ofB - ofC;
+    marks[b] += ofC - ofA;
+    marks[c] += ofA - ofB;
+  }
+  const ends = new Uint32Array(2 * whole); // enough for all sides; what is not written takes no memory
+  let count = 0;
+  for (let i = 0; i < whole; i += 3)
+    for (let side = 0; side < 3; ++side) {
+      const a = corners[i + side];
+      const b = corners[side < 2 ? i + side + 1 : i];
+      if (a > b && (marks[a] === 0 || marks[b] === 0)) continue;
+      ends[count++] = a;
+      ends[count++] = b;
+    }
+  return ends.subarray(0, count);
+}
+
+/// Different for each vertex, and in no relation to its number: sums of a few that differ are not 0 by chance.
+function markOf(vertex: number): number {
+  const mixed = Math.imul(vertex + 1, 0x9e3779b1);
+  return Math.imul(mixed ^ (mixed >>> 15), 0x85ebca6b);
+}
