@@ -1,12 +1,14 @@
 #include "server/openapi.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "proto/parameters.h"
 #include "proto/problem.h"
 #include "server/endpoints.h"
+#include "server/openapi_schemas.h"
 #include "server/routes/refined_answer.h"
 #include "server/routes/service_routes.h"
 
@@ -14,153 +16,6 @@ namespace papilio::server {
 namespace {
 
 using nlohmann::ordered_json;
-using proto::ParameterInfo;
-using proto::ParameterType;
-
-ordered_json reference(const std::string& where) { return {{"$ref", "#/components/" + where}}; }
-ordered_json schema_reference(const std::string& name) { return reference("schemas/" + name); }
-
-// Parameters
-
-/// An integer where it is one: JSON tells 3 from 3.0.
-ordered_json number(double value) {
-  return value == static_cast<double>(static_cast<int64_t>(value)) ? ordered_json(static_cast<int64_t>(value))
-                                                                   : ordered_json(value);
-}
-
-ordered_json parameter_schema(const ParameterInfo& info) {
-  if (info.type == ParameterType::boolean) return {{"type", "boolean"}};
-  if (info.type == ParameterType::choice) return {{"type", "string"}, {"enum", info.choices}};
-  ordered_json one{{"type", info.type == ParameterType::integer ? "integer" : "number"},
-                   {"minimum", number(info.min)},
-                   {"maximum", number(info.max)}};
-  if (info.type != ParameterType::numbers) return one;
-  return {{"type", "array"}, {"items", one}, {"minItems", info.least}, {"maxItems", info.most}};
-}
-
-std::string parameter_description(const ParameterInfo& info) {
-  std::string text(info.description);
-  text += ". Default: " + proto::describe_default(info);
-  if (!info.unit.empty()) text += " (" + std::string(info.unit) + ")";
-  return text + ".";
-}
-
-/// "view.eye" is "view_eye" among the components, whose names have no dots by custom.
-std::string component_name(std::string_view parameter) {
-  std::string name(parameter);
-  std::ranges::replace(name, '.', '_');
-  return name;
-}
-
-ordered_json query_parameters() {
-  ordered_json all = ordered_json::object();
-  for (const ParameterInfo& info : proto::parameter_table()) {
-    ordered_json& row = all[component_name(info.name)];
-    row = {{"name", info.name},
-           {"in", "query"},
-           {"description", parameter_description(info)},
-           {"schema", parameter_schema(info)}};
-    if (info.type == ParameterType::numbers) row.update({{"style", "form"}, {"explode", false}});
-  }
-  return all;
-}
-
-/// The same as one JSON object, dots being levels.
-ordered_json parameters_schema() {
-  ordered_json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", ordered_json::object()}};
-  for (const ParameterInfo& info : proto::parameter_table()) {
-    ordered_json one = parameter_schema(info);
-    one["description"] = parameter_description(info);
-    const size_t dot = info.name.find('.');
-    const std::string first(info.name.substr(0, dot));
-    ordered_json& properties = schema["properties"];
-    if (dot == std::string_view::npos) {
-      properties[first] = one;
-      continue;
-    }
-    if (!properties.contains(first)) properties[first] = {{"type", "object"}, {"additionalProperties", false}};
-    properties[first]["properties"][std::string(info.name.substr(dot + 1))] = one;
-  }
-  return schema;
-}
-
-// Schemas
-
-ordered_json integer_schema(const std::string& description) {
-  return {{"type", "integer"}, {"minimum", 0}, {"description", description}};
-}
-
-ordered_json problem_schema() {
-  std::vector<std::string_view> codes;
-  for (const proto::ProblemKind& kind : proto::problem_kinds()) codes.push_back(kind.name);
-  return {{"type", "object"},
-          {"description", "RFC 9457"},
-          {"required", {"type", "code", "title", "status", "detail"}},
-          {"properties",
-           {{"type", {{"type", "string"}, {"description", "urn:papilio:problem: and the code"}}},
-            {"code", {{"type", "string"}, {"enum", codes}}},
-            {"title", {{"type", "string"}}},
-            {"status", {{"type", "integer"}}},
-            {"detail", {{"type", "string"}, {"description", "What is wrong here, and what to do"}}},
-            {"parameter", {{"type", "string"}, {"description", "The parameter at fault, if one is"}}},
-            {"request_id", {{"type", "string"}}}}}};
-}
-
-ordered_json description_schema() {
-  return {{"type", "object"},
-          {"required", {"id", "bytes", "vertices", "faces", "found", "refined"}},
-          {"properties",
-           {{"id", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}},
-            {"bytes", integer_schema("Size of the stored bytes")},
-            {"vertices", integer_schema("After equal points were welded")},
-            {"faces", integer_schema("Without degenerate ones")},
-            {"found",
-             {{"type", "object"},
-              {"description", "Defects by name, and how many of each. Mended: near_duplicates, t_junctions"},
-              {"additionalProperties", {{"type", "integer"}}}}},
-            {"refined", {{"type", "string"}, {"description", "Path of its refinements"}}}}}};
-}
-
-ordered_json sample_schema() {
-  return {{"type", "object"},
-          {"required", {"name", "path", "vertices", "faces", "bytes"}},
-          {"properties",
-           {{"name", {{"type", "string"}}},
-            {"path", {{"type", "string"}, {"description", "Where its Draco bytes are"}}},
-            {"vertices", integer_schema("Of the mesh")},
-            {"faces", integer_schema("Of the mesh")},
-            {"bytes", integer_schema("Of the mesh as Draco")}}}};
-}
-
-ordered_json info_schema(const EngineOptions& options) {
-  ordered_json limits{{"type", "object"}, {"properties", ordered_json::object()}};
-  for (const NamedLimit& limit : named_limits(options)) {
-    limits["properties"][std::string(limit.name)] = {
-        {"type", "integer"}, {"description", limit.description}, {"const", limit.value}};
-    limits["required"].push_back(limit.name);
-  }
-  return {{"type", "object"},
-          {"required", {"name", "version", "schemes", "limits", "parameters", "samples"}},
-          {"properties",
-           {{"name", {{"type", "string"}}},
-            {"version", {{"type", "string"}}},
-            {"schemes", {{"type", "array"}, {"items", {{"type", "string"}}}}},
-            {"limits", limits},
-            {"parameters", {{"type", "array"}, {"items", {{"type", "object"}}}}},
-            {"samples", {{"type", "array"}, {"items", schema_reference("Sample")}}}}}};
-}
-
-ordered_json schemas(const EngineOptions& options) {
-  return {
-      {"Parameters", parameters_schema()},
-      {"Problem", problem_schema()},
-      {"Description", description_schema()},
-      {"Info", info_schema(options)},
-      {"Sample", sample_schema()},
-      {"Health", {{"type", "object"}, {"required", {"status"}}, {"properties", {{"status", {{"type", "string"}}}}}}}};
-}
-
-// Answers
 
 ordered_json header(const std::string& type, const std::string& description) {
   return {{"description", description}, {"schema", {{"type", type}}}};
@@ -195,7 +50,7 @@ ordered_json headers() {
 
 ordered_json header_references(const std::vector<std::string>& names) {
   ordered_json all = ordered_json::object();
-  for (const std::string& name : names) all[name] = reference("headers/" + name);
+  for (const std::string& name : names) all[name] = reference_to("headers/" + name);
   return all;
 }
 
@@ -227,7 +82,7 @@ ordered_json refined_answer() {
 ordered_json json_answer(const std::string& description, const std::string& schema) {
   return {{"description", description},
           {"headers", header_references({"X-Request-Id"})},
-          {"content", content({json_type}, schema_reference(schema))}};
+          {"content", content({json_type}, reference_to("schemas/" + schema))}};
 }
 
 ordered_json file_answer(const std::string& description, const std::vector<std::string>& types) {
@@ -251,7 +106,7 @@ void add_successes(const Endpoint& endpoint, ordered_json& answers) {
       answers["200"] = {{"description", "The stored bytes, or their description"},
                         {"headers", header_references({"X-Request-Id", "ETag", "Cache-Control", "Vary"})},
                         {"content", content({draco_type, bytes_type, scene_type}, binary())}};
-      answers["200"]["content"][json_type] = {{"schema", schema_reference("Description")}};
+      answers["200"]["content"][json_type] = {{"schema", reference_to("schemas/Description")}};
       answers["304"] = not_modified;
       break;
     case Output::description:
@@ -307,7 +162,7 @@ void add_problems(const Endpoint& endpoint, ordered_json& answers) {
     ordered_json& answer = answers[std::to_string(status)];
     answer = {{"description", text},
               {"headers", header_references({"X-Request-Id"})},
-              {"content", content({"application/problem+json"}, schema_reference("Problem"))}};
+              {"content", content({"application/problem+json"}, reference_to("schemas/Problem"))}};
     if (status == 401) answer["headers"].update(header_references({"WWW-Authenticate"}));
     if (status == 405) answer["headers"].update(header_references({"Allow"}));
     if (status == 429 || status == 503) answer["headers"].update(header_references({"Retry-After"}));
@@ -316,7 +171,7 @@ void add_problems(const Endpoint& endpoint, ordered_json& answers) {
 
 ordered_json request_body(Input input) {
   ordered_json types;
-  if (input == Input::parameters) types = content({json_type}, schema_reference("Parameters"));
+  if (input == Input::parameters) types = content({json_type}, reference_to("schemas/Parameters"));
   // Client generators look at the first type, and know of this one that it is bytes.
   if (input == Input::mesh || input == Input::mesh_or_form)
     types = content({bytes_type, draco_type, scene_type}, binary());
@@ -325,7 +180,7 @@ ordered_json request_body(Input input) {
         {"schema",
          {{"type", "object"},
           {"required", {"mesh"}},
-          {"properties", {{"mesh", binary()}, {"params", schema_reference("Parameters")}}}}}};
+          {"properties", {{"mesh", binary()}, {"params", reference_to("schemas/Parameters")}}}}}};
   ordered_json body{{"required", true}, {"content", types}};
   if (input == Input::mesh || input == Input::mesh_or_form)
     body["description"] =
@@ -339,11 +194,11 @@ ordered_json operation(const Endpoint& endpoint) {
   if (endpoint.access == Access::manage)
     one["description"] = "Where the server asks for keys, this takes one with the right to manage.";
   ordered_json parameters = ordered_json::array();
-  if (endpoint.path.find("{name}") != std::string_view::npos) parameters.push_back(reference("parameters/name"));
-  if (endpoint.path.find("{id}") != std::string_view::npos) parameters.push_back(reference("parameters/id"));
+  if (endpoint.path.find("{name}") != std::string_view::npos) parameters.push_back(reference_to("parameters/name"));
+  if (endpoint.path.find("{id}") != std::string_view::npos) parameters.push_back(reference_to("parameters/id"));
   if (endpoint.parameters)
-    for (const ParameterInfo& info : proto::parameter_table())
-      parameters.push_back(reference("parameters/" + component_name(info.name)));
+    for (const proto::ParameterInfo& info : proto::parameter_table())
+      parameters.push_back(reference_to("parameters/" + component_name(info.name)));
   if (!parameters.empty()) one["parameters"] = parameters;
   if (endpoint.input != Input::none) one["requestBody"] = request_body(endpoint.input);
   one["responses"] = ordered_json::object();
@@ -384,9 +239,9 @@ std::string openapi_json(const EngineOptions& options) {
                             {"required", true},
                             {"description", "As /v1/info or the page has it"},
                             {"schema", {{"type", "string"}}}}}};
-  parameters.update(query_parameters());
+  parameters.update(openapi_parameters());
   document["components"] = {
-      {"schemas", schemas(options)},
+      {"schemas", openapi_schemas(options)},
       {"parameters", parameters},
       {"headers", headers()},
       {"securitySchemes",
