@@ -10,7 +10,6 @@
 #include "server/endpoints.h"
 #include "server/openapi_schemas.h"
 #include "server/routes/refined_answer.h"
-#include "server/routes/service_routes.h"
 
 namespace papilio::server {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "proto/parameters.h"
 #include "proto/problem.h"
+#include "server/routes/service_routes.h"
 
 namespace papilio::server {
 
