@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -160,6 +162,39 @@ TEST(PackedParts, KeepTheirMaterialsAndBorders) {
     EXPECT_EQ(whole.topology.euler_characteristic(), 0) << "borders do not open the surface";
     for (const EdgeKind kind : whole.topology.kind) ASSERT_EQ(kind, EdgeKind::smooth);
   }
+}
+
+TEST(PackedParts, HaveColoursAndTextureCoordinatesBesideThem) {
+  gltf::MaterialMesh torus = parted_torus(true);
+  Attribute colours{.components = 3, .values = {}};
+  for (const Vec3f p : torus.mesh.positions)
+    colours.values.insert(colours.values.end(), {std::round(128 + 90 * double{p.z}), std::round(128 + 70 * p.x), 30});
+  torus.mesh.attributes.push_back(std::move(colours));
+  torus.mesh.format.attributes.push_back(
+      {.kind = AttributeKind::color, .type = ValueType::uint8, .normalized = true, .id = 2});
+  const Packed packed = pack(torus, {.rms = wanted, .face_limit = 20'000});
+  ASSERT_TRUE(packed.model) << packed.reason;
+  const PackedModel model = read_packed(packed.glb);
+  EXPECT_TRUE(model.has_texcoords() && model.has_colours());
+  const FormattedMesh fine = decode_packed(model);
+  gltf::Materials materials = gltf::flatten_with_materials(packed.glb, {}).materials;
+  materials.of_triangle = materials_below(materials.of_triangle, fine.triangles.size());
+  EXPECT_LE(wrong_faces(fine, materials), fine.triangles.size() / 200);
+  const auto is_colour = [](const AttributeFormat& format) { return format.kind == AttributeKind::color; };
+  const size_t colour = std::ranges::find_if(fine.format.attributes, is_colour) - fine.format.attributes.begin();
+  ASSERT_LT(colour, 2U);
+  const size_t texcoord = 1 - colour;
+  double largest_of_colours = 0, largest_of_texcoords = 0;
+  for (size_t p = 0; p < fine.positions.size(); ++p) {
+    const Vec3f at = fine.positions[p];
+    const double* value = &fine.attributes[colour].values[3 * p];
+    largest_of_colours =
+        std::max({largest_of_colours, std::abs(value[0] - 128 - 90 * at.z), std::abs(value[1] - 128 - 70 * at.x)});
+    const double turn = fine.attributes[texcoord].values[2 * p] - test::turn_of(to_double(at));
+    largest_of_texcoords = std::max(largest_of_texcoords, std::abs(turn - std::round(turn)));
+  }
+  EXPECT_LT(largest_of_colours, 6);
+  EXPECT_LT(largest_of_texcoords, 0.005);
 }
 
 TEST(PackedParts, AreSmoothAcrossTheirBorders) {
