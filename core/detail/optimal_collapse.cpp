@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <queue>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,7 +67,7 @@ class Simplifier {
   }
 
   /// Returns whether so few faces are left.
-  [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll = {}) {
+  [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll) {
     while (face_count_ > faces && !queue_.empty()) {
       if (poll && ++steps_ % steps_between_polls == 0) poll();
       const PairCollapse next = queue_.top();
@@ -77,8 +76,6 @@ class Simplifier {
     }
     return face_count_ <= faces;
   }
-
-  [[nodiscard]] size_t face_count() const { return face_count_; }
 
   [[nodiscard]] TriangleMesh result() const {
     TriangleMesh out;
@@ -248,14 +245,6 @@ std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<
     results.push_back(simplifier.result());
   }
   return results;
-}
-
-TriangleMesh collapse_optimally(const TriangleMesh& mesh, size_t faces, Quadrics quadrics) {
-  Simplifier simplifier(build_mesh(mesh), quadrics);
-  if (!simplifier.reaches(faces))
-    throw std::runtime_error("no further edge can be collapsed at " + std::to_string(simplifier.face_count()) +
-                             " faces");
-  return simplifier.result();
 }
 
 }  // namespace papilio

@@ -4,13 +4,13 @@
 #include <iostream>
 #include <limits>
 
-#include "core/detail/optimal_collapse.h"
 #include "papilio/refine.h"
 #include "tests/bench/equal_size.h"
 #include "tests/bench/head.h"
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/mesh_figures.h"
 #include "tests/bench/report.h"
+#include "tests/support/collapse_optimally.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/simplify.h"
 
@@ -89,7 +89,7 @@ class Subject {
     return {.paper = measured(result),
             .flatness = measured(flatness_result(coarse_, ours, faces)),
             .tolerance = measured(tolerance_result(coarse_, ours, faces)),
-            .quadrics = measured(collapse_optimally(uniform_, faces))};
+            .quadrics = measured(test::collapse_optimally(uniform_, faces))};
   }
 
  private:

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "client/mesh_file/mesh_file.h"
-#include "core/detail/optimal_collapse.h"
+#include "tests/support/collapse_optimally.h"
 
 int main(int argc, char** argv) {
   const unsigned long faces = argc == 4 ? std::strtoul(argv[3], nullptr, 10) : 0;
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   try {
     using namespace papilio;
     const TriangleMesh fine = client::read_triangles(argv[1], client::format_of(argv[1]));
-    client::write_triangles(argv[2], client::format_of(argv[2]), collapse_optimally(fine, faces));
+    client::write_triangles(argv[2], client::format_of(argv[2]), test::collapse_optimally(fine, faces));
   } catch (const std::exception& error) {
     std::cerr << "coarsen: " << error.what() << '\n';
     return 1;

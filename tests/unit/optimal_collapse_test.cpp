@@ -11,6 +11,7 @@
 #include "client/lib/compare.h"
 #include "core/detail/quadric.h"
 #include "papilio/refine.h"
+#include "tests/support/collapse_optimally.h"
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 
