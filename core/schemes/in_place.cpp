@@ -5,6 +5,7 @@
 #include "criteria/budget.h"
 #include "criteria/view_culling.h"
 #include "hierarchy/memory_plan.h"
+#include "mesh/displacement.h"
 #include "rules/split_displacements.h"
 #include "split/split.h"
 
@@ -106,13 +107,12 @@ class InPlace {
   }
 
   void split_targets(int level, const SplitPlan& plan) {
-    Buffer<Vec3f> made;
-    made.reserve(plan.count());
-    for (uint32_t e = 0; e < targets_.size(); ++e)
-      if (targets_[e] != 0) made.push_back(trial_->at(e));
     const Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
     append_new_vertices(displacements_, displaced, plan);
-    mesh_ = split_mesh(std::move(mesh_), plan, made, displaced);
+    mesh_.positions.reserve(mesh_.positions.size() + plan.count());
+    for (uint32_t e = 0; e < targets_.size(); ++e)
+      if (targets_[e] != 0) mesh_.positions.push_back(trial_->at(e));
+    mesh_.topology = split(mesh_.topology, plan, mesh_.positions, mesh_.attributes, displaced);
     result_.levels = level;
   }
 
@@ -134,12 +134,6 @@ class InPlace {
 };
 
 }  // namespace
-
-Mesh split_mesh(Mesh mesh, const SplitPlan& plan, const Buffer<Vec3f>& made, const Displacements& displaced) {
-  mesh.positions.insert(mesh.positions.end(), made.begin(), made.end());
-  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes, displaced);
-  return mesh;
-}
 
 Result refine_in_place(Mesh coarse, const Options& options, const Selection& selection, const Progress& progress) {
   return InPlace(options, selection, progress).run(std::move(coarse));
