@@ -32,8 +32,6 @@ class DetailLevel {
   /// Edges on boundaries, creases and seams, in ascending order [C]. Those of the next level come from them, two from
   /// each.
   [[nodiscard]] std::span<const uint32_t> curve_edges() const { return curve_edges_; }
-  /// Vertices of the level before; 0 for the base.
-  [[nodiscard]] uint32_t vertices_before() const { return vertices_before_; }
 
   /// Predicts the new vertices: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;

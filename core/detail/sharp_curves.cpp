@@ -159,8 +159,7 @@ VertexDegrees degrees_of(const Topology& t, const std::vector<uint32_t>& seams =
   return {t, [&](uint32_t e) { return t.kind[e] != EdgeKind::smooth || std::ranges::binary_search(seams, e); }};
 }
 
-}  // namespace
-
+/// Finds the corners of the curves that the mesh has.
 void mark_corners(Mesh& mesh) {
   Topology& t = mesh.topology;
   const VertexDegrees curves = degrees_of(t);
@@ -179,6 +178,8 @@ void mark_corners(Mesh& mesh) {
     if (std::atan2(length(cross(in, out)), dot(in, out)) > corner_angle) t.shape.corners.push_back(v);
   }
 }
+
+}  // namespace
 
 void mark_sharp_curves(Mesh& mesh, const std::vector<bool>& is_hard) {
   SharpEdges(mesh, is_hard).mark();

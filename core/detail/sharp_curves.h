@@ -20,9 +20,6 @@ enum class CurveRole : uint8_t {
 /// edges. O(F).
 void mark_sharp_curves(Mesh& mesh, const std::vector<bool>& is_hard = {});
 
-/// Finds the corners of the curves that the mesh has.
-void mark_corners(Mesh& mesh);
-
 /// Roles of the vertices [V]. `seams`: edges that are curves, too, in ascending order.
 [[nodiscard]] std::vector<CurveRole> curve_roles(const Topology& topology, const std::vector<uint32_t>& seams = {});
 

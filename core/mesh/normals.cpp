@@ -28,12 +28,6 @@ void put_unit(Vec3d a, Vec3d b, Vec3f& unit_a, Vec3f& unit_b) {
 
 }  // namespace
 
-Vec3f face_normal(const Mesh& mesh, uint32_t face) {
-  const Vec3d n = area_normal(mesh, face);
-  const double size = length(n);
-  return size > 0 ? to_float((1 / size) * n) : Vec3f{};
-}
-
 Buffer<Vec3f> face_normals(const Mesh& mesh, int threads, const Buffer<uint32_t>* fours) {
   const uint32_t faces = mesh.topology.face_count();
   const uint32_t count = fours == nullptr ? faces : 4 * static_cast<uint32_t>(fours->size());

@@ -11,9 +11,6 @@ namespace papilio {
 /// (split_in_four.h), only some fours may be asked about, by number: the other normals mean nothing then.
 [[nodiscard]] Buffer<Vec3f> face_normals(const Mesh& mesh, int threads = 1, const Buffer<uint32_t>* fours = nullptr);
 
-/// That of one face.
-[[nodiscard]] Vec3f face_normal(const Mesh& mesh, uint32_t face);
-
 /// Products of two unit normals in float are off by up to about this: two faces in one plane have 1 - 2e-7, say.
 inline constexpr double product_rounding = 4e-7;
 

@@ -38,6 +38,7 @@ void add_row(const std::string& name, const Mesh& made, int speed, const proto::
 TriangleMesh with_attributes(const TriangleMesh& triangles) {
   const Mesh mesh = build_mesh(triangles);
   const Buffer<Vec3f> normals = vertex_normals(mesh);
+  const Buffer<Vec3f> sides = face_normals(mesh);
   const Box box = bounding_box(mesh.positions);
   const double size = box.diagonal();
   TriangleMesh out;
@@ -45,7 +46,7 @@ TriangleMesh with_attributes(const TriangleMesh& triangles) {
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
     const Vec3f p = mesh.positions[mesh.topology.origin[h]];
     const Vec3f n = normals[mesh.topology.origin[h]];
-    const Vec3f side = face_normal(mesh, h / 3);
+    const Vec3f side = sides[h / 3];
     const double x = std::abs(side.x);
     const double y = std::abs(side.y);
     const double z = std::abs(side.z);

@@ -29,6 +29,12 @@ std::vector<Mesh> meshes_with_normals() {
   return meshes;
 }
 
+Vec3f face_normal(const Mesh& mesh, uint32_t face) {
+  const Vec3d n = area_normal(mesh, face);
+  const double size = length(n);
+  return size > 0 ? to_float((1 / size) * n) : Vec3f{};
+}
+
 bool are_same_bits(Vec3f a, Vec3f b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
 TEST(FaceNormals, AreThoseOfTheFacesOneByOneToTheBit) {
