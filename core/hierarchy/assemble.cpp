@@ -146,10 +146,6 @@ class Assembler {
     std::array<uint32_t, 12> corners;
     put_corners_of_four({corner[0], corner[1], corner[2]}, middle, corners.data());
     const FourMasks masks = masks_of_four(below, child);
-    if (masks == all_in_four && below.below == nullptr && !has_curves_or_points_) {
-      cut_in_sixteen(below, child, corners.data());
-      return;
-    }
     const Halves half = halves(corner, middle);
     std::array<uint32_t, 12> sides;
     put_edges_of_four(half.first, half.second, next_inner_, sides.data());
@@ -162,7 +158,6 @@ class Assembler {
 
   /// Of the four children of a face: bit i is set where edge i is split.
   using FourMasks = std::array<uint8_t, 4>;
-  static constexpr FourMasks all_in_four{7, 7, 7, 7};
   [[nodiscard]] static uint8_t mask_of(const AssembledLevel& level, uint32_t f) {
     if (level.mask != nullptr) return level.mask[f];
     const uint32_t* edge = &level.edge[size_t{3} * f];
@@ -188,30 +183,6 @@ class Assembler {
                                  meet(half.second[2], made + 2)};
     put_twins_of_four(made, against_first, against_second, twin_ + made);
     end_face(level, f, split_pattern(7, false));
-  }
-
-  /// The four children of a face, each of which is cut in four: they know each other without having met. `corners` [12]
-  void cut_in_sixteen(const AssembledLevel& level, uint32_t child, const uint32_t* corners) {
-    const uint32_t made = half_edge_count_;
-    const uint32_t last = made + 36;  // of the child in the middle; its side i is side i + 1 of child i
-    std::array<OfSides, 4> middle;
-    for (uint32_t c = 0; c < 4; ++c) middle[c] = middles(level, child + c);
-    for (uint32_t c = 0; c < 4; ++c)
-      put_corners_of_four({corners[3 * c], corners[3 * c + 1], corners[3 * c + 2]}, middle[c], origin_ + made + 12 * c);
-    const auto of_child = [&](uint32_t c) { return halves(corners + 3 * c, middle[c]); };
-    const Halves half0 = of_child(0);
-    const Halves half1 = of_child(1);
-    const Halves half2 = of_child(2);
-    const uint32_t one = made + 12;
-    const uint32_t two = made + 24;
-    put_twins_of_four(made, {meet(half0.first[0], made), last + 2, meet(half0.first[2], made + 8)},
-                      {meet(half0.second[0], made + 3), last + 8, meet(half0.second[2], made + 2)}, twin_ + made);
-    put_twins_of_four(one, {meet(half1.first[0], one), meet(half1.first[1], one + 4), last + 3},
-                      {meet(half1.second[0], one + 3), meet(half1.second[1], one + 7), last}, twin_ + one);
-    put_twins_of_four(two, {last + 7, meet(half2.first[1], two + 4), meet(half2.first[2], two + 8)},
-                      {last + 4, meet(half2.second[1], two + 7), meet(half2.second[2], two + 2)}, twin_ + two);
-    put_twins_of_four(last, {one + 2, two + 3, made + 7}, {one + 8, two, made + 4}, twin_ + last);
-    half_edge_count_ += 48;
   }
 
   /// A face with one or two sides split, seen from the first of these, which runs from corner a to b.
