@@ -19,8 +19,6 @@ struct AssembledLevel {
   const Topology* mesh;
   AssembledLevel* below = nullptr;  ///< the next level; null: this is the last
   const uint32_t* edge;             ///< [H] of the mesh
-  const uint8_t* is_split;          ///< [E]
-  const uint8_t* mask;              ///< [F] (LevelChoice); null where it is not known
   Buffer<uint32_t> new_vertex;      ///< [E] number in the result of the edge's vertex; written where split
 
   /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
@@ -75,7 +73,7 @@ class Assembler {
     for (uint32_t f = 0; f < coarse.face_count(); ++f) {
       const uint32_t* edge = &coarse.edge[size_t{3} * f];
       const OfSides side{first_coarse_ + edge[0], first_coarse_ + edge[1], first_coarse_ + edge[2]};
-      place(levels_[0], f, mask_of(levels_[0], f), &coarse.origin[size_t{3} * f], side.data());
+      place(levels_[0], f, &coarse.origin[size_t{3} * f], side.data());
     }
     out_.topology.origin.resize_for_overwrite(half_edge_count_);
     out_.topology.twin.resize_for_overwrite(half_edge_count_);
@@ -106,8 +104,6 @@ class Assembler {
       level.mesh = &mesh;
       if (levels_.size() > 1) levels_[levels_.size() - 2].below = &level;  // which stays where it is
       level.edge = mesh.edge.data();
-      level.is_split = choice.split.data();
-      level.mask = choice.masks.empty() ? nullptr : choice.masks.data();
       level.new_vertex.resize_for_overwrite(mesh.edge_count());
       for (uint32_t e : marked(choice.split)) {
         out_.positions[vertex] = choice.level->trial.at(e);
@@ -119,8 +115,8 @@ class Assembler {
   /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side`
   /// [3]: the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what
   /// becomes of it is then foreseen better.)
-  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner,
-                                    const uint32_t* side) {
+  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
+    const unsigned mask = level.choice->split_mask(f);
     if (mask == 0)
       place_whole(level, f, corner, side);
     else if (mask != 7)
@@ -145,31 +141,14 @@ class Assembler {
     const uint32_t child = level.child(f);
     std::array<uint32_t, 12> corners;
     put_corners_of_four({corner[0], corner[1], corner[2]}, middle, corners.data());
-    const FourMasks masks = masks_of_four(below, child);
     const Halves half = halves(corner, middle);
     std::array<uint32_t, 12> sides;
     put_edges_of_four(half.first, half.second, next_inner_, sides.data());
     next_inner_ += 3;
-    place(below, child, masks[0], corners.data(), sides.data());
-    place(below, child + 1, masks[1], &corners[3], &sides[3]);
-    place(below, child + 2, masks[2], &corners[6], &sides[6]);
-    place(below, child + 3, masks[3], &corners[9], &sides[9]);
-  }
-
-  /// Of the four children of a face: bit i is set where edge i is split.
-  using FourMasks = std::array<uint8_t, 4>;
-  [[nodiscard]] static uint8_t mask_of(const AssembledLevel& level, uint32_t f) {
-    if (level.mask != nullptr) return level.mask[f];
-    const uint32_t* edge = &level.edge[size_t{3} * f];
-    return static_cast<uint8_t>(level.is_split[edge[0]] | level.is_split[edge[1]] << 1U |
-                                level.is_split[edge[2]] << 2U);
-  }
-  [[nodiscard]] static FourMasks masks_of_four(const AssembledLevel& level, uint32_t child) {
-    if (level.mask != nullptr) {
-      const uint8_t* mask = level.mask + child;
-      return {mask[0], mask[1], mask[2], mask[3]};
-    }
-    return {mask_of(level, child), mask_of(level, child + 1), mask_of(level, child + 2), mask_of(level, child + 3)};
+    place(below, child, corners.data(), sides.data());
+    place(below, child + 1, &corners[3], &sides[3]);
+    place(below, child + 2, &corners[6], &sides[6]);
+    place(below, child + 3, &corners[9], &sides[9]);
   }
 
   void cut_in_four(AssembledLevel& level, uint32_t f, const uint32_t* corner) {

@@ -59,28 +59,6 @@ bool LevelChoice::has_many_split() const {
   return split_edges.size() * few > region.faces.size();
 }
 
-void LevelChoice::find_masks() {
-  masks.clear();
-  if (!has_many_split()) return;
-  auto found = Buffer<uint8_t>::for_overwrite(level->mesh.topology.face_count());
-  const uint32_t* edge = level->mesh.topology.edge.data();
-  const uint8_t* is_split = split.data();
-  for (uint32_t f : region.faces)
-    found[f] = is_split[edge[3 * f]] | is_split[edge[3 * f + 1]] << 1U | is_split[edge[3 * f + 2]] << 2U;
-  masks = std::move(found);
-}
-
-void LevelChoice::add_to_masks(uint32_t edge) {
-  const Topology& mesh = level->mesh.topology;
-  const auto add = [&](uint32_t h) { masks[Topology::face(h)] |= static_cast<uint8_t>(1U << h % 3); };
-  const uint32_t h = mesh.half_edge[edge];
-  add(h);
-  if (mesh.twin[h] != none) add(mesh.twin[h]);
-  if (mesh.kind[edge] == EdgeKind::shared)
-    for (uint32_t other : level->shared)
-      if (mesh.edge[other] == edge) add(other);
-}
-
 Buffer<LevelChoice::PartlySplit> LevelChoice::faces_split_in_part() const {
   const auto is_in_part = [](unsigned mask) { return (mask + 1) % 8 > 1; };
   const auto find = [&](const Buffer<uint32_t>& faces) {

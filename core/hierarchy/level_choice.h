@@ -23,14 +23,12 @@ struct LevelChoice {
   Buffer<uint32_t> candidates;   ///< the edges whose error reaches the least threshold; else all that are wanted
   EdgeMarks split;               ///< [E] what is split for the result
   Buffer<uint32_t> split_edges;  ///< the same as a list
-  Buffer<uint8_t> masks;         ///< [F] split_mask() of the region's faces, where find_masks() found it; else empty
   Buffer<uint8_t> transitions;   ///< [F] what is known of faces split in part (transition.h); may be empty
   Buffer<uint8_t> red;           ///< [F] whose children are the region of the next choice; empty while there is none
   Buffer<uint32_t> at_outline;   ///< those of the red faces that were not divided when they were marked (outline.h)
 
   /// Bit i is set where edge i of the face is split.
   [[nodiscard]] unsigned split_mask(uint32_t face) const {
-    if (!masks.empty()) return masks[face];
     const uint32_t* edge = &level->mesh.topology.edge[size_t{3} * face];
     return split[edge[0]] | split[edge[1]] << 1U | split[edge[2]] << 2U;
   }
@@ -38,22 +36,16 @@ struct LevelChoice {
     if (split[edge] != 0) return;
     split[edge] = 1;
     split_edges.push_back(edge);
-    if (!masks.empty()) add_to_masks(edge);
   }
   /// Where nothing is split yet: these, no edge twice.
   void split_first(Buffer<uint32_t> edges) {
     for (uint32_t e : edges) split[e] = 1;
     split_edges = std::move(edges);
-    masks.clear();
   }
   void split_nothing() {
     for (uint32_t e : split_edges) split[e] = 0;
     split_edges.clear();
-    masks.clear();
   }
-  /// Notes down the region's split masks where so many edges are split that each is worth it; what is split later is
-  /// noted, too.
-  void find_masks();
   /// How many faces there are at all edges that are split together. Edges of the region have all their faces there.
   [[nodiscard]] uint64_t count_faces_of_split() const;
   /// The faces at edges that are split, in ascending order.
@@ -89,7 +81,6 @@ struct LevelChoice {
 
  private:
   [[nodiscard]] bool has_many_split() const;
-  void add_to_masks(uint32_t edge);
 };
 
 /// Choice of all of level 0; of the level below `above`, of the children of the faces that `above` has marked red. Only

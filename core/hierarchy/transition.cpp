@@ -149,7 +149,6 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
     return mask != 0 && mask != 7 && (Transition::find(choice, f, mask, most_cosine) & Transition::has_sliver) != 0 &&
            choice.may_divide(f);
   };
-  choice.find_masks();
   // The order decides where dividing one makes a sliver of another.
   Buffer<uint32_t> faces = find_slivers(choice, most_cosine);
   erase_if(faces, [&](uint32_t f) { return !must_be_divided(f); });
