@@ -18,17 +18,12 @@ using NormalProducts = LazyValues<float>;
 /// `threshold` (less 4e-7, the rounding of float normals, so that what is flat stays whole at 1 too). An edge
 /// on a curve (boundary, shared, crease) stays as sharp as it is: it is among them when the curve turns by more than
 /// acos(threshold) at one of its ends. A cut edge never is; an edge at a face without area is not on that face's
-/// account. Of a mesh only the region is looked at. Shapes: normals [F], marks [E].
+/// account. Lets them grow, too. Of a mesh only the region is looked at. Shapes: normals [F], marks [E].
 [[nodiscard]] EdgeMarks find_curved(const Mesh& mesh, const Buffer<Vec3f>& normals, const NormalProducts& products,
-                                    double threshold, const Region& region);
+                                    double threshold, Growth growth, const Region& region);
 
 /// Marks the 1-neighbouring edges of those marked, too (one step: new marks do not spread again). Of a mesh only the
 /// region is looked at, of which all marked edges are, before and afterwards. Marks [E].
 void grow(const Topology& mesh, Growth growth, const Region& region, EdgeMarks& marks);
-
-/// Both, one after the other; where that can be done, in one pass.
-[[nodiscard]] EdgeMarks find_curved_and_grow(const Mesh& mesh, const Buffer<Vec3f>& normals,
-                                             const NormalProducts& products, double threshold, Growth growth,
-                                             const Region& region);
 
 }  // namespace papilio

@@ -157,7 +157,7 @@ EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<d
 
 Buffer<uint32_t> Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
   if (options_.flatness.empty()) return region.edges();
-  return marked(find_curved_and_grow(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
+  return marked(find_curved(mesh, trial.normals, trial.products, flatness_of(level), options_.growth, region));
 }
 
 Buffer<uint32_t> Selection::wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,

@@ -110,7 +110,6 @@ LevelChoice choose_below(const LevelChoice& above, std::shared_ptr<const Hierarc
   LevelChoice choice;
   Buffer<uint32_t> red = above.region.faces;
   keep_if(red, [&](uint32_t f) { return above.red[f] != 0; });
-  choice.region.is_in_fours = true;
   choice.region.has_curves = !level->features.curve_half_edges.empty();
   choice.region.faces = children_of(red, *level);
   choice.region.has_edge = edges_of(*level, choice.region.faces);

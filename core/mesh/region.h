@@ -11,8 +11,6 @@ namespace papilio {
 struct Region {
   Buffer<uint32_t> faces;  ///< in ascending order
   EdgeMarks has_edge;      ///< [E] marks its edges: all faces at each of them are among `faces`
-  /// Faces come by four, the children of one face (four_children.h): 4i to 4i + 3.
-  bool is_in_fours = false;
   bool has_curves = true;  ///< false only if none of its edges is on one
 
   /// Its edges in ascending order, found anew at each call.

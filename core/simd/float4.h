@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -22,11 +21,6 @@ using Index4 = std::array<uint32_t, 4>;
 [[nodiscard]] inline Float4 magnitude(Float4 a) { return larger(a, -a); }
 [[nodiscard]] inline Float4 root(Float4 a) {
   return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};  // of which compilers make one
-}
-
-[[nodiscard]] inline bool is_any(Mask4 truths) {
-  const auto words = std::bit_cast<std::array<uint64_t, 2>>(truths);
-  return (words[0] | words[1]) != 0;
 }
 
 struct Vec3x4 {

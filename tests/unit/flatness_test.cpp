@@ -18,7 +18,7 @@ uint32_t count(const EdgeMarks& marks) {
 }
 
 EdgeMarks flatness_marks(const Mesh& mesh, double threshold) {
-  return find_curved(mesh, face_normals(mesh), {}, threshold, whole_region(mesh.topology));
+  return find_curved(mesh, face_normals(mesh), {}, threshold, Growth::off, whole_region(mesh.topology));
 }
 
 void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {

@@ -157,16 +157,13 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
     for (const auto& above : ring_levels(random)) {
       const Buffer<uint8_t> red = random_faces(above->mesh.topology, random);
       LevelChoice choice = choose_coarsest(above);
-      EXPECT_FALSE(choice.region.is_in_fours);
       mark_red(choice, marked(red));
       const LevelChoice in_last = choose_below(
           choice, std::make_shared<HierarchyLevel>(refine_last_level(*above, red, Part(above->mesh.topology, red))));
       const LevelChoice in_part =
           choose_below(choice, std::make_shared<HierarchyLevel>(refine_level(*above, red).level));
-      for (const LevelChoice* below : {&in_last, &in_part}) {
-        EXPECT_TRUE(below->region.is_in_fours);
+      for (const LevelChoice* below : {&in_last, &in_part})
         EXPECT_EQ(below->region.faces.size(), 4 * marked(red).size());
-      }
       // Numbers differ, but not what they stand for.
       const auto ends = [](const LevelChoice& below) {
         std::vector<std::array<Vec3f, 2>> all;
@@ -181,7 +178,7 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
     }
 }
 
-TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
+TEST(LastLevel, FlatnessIsTheSameByFacesAndByEdges) {
   std::mt19937 random(3);
   size_t curved = 0;
   size_t flat = 0;
@@ -202,10 +199,9 @@ TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
       Buffer<Vec3f> normals = face_normals(level->mesh);
       for (int i = 0; i < 5; ++i) normals[random() % normals.size()] = {};
       const NormalProducts kept(topology.edge_count(), std::numeric_limits<float>::infinity());
-      const auto find = [&](bool in_fours, bool has_curves, Growth growth, const NormalProducts& products) {
-        region.is_in_fours = in_fours;
+      const auto find = [&](bool has_curves, Growth growth, const NormalProducts& products) {
         region.has_curves = has_curves;
-        return find_curved_and_grow(level->mesh, normals, products, 0.95, growth, region);
+        return find_curved(level->mesh, normals, products, 0.95, growth, region);
       };
       for (const Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
         EdgeMarks expected(topology.edge_count(), 0);
@@ -213,15 +209,14 @@ TEST(LastLevel, FlatnessIsTheSameByFoursByFacesAndByEdges) {
           Region alone;
           alone.has_edge.assign(topology.edge_count(), 0);
           alone.has_edge[e] = 1;
-          expected[e] = find_curved(level->mesh, normals, kept, 0.95, alone)[e];
+          expected[e] = find_curved(level->mesh, normals, kept, 0.95, Growth::off, alone)[e];
           ++(expected[e] != 0 ? curved : flat);
         }
         grow(topology, growth, region, expected);
-        EXPECT_EQ(find(false, true, growth, {}), expected);
-        EXPECT_EQ(find(false, true, growth, kept), expected) << "from what is known";
+        EXPECT_EQ(find(true, growth, {}), expected);
+        EXPECT_EQ(find(true, growth, kept), expected) << "from what is known";
         if (has_creases) continue;
-        EXPECT_EQ(find(true, false, growth, {}), expected) << "by fours";
-        EXPECT_EQ(find(false, false, growth, {}), expected) << "by faces";
+        EXPECT_EQ(find(false, growth, {}), expected) << "by faces";
       }
     }
   EXPECT_GT(curved, 1000U);
