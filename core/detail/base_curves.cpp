@@ -50,10 +50,7 @@ std::vector<uint8_t> encode_base_curves(const Topology& base) {
   if (base.shape.corners.empty() && std::ranges::count(base.kind, EdgeKind::crease) == 0) return {};
   Topology copy = base;
   BinaryEncoder encoder;
-  code_curves(copy, [&](bool bit, uint32_t probability) {
-    encoder.code(bit, probability);
-    return bit;
-  });
+  code_curves(copy, [&](bool bit, uint32_t probability) { return encoder.code(bit, probability); });
   std::vector<uint8_t> bytes = encoder.finish();
   if (bytes.empty()) bytes.push_back(0);  // the coder drops trailing zeros; no bytes mean no curves
   return bytes;

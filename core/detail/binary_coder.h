@@ -15,7 +15,8 @@ inline constexpr uint32_t probability_bits = 16;
 
 class BinaryEncoder {
  public:
-  void code(bool bit, uint32_t probability_of_one) {
+  /// Returns the bit.
+  bool code(bool bit, uint32_t probability_of_one) {
     const uint32_t range = high_ - low_;
     const uint32_t middle = low_ + static_cast<uint32_t>((uint64_t{range} * probability_of_one) >> probability_bits);
     (bit ? high_ : low_) = bit ? middle : middle + 1;
@@ -24,6 +25,7 @@ class BinaryEncoder {
       low_ <<= 8;
       high_ = (high_ << 8) | 0xFF;
     }
+    return bit;
   }
 
   /// The bytes of all bits. Trailing zeros are left out: the decoder reads zeros behind the end.

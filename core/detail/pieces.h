@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "detail/binary_coder.h"
 #include "papilio/detail.h"
 #include "papilio/mesh.h"
 
@@ -78,6 +79,27 @@ void code_pieces(uint32_t count, Models& models, const Code& code) {
     Models own(models);
     code(p, own);
   }
+}
+
+/// Encodes all pieces: pass(piece, models, code) goes through the bits of one, as ResidualModels has it.
+template <class Models, class Pass>
+[[nodiscard]] std::vector<std::vector<uint8_t>> encode_each_piece(uint32_t count, Models& models, const Pass& pass) {
+  std::vector<std::vector<uint8_t>> made;
+  code_pieces(count, models, [&](uint32_t piece, Models& own) {
+    BinaryEncoder encoder;
+    pass(piece, own, [&](bool bit, uint32_t probability) { return encoder.code(bit, probability); });
+    made.push_back(encoder.finish());
+  });
+  return made;
+}
+/// Decodes the pieces that have bytes.
+template <class Models, class Pass>
+void decode_each_piece(const PieceBytes& bytes, uint32_t count, Models& models, const Pass& pass) {
+  code_pieces(count, models, [&](uint32_t piece, Models& own) {
+    if (!bytes[piece]) return;
+    BinaryDecoder decoder(*bytes[piece]);
+    pass(piece, own, [&](bool, uint32_t probability) { return decoder.code(probability); });
+  });
 }
 
 }  // namespace papilio

@@ -2,84 +2,61 @@
 
 #include <algorithm>
 
-#include "detail/binary_coder.h"
 #include "detail/residual_frames.h"
 
 namespace papilio {
 namespace {
 
 /// What the residuals of a level are coded by.
-struct ResidualLevel {
+struct ResidualPass {
   const DetailLevel& level;
   const EdgePieces& pieces;
   Residuals& residuals;
   std::span<const int32_t> at_vertex;
   const Buffer<Vec3f>& positions;
   Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< [E]
-};
 
-/// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
-template <class Code>
-class ResidualPass {
- public:
-  ResidualPass(ResidualLevel& of, ResidualModels& models, const Code& code)
-      : level_(of.level),
-        pieces_(of.pieces),
-        residuals_(of.residuals),
-        at_vertex_(of.at_vertex),
-        positions_(of.positions),
-        is_free_(of.is_free),
-        models_(models),
-        code_(code) {}
-
-  void run(uint32_t piece) {
-    const std::span<const uint32_t> edges = pieces_.edges_of(piece);
+  /// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
+  template <class Code>
+  void run(uint32_t piece, ResidualModels& models, const Code& code) {
+    const std::span<const uint32_t> edges = pieces.edges_of(piece);
     if (edges.empty()) return;
-    const std::span<const uint32_t> on_curves = level_.curve_edges();
+    const std::span<const uint32_t> on_curves = level.curve_edges();
     auto c = static_cast<uint32_t>(std::ranges::lower_bound(on_curves, edges.front()) - on_curves.begin());
     for (const uint32_t e : edges) {
       while (c < on_curves.size() && on_curves[c] < e) ++c;
       if (c < on_curves.size() && on_curves[c] == e)
-        code_curve_edge(e, c);
+        code_curve_edge(e, c, models, code);
       else
-        code_edge(e);
+        code_edge(e, models, code);
     }
   }
 
- private:
-  [[nodiscard]] bool has_tangential(uint32_t e) const { return residuals_.tangential.contains(e); }
-
-  void code_edge(uint32_t e) {
-    const ResidualContext context = level_.context(e, {residuals_.along_normal, is_free_, pieces_.of_edge}, at_vertex_,
-                                                   positions_.data(), residuals_.step);
-    is_free_[e] = models_.code_freedom(context, has_tangential(e), code_) ? 1 : 0;
-    residuals_.along_normal[e] = models_.code(context, residuals_.along_normal[e], code_);
-    if (is_free_[e] != 0) code_tangential(e);
+  template <class Code>
+  void code_edge(uint32_t e, ResidualModels& models, const Code& code) {
+    const ResidualContext context = level.context(e, {residuals.along_normal, is_free, pieces.of_edge}, at_vertex,
+                                                  positions.data(), residuals.step);
+    is_free[e] = models.code_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
+    residuals.along_normal[e] = models.code(context, residuals.along_normal[e], code);
+    if (is_free[e] != 0) code_tangential(e, models, code);
   }
 
-  void code_curve_edge(uint32_t e, uint32_t c) {
-    const CurveContext context = level_.curve_context(c, residuals_.along_normal, residuals_.across, at_vertex_);
-    is_free_[e] = models_.code_curve_freedom(context, has_tangential(e), code_) ? 1 : 0;
-    int32_t& normal = residuals_.along_normal[e];
-    normal = models_.code_curve_normal(context, normal, code_);
-    if (is_free_[e] != 0)
-      code_tangential(e);
+  template <class Code>
+  void code_curve_edge(uint32_t e, uint32_t c, ResidualModels& models, const Code& code) {
+    const CurveContext context = level.curve_context(c, residuals.along_normal, residuals.across, at_vertex);
+    is_free[e] = models.code_curve_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
+    int32_t& normal = residuals.along_normal[e];
+    normal = models.code_curve_normal(context, normal, code);
+    if (is_free[e] != 0)
+      code_tangential(e, models, code);
     else
-      residuals_.across[c] = models_.code_curve_across(context, normal, residuals_.across[c], code_);
+      residuals.across[c] = models.code_curve_across(context, normal, residuals.across[c], code);
   }
 
-  void code_tangential(uint32_t e) {
-    for (int32_t& part : residuals_.tangential[e]) part = models_.code_tangential(part, code_);
+  template <class Code>
+  void code_tangential(uint32_t e, ResidualModels& models, const Code& code) {
+    for (int32_t& part : residuals.tangential[e]) part = models.code_tangential(part, code);
   }
-
-  const DetailLevel& level_;
-  const EdgePieces& pieces_;
-  Residuals& residuals_;
-  std::span<const int32_t> at_vertex_;
-  const Buffer<Vec3f>& positions_;
-  Buffer<uint8_t>& is_free_;  // [E]
-  ResidualModels& models_;
-  const Code& code_;
 };
 
 }  // namespace
@@ -107,18 +84,9 @@ std::vector<std::vector<uint8_t>> encode_residuals(const DetailLevel& level, con
                                                    const Residuals& residuals, std::span<const int32_t> at_vertex,
                                                    const Buffer<Vec3f>& positions, ResidualModels& models) {
   Residuals copy = residuals;
-  ResidualLevel of{level, pieces, copy, at_vertex, positions};
-  std::vector<std::vector<uint8_t>> made;
-  code_pieces(pieces.count(), models, [&](uint32_t piece, ResidualModels& own) {
-    BinaryEncoder encoder;
-    const auto code = [&](bool bit, uint32_t probability) {
-      encoder.code(bit, probability);
-      return bit;
-    };
-    ResidualPass(of, own, code).run(piece);
-    made.push_back(encoder.finish());
-  });
-  return made;
+  ResidualPass pass{level, pieces, copy, at_vertex, positions};
+  return encode_each_piece(pieces.count(), models,
+                           [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
 }
 
 Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes, float step,
@@ -126,13 +94,9 @@ Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, c
   Residuals residuals{.step = step,
                       .along_normal = Buffer<int32_t>(level.topology().edge_count()),
                       .across = Buffer<int32_t>(level.curve_edges().size())};
-  ResidualLevel of{level, pieces, residuals, at_vertex, positions};
-  code_pieces(pieces.count(), models, [&](uint32_t piece, ResidualModels& own) {
-    if (!bytes[piece]) return;
-    BinaryDecoder decoder(*bytes[piece]);
-    const auto code = [&](bool, uint32_t probability) { return decoder.code(probability); };
-    ResidualPass(of, own, code).run(piece);
-  });
+  ResidualPass pass{level, pieces, residuals, at_vertex, positions};
+  decode_each_piece(bytes, pieces.count(), models,
+                    [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
   return residuals;
 }
 

@@ -1,7 +1,5 @@
 #include "detail/value_residuals.h"
 
-#include "detail/binary_coder.h"
-
 namespace papilio {
 namespace {
 
@@ -35,16 +33,8 @@ std::vector<std::vector<uint8_t>> encode_value_residuals(const DetailLevel& leve
                                                          const ValueResiduals& at_vertex, ValueModels& models) {
   ValueResiduals copy = residuals;
   ValuePass pass{level, pieces, channels, copy, at_vertex};
-  std::vector<std::vector<uint8_t>> made;
-  code_pieces(pieces.count(), models, [&](uint32_t piece, ValueModels& own) {
-    BinaryEncoder encoder;
-    pass.run(piece, own, [&](bool bit, uint32_t probability) {
-      encoder.code(bit, probability);
-      return bit;
-    });
-    made.push_back(encoder.finish());
-  });
-  return made;
+  return encode_each_piece(pieces.count(), models,
+                           [&](uint32_t piece, ValueModels& own, const auto& code) { pass.run(piece, own, code); });
 }
 
 ValueResiduals decode_value_residuals(const DetailLevel& level, const EdgePieces& pieces,
@@ -52,11 +42,8 @@ ValueResiduals decode_value_residuals(const DetailLevel& level, const EdgePieces
                                       const ValueResiduals& at_vertex, ValueModels& models) {
   ValueResiduals residuals(channels.size(), Buffer<int32_t>(level.topology().edge_count()));
   ValuePass pass{level, pieces, channels, residuals, at_vertex};
-  code_pieces(pieces.count(), models, [&](uint32_t piece, ValueModels& own) {
-    if (!bytes[piece]) return;
-    BinaryDecoder decoder(*bytes[piece]);
-    pass.run(piece, own, [&](bool, uint32_t probability) { return decoder.code(probability); });
-  });
+  decode_each_piece(bytes, pieces.count(), models,
+                    [&](uint32_t piece, ValueModels& own, const auto& code) { pass.run(piece, own, code); });
   return residuals;
 }
 
