@@ -41,7 +41,6 @@ class CollapseSequence::Collapser {
   Collapser(const Mesh& original, std::vector<float> weight)
       : weight_(std::move(weight)),
         out_(original.positions.size(), none),
-        role_(curve_roles(original.topology, seam_edges(original))),
         sharp_role_(curve_roles(original.topology)),
         point_(original.attributes.point.begin(), original.attributes.point.end()),
         quadric_(original.positions.size()),
@@ -55,7 +54,9 @@ class CollapseSequence::Collapser {
     is_sharp_.reserve(origin_.size());
     for (uint32_t h = 0; h < origin_.size(); ++h) is_sharp_.push_back(t.is_curve(h));
     is_curve_ = is_sharp_;
-    for (const uint32_t e : seam_edges(original)) {
+    const std::vector<uint32_t> seams = seam_edges(original);
+    role_ = curve_roles(t, seams);
+    for (const uint32_t e : seams) {
       is_curve_[t.half_edge[e]] = true;
       is_curve_[t.twin[t.half_edge[e]]] = true;
     }
@@ -139,23 +140,26 @@ class CollapseSequence::Collapser {
   /// The half-edge that leaves the same vertex in the next face, counter-clockwise; none beyond a boundary.
   [[nodiscard]] uint32_t turn(uint32_t h) const { return twin_[Topology::previous(h)]; }
 
-  /// Collects the half-edges that leave the vertex, counter-clockwise, and its neighbours. At a boundary there is one
-  /// neighbour more than there are faces: a gap, which has no half-edge, follows.
+  /// Calls visit(half-edge, neighbour) for the half-edges that leave a vertex, counter-clockwise. At a boundary there
+  /// is one neighbour more than there are faces: a gap, which has no half-edge, comes last.
+  template <class Visit>
+  void visit_spokes(uint32_t v, const Visit& visit) const {
+    uint32_t h = out_[v];
+    do {
+      visit(h, tip(h));
+      const uint32_t next = turn(h);
+      if (next == none) return visit(none, origin_[Topology::previous(h)]);
+      h = next;
+    } while (h != out_[v]);
+  }
+  /// Collects them and the vertex's neighbours.
   void collect(uint32_t v) {
     spokes_.clear();
     ring_.clear();
-    uint32_t h = out_[v];
-    do {
+    visit_spokes(v, [&](uint32_t h, uint32_t neighbour) {
       spokes_.push_back(h);
-      ring_.push_back(tip(h));
-      const uint32_t next = turn(h);
-      if (next == none) {
-        ring_.push_back(origin_[Topology::previous(h)]);
-        spokes_.push_back(none);
-        return;
-      }
-      h = next;
-    } while (h != out_[v]);
+      ring_.push_back(neighbour);
+    });
   }
   [[nodiscard]] uint32_t ring(size_t i) const { return ring_[i % ring_.size()]; }
   [[nodiscard]] uint32_t spoke(size_t i) const { return spokes_[i % spokes_.size()]; }
@@ -212,31 +216,16 @@ class CollapseSequence::Collapser {
     }
   }
 
-  /// Calls visit(neighbour) for the neighbours of a vertex; returns whether it is inside the surface.
-  template <class Visit>
-  bool visit_neighbours(uint32_t v, const Visit& visit) const {  // NOLINT(modernize-use-nodiscard)
-    uint32_t h = out_[v];
-    do {
-      visit(tip(h));
-      const uint32_t next = turn(h);
-      if (next == none) {
-        visit(origin_[Topology::previous(h)]);
-        return false;
-      }
-      h = next;
-    } while (h != out_[v]);
-    return true;
-  }
   [[nodiscard]] size_t valence(uint32_t v) const {
     size_t count = 0;
-    visit_neighbours(v, [&](uint32_t) { ++count; });
+    visit_spokes(v, [&](uint32_t, uint32_t) { ++count; });
     return count;
   }
   /// Whether a vertex may lose a face: inside the surface it keeps three, on a boundary one.
   [[nodiscard]] bool has_spare_face(uint32_t v) const {
-    size_t count = 0;
-    const bool is_inside = visit_neighbours(v, [&](uint32_t) { ++count; });
-    return count > (is_inside ? 3 : 2);
+    bool is_inside = true;
+    visit_spokes(v, [&](uint32_t h, uint32_t) { is_inside = h != none; });
+    return valence(v) > (is_inside ? 3 : 2);
   }
 
   /// Whether the two vertices share no neighbours but the apexes of their edge, these keep enough faces, and no two
@@ -252,7 +241,7 @@ class CollapseSequence::Collapser {
     if (first != none && is_curve_to(target + 1) && is_curve_[Topology::next(first)]) return false;
     if (last != none && is_curve_to(before) && is_curve_[Topology::next(last)]) return false;
     bool is_apart = true;
-    visit_neighbours(to, [&](uint32_t w) {
+    visit_spokes(to, [&](uint32_t, uint32_t w) {
       for (size_t k = first == none ? 1 : 2; k + (last == none ? 0 : 1) < ring_.size(); ++k)
         is_apart = is_apart && w != ring(target + k);
     });
