@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/attributes.h"
 #include "mesh/crease.h"
 #include "mesh/curve.h"
 
@@ -50,15 +51,9 @@ void number_edges_of(Topology& cut, const Topology& whole) {
 
 std::vector<uint32_t> seam_edges(const Mesh& mesh) {
   std::vector<uint32_t> seams;
-  if (mesh.attributes.empty()) return seams;
   const Topology& t = mesh.topology;
-  const Buffer<uint32_t>& point = mesh.attributes.point;
-  for (uint32_t e = 0; e < t.edge_count(); ++e) {
-    const uint32_t h = t.half_edge[e];
-    const uint32_t twin = t.twin[h];
-    if (twin == none) continue;
-    if (point[h] != point[Topology::next(twin)] || point[Topology::next(h)] != point[twin]) seams.push_back(e);
-  }
+  for (uint32_t e = 0; e < t.edge_count(); ++e)
+    if (const uint32_t h = t.half_edge[e]; t.twin[h] != none && is_seam(t, mesh.attributes, h)) seams.push_back(e);
   return seams;
 }
 

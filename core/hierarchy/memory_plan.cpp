@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/attributes.h"
 #include "papilio/detail.h"
 
 namespace papilio {
@@ -12,15 +13,6 @@ constexpr uint64_t face_bytes_of_decoding = 40;  // of a level of detail
 /// Values are held in arrays that grow, while those of the level before are still there.
 constexpr uint64_t growth = 2;
 
-/// Whether the faces at both sides of a half-edge have the same points at its ends.
-bool is_closed(const Mesh& mesh, uint32_t h) {
-  const uint32_t twin = mesh.topology.twin[h];
-  if (twin == none) return false;
-  if (mesh.attributes.empty()) return true;
-  const Buffer<uint32_t>& point = mesh.attributes.point;
-  return point[h] == point[Topology::next(twin)] && point[Topology::next(h)] == point[twin];
-}
-
 }  // namespace
 
 MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
@@ -28,7 +20,8 @@ MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
       coarse_points_(coarse.attributes.empty() ? coarse.topology.vertex_count : coarse.attributes.point_count),
       output_(options.output) {
   if (coarse.detail) detail_levels_ = coarse.detail->level_count();
-  for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h) open_ += is_closed(coarse, h) ? 0 : 1;
+  for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h)
+    open_ += coarse.topology.twin[h] == none || is_seam(coarse.topology, coarse.attributes, h) ? 1 : 0;
   for (const Attribute& attribute : coarse.attributes.attributes)
     point_bytes_ += (attribute.is_displacement ? 2 : 1) * growth * attribute.components * sizeof(double);
   if (!coarse.attributes.empty())

@@ -117,7 +117,7 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
     const uint32_t p = point[h];
     const uint32_t q = point[Topology::next(h)];
     const uint32_t t = mesh.twin[h];
-    if (t != none && t < h && made[t] != none && point[Topology::next(t)] == p && point[t] == q) {
+    if (t != none && t < h && made[t] != none && !is_seam(mesh, attributes, h)) {
       made[h] = made[t];
       return;
     }

@@ -17,6 +17,14 @@ void check_attributes(const TriangleMesh& input);
 [[nodiscard]] PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
                                                 const std::vector<uint32_t>& corner_point);
 
+/// Whether the two faces at a half-edge that has a twin have different points at its ends. None have without
+/// attributes.
+[[nodiscard]] inline bool is_seam(const Topology& mesh, const PointAttributes& attributes, uint32_t h) {
+  const Buffer<uint32_t>& point = attributes.point;
+  const uint32_t t = mesh.twin[h];
+  return !attributes.empty() && (point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t]);
+}
+
 /// Makes the points on the split edges: each the mean of the two at its ends, one for both faces where they agree on
 /// both, else (on a seam) one for each face. Returns [H] the new point on each half-edge of a split edge; `none`
 /// elsewhere, and on faces that are not among `faces`, which are in ascending order. `displaced`: displacements at the

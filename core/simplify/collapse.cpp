@@ -13,6 +13,11 @@
 namespace papilio {
 namespace {
 
+/// The points [H] at the corners, or the vertices when there are no attributes: what meshoptimizer calls vertices.
+const Buffer<uint32_t>& corner_points(const Mesh& mesh) {
+  return mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point;
+}
+
 /// [points] the vertex of each.
 std::vector<uint32_t> vertices_of_points(const Mesh& mesh) {
   const uint32_t count = mesh.attributes.empty() ? mesh.topology.vertex_count : mesh.attributes.point_count;
@@ -46,10 +51,6 @@ Attribute select(const Attribute& from, const std::vector<uint32_t>& points) {
 }
 
 }  // namespace
-
-const Buffer<uint32_t>& corner_points(const Mesh& mesh) {
-  return mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point;
-}
 
 Collapser::Collapser(const Mesh& mesh, const std::vector<bool>& chosen, std::function<void()> poll)
     : mesh_(mesh),

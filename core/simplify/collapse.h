@@ -14,9 +14,6 @@ struct Collapsed {
   std::vector<uint32_t> vertex;  ///< [V] number of each vertex in the mesh before, ascending
 };
 
-/// The points [H] at the corners, or the vertices when there are no attributes: what meshoptimizer calls vertices.
-[[nodiscard]] const Buffer<uint32_t>& corner_points(const Mesh& mesh);
-
 /// Collapses edges by meshoptimizer, which does not look after topology: the result is to be checked. (Nor does 0.18
 /// avoid faces without area: they are mended where that can be done.) May be asked again and again; refers to the mesh.
 ///

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/attributes.h"
 #include "mesh/connect.h"
 #include "mesh/fan.h"
 
@@ -60,8 +61,7 @@ class Flipper {
     const uint32_t beyond = Topology::face(t);
     if (beyond < first_ || touched_[Topology::face(h)] || touched_[beyond]) return false;
     if (longest_of_sliver(mesh_, beyond) != none) return false;
-    const Buffer<uint32_t>& point = mesh_.attributes.empty() ? topology.origin : mesh_.attributes.point;
-    if (point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t]) return false;
+    if (is_seam(topology, mesh_.attributes, h)) return false;
     collect_fan(topology, Topology::previous(h), fan_);
     return topology.apex(h) != topology.apex(t) && std::ranges::find(fan_.ring, topology.apex(t)) == fan_.ring.end();
   }

@@ -7,6 +7,7 @@
 
 #include "base/sort.h"
 #include "criteria/camera.h"
+#include "mesh/attributes.h"
 #include "mesh/connect.h"
 #include "mesh/normals.h"
 #include "simplify/collapse.h"
@@ -22,19 +23,12 @@ constexpr int max_errors = 3;
 constexpr uint32_t first_lock_rings = 1;
 constexpr uint32_t last_lock_rings = 64;
 
-/// Whether the edge of half-edge h, with a face on either side, has other points in one than in the other.
-bool is_seam(const Mesh& mesh, uint32_t h) {
-  const Buffer<uint32_t>& point = corner_points(mesh);
-  const uint32_t t = mesh.topology.twin[h];
-  return point[h] != point[Topology::next(t)] || point[Topology::next(h)] != point[t];
-}
-
 /// The vertices [V] that must stay, where they are and in use: also all at which meshoptimizer would see a border.
 std::vector<bool> find_locked(const Mesh& mesh, const std::vector<bool>& hidden) {
   const Topology& topology = mesh.topology;
   std::vector<bool> locked(topology.vertex_count);
   for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
-    if (!hidden[Topology::face(h)] || topology.is_curve(h) || is_seam(mesh, h))
+    if (!hidden[Topology::face(h)] || topology.is_curve(h) || is_seam(topology, mesh.attributes, h))
       locked[topology.origin[h]] = locked[topology.tip(h)] = true;
   for (uint32_t v : topology.pinched) locked[v] = true;
   return locked;
