@@ -1,7 +1,6 @@
 #include "detail/optimal_collapse.h"
 
 #include <algorithm>
-#include <queue>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +17,8 @@ constexpr double boundary_weight = 100;
 /// A collapse that turns a face's normal to a smaller cosine is refused.
 constexpr double least_cosine_of_turn = 0.2;
 constexpr uint32_t steps_between_polls = 4096;
+/// Collapses that wait before stale ones are looked for.
+constexpr size_t least_to_drop = 10'000;
 
 struct PairCollapse {
   double cost;
@@ -70,9 +71,10 @@ class Simplifier {
   [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll) {
     while (face_count_ > faces && !queue_.empty()) {
       if (poll && ++steps_ % steps_between_polls == 0) poll();
-      const PairCollapse next = queue_.top();
-      queue_.pop();
-      if (next.age == ages_[next.kept] + ages_[next.removed] && is_allowed(next)) apply(next);
+      std::ranges::pop_heap(queue_, &is_costlier);
+      const PairCollapse next = queue_.back();
+      queue_.pop_back();
+      if (!is_stale(next) && is_allowed(next)) apply(next);
     }
     return face_count_ <= faces;
   }
@@ -126,7 +128,18 @@ class Simplifier {
     const Quadric sum = quadrics_[a] + quadrics_[b];
     const auto [kept, removed] = std::minmax(a, b);
     const Vec3d place = best_place(sum, places_[kept], places_[removed]);
-    queue_.push({sum.at(place), place, kept, removed, ages_[a] + ages_[b]});
+    if (queue_.size() >= most_waiting_) drop_stale();
+    queue_.push_back({sum.at(place), place, kept, removed, ages_[a] + ages_[b]});
+    std::ranges::push_heap(queue_, &is_costlier);
+  }
+
+  [[nodiscard]] bool is_stale(const PairCollapse& c) const { return c.age != ages_[c.kept] + ages_[c.removed]; }
+
+  /// Removes what became stale: on flat surfaces vertices have many neighbours, and each collapse proposes all of them.
+  void drop_stale() {
+    std::erase_if(queue_, [&](const PairCollapse& c) { return is_stale(c); });
+    std::ranges::make_heap(queue_, &is_costlier);
+    most_waiting_ = std::max(least_to_drop, 2 * queue_.size());
   }
 
   /// The quadric's minimum; where it has none, or one far away, the best of both ends and the midpoint.
@@ -231,7 +244,8 @@ class Simplifier {
   std::vector<uint32_t> ages_;  ///< how often the vertex has changed
   size_t face_count_;
   uint32_t steps_ = 0;
-  std::priority_queue<PairCollapse, std::vector<PairCollapse>, decltype(&is_costlier)> queue_{&is_costlier};
+  std::vector<PairCollapse> queue_;  ///< heap
+  size_t most_waiting_ = least_to_drop;
 };
 
 }  // namespace
