@@ -348,7 +348,8 @@ class DetailEncoder {
       poll();
       const SurfaceTree surface(fit.surface(l));
       const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last * samples_of_trial_);
-      encoded.reach.push_back({d.rms / original_.diagonal(), d.largest / original_.diagonal()});
+      const double largest = std::max(d.largest, vertex_distance(original_.tree(), surface));
+      encoded.reach.push_back({d.rms / original_.diagonal(), largest / original_.diagonal()});
       if (l == encoded.levels.size()) encoded.folds = count_folds(original_, surface);
       progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));
     }

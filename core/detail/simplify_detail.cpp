@@ -59,7 +59,10 @@ class Simplification {
 
   [[nodiscard]] SurfaceDistance distance_to(const TriangleMesh& mesh, uint32_t samples) const {
     poll();
-    return surface_distance(tree_, SurfaceTree(mesh), samples);
+    const SurfaceTree surface(mesh);
+    SurfaceDistance distance = surface_distance(tree_, surface, samples);
+    if (is_near(distance)) distance.largest = std::max(distance.largest, vertex_distance(tree_, surface));
+    return distance;
   }
 
   [[nodiscard]] bool is_near(const SurfaceDistance& distance) const {

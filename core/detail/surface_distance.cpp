@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace papilio {
 namespace {
@@ -41,6 +42,19 @@ void measure(const SurfaceTree& from, const SurfaceTree& to, uint32_t samples, S
   found.largest = std::max(found.largest, std::sqrt(largest));
 }
 
+double largest_at_vertices(const SurfaceTree& from, const SurfaceTree& to) {
+  const TriangleMesh& surface = from.surface();
+  std::vector<bool> is_done(surface.positions.size());
+  double largest = 0;
+  for (const Triangle& triangle : surface.triangles)
+    for (const uint32_t v : triangle) {
+      if (is_done[v]) continue;
+      is_done[v] = true;
+      largest = std::max(largest, to.nearest(to_double(surface.positions[v])).squared_distance);
+    }
+  return std::sqrt(largest);
+}
+
 }  // namespace
 
 SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uint32_t samples) {
@@ -48,6 +62,10 @@ SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uin
   measure(a, b, samples, found);
   measure(b, a, samples, found);
   return found;
+}
+
+double vertex_distance(const SurfaceTree& a, const SurfaceTree& b) {
+  return std::max(largest_at_vertices(a, b), largest_at_vertices(b, a));
 }
 
 }  // namespace papilio

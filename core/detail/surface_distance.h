@@ -15,4 +15,8 @@ struct SurfaceDistance {
 /// Measures from `samples` points of each surface, spread evenly by area. Deterministic. O(samples log F).
 [[nodiscard]] SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uint32_t samples);
 
+/// Measures the largest distance from the vertices of each surface to the other one. Samples miss thin spikes. O(V log
+/// F).
+[[nodiscard]] double vertex_distance(const SurfaceTree& a, const SurfaceTree& b);
+
 }  // namespace papilio

@@ -13,7 +13,7 @@ struct SimplifiedDraco {
   uint64_t bytes = 0;  ///< of `glb`
   size_t faces = 0;
   int position_bits = 0;
-  DetailReach reach{};  ///< from samples
+  DetailReach reach{};  ///< from samples, the largest from vertices, too
 };
 
 /// Simplifies a surface to the wanted distances, and writes it as Draco in a .glb file. Nothing where no file was found

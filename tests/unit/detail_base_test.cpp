@@ -72,6 +72,16 @@ TEST(SurfaceDistance, SeesWhatEitherSurfaceLacks) {
   EXPECT_DOUBLE_EQ(largest, surface_distance(SurfaceTree(two), SurfaceTree(one), 2000).largest);
 }
 
+TEST(SurfaceDistance, OfVerticesIsThatOfASpikeWhichSamplesMiss) {
+  const TriangleMesh round = sphere(4);
+  TriangleMesh spiked = round;
+  spiked.positions[100] = 1.5F * spiked.positions[100];
+  const SurfaceTree one(round), other(spiked);
+  EXPECT_LT(surface_distance(one, other, 200).largest, 0.4);
+  EXPECT_NEAR(vertex_distance(one, other), 0.5, 1e-6);
+  EXPECT_DOUBLE_EQ(vertex_distance(one, other), vertex_distance(other, one));
+}
+
 TEST(SurfaceWalk, ArrivesWhereTheLineMeetsTheSheet) {
   const Mesh mesh = build_mesh(sphere(4));
   const SurfaceTree tree(mesh.triangles());

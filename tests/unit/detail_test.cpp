@@ -11,6 +11,7 @@
 #include "core/detail/base_lift.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/placement.h"
+#include "core/detail/surface_distance.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
 #include "server/sha256.h"
@@ -51,6 +52,7 @@ void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, do
   EXPECT_LE(encoded.reach.back().rms, wanted);
   constexpr double rounding = 1e-8;  // of positions, as a share of the diagonal
   const test::SampledSurface surface(original, 40'000);
+  const double diagonal = bounding_box(original.positions).diagonal();
   for (size_t levels = 0; levels < encoded.reach.size(); ++levels) {
     const TriangleMesh decoded = decode_detail(encoded.base, std::span(encoded.levels).first(levels));
     EXPECT_EQ(decoded.triangles.size(), encoded.base.triangles.triangles.size() << (2 * levels));
@@ -58,6 +60,8 @@ void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, do
     const DetailReach& stated = encoded.reach[levels];
     EXPECT_NEAR(distance.rms / 100, stated.rms, 0.05 * stated.rms + rounding) << levels;
     EXPECT_NEAR(distance.largest / 100, stated.largest, 0.5 * stated.largest + rounding) << levels;
+    const double of_vertices = vertex_distance(SurfaceTree(original), SurfaceTree(decoded)) / diagonal;
+    EXPECT_LE(of_vertices, stated.largest + rounding) << levels;
   }
 }
 

@@ -222,7 +222,7 @@ struct EncodedDetail {
 
 struct SimplifyOptions {
   double rms = 1e-4;                  ///< RMS distance at most, a share of the diagonal as above; 1e-6..0.1
-  double largest = 1;                 ///< largest distance at most, from samples, a share of the diagonal; > 0
+  double largest = 1;                 ///< largest distance at most, a share of the diagonal; > 0
   std::function<bool()> cancelled{};  ///< asked between steps; true stops with `Fault::cancelled`
 };
 
