@@ -21,6 +21,7 @@
 #include "detail/own_normals.h"
 #include "detail/placement.h"
 #include "detail/residual_fit.h"
+#include "detail/slivers.h"
 #include "detail/surface_distance.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
@@ -60,6 +61,9 @@ constexpr int most_last_bases = 3;
 constexpr double least_folds = 0.005, least_turned_back = 0.1, most_growth = 1.06;
 /// Vertices are parted by at most this share of the wanted distance.
 constexpr double parting_share = 0.1;
+/// Slivers of so small a share of the wanted distance are removed. No base could drop them: they turn at random, and
+/// unfold to nothing.
+constexpr double sliver_share = 0.1;
 
 void check(const DetailOptions& options) {
   if (!(options.rms >= 1e-6 && options.rms <= 0.1))
@@ -120,9 +124,11 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    normals_ = mark_detail_curves(surface.mesh);
-    require_whole_parts(surface.mesh);
-    return std::move(surface.mesh);
+    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_share * wanted_);
+    require_manifold(mesh);
+    normals_ = mark_detail_curves(mesh);
+    require_whole_parts(mesh);
+    return mesh;
   }
   void poll() const {
     if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Encoding was cancelled.");

@@ -213,10 +213,10 @@ struct EncodedDetail {
 /// Encodes an original without attributes, or with those that a base may have, whose seams become seams of the base,
 /// and with normals, whose style alone is kept. Boundaries become curves of the base, and so do the creases of
 /// mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it is parted, by at
-/// most a tenth of the wanted distance. The number of base faces, of levels and the steps are those, of the ones tried,
-/// that take the fewest bytes for the wanted distance; where it is not reached they come nearest to it (`reach`).
-/// Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded), cancelled, out_of_memory,
-/// and what build_mesh() throws.
+/// most a tenth of the wanted distance; slivers so small are removed. The number of base faces, of levels and the steps
+/// are those, of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached they come
+/// nearest to it (`reach`). Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded),
+/// cancelled, out_of_memory, and what build_mesh() throws.
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 

@@ -1,0 +1,155 @@
+#include "core/detail/slivers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/detail/seams.h"
+#include "core/detail/surface_distance.h"
+#include "papilio/refine.h"
+#include "proto/detail/pack.h"
+#include "tests/support/invariants.h"
+#include "tests/support/shapes.h"
+
+// Slivers of an original, as isosurfaces have them: removed before it is simplified.
+
+namespace papilio {
+namespace {
+
+TriangleMesh bumpy_sphere(int levels) {
+  Options options;
+  options.levels = levels;
+  options.tension = Tension::off;
+  TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
+  for (Vec3f& p : mesh.positions) {
+    const Vec3f n = (1 / length(p)) * p;
+    p = (1 + 0.1F * std::sin(5 * n.x) * std::sin(4 * n.y + 1) * std::sin(3 * n.z + 2)) * n;
+  }
+  return mesh;
+}
+
+uint32_t add_point(TriangleMesh& mesh, Vec3f place) {
+  mesh.positions.push_back(place);
+  return static_cast<uint32_t>(mesh.positions.size() - 1);
+}
+
+/// Puts a tiny triangle beside the first corner of every `period`-th face, and a flat one at its opposite side.
+TriangleMesh with_slivers(const TriangleMesh& mesh, uint32_t period, float size) {
+  TriangleMesh made = mesh;
+  made.triangles.clear();
+  for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (f % period > 0) {
+      made.triangles.push_back(mesh.triangles[f]);
+      continue;
+    }
+    const auto [a, b, c] = mesh.triangles[f];
+    const Vec3f at = mesh.positions[a];
+    const Vec3f to_b = mesh.positions[b] - at, to_c = mesh.positions[c] - at;
+    const uint32_t p = add_point(made, at + size * (to_b + to_c));
+    const uint32_t q = add_point(made, at + size * (2 * to_b + to_c));
+    const uint32_t r = add_point(made, at + size * (to_b + 2 * to_c));
+    const uint32_t s = add_point(made, at + (0.4F - size) * to_b + 0.6F * to_c);
+    for (const Triangle t :
+         {Triangle{p, q, r}, {a, q, p}, {a, p, r}, {a, b, q}, {a, r, c}, {q, b, s}, {q, s, r}, {r, s, c}, {b, c, s}})
+      made.triangles.push_back(t);
+  }
+  return made;
+}
+
+/// Shortest edge and least height of a face.
+double least_size(const TriangleMesh& mesh) {
+  double least = 1e9;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = to_double(mesh.positions[t[0]]), b = to_double(mesh.positions[t[1]]),
+                c = to_double(mesh.positions[t[2]]);
+    const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+    least = std::min(least, length(cross(b - a, c - a)) / longest);
+  }
+  return least;
+}
+
+TEST(Slivers, ARegularMeshStaysAsItIs) {
+  for (const TriangleMesh& mesh : {bumpy_sphere(3), test::torus(60, 30), test::grid(9, 7)})
+    EXPECT_EQ(remove_slivers(build_mesh(mesh), 1e-2).triangles(), build_mesh(mesh).triangles());
+}
+
+TEST(Slivers, AreRemovedAndNothingMovesFarther) {
+  constexpr double distance = 1e-3;
+  const TriangleMesh thin = with_slivers(bumpy_sphere(3), 7, 1e-4F);
+  ASSERT_LT(least_size(thin), 1e-4);
+  const Mesh made = remove_slivers(build_mesh(thin), distance);
+  EXPECT_TRUE(test::is_consistent(made));
+  EXPECT_EQ(made.topology.euler_characteristic(), 2);
+  EXPECT_EQ(std::ranges::count(made.topology.kind, EdgeKind::boundary), 0);
+  EXPECT_GT(least_size(made.triangles()), 1e-2);
+  EXPECT_LE(vertex_distance(SurfaceTree(thin), SurfaceTree(made.triangles())), distance);
+}
+
+TEST(Slivers, LargerThanTheDistanceStay) {
+  const Mesh thin = build_mesh(with_slivers(bumpy_sphere(3), 7, 1e-3F));
+  EXPECT_EQ(remove_slivers(thin, 1e-7).triangles(), thin.triangles());
+}
+
+TEST(Slivers, AtABoundaryGo) {
+  TriangleMesh sheet = test::grid(4, 4);
+  const auto [a, b, c] = sheet.triangles[0];
+  for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
+    // A flat face at each side of the first one that is on the boundary.
+    const Vec3f middle = 0.5F * (sheet.positions[from] + sheet.positions[to]);
+    if (middle.x > 0 && middle.y > 0) continue;
+    const Vec3f out{middle.x > 0 ? 0 : -1e-5F, middle.y > 0 ? 0 : -1e-5F, 0};
+    const uint32_t p = add_point(sheet, middle + out);
+    sheet.triangles.push_back({to, from, p});
+  }
+  const Mesh made = remove_slivers(build_mesh(sheet), 1e-3);
+  EXPECT_TRUE(test::is_consistent(made));
+  EXPECT_EQ(made.topology.euler_characteristic(), 1);
+}
+
+TEST(Slivers, SeamsStaySeams) {
+  TriangleMesh sphere = with_slivers(bumpy_sphere(3), 5, 1e-4F);
+  // Two charts, each with points of its own where x changes its sign.
+  Attribute chart{.components = 1, .values = {}};
+  TriangleMesh charts{.positions = {}, .triangles = {}};
+  std::array<std::vector<uint32_t>, 2> number;
+  for (auto& of_chart : number) of_chart.assign(sphere.positions.size(), none);
+  for (const Triangle& t : sphere.triangles) {
+    const float x = sphere.positions[t[0]].x + sphere.positions[t[1]].x + sphere.positions[t[2]].x;
+    const size_t side = x > 0 ? 1 : 0;
+    Triangle made{};
+    for (size_t i = 0; i < 3; ++i) {
+      uint32_t& point = number[side][t[i]];
+      if (point == none) {
+        point = add_point(charts, sphere.positions[t[i]]);
+        chart.values.push_back(static_cast<double>(side));
+      }
+      made[i] = point;
+    }
+    charts.triangles.push_back(made);
+  }
+  charts.attributes.push_back(chart);
+  const Mesh made = remove_slivers(build_mesh(charts), 1e-3);
+  EXPECT_TRUE(test::is_consistent(build_mesh(TriangleMesh{made.triangles().positions, made.triangles().triangles})));
+  EXPECT_EQ(made.topology.euler_characteristic(), 2);
+  EXPECT_LT(made.topology.face_count(), charts.triangles.size());
+  const CutSurface cut = cut_at_seams(made, seam_edges(made));
+  EXPECT_EQ(cut.topology.vertex_count - cut.topology.edge_count() + cut.topology.face_count(), 2U);  // two discs
+  for (uint32_t h = 0; h < made.topology.half_edge_count(); ++h) {
+    const auto value = [&](uint32_t at) { return made.attributes.attributes[0].values[made.attributes.point[at]]; };
+    EXPECT_EQ(value(h), value(Topology::next(h)));
+  }
+}
+
+TEST(Pack, AnOriginalWithSliversHasLevels) {
+  const proto::detail::Packed packed = proto::detail::pack(with_slivers(bumpy_sphere(4), 5, 2e-6F), {.rms = 1e-3});
+  ASSERT_TRUE(packed.model) << packed.reason;
+  EXPECT_LT(4 * packed.glb.size(), packed.plain_bytes);
+  EXPECT_LE(proto::detail::reach_of(*packed.model).rms, 1e-3);
+}
+
+}  // namespace
+}  // namespace papilio
