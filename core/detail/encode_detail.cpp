@@ -78,7 +78,7 @@ struct Trial {
   const BaseMesh* base = nullptr;
   CodedBase coded;
   std::vector<uint8_t> curves;  ///< of the base, coded
-  LiftedBase lifted;
+  LiftedBase lifted;            ///< empty once the trial is over
   int most_levels = 0;
   struct Choice {
     int levels = 0;
@@ -107,6 +107,7 @@ class DetailEncoder {
     std::optional<ResidualFit> best_fit;
     for (int tried = 0; tried < most_last_bases; ++tried) {
       Trial& last = trial(at);
+      lift(last);
       std::optional<ResidualFit> fit =
           find_step(last, turns_at_last, samples_at_last * samples_of_trial_, step_trials_at_last);
       if (best == nullptr || is_better_result(last.chosen.outcome, best->chosen.outcome)) {
@@ -207,6 +208,7 @@ class DetailEncoder {
     Trial& trial = found->second = start_trial(size);
     choose(trial);
     first_step_ = trial.chosen.step;
+    trial.lifted = {};  // of all trials at once they would be most of the memory
     return trial;
   }
 
@@ -218,7 +220,7 @@ class DetailEncoder {
     trial.base = &base;
     trial.coded = code_base_(points_of_base(base, original_.mesh()));
     trial.most_levels = most_levels(base.face.size());
-    trial.lifted = lift_base(*sequence_, base, trial.coded.triangles, original_, trial.most_levels, poller());
+    lift(trial);
     trial.curves = encode_base_curves(trial.lifted.mesh.topology);
     Trial::Choice& chosen = trial.chosen;
     chosen.levels = 1;
@@ -229,6 +231,9 @@ class DetailEncoder {
       chosen.floor = floor_of(trial);
       if (chosen.levels == trial.most_levels || chosen.floor <= largest_floor_of_trial * wanted_) return trial;
     }
+  }
+  void lift(Trial& trial) const {
+    trial.lifted = lift_base(*sequence_, *trial.base, trial.coded.triangles, original_, trial.most_levels, poller());
   }
   [[nodiscard]] double floor_of(const Trial& trial) const {
     return distance(fit(trial, fine_step * wanted_, 0), samples_of_trial_).rms;
