@@ -59,6 +59,8 @@ constexpr int most_last_bases = 3;
 /// A finer step is taken, by halves, while so many of the faces are turned over, it turns back this share of them, and
 /// there are at most so many times the bytes. Thin bevels of a truck at .1 %: 4.6 % more bytes, half of the folds.
 constexpr double least_folds = 0.005, least_turned_back = 0.1, most_growth = 1.06;
+/// Faces of another sheet are told from turned ones where their own is within so many wanted distances.
+constexpr double sheet_reach = 2;
 /// Vertices are parted by at most this share of the wanted distance.
 constexpr double parting_share = 0.1;
 /// Slivers of so small a share of the wanted distance are removed. No base could drop them: they turn at random, and
@@ -332,7 +334,8 @@ class DetailEncoder {
   void turn_faces_back(const Trial& trial, std::optional<ResidualFit>& best) const {
     const auto folds_of = [&](const ResidualFit& fit) {
       const SurfaceTree surface(fit.surface(fit.level_count()));
-      return count_folds(original_, surface) / static_cast<double>(surface.surface().triangles.size());
+      return count_folds(original_, surface, sheet_reach * wanted_) /
+             static_cast<double>(surface.surface().triangles.size());
     };
     const uint64_t others = trial.coded.bytes + trial.curves.size();
     const double most_bytes = most_growth * static_cast<double>(others + bytes_of(trial, *best));
@@ -361,7 +364,7 @@ class DetailEncoder {
       const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last * samples_of_trial_);
       const double largest = std::max(d.largest, vertex_distance(original_.tree(), surface));
       encoded.reach.push_back({d.rms / original_.diagonal(), largest / original_.diagonal()});
-      if (l == encoded.levels.size()) encoded.folds = count_folds(original_, surface);
+      if (l == encoded.levels.size()) encoded.folds = count_folds(original_, surface, sheet_reach * wanted_);
       progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));
     }
     return encoded;

@@ -7,6 +7,7 @@
 #include "core/detail/base_lift.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/detail_level.h"
+#include "core/detail/folds.h"
 #include "core/detail/surface_distance.h"
 #include "core/detail/surface_walk.h"
 #include "papilio/refine.h"
@@ -80,6 +81,21 @@ TEST(SurfaceDistance, OfVerticesIsThatOfASpikeWhichSamplesMiss) {
   EXPECT_LT(surface_distance(one, other, 200).largest, 0.4);
   EXPECT_NEAR(vertex_distance(one, other), 0.5, 1e-6);
   EXPECT_DOUBLE_EQ(vertex_distance(one, other), vertex_distance(other, one));
+}
+
+TEST(Folds, OfAThinPartAreNotItsOtherSheet) {
+  const TriangleMesh sheet = test::grid(9, 9);
+  TriangleMesh lower = test::join(sheet, sheet, 0);
+  for (size_t i = sheet.positions.size(); i < lower.positions.size(); ++i) lower.positions[i].z -= 0.01F;
+  for (size_t f = sheet.triangles.size(); f < lower.triangles.size(); ++f)
+    std::swap(lower.triangles[f][0], lower.triangles[f][1]);
+  const OriginalSurface original(build_mesh(lower));
+  TriangleMesh moved = sheet;  // nearer to the other sheet
+  for (Vec3f& p : moved.positions) p.z -= 0.008F;
+  EXPECT_EQ(count_folds(original, SurfaceTree(moved), 0.02), 0U);
+  EXPECT_EQ(count_folds(original, SurfaceTree(moved), 0.005), moved.triangles.size());
+  std::swap(moved.triangles[5][0], moved.triangles[5][1]);
+  EXPECT_EQ(count_folds(OriginalSurface(build_mesh(sheet)), SurfaceTree(moved), 0.02), 1U);
 }
 
 TEST(SurfaceWalk, ArrivesWhereTheLineMeetsTheSheet) {
