@@ -8,61 +8,39 @@
 namespace papilio {
 namespace {
 
-class Outline {
- public:
-  Outline(const LevelChoice& choice, const Selection& selection)
-      : choice_(choice), selection_(selection), mesh_(choice.level->mesh.topology) {}
-
-  Buffer<uint32_t> faces() {
-    find_wanted();
-    Buffer<uint32_t> faces = choice_.region.faces;
-    keep_if(faces, [&](uint32_t f) { return choice_.split_mask(f) != 7 && touches(has_wanted_, f); });
-    find_outline(faces);
-    keep_if(faces,
-            [&](uint32_t f) { return touches(is_on_outline_, f) && choice_.may_divide(f) && is_kept_by_view(f); });
-    return faces;
-  }
-
- private:
-  void find_wanted() {
-    has_wanted_.assign(mesh_.vertex_count, 0);
-    for (uint32_t e : choice_.candidates)
-      if (const uint32_t h = mesh_.half_edge[e]; selection_.may_have_long_halves(choice_.level->mesh, e))
-        has_wanted_[mesh_.origin[h]] = has_wanted_[mesh_.tip(h)] = 1;
-  }
-
-  [[nodiscard]] bool touches(const Buffer<uint8_t>& vertices, uint32_t f) const {
-    const uint32_t* corner = &mesh_.origin[size_t{3} * f];
+/// Finds the faces that add_faces_at_outline() adds.
+Buffer<uint32_t> faces_at_outline(const LevelChoice& choice, const Selection& selection) {
+  const Topology& mesh = choice.level->mesh.topology;
+  Buffer<uint8_t> has_wanted(mesh.vertex_count, 0);  // [V] at which an edge is wanted whose halves may be
+  for (uint32_t e : choice.candidates)
+    if (const uint32_t h = mesh.half_edge[e]; selection.may_have_long_halves(choice.level->mesh, e))
+      has_wanted[mesh.origin[h]] = has_wanted[mesh.tip(h)] = 1;
+  const auto touches = [&](const Buffer<uint8_t>& vertices, uint32_t f) {
+    const uint32_t* corner = &mesh.origin[size_t{3} * f];
     return (vertices[corner[0]] | vertices[corner[1]] | vertices[corner[2]]) != 0;
-  }
-
-  void find_outline(const Buffer<uint32_t>& faces) {
-    is_on_outline_.assign(mesh_.vertex_count, 0);
-    for (uint32_t f : faces)
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        if (choice_.shown[mesh_.edge[h]]) continue;
-        for (uint32_t end : {mesh_.origin[h], mesh_.tip(h)}) is_on_outline_[end] = has_wanted_[end];
-      }
-  }
-
-  [[nodiscard]] bool is_kept_by_view(uint32_t f) const {
-    const uint32_t* edge = &mesh_.edge[size_t{3} * f];
-    return std::any_of(edge, edge + 3, [&](uint32_t e) {
-      return choice_.split[e] == 0 && selection_.is_kept_by_view(choice_.level->mesh, choice_.shown, e);
-    });
-  }
-
-  const LevelChoice& choice_;
-  const Selection& selection_;
-  const Topology& mesh_;
-  Buffer<uint8_t> has_wanted_;     ///< [V] at which an edge is wanted whose halves may be
-  Buffer<uint8_t> is_on_outline_;  ///< [V] those of them at which another edge is not shown
-};
+  };
+  Buffer<uint32_t> faces = choice.region.faces;
+  keep_if(faces, [&](uint32_t f) { return choice.split_mask(f) != 7 && touches(has_wanted, f); });
+  Buffer<uint8_t> is_on_outline(mesh.vertex_count, 0);  // [V] those of them at which another edge is not shown
+  for (uint32_t f : faces)
+    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+      if (choice.shown[mesh.edge[h]]) continue;
+      for (uint32_t end : {mesh.origin[h], mesh.tip(h)}) is_on_outline[end] = has_wanted[end];
+    }
+  const auto is_kept_by_view = [&](uint32_t e) {
+    return choice.split[e] == 0 && selection.is_kept_by_view(choice.level->mesh, choice.shown, e);
+  };
+  keep_if(faces, [&](uint32_t f) {
+    const uint32_t* edge = &mesh.edge[size_t{3} * f];
+    return touches(is_on_outline, f) && choice.may_divide(f) && std::any_of(edge, edge + 3, is_kept_by_view);
+  });
+  return faces;
+}
 
 }  // namespace
 
 void add_faces_at_outline(LevelChoice& choice, const Selection& selection, Buffer<uint32_t>& red) {
-  choice.at_outline = Outline(choice, selection).faces();
+  choice.at_outline = faces_at_outline(choice, selection);
   const Buffer<uint32_t> divided = std::move(red);
   red = Buffer<uint32_t>(divided.size() + choice.at_outline.size());
   std::ranges::merge(divided, choice.at_outline, red.begin());
