@@ -32,70 +32,51 @@ std::vector<float> largest_moves(const DetailLevel& level, const Residuals& resi
   return made;
 }
 
-/// The sphere and the cone of the faces of a surface, by the pieces that they lie below.
-class BoundsFinder {
- public:
-  /// `levels`: of the surface below the base.
-  BoundsFinder(const TriangleMesh& surface, size_t levels, const PieceOrder& order, uint32_t pieces)
-      : surface_(surface), levels_(levels), order_(order), pieces_(pieces) {}
-
-  std::vector<PieceBounds> run() {
-    struct Sums {
-      Box box;
-      bool is_empty = true;
-      Vec3d normals{};
-    };
-    std::vector<Sums> sums(pieces_);
-    for_each_face([&](uint32_t piece, const std::array<Vec3f, 3>& corners, Vec3d normal) {
-      Sums& sum = sums[piece];
-      for (const Vec3f p : corners) {
-        if (sum.is_empty) sum.box = {p, p};
-        sum.is_empty = false;
-        for (float Vec3f::*axis : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
-          sum.box.min.*axis = std::min(sum.box.min.*axis, p.*axis);
-          sum.box.max.*axis = std::max(sum.box.max.*axis, p.*axis);
-        }
-      }
-      sum.normals = sum.normals + normal;
-    });
-    std::vector<PieceBounds> made(pieces_);
-    for (uint32_t p = 0; p < pieces_; ++p) {
-      const double size = length(sums[p].normals);
-      made[p].centre = 0.5F * (sums[p].box.min + sums[p].box.max);
-      made[p].axis = size > 0 ? to_float(1 / size * sums[p].normals) : Vec3f{0, 0, 1};
-      made[p].least_cosine = 1;
-    }
-    for_each_face([&](uint32_t piece, const std::array<Vec3f, 3>& corners, Vec3d normal) {
-      PieceBounds& bounds = made[piece];
-      for (const Vec3f p : corners)
-        bounds.radius = std::max(bounds.radius, rounded_up(length(to_double(p) - to_double(bounds.centre))));
-      if (length(normal) == 0) return;  // it has none
-      const double cosine = dot(normal, to_double(bounds.axis)) - margin;
-      bounds.least_cosine = std::min(bounds.least_cosine, std::max(-1.0F, -rounded_up(-cosine)));
-    });
-    return made;
-  }
-
- private:
-  static Vec3f to_float(Vec3d a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
-  /// visit(piece, corners, unit normal)
-  template <class Visit>
-  void for_each_face(const Visit& visit) const {
-    for (uint32_t f = 0; f < surface_.triangles.size(); ++f) {
-      const Triangle& t = surface_.triangles[f];
-      const std::array<Vec3f, 3> corners{surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
+/// The sphere and the cone of the faces of a surface, so many levels below the base, by the pieces that they lie below.
+std::vector<PieceBounds> bounds_of(const TriangleMesh& surface, size_t levels, const PieceOrder& order,
+                                   uint32_t pieces) {
+  // Calls visit(piece, corners, unit normal).
+  const auto for_each_face = [&](const auto& visit) {
+    for (uint32_t f = 0; f < surface.triangles.size(); ++f) {
+      const Triangle& t = surface.triangles[f];
+      const std::array<Vec3f, 3> corners{surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
       const Vec3d a = to_double(corners[0]);
       const Vec3d area = cross(to_double(corners[1]) - a, to_double(corners[2]) - a);
       const double size = length(area);
-      visit(order_.piece_of(f >> (2 * levels_), pieces_), corners, size > 0 ? 1 / size * area : Vec3d{});
+      visit(order.piece_of(f >> (2 * levels), pieces), corners, size > 0 ? 1 / size * area : Vec3d{});
     }
+  };
+  struct Sums {
+    Box box = bounding_box({});
+    Vec3d normals{};
+  };
+  std::vector<Sums> sums(pieces);
+  for_each_face([&](uint32_t piece, const std::array<Vec3f, 3>& corners, Vec3d normal) {
+    Sums& sum = sums[piece];
+    for (const Vec3f p : corners)
+      for (float Vec3f::*axis : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+        sum.box.min.*axis = std::min(sum.box.min.*axis, p.*axis);
+        sum.box.max.*axis = std::max(sum.box.max.*axis, p.*axis);
+      }
+    sum.normals = sum.normals + normal;
+  });
+  std::vector<PieceBounds> made(pieces);
+  for (uint32_t p = 0; p < pieces; ++p) {
+    const double size = length(sums[p].normals);
+    made[p].centre = 0.5F * (sums[p].box.min + sums[p].box.max);
+    made[p].axis = size > 0 ? to_float(1 / size * sums[p].normals) : Vec3f{0, 0, 1};
+    made[p].least_cosine = 1;
   }
-
-  const TriangleMesh& surface_;
-  size_t levels_;
-  const PieceOrder& order_;
-  uint32_t pieces_;
-};
+  for_each_face([&](uint32_t piece, const std::array<Vec3f, 3>& corners, Vec3d normal) {
+    PieceBounds& bounds = made[piece];
+    for (const Vec3f p : corners)
+      bounds.radius = std::max(bounds.radius, rounded_up(length(to_double(p) - to_double(bounds.centre))));
+    if (length(normal) == 0) return;  // it has none
+    const double cosine = dot(normal, to_double(bounds.axis)) - margin;
+    bounds.least_cosine = std::min(bounds.least_cosine, std::max(-1.0F, -rounded_up(-cosine)));
+  });
+  return made;
+}
 
 /// Adds a piece's bytes to those of all, and returns how many.
 uint32_t append(std::vector<uint8_t>& all, const std::vector<uint8_t>& piece) {
@@ -144,7 +125,7 @@ std::vector<DetailStream> encode_pieces(const ResidualFit& fit, const PieceOrder
     }
     const EdgePieces edges = order.edges(fit.level(l).topology(), fit.level(l).number(), counts[l]);
     const std::vector<float> moves = largest_moves(fit.level(l), fit.residuals(l), edges);
-    const std::vector<PieceBounds> bounds = BoundsFinder(surface, fit.level_count(), order, counts[l]).run();
+    const std::vector<PieceBounds> bounds = bounds_of(surface, fit.level_count(), order, counts[l]);
     for (size_t p = 0; p < pieces.size(); ++p) {
       pieces[p].bounds = bounds[p];
       pieces[p].bounds.largest_move = moves[p];
