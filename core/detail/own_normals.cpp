@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "detail/sharp_curves.h"
+#include "mesh/attributes.h"
 #include "mesh/hinge.h"
 #include "mesh/surface_normals.h"
 
@@ -26,44 +27,24 @@ double angle_between(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), 
 
 bool are_normals(const Attribute& attribute) { return attribute.components == 3 && attribute.unit_length; }
 
-/// Normals at the corners of a mesh.
-class CornerNormals {
- public:
-  CornerNormals(const Mesh& mesh, const Attribute& normals)
-      : topology_(mesh.topology), mesh_(mesh), normals_(normals) {}
-
-  /// Returns the angles between the normals of an edge's two faces at its ends, the smaller one first.
-  [[nodiscard]] std::pair<double, double> angles(uint32_t h) const {
-    const uint32_t twin = topology_.twin[h];
-    return std::minmax(
-        {angle_between(at(h), at(Topology::next(twin))), angle_between(at(Topology::next(h)), at(twin))});
-  }
-
- private:
-  [[nodiscard]] Vec3d at(uint32_t h) const {
-    const double* value = &normals_.values[size_t{3} * mesh_.attributes.point[h]];
-    return {value[0], value[1], value[2]};
-  }
-
-  const Topology& topology_;
-  const Mesh& mesh_;
-  const Attribute& normals_;
-};
-
 }  // namespace
 
 OwnNormals find_own_normals(const Mesh& mesh) {
   const Topology& t = mesh.topology;
   const auto normals = std::ranges::find_if(mesh.attributes.attributes, are_normals);
   if (normals == mesh.attributes.attributes.end()) return {};
-  const CornerNormals corners(mesh, *normals);
+  const auto angle = [&](uint32_t h, uint32_t other) {
+    const Buffer<uint32_t>& point = mesh.attributes.point;
+    return angle_between(vector_at(*normals, point[h]), vector_at(*normals, point[other]));
+  };
   OwnNormals found{.style = NormalStyle::smooth, .is_hard = std::vector<bool>(t.edge_count())};
   uint32_t inner = 0, bent = 0, faceted = 0, hard = 0;
   for (uint32_t e = 0; e < t.edge_count(); ++e) {
     const uint32_t h = t.half_edge[e];
-    if (t.twin[h] == none) continue;
+    const uint32_t twin = t.twin[h];
+    if (twin == none) continue;
     ++inner;
-    const auto [least, most] = corners.angles(h);
+    const auto [least, most] = std::minmax({angle(h, Topology::next(twin)), angle(Topology::next(h), twin)});
     found.is_hard[e] = most > hard_angle;
     hard += found.is_hard[e] ? 1 : 0;
     const double turn = std::acos(std::clamp(Hinge(t, mesh.positions, h).cosine(), -1.0, 1.0));

@@ -17,6 +17,12 @@ void check_attributes(const TriangleMesh& input);
 [[nodiscard]] PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mesh,
                                                 const std::vector<uint32_t>& corner_point);
 
+/// The values of a point, of an attribute of three components.
+[[nodiscard]] inline Vec3d vector_at(const Attribute& attribute, uint32_t point) {
+  const double* value = &attribute.values[size_t{3} * point];
+  return {value[0], value[1], value[2]};
+}
+
 /// Whether the two faces at a half-edge that has a twin have different points at its ends. None have without
 /// attributes.
 [[nodiscard]] inline bool is_seam(const Topology& mesh, const PointAttributes& attributes, uint32_t h) {

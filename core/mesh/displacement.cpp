@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "mesh/attributes.h"
+
 namespace papilio {
 
 Displacements displacements_at_vertices(const Mesh& mesh) {
@@ -14,8 +16,7 @@ Displacements displacements_at_vertices(const Mesh& mesh) {
     Buffer<Vec3d>& at = out.back().at;
     Buffer<uint8_t> is_set(mesh.topology.vertex_count, 0);
     for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
-      const double* value = &attribute.values[size_t{3} * mesh.attributes.point[h]];
-      const Vec3d of_point{value[0], value[1], value[2]};
+      const Vec3d of_point = vector_at(attribute, mesh.attributes.point[h]);
       const uint32_t v = mesh.topology.origin[h];
       if (is_set[v] == 0)
         at[v] = of_point;

@@ -9,16 +9,12 @@
 
 #include "base/sort.h"
 #include "base/trigonometry.h"
+#include "mesh/attributes.h"
 #include "mesh/normals.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
 namespace {
-
-Vec3d value_at(const Attribute& attribute, uint32_t point) {
-  const double* v = &attribute.values[size_t{3} * point];
-  return {v[0], v[1], v[2]};
-}
 
 void put_value(Attribute& attribute, uint32_t point, Vec3d value) {
   double* v = &attribute.values[size_t{3} * point];
@@ -45,7 +41,7 @@ std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attri
   for (uint32_t p = 0; p < order.size(); ++p) order[p] = equal[p] = p;
   if (points.point_count == mesh.topology.vertex_count) return equal;
   const auto place = [&](uint32_t p) {
-    const Vec3d v = value_at(attribute, p);
+    const Vec3d v = vector_at(attribute, p);
     return std::tuple{vertex[p], v.x, v.y, v.z, p};
   };
   sort_range(order, [&](uint32_t p, uint32_t q) { return place(p) < place(q); });
@@ -55,7 +51,7 @@ std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attri
     if (i > 0 && vertex[order[i - 1]] != vertex[p]) kept.clear();
     const auto first = kept.begin() + static_cast<ptrdiff_t>(kept.size() - std::min(kept.size(), most_compared));
     const auto same = std::find_if(first, kept.end(), [&](uint32_t other) {
-      return are_same(value_at(attribute, other), value_at(attribute, p));
+      return are_same(vector_at(attribute, other), vector_at(attribute, p));
     });
     if (same == kept.end())
       kept.push_back(p);
@@ -127,7 +123,7 @@ void renew_normals(Mesh& mesh, size_t number) {
   const std::vector<Vec3d> sums =
       sum_normals(mesh, mesh.attributes.point_count, [&](uint32_t h) { return equal[point[h]]; });
   double agreement = 0;
-  for (uint32_t p = 0; p < sums.size(); ++p) agreement += dot(sums[p], value_at(attribute, p));
+  for (uint32_t p = 0; p < sums.size(); ++p) agreement += dot(sums[p], vector_at(attribute, p));
   for (uint32_t p = 0; p < sums.size(); ++p) {
     const Vec3d sum = sums[equal[p]];
     const double size = length(sum);
