@@ -21,8 +21,8 @@ class LevelMaker {
       : above_(above),
         mesh_(above.mesh.topology),
         faces_(with_neighbours(mesh_, red)),
-        edges_(used_by_faces(mesh_.edge, mesh_.edge_count())),
-        vertices_(used_by_faces(mesh_.origin, mesh_.vertex_count)) {}
+        edges_(used_by_faces(faces_.numbers(), mesh_.edge, mesh_.edge_count())),
+        vertices_(used_by_faces(faces_.numbers(), mesh_.origin, mesh_.vertex_count)) {}
 
   LevelBelow run(int threads) {
     Topology part = held_part();
@@ -42,16 +42,6 @@ class LevelMaker {
   }
 
  private:
-  /// Marks what the half-edges of the faces have in `of` [H].
-  [[nodiscard]] Buffer<uint8_t> used_by_faces(const Buffer<uint32_t>& of, uint32_t count) const {
-    Buffer<uint8_t> used(count, 0);
-    uint8_t* marks = used.data();  // not read again at each mark
-    const uint32_t* of_half_edge = of.data();
-    for (uint32_t f : faces_.numbers())
-      for (uint32_t i = 0; i < 3; ++i) marks[of_half_edge[3 * f + i]] = 1;
-    return used;
-  }
-
   /// The faces that get children, as a mesh of their own; where others are missing, edges are cut.
   [[nodiscard]] Topology held_part() const {
     Topology part;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/ranks.h"
+#include "mesh/region.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -9,7 +10,9 @@ namespace papilio {
 /// do all other edges: whoever follows a twin out of the part comes to a face that is there, but means nothing.
 struct Part {
   /// The faces marked. [F]
-  Part(const Topology& mesh, const Buffer<uint8_t>& marks);
+  Part(const Topology& mesh, const Buffer<uint8_t>& marks)
+      : faces(marks, Ranks::Others::alike),
+        edges(used_by_faces(faces.numbers(), mesh.edge, mesh.edge_count()), Ranks::Others::alike) {}
 
   Ranks faces, edges;
 

@@ -14,6 +14,15 @@ Region whole_region(const Topology& mesh) {
 
 Buffer<uint32_t> Region::edges() const { return marked(has_edge); }
 
+Buffer<uint8_t> used_by_faces(const Buffer<uint32_t>& faces, const Buffer<uint32_t>& of, uint32_t count) {
+  Buffer<uint8_t> used(count, 0);
+  uint8_t* marks = used.data();  // not read again at each mark
+  const uint32_t* of_half_edge = of.data();
+  for (uint32_t f : faces)
+    for (uint32_t i = 0; i < 3; ++i) marks[of_half_edge[3 * f + i]] = 1;
+  return used;
+}
+
 Buffer<uint32_t> shared_half_edges(const Topology& mesh) {
   Buffer<uint32_t> shared;
   if (std::ranges::find(mesh.kind, EdgeKind::shared) == mesh.kind.end()) return shared;

@@ -34,6 +34,9 @@ void keep_if(Buffer<uint32_t>& numbers, const IsWanted& is_wanted) {
 /// The numbers of what is marked, in ascending order. Marks are 0 or 1.
 [[nodiscard]] Buffer<uint32_t> marked(const Buffer<uint8_t>& marks);
 
+/// Marks what the half-edges of some faces have in `of` [H], numbers below `count`: their corners or edges.
+[[nodiscard]] Buffer<uint8_t> used_by_faces(const Buffer<uint32_t>& faces, const Buffer<uint32_t>& of, uint32_t count);
+
 /// The half-edges at shared edges, in ascending order.
 [[nodiscard]] Buffer<uint32_t> shared_half_edges(const Topology& mesh);
 
