@@ -184,13 +184,13 @@ class Assembler {
 
   /// With one or two sides split.
   void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
-    const uint8_t pattern = choose_transition(*level.choice, f, mask, most_cosine_);
+    const bool second_diagonal = takes_second_diagonal(*level.choice, f, mask, most_cosine_);
     const CutFace face(level, f, mask, corner, side);
     if (has_two_targets(mask))
-      cut_in_three(level, face, pattern % 2 != 0);
+      cut_in_three(level, face, second_diagonal);
     else
       cut_in_two(face);
-    end_face(level, f, transition_pattern(pattern));
+    end_face(level, f, split_pattern(mask, second_diagonal));
   }
 
   /// The pieces, here and below, are those of split_pattern.cpp, in their order.

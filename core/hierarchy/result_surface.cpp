@@ -30,7 +30,7 @@ Corners new_vertices_of(const LevelChoice& choice, uint32_t face, const Corners&
 }
 
 bool ResultSurface::has_second_diagonal(uint32_t k, uint32_t f, unsigned mask) const {
-  return choose_transition(choice(k), f, mask, most_cosine_) % 2 != 0;
+  return takes_second_diagonal(choice(k), f, mask, most_cosine_);
 }
 
 void ResultSurface::find_pieces(const LevelFace& leaf, std::vector<TriangleCorners>& pieces) const {

@@ -26,16 +26,15 @@ struct Transition {
   [[nodiscard]] static uint32_t find(const LevelChoice& choice, uint32_t face, unsigned mask, double most_cosine);
 };
 
-/// The pattern for such a face: of the two ways to cut a quadrangle, the one whose smallest angle is larger; where they
-/// are equal, the diagonal from the lower corner. Returned as a pattern number = 2 * mask + (second diagonal ? 1 : 0).
-[[nodiscard]] inline uint8_t choose_transition(const LevelChoice& choice, uint32_t face, unsigned mask,
-                                               double most_cosine) {
+/// Whether such a face is cut by the second diagonal (split_pattern()): of the two ways to cut a quadrangle, the one
+/// whose smallest angle is larger; where they are equal, the diagonal from the lower corner. False with one split edge.
+[[nodiscard]] inline bool takes_second_diagonal(const LevelChoice& choice, uint32_t face, unsigned mask,
+                                                double most_cosine) {
   uint32_t bits = Transition::known(choice, face, mask);
   if (bits == 0) [[unlikely]]
     bits = Transition::find(choice, face, mask, most_cosine);
-  return static_cast<uint8_t>(2 * mask + bits / Transition::second_diagonal % 2);
+  return (bits & Transition::second_diagonal) != 0;
 }
-[[nodiscard]] inline const SplitPattern& transition_pattern(uint8_t number) { return split_patterns[number]; }
 
 /// The smallest angle of the mesh's faces, in radians; 0 for one without area.
 [[nodiscard]] double smallest_angle(const Mesh& mesh);
