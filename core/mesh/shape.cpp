@@ -1,12 +1,13 @@
 #include "mesh/shape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/disjoint_sets.h"
 #include "base/trigonometry.h"
 #include "mesh/crease.h"
+#include "mesh/curve.h"
+#include "mesh/fan.h"
 #include "mesh/hinge.h"
 #include "mesh/smoothing_groups.h"
 
@@ -142,23 +143,16 @@ class ShapeFinder {
   }
 
   void find_corners() {
-    struct Curve {
-      uint32_t edges = 0;  // that meet here
-      std::array<uint32_t, 2> ends{none, none};
-    };
-    std::vector<Curve> curves(topology_.vertex_count);
-    Buffer<uint8_t> is_mechanical(topology_.vertex_count, 0);
-    const auto join = [&](uint32_t v, uint32_t other) {
-      Curve& curve = curves[v];
-      if (curve.edges < 2) curve.ends[curve.edges] = other;
-      ++curve.edges;
-    };
+    const auto is_curve = [&](uint32_t e) { return topology_.kind[e] != EdgeKind::smooth; };
+    const VertexDegrees curves(topology_, is_curve);
+    Buffer<uint32_t> last(topology_.vertex_count, none);  // the other end of the last edge of a curve at the vertex
     for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
-      if (topology_.kind[e] == EdgeKind::smooth) continue;
+      if (!is_curve(e)) continue;
       const uint32_t h = topology_.half_edge[e];
-      join(topology_.origin[h], topology_.tip(h));
-      join(topology_.tip(h), topology_.origin[h]);
+      last[topology_.origin[h]] = topology_.tip(h);
+      last[topology_.tip(h)] = topology_.origin[h];
     }
+    Buffer<uint8_t> is_mechanical(topology_.vertex_count, 0);
     for (uint32_t h = 0; h < topology_.half_edge_count(); ++h)
       is_mechanical[topology_.origin[h]] |= is_mechanical_[Topology::face(h)];
     const auto turns = [&](uint32_t v, uint32_t before, uint32_t after) {
@@ -168,9 +162,9 @@ class ShapeFinder {
       return dot(u, w) < sharp_cosine_ * length(u) * length(w);
     };
     for (uint32_t v = 0; v < topology_.vertex_count; ++v) {
-      const auto& [edges, ends] = curves[v];
-      if (is_mechanical[v] == 0 || edges == 0 || std::ranges::binary_search(topology_.darts, v)) continue;
-      if (edges != 2 || turns(v, ends[0], ends[1])) topology_.shape.corners.push_back(v);
+      if (is_mechanical[v] == 0 || curves.degree[v] == 0 || is_dart(topology_, v)) continue;
+      if (curves.degree[v] != 2 || turns(v, curves.neighbours[v] ^ last[v], last[v]))
+        topology_.shape.corners.push_back(v);
     }
   }
 
