@@ -195,12 +195,12 @@ class SliverRemover {
   [[nodiscard]] std::vector<uint32_t> moved_points(const Ring& ring, uint32_t h, uint32_t onto) const {
     const auto point_at = [&](uint32_t side) { return origin_[side] == onto ? point_[side] : point_[next(side)]; };
     const auto seams = std::ranges::count_if(ring.spokes, [&](uint32_t spoke) { return is_seam(spoke); });
-    if (seams == 0) return std::vector<uint32_t>(ring.spokes.size(), point_at(h));
+    std::vector<uint32_t> points(ring.spokes.size(), point_at(h));
+    if (seams == 0) return points;
     if (seams != 2 || !ring.is_closed() || !is_seam(h)) return {};
     // Half-edges that leave the vertex and run along the edge of h.
     const auto start = std::ranges::find_if(ring.spokes, [&](uint32_t spoke) { return tip(spoke) == onto; });
     const auto first = static_cast<size_t>(start - ring.spokes.begin());
-    std::vector<uint32_t> points(ring.spokes.size());
     uint32_t point = point_at(*start);
     for (size_t k = 0; k < points.size(); ++k) {
       const size_t i = (first + k) % points.size();
