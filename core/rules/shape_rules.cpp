@@ -16,19 +16,31 @@ double squared_height(const Mesh& mesh, uint32_t f) {
   return longest > 0 ? dot(normal, normal) / longest : 0;
 }
 
+/// Whether the faces at h are surely not in one plane: most are spared the exact answer.
+bool is_surely_bent(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t h) {
+  const Topology& topology = mesh.topology;
+  const uint32_t t = topology.twin[h];
+  const Vec3f a = mesh.positions[topology.origin[h]];
+  const auto is_beside = [&](uint32_t side, uint32_t apex) {
+    const Vec3f off = mesh.positions[topology.apex(apex)] - a;
+    return static_cast<double>(std::abs(dot(normals[Topology::face(side)], off))) > 2 * topology.shape.flat_distance;
+  };
+  return is_beside(h, t) && is_beside(t, h);
+}
+
 /// Along u without what it has along `unit`, of length one.
 Vec3d without(Vec3d u, Vec3d unit) { return u - dot(u, unit) * unit; }
 
 }  // namespace
 
-ShapeField shape_field(const Mesh& mesh) {
+ShapeField shape_field(const Mesh& mesh, const Buffer<Vec3f>& normals) {
   const Topology& topology = mesh.topology;
   ShapeField field{.is_flat = Buffer<uint8_t>(topology.edge_count(), 0),
                    .squared_height = Buffer<double>::for_overwrite(topology.face_count())};
   for (uint32_t f = 0; f < topology.face_count(); ++f) field.squared_height[f] = squared_height(mesh, f);
   for (uint32_t e = 0; e < topology.edge_count(); ++e) {
     const uint32_t h = topology.half_edge[e];
-    if (topology.kind[e] != EdgeKind::smooth) continue;
+    if (topology.kind[e] != EdgeKind::smooth || is_surely_bent(mesh, normals, h)) continue;
     field.is_flat[e] = Hinge(topology, mesh.positions, h).is_flat(topology.shape.flat_distance) ? 1 : 0;
   }
   return field;

@@ -23,8 +23,8 @@ struct ShapeField {
   Buffer<double> squared_height;  ///< [F] of the least height of the face
 };
 
-/// Of a level whose `Topology::shape` has rules. O(E).
-[[nodiscard]] ShapeField shape_field(const Mesh& mesh);
+/// Of a level whose `Topology::shape` has rules; `normals` [F] are its faces'. O(E).
+[[nodiscard]] ShapeField shape_field(const Mesh& mesh, const Buffer<Vec3f>& normals);
 
 /// Whether the faces of the stencil of h, whose edge is smooth, lie in one plane: its two faces and those across their
 /// other sides, as far as there is no curve between. The edge's midpoint is on the surface then, and keeps the angles.

@@ -24,7 +24,7 @@ TensionField tension_field(const Mesh& mesh, const Buffer<Vec3f>& normals, Tensi
     if (has_normal(n1) && has_normal(n2)) field.factor[e] = static_cast<float>(hinge_factor(dot(n1, n2)));
   }
   if (field.follow_features) field.features = {topology, [&](uint32_t e) { return field.is_sharp(e); }};
-  if (topology.shape.has_rules) field.shape = shape_field(mesh);
+  if (topology.shape.has_rules) field.shape = shape_field(mesh, normals);
   return field;
 }
 
