@@ -22,6 +22,7 @@
 #include "detail/placement.h"
 #include "detail/residual_fit.h"
 #include "detail/slivers.h"
+#include "detail/step_search.h"
 #include "detail/surface_distance.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
@@ -50,10 +51,6 @@ constexpr int weighting_passes = 3;
 /// Of a surface whose distance is measured in a trial: so many a face of the original, within bounds.
 constexpr uint32_t samples_a_face = 2, least_samples = 5'000, most_samples = 20'000;
 constexpr uint32_t samples_at_last = 3;  ///< for each of a trial
-/// No step leaves the wanted distance where exact residuals leave more than this share of it.
-constexpr double largest_floor = 0.9;
-/// Bytes of the residuals go about with this power of 1 / step. A larger distance saves no more than this power of it.
-constexpr double bytes_by_step = 0.8, bytes_by_distance = 1.2;
 /// Larger bases that are tried where more samples show that a distance is not reached.
 constexpr int most_last_bases = 3;
 /// A finer step is taken, by halves, while so many of the faces are turned over, it turns back this share of them, and
@@ -279,21 +276,6 @@ class DetailEncoder {
     return surface_distance(original_.tree(), SurfaceTree(fit.surface(fit.level_count())), samples);
   }
 
-  /// Step that should leave the wanted distance, where `step` leaves `rms`: the error's square is taken for the sum of
-  /// the floor's and of one in proportion to the step's.
-  [[nodiscard]] double expected_step(double step, double rms, double floor) const {
-    floor = std::min(floor, largest_floor * wanted_);
-    const double of_step = std::max(rms * rms - floor * floor, 0.01 * rms * rms);
-    return step * std::clamp(0.99 * std::sqrt((wanted_ * wanted_ - floor * floor) / of_step), 0.3, 3.0);
-  }
-
-  /// Bytes of the residuals at the wanted distance, as a share of those that a choice has.
-  [[nodiscard]] double expected_share(const Trial::Choice& choice) const {
-    const double rms = choice.outcome.rms;
-    const double by_step = std::pow(choice.step / expected_step(choice.step, rms, choice.floor), bytes_by_step);
-    return std::max(by_step, std::pow(rms / wanted_, bytes_by_distance));
-  }
-
   /// Finds the step that leaves the wanted distance.
   std::optional<ResidualFit> find_step(Trial& trial, int turns_a_level, uint32_t samples, int step_count) {
     if (trial.chosen.step == 0) trial.chosen.step = first_step_;
@@ -310,15 +292,16 @@ class DetailEncoder {
         best.emplace(std::move(made));
       }
       if (is_reached && rms >= least_share * wanted_) break;
-      step = expected_step(step, rms, trial.chosen.floor);
+      step = expected_step(step, rms, trial.chosen.floor, wanted_);
     }
     const uint64_t streams = bytes_of(trial, *best);
     Outcome& outcome = trial.chosen.outcome;
     outcome.bytes = trial.coded.bytes + trial.curves.size() + streams;
-    outcome.expected_bytes =
-        trial.chosen.floor < wanted_ || outcome.is_reached
-            ? static_cast<double>(outcome.bytes - streams) + static_cast<double>(streams) * expected_share(trial.chosen)
-            : std::numeric_limits<double>::infinity();
+    outcome.expected_bytes = trial.chosen.floor < wanted_ || outcome.is_reached
+                                 ? static_cast<double>(outcome.bytes - streams) +
+                                       static_cast<double>(streams) *
+                                           expected_share(trial.chosen.step, outcome.rms, trial.chosen.floor, wanted_)
+                                 : std::numeric_limits<double>::infinity();
     return best;
   }
 
