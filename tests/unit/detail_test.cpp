@@ -15,6 +15,7 @@
 #include "papilio/error.h"
 #include "papilio/refine.h"
 #include "server/sha256.h"
+#include "tests/support/bumpy_sphere.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
@@ -33,18 +34,6 @@ Fault fault_of(const std::function<void()>& call) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return Fault::cancelled;
-}
-
-TriangleMesh bumpy_sphere(int levels) {
-  Options options;
-  options.levels = levels;
-  options.tension = Tension::off;
-  TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
-  for (Vec3f& p : mesh.positions) {
-    const Vec3f n = (1 / length(p)) * p;
-    p = (1 + 0.1F * std::sin(5 * n.x) * std::sin(4 * n.y + 1) * std::sin(3 * n.z + 2)) * n;
-  }
-  return mesh;
 }
 
 void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, double wanted) {
@@ -66,7 +55,7 @@ void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, do
 }
 
 TEST(Detail, OfASmoothSurfaceReachesTheDistanceThatItStates) {
-  for (const TriangleMesh& original : {bumpy_sphere(4), test::torus(60, 30)}) {
+  for (const TriangleMesh& original : {test::bumpy_sphere(4), test::torus(60, 30)}) {
     DetailOptions options;
     options.rms = 1e-3;
     const EncodedDetail encoded = encode_detail(original, options, keep_base);
@@ -94,7 +83,7 @@ TEST(Detail, OfSharpEdgesReachesTheDistanceThatItStates) {
 }
 
 TEST(Detail, KeepsTopology) {
-  const TriangleMesh original = test::join(bumpy_sphere(3), test::torus(30, 15), 4);
+  const TriangleMesh original = test::join(test::bumpy_sphere(3), test::torus(30, 15), 4);
   DetailOptions options;
   options.rms = 4e-3;
   const EncodedDetail encoded = encode_detail(original, options, keep_base);
@@ -104,7 +93,7 @@ TEST(Detail, KeepsTopology) {
 }
 
 TEST(Detail, IsDeterministic) {
-  const TriangleMesh original = bumpy_sphere(3);
+  const TriangleMesh original = test::bumpy_sphere(3);
   DetailOptions options;
   options.rms = 4e-3;
   const EncodedDetail one = encode_detail(original, options, keep_base);
@@ -116,7 +105,7 @@ TEST(Detail, IsDeterministic) {
 
 /// A vertex is at the same place however many levels follow.
 TEST(Detail, VerticesStayWhereTheyAre) {
-  const TriangleMesh original = bumpy_sphere(3);
+  const TriangleMesh original = test::bumpy_sphere(3);
   DetailOptions options;
   options.rms = 2e-3;
   const EncodedDetail encoded = encode_detail(original, options, keep_base);
@@ -130,7 +119,7 @@ TEST(Detail, VerticesStayWhereTheyAre) {
 /// The butterfly reproduces smooth surfaces to a higher order than flat faces do: residuals of a finely sampled sphere
 /// and torus shrink level by level, by 4 at least, the factor of midpoints.
 TEST(Detail, ResidualsOfSmoothSurfacesShrink) {
-  for (const TriangleMesh& triangles : {bumpy_sphere(6), test::torus(300, 150)}) {
+  for (const TriangleMesh& triangles : {test::bumpy_sphere(6), test::torus(300, 150)}) {
     const OriginalSurface original(build_mesh(triangles));
     CollapseSequence sequence(original.mesh());
     sequence.collapse_to(400);
@@ -204,7 +193,7 @@ TEST(Detail, DecodesToTheRecordedBits) {
 
 TEST(Detail, SaysWhatItCannotTake) {
   const DetailOptions options;
-  const TriangleMesh sphere = bumpy_sphere(2);
+  const TriangleMesh sphere = test::bumpy_sphere(2);
   EXPECT_EQ(fault_of([&] { (void)encode_detail({}, options, keep_base); }), Fault::no_faces);
   for (const double rms : {0.0, -1.0, 0.2, std::nan("")}) {
     DetailOptions wrong;
@@ -223,7 +212,7 @@ TEST(Detail, SaysWhatItCannotTake) {
 }
 
 TEST(Detail, StopsWhenItIsCancelled) {
-  const TriangleMesh sphere = bumpy_sphere(3);
+  const TriangleMesh sphere = test::bumpy_sphere(3);
   for (int calls = 0; calls < 60; calls += 11) {
     int left = calls;
     DetailOptions options;
@@ -253,7 +242,7 @@ TEST(Detail, ProgressAscendsToOne) {
     EXPECT_GE(share, last);
     last = share;
   };
-  (void)encode_detail(bumpy_sphere(3), options, keep_base);
+  (void)encode_detail(test::bumpy_sphere(3), options, keep_base);
   EXPECT_DOUBLE_EQ(last, 1);
 }
 

@@ -12,6 +12,7 @@
 #include "core/detail/surface_distance.h"
 #include "papilio/refine.h"
 #include "proto/detail/pack.h"
+#include "tests/support/bumpy_sphere.h"
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 
@@ -19,18 +20,6 @@
 
 namespace papilio {
 namespace {
-
-TriangleMesh bumpy_sphere(int levels) {
-  Options options;
-  options.levels = levels;
-  options.tension = Tension::off;
-  TriangleMesh mesh = refine(build_mesh(test::icosahedron()), options).mesh.triangles();
-  for (Vec3f& p : mesh.positions) {
-    const Vec3f n = (1 / length(p)) * p;
-    p = (1 + 0.1F * std::sin(5 * n.x) * std::sin(4 * n.y + 1) * std::sin(3 * n.z + 2)) * n;
-  }
-  return mesh;
-}
 
 uint32_t add_point(TriangleMesh& mesh, Vec3f place) {
   mesh.positions.push_back(place);
@@ -73,13 +62,13 @@ double least_size(const TriangleMesh& mesh) {
 }
 
 TEST(Slivers, ARegularMeshStaysAsItIs) {
-  for (const TriangleMesh& mesh : {bumpy_sphere(3), test::torus(60, 30), test::grid(9, 7)})
+  for (const TriangleMesh& mesh : {test::bumpy_sphere(3), test::torus(60, 30), test::grid(9, 7)})
     EXPECT_EQ(remove_slivers(build_mesh(mesh), 1e-2).triangles(), build_mesh(mesh).triangles());
 }
 
 TEST(Slivers, AreRemovedAndNothingMovesFarther) {
   constexpr double distance = 1e-3;
-  const TriangleMesh thin = with_slivers(bumpy_sphere(3), 7, 1e-4F);
+  const TriangleMesh thin = with_slivers(test::bumpy_sphere(3), 7, 1e-4F);
   ASSERT_LT(least_size(thin), 1e-4);
   const Mesh made = remove_slivers(build_mesh(thin), distance);
   EXPECT_TRUE(test::is_consistent(made));
@@ -90,7 +79,7 @@ TEST(Slivers, AreRemovedAndNothingMovesFarther) {
 }
 
 TEST(Slivers, LargerThanTheDistanceStay) {
-  const Mesh thin = build_mesh(with_slivers(bumpy_sphere(3), 7, 1e-3F));
+  const Mesh thin = build_mesh(with_slivers(test::bumpy_sphere(3), 7, 1e-3F));
   EXPECT_EQ(remove_slivers(thin, 1e-7).triangles(), thin.triangles());
 }
 
@@ -111,7 +100,7 @@ TEST(Slivers, AtABoundaryGo) {
 }
 
 TEST(Slivers, SeamsStaySeams) {
-  TriangleMesh sphere = with_slivers(bumpy_sphere(3), 5, 1e-4F);
+  TriangleMesh sphere = with_slivers(test::bumpy_sphere(3), 5, 1e-4F);
   // Two charts, each with points of its own where x changes its sign.
   Attribute chart{.components = 1, .values = {}};
   TriangleMesh charts{.positions = {}, .triangles = {}};
@@ -145,7 +134,8 @@ TEST(Slivers, SeamsStaySeams) {
 }
 
 TEST(Pack, AnOriginalWithSliversHasLevels) {
-  const proto::detail::Packed packed = proto::detail::pack(with_slivers(bumpy_sphere(4), 5, 2e-6F), {.rms = 1e-3});
+  const proto::detail::Packed packed =
+      proto::detail::pack(with_slivers(test::bumpy_sphere(4), 5, 2e-6F), {.rms = 1e-3});
   ASSERT_TRUE(packed.model) << packed.reason;
   EXPECT_LT(4 * packed.glb.size(), packed.plain_bytes);
   EXPECT_LE(proto::detail::reach_of(*packed.model).rms, 1e-3);
