@@ -142,7 +142,7 @@ stop_load() {
   # An answer that was under way cannot be asked for again: curl says so (18), and has no whole mesh.
   run -1 grep -v -e '^0 200 right$' -e '^18 200 wrong$' "$load_log"
   (($(grep -c '^18 ' "$load_log") <= 4))
-  (($(grep -c right "$load_log") > 20))
+  (($(grep -c right "$load_log") > 8)) # two for each client, also on a busy machine
   started_again answers "$first"
 }
 

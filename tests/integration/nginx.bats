@@ -61,7 +61,7 @@ proxy_is_well() { [[ $(curl -sS --noproxy '*' --max-time 10 "$proxy/health" | jq
 
 logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
 
-@test "the same bytes as without it, in both forms" {
+@test "answers have the same bytes as without the proxy, in both forms" {
   for accept in application/x-draco multipart/mixed; do
     request -H "$draco" -H "Accept: $accept" --data-binary @"$coarse" "$url/v1/refine?levels=3"
     mv "$body" "$BATS_TEST_TMPDIR/direct"
@@ -75,7 +75,7 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   done
 }
 
-@test "the viewer comes through: page, policy, compressed files that stay" {
+@test "the viewer is served through the proxy: page, policy, and immutable compressed files" {
   request "$proxy/"
   [ "$status" = 200 ]
   [[ $(header Content-Security-Policy) == *"default-src 'none'"* && $(header Cache-Control) == no-cache ]]
@@ -88,7 +88,7 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   [ "$(decoded_faces "$body")" = 344 ]
 }
 
-@test "what the server refuses comes through as it is" {
+@test "refusals of the server pass unchanged" {
   request -H "$draco" --data-binary @"$coarse" "$proxy/v1/refine?levels=11"
   expect_problem 400 bad_parameter
   request "$proxy/nowhere"
@@ -99,7 +99,7 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   expect_problem 415 unsupported_encoding
 }
 
-@test "the request's id goes from end to end; what is no id is replaced" {
+@test "a request id is kept through all hops; an invalid one is replaced" {
   request -H 'X-Request-Id: end-to-end.1' "$proxy/nowhere"
   [ "$(header X-Request-Id)" = end-to-end.1 ]
   eventually logged 'id=end-to-end.1 .*status=404'
@@ -110,7 +110,7 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   eventually logged "id=$made "
 }
 
-@test "a flood of headers is refused: one too large, too many, an address too long" {
+@test "large headers, many headers and long addresses are refused" {
   request -H "X-Large: $(head -c 9000 /dev/zero | tr '\0' x)" "$proxy/health"
   expect_problem 431 headers_too_large
   many=()
@@ -121,7 +121,7 @@ logged() { grep -q "$1" "$BATS_FILE_TMPDIR/server.log"; }
   expect_problem 414 uri_too_long
 }
 
-@test "slow heads are closed without reaching the server, and others are served meanwhile" {
+@test "slow request heads are closed without reaching the server, and others are served meanwhile" {
   local fds=() fd
   for _ in {1..50}; do
     exec {fd}<>"/dev/tcp/127.0.0.1/$proxy_port"
@@ -154,7 +154,7 @@ for _ in range(150):
     if not client.recv(10000): sys.exit("closed")' "$proxy_port" "$1"
 }
 
-@test "a client that reads slowly but steadily is not cut" {
+@test "a client that reads slowly but steadily is not disconnected" {
   { cat "$coarse" && head -c 20000000 /dev/zero; } >"$BATS_TEST_TMPDIR/large.drc" # no decoder minds what follows
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large.drc" "$url/v1/meshes"
   local path kept_proxy=$proxy kept_port=$proxy_port kept_pid=$proxy_pid outcome=0
@@ -166,7 +166,7 @@ for _ in range(150):
   [ "$outcome" = 0 ]
 }
 
-@test "too many requests at once from one address: 429, while another address is served" {
+@test "many simultaneous requests of one address: 429, while another address is served" {
   local fds=() fd
   for _ in {1..8}; do # nginx's limit_conn
     exec {fd}<>"/dev/tcp/127.0.0.1/$proxy_port"
@@ -183,7 +183,7 @@ for _ in range(150):
   eventually proxy_is_well
 }
 
-@test "too many requests a second from one address: 429, with the rate that is shipped" {
+@test "many requests a second of one address: 429, at the shipped rate" {
   many() { curl -sS --noproxy '*' --parallel --parallel-max 6 -o "$BATS_TEST_TMPDIR/#1" -w '%{http_code}\n' \
     "$proxy/v1/info?[1-300]" >"$BATS_TEST_TMPDIR/codes"; }
   beside rate "$url" many
@@ -193,7 +193,7 @@ for _ in range(150):
   [ "$(grep -l too_many_requests "$BATS_TEST_TMPDIR"/[0-9]* | wc -l)" = "$(grep -c 429 "$BATS_TEST_TMPDIR/codes")" ]
 }
 
-@test "a body too large is refused by its length, and while it comes in chunks" {
+@test "a large body is refused by its length, and in chunks" {
   head -c 68000000 /dev/zero >"$BATS_TEST_TMPDIR/large"
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large" "$proxy/too-large"
   expect_problem 413 body_too_large
@@ -202,7 +202,7 @@ for _ in range(150):
   run ! logged too-large
 }
 
-@test "metrics are not for the outside, however they are spelt" {
+@test "metrics are not accessible from outside, in any spelling" {
   for path in /metrics //metrics /%6detrics /./metrics /x/../metrics '/metrics?x=1'; do
     request --path-as-is "$proxy$path"
     expect_problem 404 not_found
@@ -235,13 +235,13 @@ beside_stub() {
   return "$outcome"
 }
 
-@test "without a server behind it: 502 in our form" {
+@test "without a server: 502 as a problem document" {
   beside alone http://127.0.0.1:1 request_to /v1/info
   expect_problem 502 bad_gateway
 }
 request_to() { request "${@:2}" "$proxy$1"; }
 
-@test "what the server sees: the trace, the real address, the id" {
+@test "the server receives the trace, the real address and the id" {
   beside_stub seen request_to /x -H 'traceparent: 00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01' \
     -H 'X-Forwarded-For: 6.6.6.6' -H 'X-Request-Id: mine'
   grep -q '^traceparent: 00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01' "$body"
@@ -250,13 +250,13 @@ request_to() { request "${@:2}" "$proxy$1"; }
   run ! grep -q 6.6.6.6 "$body"
 }
 
-@test "a request whose connection fails is sent once more, POST too" {
+@test "a request whose connection fails is sent once more, including POST" {
   beside_stub retry request_to /drop --data-binary x # on the connection that start_proxy's question has left
   [ "$status" = 200 ]
   [ "$(header Count)" = 1 ]
 }
 
-@test "a server that cannot be reached in time is passed over, for POST too" {
+@test "an unreachable server is skipped, including for POST" {
   # A socket whose queue is full takes no connection, and refuses none.
   python3 -c 'import socket, time
 full = socket.socket()
@@ -306,15 +306,15 @@ revalidate() {
   expect_cached "$short" MISS && sleep 2.1 && expect_cached "$short" REVALIDATED && [[ -s $body ]]
 }
 
-@test "the cache holds what is public and nothing else" {
+@test "the cache holds only public answers" {
   beside_stub cache use_cache
 }
 
-@test "a cached answer whose time is over is asked for again with its ETag" {
+@test "an expired cached answer is revalidated by its ETag" {
   beside_stub revalidate revalidate
 }
 
-@test "refinements of a stored mesh are made once, then sent by the proxy; HEAD and 304 too" {
+@test "refinements of a stored mesh are computed once and then cached, including HEAD and 304" {
   request -H "$draco" --data-binary @"$coarse" "$proxy/v1/meshes"
   [[ $status == 201 || $status == 200 ]]
   refined="$proxy$(header Location)/refined?levels=2&w=0.01"
@@ -339,7 +339,7 @@ revalidate() {
   ! logged 'id=asked-\(second\|third\|fourth\) '
 }
 
-@test "a stream's first level arrives while later ones are still to be made; leaving stops the work" {
+@test "a stream's first level arrives before later ones exist; disconnecting stops the work" {
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: streamer' \
     --data-binary @"$coarse" "$proxy/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
@@ -356,7 +356,7 @@ revalidate() {
 
 at_work() { request "$url/metrics" && grep -q '^papilio_slots_busy 1$' "$body"; }
 
-@test "what the server says when it is busy comes through, with Retry-After" {
+@test "a busy answer of the server passes with Retry-After" {
   curl -sS --noproxy '*' -o /dev/null -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
   eventually at_work
@@ -369,7 +369,7 @@ at_work() { request "$url/metrics" && grep -q '^papilio_slots_busy 1$' "$body"; 
   eventually idle
 }
 
-@test "a client that goes away stops its work behind the proxy" {
+@test "a client that disconnects stops its work behind the proxy" {
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
     "$proxy/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
   running=$!
@@ -391,7 +391,7 @@ smuggle() {
   fi
 }
 
-@test "no request is smuggled past nginx" {
+@test "no request is smuggled through nginx" {
   # That an honest request of this name would be seen:
   request "$proxy/admin-smuggled-control"
   eventually logged admin-smuggled-control
@@ -442,7 +442,7 @@ smuggle() {
   run ! grep 'path="/admin-smuggled"' "$BATS_FILE_TMPDIR/main/access.log"
 }
 
-@test "with tls.conf in listen.conf's place it speaks TLS" {
+@test "tls.conf instead of listen.conf serves TLS" {
   folder=$BATS_FILE_TMPDIR/tls
   kept=$proxy
   kept_pid=$proxy_pid
@@ -466,7 +466,77 @@ smuggle() {
   [[ $(head -1 "$headers") == HTTP/2* ]]
 }
 
-@test "the cache has room for the keys of as many results as its size allows" {
+# start_pair: two servers on $first_port and $second_port that say where they are, or 503 while the file of that name is
+# in $BATS_TEST_TMPDIR; sets $pair_pid.
+start_pair() {
+  first_port=$(free_port) second_port=$(free_port)
+  python3 - "$BATS_TEST_TMPDIR" "$first_port" "$second_port" <<'END' 2>"$BATS_TEST_TMPDIR/pair.log" 3>&- &
+import http.server, os, sys, threading
+folder, *ports = sys.argv[1:]
+class Handler(http.server.BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"
+    def do_GET(self):
+        port = str(self.server.server_port)
+        self.send_response(503 if os.path.exists(os.path.join(folder, port)) else 200)
+        self.send_header("Content-Length", str(len(port)))
+        self.end_headers()
+        self.wfile.write(port.encode())
+    def log_message(self, *_):
+        pass
+servers = [http.server.ThreadingHTTPServer(("127.0.0.1", int(port)), Handler) for port in ports]
+threading.Thread(target=servers[0].serve_forever, daemon=True).start()
+servers[1].serve_forever()
+END
+  pair_pid=$!
+  eventually curl -s --noproxy '*' -o /dev/null "http://127.0.0.1:$second_port/"
+}
+
+# start_pair_proxy: docker/nginx before that pair, in the place of $proxy; sets $pair_proxy_pid.
+start_pair_proxy() {
+  local folder=$BATS_FILE_TMPDIR/pair as_root=()
+  start_proxy pair 's/^worker_processes auto/worker_processes 1/' # a worker counts failures for itself
+  stop_proxy "$proxy_pid"
+  start_pair
+  sed "s/10\.213\.77\.11:8080/127.0.0.1:$first_port/; s/10\.213\.77\.12:8080/127.0.0.1:$second_port/" \
+    "$folder/conf/nginx/upstream.compose.conf" >"$folder/conf/nginx/upstream.conf"
+  ((EUID != 0)) || as_root=(-g 'user root;')
+  nginx -p "$folder" -c "$folder/conf/nginx.conf" "${as_root[@]}" >"$folder/access.log" 2>"$folder/error.log" 3>&- &
+  pair_proxy_pid=$!
+  eventually curl -s --noproxy '*' -o /dev/null "http://127.0.0.1:$proxy_port/health"
+}
+
+# statuses: of four requests through that proxy.
+statuses() {
+  for _ in 1 2 3 4; do curl -sS --noproxy '*' -o /dev/null -w '%{http_code} ' "http://127.0.0.1:$proxy_port/health"; done
+}
+
+@test "a server that refuses is passed over while the other is left out after a failure" {
+  local kept=$proxy kept_pid=$proxy_pid pair_pid pair_proxy_pid first_port second_port before after
+  start_pair_proxy
+  touch "$BATS_TEST_TMPDIR/$second_port" # fails once, and is left out
+  before=$(statuses)
+  rm "$BATS_TEST_TMPDIR/$second_port"
+  touch "$BATS_TEST_TMPDIR/$first_port"
+  after=$(statuses)
+  stop_proxy "$pair_proxy_pid"
+  kill "$pair_pid"
+  proxy=$kept proxy_pid=$kept_pid
+  [ "$before" = '200 200 200 200 ' ]
+  [ "$after" = '200 200 200 200 ' ]
+}
+
+@test "where both servers refuse, their 503 is passed on, however often" {
+  local kept=$proxy kept_pid=$proxy_pid pair_pid pair_proxy_pid first_port second_port refused
+  start_pair_proxy
+  touch "$BATS_TEST_TMPDIR/$first_port" "$BATS_TEST_TMPDIR/$second_port"
+  refused=$(statuses)
+  stop_proxy "$pair_proxy_pid"
+  kill "$pair_pid"
+  proxy=$kept proxy_pid=$kept_pid
+  [ "$refused" = '503 503 503 503 ' ]
+}
+
+@test "the cache holds keys for as many results as its size allows" {
   # nginx counts blocks of 4 KB; a key takes 128 bytes. Otherwise it answers 500 when a view too many is asked for.
   local zone size
   read -r zone size < <(sed -nE 's/.*proxy_cache_path .*keys_zone=refined:([0-9]+)m max_size=([0-9]+)g .*/\1 \2/p' \
