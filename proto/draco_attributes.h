@@ -21,7 +21,7 @@ void require_attributes_within_limits(const draco::PointCloud& mesh);
 /// point without a value.
 void read_attributes(const draco::Mesh& mesh, FormattedMesh& out);
 
-/// Vertex of each point of a mesh.
+/// Mapping from the points of a mesh to its vertices.
 class VertexPoints {
  public:
   explicit VertexPoints(const Mesh& mesh);

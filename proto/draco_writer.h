@@ -11,8 +11,8 @@
 
 namespace papilio::proto {
 
-/// Formats and grids with which attributes are written. The grids depend on the coarse mesh alone, as interpolated
-/// values stay in its range.
+/// Formats and grids of written attributes. The grids depend on the coarse mesh alone, as interpolated values stay in
+/// its range.
 struct AttributeEncoding {
   struct Grid {
     std::vector<float> origin;  ///< [components] lowest values

@@ -11,12 +11,12 @@ namespace {
 // process with limited memory.
 constexpr uint64_t face_bytes = 75;            // corners, their order, positions on the grid and symbols
 constexpr uint64_t seam_face_bytes = 36;       // surface cut open along an attribute's seams
-constexpr uint64_t attribute_face_bytes = 3;   // which edges are seams
+constexpr uint64_t attribute_face_bytes = 3;   // marks of seams
 constexpr uint64_t attribute_point_bytes = 4;  // value indices of the points
 constexpr uint64_t value_point_bytes = 12;     // order of the values
 constexpr uint64_t component_point_bytes = 8;  // integers and symbols of one attribute
 constexpr uint64_t stream_copies = 2;          // growth or hand-over of the stream
-constexpr uint64_t dressed_face_bytes = 60;    // copy of the mesh, and whose normal each corner has
+constexpr uint64_t dressed_face_bytes = 60;    // copy of the mesh, and the normal's number at each corner
 constexpr uint64_t dressed_point_bytes = 70;   // new normals and their sums
 constexpr uint64_t coded_component_bytes = 2;  // a predicted component in the stream
 

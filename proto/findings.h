@@ -16,7 +16,8 @@ using Findings = std::vector<std::pair<std::string_view, uint32_t>>;
 /// Returns all counts of a report, zeros included.
 [[nodiscard]] Findings all_findings(const BuildReport& report);
 
-/// Returns the nonzero counts of defects, mended ones included. Points of equal position and boundaries are no defects.
+/// Returns the nonzero counts of defects, repaired ones included. Points of equal position and boundaries are no
+/// defects.
 [[nodiscard]] Findings defects(const BuildReport& report);
 
 /// Formats the defects as a header value: "non_manifold_edges=2, pinched_vertices=1", or "" for none.

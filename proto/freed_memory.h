@@ -4,16 +4,16 @@
 
 namespace papilio::proto {
 
-/// Bytes from which on memory matters more than the time to give it back.
+/// Lower bound of the bytes whose return to the system pays off.
 inline constexpr uint64_t worth_giving_back = uint64_t{1} << 20;
 
-/// Gives free pages of the heap back to the system. Takes about a millisecond.
+/// Returns free pages of the heap to the system. Takes about a millisecond.
 void trim_heap();
-/// Gives freed memory back to the system: free pages of the heap, and blocks that the core keeps for later.
+/// Returns freed memory to the system: free pages of the heap, and the core's spare blocks.
 void give_back_freed();
 
-/// Gives back so many bytes of the blocks that the core keeps for later, as other arrays now take them: no more, as
-/// they take long to get again. Where fewer are kept, the heap gives back too.
+/// Returns `bytes` of the core's spare blocks to the system, as other arrays are about to take as much: no more, as
+/// fresh pages are slow. If fewer are spare, trims the heap too.
 void make_room(uint64_t bytes);
 
 }  // namespace papilio::proto

@@ -54,7 +54,7 @@ std::string boundary_of(std::string_view content_type) {
 
 }  // namespace
 
-std::string Part::header(std::string_view name) const {
+std::string BodyPart::header(std::string_view name) const {
   for (const auto& [key, value] : headers)
     if (equal_without_case(key, name)) return value;
   return {};
@@ -66,7 +66,7 @@ MultipartWriter::MultipartWriter(std::string boundary) : boundary_(std::move(bou
 
 std::string MultipartWriter::content_type() const { return "multipart/mixed; boundary=" + boundary_; }
 
-std::string MultipartWriter::part(const Part& part) const {
+std::string MultipartWriter::part(const BodyPart& part) const {
   std::string out = "--" + boundary_ + "\r\n";
   for (const auto& [name, value] : part.headers) out += name + ": " + value + "\r\n";
   out += "Content-Length: " + std::to_string(part.body.size()) + "\r\n\r\n";
@@ -77,7 +77,7 @@ std::string MultipartWriter::part(const Part& part) const {
 std::string MultipartWriter::end() const { return "--" + boundary_ + "--\r\n"; }
 
 MultipartReader::MultipartReader(std::string_view content_type, uint64_t max_part_bytes,
-                                 std::function<void(Part)> on_part)
+                                 std::function<void(BodyPart)> on_part)
     : delimiter_("--" + boundary_of(content_type)), max_part_bytes_(max_part_bytes), on_part_(std::move(on_part)) {}
 
 void MultipartReader::feed(std::string_view bytes) {

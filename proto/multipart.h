@@ -11,8 +11,8 @@
 
 namespace papilio::proto {
 
-/// A part: header fields in order, and body.
-struct Part {
+/// Part of a multipart body: header fields in order, and content.
+struct BodyPart {
   std::vector<std::pair<std::string, std::string>> headers;
   std::string body;
 
@@ -28,7 +28,7 @@ class MultipartWriter {
   /// Returns the value of the response's Content-Type.
   [[nodiscard]] std::string content_type() const;
   /// Returns the bytes of a part, with Content-Length added to its headers.
-  [[nodiscard]] std::string part(const Part& part) const;
+  [[nodiscard]] std::string part(const BodyPart& part) const;
   /// Returns the bytes after the last part.
   [[nodiscard]] std::string end() const;
 
@@ -41,7 +41,7 @@ class MultipartReader {
  public:
   /// `content_type`: of the response. `max_part_bytes`: limit of a part's body. Throws `Problem` bad_request unless the
   /// type is multipart/mixed with a boundary.
-  MultipartReader(std::string_view content_type, uint64_t max_part_bytes, std::function<void(Part)> on_part);
+  MultipartReader(std::string_view content_type, uint64_t max_part_bytes, std::function<void(BodyPart)> on_part);
   /// Reads the next bytes and calls `on_part` for each completed part. Throws `Problem` bad_request for a malformed
   /// body.
   void feed(std::string_view bytes);
@@ -54,9 +54,9 @@ class MultipartReader {
 
   std::string delimiter_;  ///< "--" and the boundary
   uint64_t max_part_bytes_;
-  std::function<void(Part)> on_part_;
+  std::function<void(BodyPart)> on_part_;
   std::string pending_;
-  Part part_;
+  BodyPart part_;
   uint64_t body_size_ = 0;
   enum class State { delimiter, headers, body, done } state_ = State::delimiter;
 };

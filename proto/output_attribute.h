@@ -17,7 +17,7 @@ enum class Coding : uint8_t {
   octahedral,  ///< unit normals quantized on the unfolded octahedron, then predicted
 };
 
-/// An attribute of a stream.
+/// Attribute of a stream.
 struct OutputAttribute {
   AttributeFormat format{};
   uint32_t components = 3;

@@ -51,8 +51,8 @@ const std::array table{
         .name = "scheme",
         .type = ParameterType::choice,
         .description =
-            "red-green: vertices equal those of the uniform result in every view, and angles stay large; in-place, "
-            "the paper's: each level refines the mesh of the previous level",
+            "Way to split; red-green: vertices equal those of the uniform result in every view, and angles stay large; "
+            "in-place, the paper's: each level refines the mesh of the previous level",
         .choices = {"red-green", "in-place"},
         .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.scheme)}; },
         .set = [](Parameters& p, const Values& v) { p.options.scheme = static_cast<Scheme>(v[0]); }},
@@ -97,17 +97,17 @@ const std::array table{
     ParameterInfo{.name = "tension",
                   .type = ParameterType::choice,
                   .description =
-                      "soft: no overshoot across edges sharper than 60 to 90 degrees; sharp: also none along "
-                      "them; off: the plain butterfly, which overshoots there",
+                      "Overshoot at sharp edges; soft: none across edges sharper than 60 to 90 degrees; sharp: also "
+                      "none along them; off: the plain butterfly, which overshoots there",
                   .choices = {"soft", "off", "sharp"},
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.tension)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.tension = static_cast<Tension>(v[0]); }},
     ParameterInfo{.name = "shape",
                   .type = ParameterType::choice,
                   .description =
-                      "mechanical: flat sides, edges over 31 degrees and outlines of broad flats stay as they are; "
-                      "organic: only flats stay flat; auto: decided for each component; plain: the published scheme, "
-                      "as always with tension=off",
+                      "What the mesh is taken for; mechanical: flat sides, edges over 31 degrees and outlines of broad "
+                      "flats stay as they are; organic: only flats stay flat; auto: decided for each component; plain: "
+                      "the published scheme, as always with tension=off",
                   .choices = {"auto", "organic", "mechanical", "plain"},
                   .get = [](const Parameters& p) { return Values{static_cast<double>(p.options.shape)}; },
                   .set = [](Parameters& p, const Values& v) { p.options.shape = static_cast<Shape>(v[0]); }},
@@ -262,12 +262,13 @@ const std::array table{
                       "shading changes and on the silhouette",
                   .get = [](const Parameters& p) { return values(view_of(p).lights); },
                   .set = [](Parameters& p, const Values& v) { view_of(p).lights = vectors(v); }},
-    ParameterInfo{.name = "view.projection",
-                  .type = ParameterType::choice,
-                  .description = "Orthographic has at every depth the scale that perspective has at the target",
-                  .choices = {"perspective", "orthographic"},
-                  .get = [](const Parameters& p) { return Values{static_cast<double>(view_of(p).projection)}; },
-                  .set = [](Parameters& p, const Values& v) { view_of(p).projection = static_cast<Projection>(v[0]); }},
+    ParameterInfo{
+        .name = "view.projection",
+        .type = ParameterType::choice,
+        .description = "Projection; orthographic has at every depth the scale that perspective has at the target",
+        .choices = {"perspective", "orthographic"},
+        .get = [](const Parameters& p) { return Values{static_cast<double>(view_of(p).projection)}; },
+        .set = [](Parameters& p, const Values& v) { view_of(p).projection = static_cast<Projection>(v[0]); }},
     ParameterInfo{.name = "output.position_bits",
                   .type = ParameterType::integer,
                   .min = 8,

@@ -239,7 +239,7 @@ Options options_for(const Parameters& parameters, const Box& box) {
 
 OutputOptions output_for(const Parameters& parameters, const Box& box) {
   constexpr int most_bits = 16;
-  constexpr double most_share = 0.125;  // of the tolerance
+  constexpr double most_share = 0.125;  // upper bound of the grid's distance, a share of the tolerance
   OutputOptions output = parameters.output;
   const double most = most_share * parameters.options.tolerance * box.diagonal();
   while (parameters.default_position_bits && most > 0 && output.position_bits < most_bits &&

@@ -19,10 +19,10 @@ using QueryFields = std::vector<std::pair<std::string, std::string>>;
 
 /// Parameters of a request.
 struct Parameters {
-  Options options;  ///< `options.view` is set when any view parameter was given
+  Options options;  ///< options of the core; `options.view` is set if any view parameter was given
   OutputOptions output;
   bool normals = false;                                     ///< whether a mesh without normals gets them
-  gltf::Compression compression = gltf::Compression::same;  ///< of a glTF scene
+  gltf::Compression compression = gltf::Compression::same;  ///< compression of a glTF scene
   bool splits_instances = false;      ///< whether each node of a glTF scene gets a mesh of its own
   bool default_eye = false;           ///< whether view.eye is omitted and follows from the mesh
   bool default_target = false;        ///< whether view.target is omitted and is the centre of the mesh's box

@@ -9,14 +9,14 @@
 
 namespace papilio::proto {
 
-/// Prepared meshes of one coarse mesh, one for each set of rules that was asked for. Thread-safe.
+/// Cache of prepared meshes of one coarse mesh, one for each set of rules. Thread-safe.
 class PreparedMeshes {
  public:
   /// `byte_budget`: limit of cached bytes, besides the mesh itself and the level of its own edges.
   explicit PreparedMeshes(uint64_t byte_budget) : budget_(byte_budget) {}
 
-  /// Returns the mesh for the rules (tension, shape, w, crease angle) of the options, computed on first use; `coarse`
-  /// is the same in each call. Least recently used meshes are evicted beyond the budget.
+  /// Returns the mesh prepared for the rules (tension, shape, w, crease angle) of the options, computed on first use.
+  /// `coarse` must be equal in each call. Least recently used meshes are evicted beyond the budget.
   [[nodiscard]] std::shared_ptr<const PreparedMesh> for_rules_of(const Mesh& coarse, const Options& options) const;
   [[nodiscard]] uint64_t bytes() const;
 
@@ -29,7 +29,7 @@ class PreparedMeshes {
   mutable std::vector<Prepared> recent_;  ///< most recently used first
 };
 
-/// Returns the bytes that a mesh takes in memory, with its detail.
+/// Returns the bytes of a mesh in memory, with its detail.
 [[nodiscard]] uint64_t bytes_of(const Mesh& mesh);
 
 }  // namespace papilio::proto

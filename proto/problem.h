@@ -56,7 +56,7 @@ struct ProblemKind {
 [[nodiscard]] std::span<const ProblemKind> problem_kinds();
 [[nodiscard]] const ProblemKind& problem_kind(Code code);
 
-/// An error for the user. It is thrown anywhere between socket and core, and answered in one place.
+/// Error for the user, thrown anywhere between socket and core. One place converts it to a response.
 class Problem : public std::runtime_error {
  public:
   /// `detail`: what is wrong and what to do. `parameter`: name of the invalid parameter, if any.

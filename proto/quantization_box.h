@@ -16,7 +16,7 @@ struct QuantizationBox {
 /// `Problem` mesh_unusable for a mesh smaller than 1e-30.
 [[nodiscard]] QuantizationBox quantization_box(const Buffer<Vec3f>& coarse);
 
-/// Returns the largest distance by which a grid of so many bits moves a position, for meshes with this bounding box.
+/// Returns the largest distance by which a grid of `position_bits` moves a position of a mesh with this bounding box.
 [[nodiscard]] double grid_distance(const Box& coarse, int position_bits);
 
 }  // namespace papilio::proto

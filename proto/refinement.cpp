@@ -37,7 +37,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// A task on another thread, one at a time. Runs on the calling thread if the system has no more threads.
+/// Task on another thread, one at a time. Runs on the calling thread if the system provides no more threads.
 class BackgroundTask {
  public:
   /// Starts the work; call after `wait`. The captures of the work are freed at its end.
@@ -69,7 +69,7 @@ class BackgroundTask {
   std::future<void> running_;  // last member: its destructor waits
 };
 
-/// The refinement gets at least this share of the tolerance, however coarse the grid is.
+/// Upper bound of the grid's share of the tolerance; the refinement gets the rest.
 constexpr double most_for_grid = 0.5;
 
 std::string milliseconds_text(double milliseconds) {
@@ -103,7 +103,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   const auto& formats = encoding_.format.attributes;
   if (std::ranges::find(formats, AttributeKind::normal, &AttributeFormat::kind) != formats.end()) adds_normals_ = false;
   options_.output = encoding_bytes(coarse().mesh.attributes.attributes, adds_normals_, encoding_.format);
-  options_.edges = adds_normals_;  // they are divided at creases
+  options_.edges = adds_normals_;  // normals are split at creases, which are edges
   if (adds_normals_) {
     append_normals(encoding_.format);
     encoding_.grids.emplace_back();
@@ -138,7 +138,7 @@ Result Refinement::refine_coarse(const Hooks& hooks) {
 std::optional<Mesh> Refinement::with_normals(const Mesh& mesh, int level) const {
   std::optional<Mesh> dressed;
   if (adds_normals_ && !add_detail_normals(dressed.emplace(mesh), coarse().normals)) add_normals(*dressed);
-  if (level == 0) return dressed;  // its own are the author's
+  if (level == 0) return dressed;  // the coarse mesh keeps the author's normals
   for (size_t a = 0; a < mesh.attributes.attributes.size(); ++a) {
     if (!is_unit_normal(encoding_.format.attributes[a], mesh.attributes.attributes[a].components)) continue;
     if (!dressed) dressed = mesh;

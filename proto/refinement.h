@@ -30,15 +30,15 @@ struct Statistics {
   int level = 0;  ///< 0: the coarse mesh
   uint64_t vertices = 0, faces = 0;
   std::optional<StopReason> stop_reason;  ///< set for the last level only, like `error`
-  double error = 0;                       ///< Result::error and that of the encoding's grid
+  double error = 0;                       ///< sum of Result::error and the error of the encoding's grid
   std::optional<double> error_pixels{};   ///< largest remaining deviation in pixels, with a view
   std::string unreached{};                ///< description of unreached targets (unreached.h)
-  std::string shape{};                    ///< what the mesh was taken for (shape_text); of the last level only
+  std::string shape{};                    ///< shapes found on the mesh (shape_text()); set for the last level only
   BuildReport found{};                    ///< findings in the coarse mesh
   StageTimes times;
 };
 
-/// A mesh as Draco, or a scene as .glb, and its statistics.
+/// Mesh as Draco, or scene as .glb, and its statistics.
 struct EncodedLevel {
   std::string bytes;
   Statistics statistics;
@@ -51,15 +51,16 @@ struct RefinementHooks {
   /// another thread and concurrently with `cancelled`.
   std::function<void(const EncodedLevel&)> on_level{};
   /// Returns whether to stop; called every few milliseconds. Calls do not overlap, but may come from another thread. It
-  /// may block to let other work go first, which the time limit does not count.
+  /// may block in favour of other work; the time limit does not count that.
   std::function<bool()> cancelled{};
   int threads = 1;  ///< maximum number of threads
 };
 
-/// One refinement. The constructor decodes and checks, `run` refines.
+/// One refinement. The constructor decodes and checks, run() refines.
 class Refinement {
  public:
-  /// Takes what decode_mesh() takes. Throws `Problem`, also if the result is certain to exceed a limit.
+  /// Decodes and checks the argument of decode_mesh(). Throws `Problem`, also if the result is certain to exceed a
+  /// limit.
   Refinement(std::string_view bytes, const Parameters& parameters, const Limits& limits);
   /// Refines a cached mesh. Results are byte-identical to those from a stream.
   Refinement(std::shared_ptr<const SharedMesh> shared, const Parameters& parameters, const Limits& limits);
@@ -80,18 +81,18 @@ class Refinement {
   /// Encodes a level. `times`: time spent before.
   [[nodiscard]] EncodedLevel encode(const Mesh& mesh, int level, StageTimes times,
                                     const std::function<void()>& poll) const;
-  /// Returns a copy of a level with normals of its own surface, where its encoding has normals.
+  /// Returns a copy of a level with normals of its own surface; nothing if the level itself is encoded.
   [[nodiscard]] std::optional<Mesh> with_normals(const Mesh& mesh, int level) const;
   void require_time() const;
   Result refine_coarse(const Hooks& hooks);
 
-  Options options_;        ///< of which the tolerance is what the grid of the encoding leaves
-  double tolerance_;       ///< that was asked for
-  double grid_error_ = 0;  ///< by how much the grid moves positions, as a share of the diagonal
+  Options options_;        ///< options of the core; their tolerance is what the encoding's grid leaves
+  double tolerance_;       ///< requested tolerance
+  double grid_error_ = 0;  ///< distance by which the grid moves positions, a share of the diagonal
   OutputOptions output_;
-  /// Whether the mesh has none, and they are asked for, or its original, as a packed model, had some.
+  /// Whether a mesh without normals gets them: by request, or because the original of a packed model had some.
   bool adds_normals_;
-  AttributeEncoding encoding_;                ///< of all levels
+  AttributeEncoding encoding_;                ///< encoding of all levels
   DecodedMesh decoded_;                       ///< unused with `shared_`
   std::shared_ptr<const SharedMesh> shared_;  ///< null: `decoded_` is used
   StageTimes times_;
@@ -109,8 +110,8 @@ class Refinement {
 /// -Unreached (if any target is), -Shape, -Found (defects of the mesh, "non_manifold_edges=2, ...", if there are any)
 /// and Server-Timing.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> statistics_headers(const Statistics& statistics);
-/// Formats what a mesh was taken for: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain";
-/// with smoothing groups also ", 24 marked by smoothing groups".
+/// Formats the shapes found on a mesh: "mechanical: 7 of 11 components, 340 creases", "organic: 3 components", "plain".
+/// Smoothing groups append ", 24 marked by smoothing groups".
 [[nodiscard]] std::string shape_text(const ShapeReport& shape);
 /// Formats statistics as a JSON object: vertices, faces, levels, stop_reason, error, error_pixels, unreached, shape,
 /// found {...}, milliseconds {decode, refine, encode}.

@@ -10,7 +10,7 @@
 namespace papilio::proto {
 namespace {
 
-/// Levels of detail may have values beyond those of the base, at most by this share of their range.
+/// Upper bound by which values of detail levels may exceed the base's range, a share of the range.
 constexpr float beyond_base = 0.25F;
 
 void widen(AttributeEncoding::Grid& grid) {

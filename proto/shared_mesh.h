@@ -11,27 +11,27 @@
 
 namespace papilio::proto {
 
-/// A decoded and checked mesh, with the grids for encoding its refinements.
+/// Decoded and checked mesh, with the grids for encoding its refinements.
 struct DecodedMesh {
   Mesh mesh;
   BuildReport found;
   QuantizationBox box;
   AttributeEncoding attributes;
-  NormalStyle normals{};  ///< of a packed model's original
+  NormalStyle normals{};  ///< style of a packed model's original normals
 };
 
 /// Decodes and checks a mesh: a Draco stream, or a packed model (proto/detail.md), whose levels are attached to its
 /// base. Throws `Problem`.
 [[nodiscard]] DecodedMesh decode_mesh(std::string_view bytes, const Limits& limits);
 
-/// A decoded mesh, shared by refinements, and a cache of their prepared meshes, one for each set of rules. Thread-safe.
+/// Decoded mesh, shared by refinements, and a cache of prepared meshes, one for each set of rules. Thread-safe.
 class SharedMesh {
  public:
   /// `byte_budget`: limit of cached bytes, besides the mesh itself and the level of its own edges. Throws `Problem`.
   SharedMesh(std::string_view bytes, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedMesh& decoded() const { return decoded_; }
-  /// As `PreparedMeshes::for_rules_of`.
+  /// Returns the mesh prepared for the options' rules, as PreparedMeshes::for_rules_of().
   [[nodiscard]] std::shared_ptr<const PreparedMesh> for_rules_of(const Options& options) const {
     return prepared_.for_rules_of(decoded_.mesh, options);
   }

@@ -1,5 +1,5 @@
-// The decoder of packed models (papilio/detail.h) as a WebAssembly module of its own, papilio-detail.wasm: pages fetch
-// it with the first packed model. Its callers write arrays into its memory, and read results there.
+// Decoder of packed models (papilio/detail.h) as a separate WebAssembly module, papilio-detail.wasm, which pages fetch
+// with the first packed model. Callers write arrays into its memory, and read results from it.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ using papilio::TriangleMesh;
 
 namespace {
 
-/// Base, as the caller writes it.
+/// Base in the layout that the caller writes.
 struct Base {
   uint32_t point_count;
   const papilio::Vec3f* positions;
@@ -30,9 +30,9 @@ struct Base {
   const papilio::Triangle* triangles;
   uint32_t curve_bytes;
   const uint8_t* curves;
-  const float* texcoords;  ///< [points * 2]; null: there are none
-  const uint8_t* colours;  ///< [points * 3]; null: there are none
-  const uint32_t* parts;   ///< [points] numbers of their parts; null: there is one
+  const float* texcoords;  ///< [points * 2] or null
+  const uint8_t* colours;  ///< [points * 3] or null
+  const uint32_t* parts;   ///< [points] part numbers; null for one part
 };
 
 /// Appends values of the points unless they are null.
@@ -53,20 +53,20 @@ std::vector<uint8_t> bytes_of(const Attribute& colours) {
   return bytes;
 }
 
-/// Sizes of a piece of a level, as the caller writes them.
+/// Sizes of a piece of a level in the layout that the caller writes.
 struct Piece {
   uint32_t bytes;
-  uint32_t texcoord_bytes;  ///< of texture coordinates and colours
+  uint32_t texcoord_bytes;  ///< length of texture coordinates and colours
 
-  static constexpr uint32_t missing = 0xFFFFFFFF;  ///< for `bytes`
+  static constexpr uint32_t missing = 0xFFFFFFFF;  ///< value of `bytes` of a missing piece
 };
 
-/// Residuals of one level, as the caller writes them.
+/// Residuals of one level in the layout that the caller writes.
 struct Level {
   float step;
   float texcoord_step;
   uint32_t length;
-  const uint8_t* bytes;  ///< [length] of each piece, and after them of its texture coordinates and colours
+  const uint8_t* bytes;  ///< [length] residuals of each piece, each followed by its texture coordinates and colours
   uint32_t piece_count;
   const Piece* pieces;  ///< [piece_count]
 
@@ -90,15 +90,15 @@ struct Level {
   }
 };
 
-/// Triangles, as the caller reads them.
+/// Triangles in the layout that the caller reads.
 struct Decoded {
   uint32_t point_count;
   uint32_t face_count;
   const papilio::Vec3f* positions;
   const papilio::Triangle* triangles;
-  const float* texcoords;  ///< [points * 2]; null: there are none
-  const uint8_t* colours;  ///< [points * 3]; null: there are none
-  const float* normals;    ///< [points * 3]; null: there are none
+  const float* texcoords;  ///< [points * 2] or null
+  const uint8_t* colours;  ///< [points * 3] or null
+  const float* normals;    ///< [points * 3] or null
   TriangleMesh mesh;
   std::vector<float> texcoord_values;
   std::vector<uint8_t> colour_values;
@@ -123,18 +123,18 @@ PAPILIO_EXPORTED(base_create) DetailBase* module_base_create(const Base* from) {
 }
 PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete base; }
 
-/// Counts the edges of a base. Throws where it is not manifold.
+/// Counts the edges of a base. Throws unless it is manifold.
 PAPILIO_EXPORTED(base_edges) uint32_t module_base_edges(const DetailBase* base) {
   papilio::BuildReport found;
   const papilio::Mesh mesh = papilio::build_mesh(base->triangles, &found);
-  const uint32_t welded = base->triangles.attributes.empty() ? found.welded_points : 0;  // at seams points are
+  const uint32_t welded = base->triangles.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
   const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
   if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
     throw Error(Fault::bad_surface, "The base is not a manifold surface. Pack the original again.");
   return mesh.topology.edge_count();
 }
 
-/// Decodes these levels, with normals of a style (`NormalStyle`).
+/// Decodes levels, with normals in a style (`NormalStyle`).
 PAPILIO_EXPORTED(decode)
 Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level* levels, uint32_t face_limit,
                        uint32_t normals) {
@@ -181,7 +181,7 @@ papilio_fault fault_of(Fault fault) {
 
 }  // namespace
 
-// What `throw` calls.
+// Called by `throw`.
 extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void* (* /*destructor*/)(void*)) {
   if (*type == typeid(Error)) {
     const Error& error = *static_cast<Error*>(thrown);

@@ -1,4 +1,4 @@
-// The C functions as a WebAssembly module. Its callers write arrays into its memory, and read results there.
+// C functions as a WebAssembly module. Callers write arrays into its memory, and read results from it.
 
 #include <new>
 #include <typeinfo>
@@ -11,9 +11,9 @@ using papilio::c::Failure;
 
 extern "C" {
 
-/// Whether to stop.
+/// Returns whether to stop.
 PAPILIO_IMPORTED(cancelled) int32_t caller_cancelled();
-/// Takes a level.
+/// Receives a level.
 PAPILIO_IMPORTED(level) void caller_level(const papilio_triangles* mesh, const papilio_statistics* statistics);
 
 PAPILIO_EXPORTED(mesh_create) papilio_mesh* module_mesh_create(const papilio_triangles* triangles) {
@@ -49,8 +49,8 @@ namespace {
 
 }  // namespace
 
-// The virtual tables of the standard library's classes of types, by which `catch` and dynamic_cast find the bases of a
-// type. Types are only compared here: with empty tables the code behind them is left out.
+// Empty virtual tables of the standard library's type_info classes, by which `catch` and dynamic_cast find the bases of
+// a type. This module only compares types, so that the code behind the tables is not linked.
 extern "C" {
 
 extern const void* const class_type_table[3] __asm__("_ZTVN10__cxxabiv117__class_type_infoE");
@@ -62,7 +62,7 @@ const void* const multiple_type_table[3] = {};
 
 }  // extern "C"
 
-// What `throw` calls.
+// Called by `throw`.
 extern "C" {
 
 [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void* (* /*destructor*/)(void*)) {

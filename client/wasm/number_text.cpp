@@ -3,15 +3,15 @@
 
 #include "proto/text.h"
 
-// WebAssembly's standard library reads no doubles, and what it writes them with is a third of the module's size: the
-// caller's language does both, to the same digits.
+// WebAssembly's standard library cannot parse doubles, and its formatting would take a third of the module's size. So
+// the caller's language does both, with identical digits.
 
 #define PAPILIO_IMPORTED(name) [[clang::import_module("papilio"), clang::import_name(#name)]]
 
 extern "C" {
-/// The number that the text is in decimal; NaN where it is none.
+/// Parses a decimal number; returns NaN for other text.
 PAPILIO_IMPORTED(parse_number) double caller_parse_number(const char* text, size_t length);
-/// Writes the shortest text that is the number, at most 32 bytes; returns its length.
+/// Writes the shortest exact text of the number, at most 32 bytes; returns its length.
 PAPILIO_IMPORTED(format_number) size_t caller_format_number(double number, char* text);
 }
 

@@ -8,7 +8,7 @@
 
 extern "C" {
 
-/// Allocates memory for what the caller writes.
+/// Allocates memory for data that the caller writes.
 PAPILIO_EXPORTED(allocate) void* module_allocate(size_t bytes) { return ::operator new(bytes); }
 PAPILIO_EXPORTED(release) void module_release(void* block) { ::operator delete(block); }
 
@@ -18,7 +18,7 @@ namespace {
 
 void* allocate(size_t bytes, size_t alignment) {
   while (true) {
-    // Whole multiples of the alignment, as aligned_alloc wants them.
+    // aligned_alloc requires a multiple of the alignment.
     const size_t whole = (bytes + alignment - 1) / alignment * alignment;
     if (void* block = whole < bytes ? nullptr : std::aligned_alloc(alignment, whole)) return block;
     if (papilio::spare_bytes() == 0)
@@ -35,7 +35,7 @@ void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, size_t /*bytes*/) noexcept { std::free(block); }
 void operator delete(void* block, std::align_val_t /*alignment*/) noexcept { std::free(block); }
 
-// What the standard library calls where it would throw or end the program.
+// Called by the standard library where it would throw or end the program.
 void std::__libcpp_verbose_abort(const char* /*format*/, ...) {
   caller_fault(PAPILIO_INTERNAL, "The standard library has met a bug.", "");
 }
@@ -43,5 +43,5 @@ extern "C" void abort_message(const char* /*format*/, ...) {
   caller_fault(PAPILIO_INTERNAL, "The standard library has met a bug.", "");
 }
 
-// What `throw` calls before the exception is constructed; each module has a __cxa_throw of its own.
+// Called by `throw` before the exception is constructed; each module defines its own __cxa_throw.
 extern "C" void* __cxa_allocate_exception(size_t bytes) { return ::operator new(bytes); }

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-// What the modules share (runtime.cpp): memory, and errors, which WebAssembly without exceptions cannot unwind. An
-// error is handed to the caller, who throws one of its own through all of the module, and gives the instance up.
+// Runtime shared by the modules (runtime.cpp): memory and errors, which WebAssembly without exceptions cannot unwind.
+// An error is passed to the caller, which throws its own exception through the module and discards the instance.
 
 #define PAPILIO_EXPORTED(name) [[clang::export_name(#name), gnu::used]]
 #define PAPILIO_IMPORTED(name) [[clang::import_module("papilio"), clang::import_name(#name)]]

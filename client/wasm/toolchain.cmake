@@ -13,4 +13,4 @@ set(CMAKE_CXX_ARCHIVE_CREATE "<CMAKE_AR> qcS <TARGET> <OBJECTS>")
 set(CMAKE_CXX_ARCHIVE_FINISH "")
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fignore-exceptions -flto")
 set(CMAKE_EXE_LINKER_FLAGS_INIT
-  "-O0 -mexec-model=reactor -Wl,-mllvm,-inline-threshold=20 -Wl,--gc-sections -Wl,--strip-all -Wl,-z,stack-size=1048576")
+  "-O0 -mexec-model=reactor -Wl,--gc-sections -Wl,--strip-all -Wl,-z,stack-size=1048576")

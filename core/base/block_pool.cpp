@@ -11,7 +11,7 @@
 namespace papilio {
 namespace {
 
-// Under the address sanitizer nothing is kept: it is to see who reads what was given back.
+// Under the address sanitizer no block is kept, so that it detects reads of returned blocks.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool keeps = false;
 #elif defined(__has_feature)
@@ -27,11 +27,11 @@ constexpr bool keeps = true;
 constexpr size_t alignment = 64;
 constexpr size_t huge_page = size_t{1} << 21;
 
-// Sizes come in classes, four to each doubling, so that what one level gives back fits the next request's.
+// Sizes are rounded up to classes, four per doubling, so that blocks returned by one level fit the next request.
 constexpr unsigned steps = 4;
 constexpr size_t least = 256;
 
-/// The class of a size, and the largest size that is in it.
+/// Class of a size, and the largest size in the class.
 struct SizeClass {
   unsigned index;
   size_t bytes;
@@ -47,8 +47,8 @@ SizeClass class_of(size_t bytes) {
 }
 
 #if defined(__linux__)
-// Huge pages are asked for a range of addresses, which stays so after the heap has taken it back: what small things
-// then lie in it would come to fill pages of 2 MiB. So large blocks do not lie in the heap.
+// Large blocks are mapped outside the heap: madvise() applies to addresses, and would outlast the block there. Small
+// allocations at those addresses would then fill pages of 2 MiB.
 constexpr bool maps_large_blocks = keeps;
 
 void* map_block(size_t bytes) {
@@ -58,7 +58,7 @@ void* map_block(size_t bytes) {
   const size_t before = (huge_page - std::bit_cast<uintptr_t>(all) % huge_page) % huge_page;
   if (before > 0) (void)munmap(all, before);
   (void)munmap(all + before + bytes, huge_page - before);
-  (void)madvise(all + before, bytes, MADV_HUGEPAGE);  // where there are none, small pages will do
+  (void)madvise(all + before, bytes, MADV_HUGEPAGE);  // without huge pages, small ones suffice
   return all + before;
 }
 
@@ -81,7 +81,7 @@ void delete_block(void* block, size_t bytes) noexcept {
     ::operator delete(block, std::align_val_t(alignment));
 }
 
-/// The blocks kept, each a link to the next of its class.
+/// Spare blocks, in one linked list per class.
 class Spares {
  public:
   [[nodiscard]] void* take(SizeClass size) noexcept {
@@ -92,7 +92,7 @@ class Spares {
     bytes_ -= size.bytes;
     return block;
   }
-  /// False where that would be too much.
+  /// Keeps a block; returns false, and keeps nothing, beyond `spare_limit`.
   [[nodiscard]] bool keep(void* block, SizeClass size) noexcept {
     const Lock lock(mutex_);
     if (bytes_ + size.bytes > spare_limit) return false;
@@ -100,8 +100,8 @@ class Spares {
     bytes_ += size.bytes;
     return true;
   }
-  /// Gives back until at most so many bytes are kept: large blocks first, as they are few, and of what is left to give
-  /// back the smallest that suffices.
+  /// Releases blocks until at most `most_kept` bytes are kept: large blocks first, as they are few, and last the
+  /// smallest block that suffices.
   void release(size_t most_kept) noexcept {
     Link* released = nullptr;
     {

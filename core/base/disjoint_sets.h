@@ -8,7 +8,7 @@
 
 namespace papilio {
 
-/// Sets of the numbers below a count, joined one by one (union-find with path halving).
+/// Disjoint sets of the numbers below a count (union-find with path halving).
 class DisjointSets {
  public:
   explicit DisjointSets(uint32_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0U); }

@@ -2,30 +2,30 @@
 
 namespace papilio {
 
-// Sums and products without rounding errors, of + - x / alone. Sources: [K] Knuth, "The art of computer programming"
+// Exact sums and products, by + - x / alone. Sources: [K] Knuth, "The art of computer programming"
 // 4.2.2; [D] Dekker, "A floating-point technique for extending the available precision", 1971.
 
-/// A number of about 106 bits: the sum of two, of which the first is the sum rounded.
+/// Number of about 106 bits: the unevaluated sum of two, of which the first is the sum rounded.
 struct Doubled {
   double high = 0, low = 0;
 };
 
-/// The sum of the two, where the first is not the smaller, whatever their signs [D].
+/// Returns the exact sum of two numbers, where |larger| >= |smaller| [D].
 [[nodiscard]] constexpr Doubled sum_to_larger(double larger, double smaller) {
   const double sum = larger + smaller;
   return {sum, smaller - (sum - larger)};
 }
 
-/// The sum of any two [K].
+/// Returns the exact sum of any two numbers [K].
 [[nodiscard]] constexpr Doubled exact_sum(double a, double b) {
   const double sum = a + b;
   const double b_in_sum = sum - a;
   return {sum, (a - (sum - b_in_sum)) + (b - b_in_sum)};
 }
 
-/// The product of two between 1e-140 and 1e140, whatever their signs, or of 0 [D].
+/// Returns the exact product of two numbers, each 0 or of a magnitude in 1e-140..1e140 [D].
 [[nodiscard]] constexpr Doubled exact_product(double a, double b) {
-  constexpr double splitter = 134217729;  // 2^27 + 1: cuts 53 bits in two
+  constexpr double splitter = 134217729;  // 2^27 + 1: splits 53 bits in two halves
   const auto upper_half = [](double x) {
     const double scaled = splitter * x;
     return scaled - (scaled - x);

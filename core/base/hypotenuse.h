@@ -8,8 +8,8 @@
 
 namespace papilio {
 
-/// The root of x^2 + y^2, without overflow or underflow between. Of + - x / and roots alone, rounded alike everywhere:
-/// the error is below 0.51 units in the last place.
+/// Returns the root of x^2 + y^2, without intermediate overflow or underflow. Bit-identical on every processor, by
+/// + - x / and square roots alone. The error is below 0.51 units in the last place.
 [[nodiscard]] inline double hypotenuse(double x, double y) {
   constexpr double large = 0x1p400;
   constexpr double small = 0x1p-400;

@@ -7,13 +7,13 @@
 
 namespace papilio {
 
-/// Lazily computed per-element values. Any number of threads may read and write at once: at worst several compute the
-/// same value.
+/// Lazily computed per-element values. Any number of threads may read and write at once; at worst, several compute one
+/// value.
 template <class Number>
 class LazyValues {
  public:
   LazyValues() = default;
-  /// `unknown` stands for a value that was not computed yet.
+  /// Fills with `unknown`, the sentinel of values that are not computed yet.
   LazyValues(size_t count, Number unknown) : numbers_(count, unknown) {}
 
   [[nodiscard]] Number get(size_t i) const {

@@ -7,10 +7,11 @@
 
 namespace papilio {
 
-/// Runs the work. Throws `Error` out_of_memory where memory is not there, or a length is more than there could be.
+/// Runs the work. Throws `Error` out_of_memory, with the message, if an allocation fails or a length exceeds the
+/// maximum.
 template <class Work>
-auto guard_memory(const Work& work) {
-  constexpr const char* words = "There is not enough memory for this result. Ask for fewer levels.";
+auto guard_memory(const Work& work,
+                  const char* words = "There is not enough memory for this result. Ask for fewer levels.") {
   try {
     return work();
   } catch (const std::bad_alloc&) {

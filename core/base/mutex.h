@@ -1,6 +1,6 @@
 #pragma once
 
-// WebAssembly's standard library has no threads: there locks lock nothing.
+// WebAssembly's standard library has no threads: its locks do nothing.
 
 #if defined(__wasm__)
 namespace papilio {

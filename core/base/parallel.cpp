@@ -13,7 +13,7 @@ uint32_t parts_of(uint32_t count, int threads) {
 
 void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint32_t, uint32_t, uint32_t)>& work) {
   const auto start_of = [&](uint32_t part) { return static_cast<uint32_t>(uint64_t{count} * part / parts); };
-#if defined(__wasm__)  // where std::thread is not declared
+#if defined(__wasm__)  // std::thread is not declared
   for (uint32_t part = 0; part < parts; ++part) work(part, start_of(part), start_of(part + 1));
 #else
   if (parts <= 1) {
@@ -34,7 +34,7 @@ void for_each_part(uint32_t parts, uint32_t count, const std::function<void(uint
   try {
     for (; started < parts; ++started) threads.emplace_back(run, started);
   } catch (...) {
-    // No more threads, or no memory for them: the rest is done here.
+    // Too many threads, or too little memory: the remaining parts run on this thread.
   }
   run(0);
   for (uint32_t part = started; part < parts; ++part) run(part);

@@ -10,7 +10,7 @@
 
 namespace papilio {
 
-/// Moves the element at `at` down to its place in a heap of which all else is in order.
+/// Moves the element at `at` down to its place in a heap in which all others are in order.
 template <class T, class Less>
 void sift_down(T* heap, size_t count, size_t at, const Less& less) {
   T moved = std::move(heap[at]);
@@ -43,8 +43,8 @@ void insertion_sort(T* first, T* last, const Less& less) {
   }
 }
 
-/// Splits at least three elements around their median of three. Returns where the second part begins: none in the first
-/// is greater than any in it, and neither is empty.
+/// Partitions at least three elements around their median of three. Returns the begin of the second part: no element of
+/// the first is greater than any of the second, and neither is empty.
 template <class T, class Less>
 T* split_range(T* first, T* last, const Less& less) {
   T* const middle = first + (last - first) / 2;
@@ -66,8 +66,8 @@ T* split_range(T* first, T* last, const Less& less) {
   }
 }
 
-/// Sorts a range by quicksort, by heapsort where it is split badly `splits` times. O(n log n); equal elements come in
-/// any order.
+/// Sorts a range by quicksort; by heapsort after `splits` partitions. O(n log n). The order of equal elements is
+/// unspecified.
 template <class T, class Less>
 void small_sort(T* first, T* last, const Less& less, int splits) {
   constexpr ptrdiff_t short_range = 16;
@@ -83,8 +83,8 @@ void small_sort(T* first, T* last, const Less& less, int splits) {
   insertion_sort(first, last, less);
 }
 
-/// Sorts a range in an order in which no two elements are equal, or equal ones are alike. In a WebAssembly module the
-/// standard library's sort, which is compiled for each type, would take an eighth of all bytes.
+/// Sorts a range in which equal elements are indistinguishable. In a WebAssembly module the standard library's sort,
+/// compiled for each type, would take an eighth of all bytes; small_sort() replaces it there.
 template <class Range, class Less = std::ranges::less>
 void sort_range(Range&& range, const Less& less = {}) {
 #if defined(__wasm__)

@@ -11,7 +11,7 @@ namespace {
 constexpr Doubled quarter_of_pi{0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55};
 constexpr Doubled one_degree = quarter_of_pi / Doubled{45};
 
-/// The sum of coefficient[i] x^i.
+/// Returns the sum of coefficient[i] x^i.
 template <size_t count>
 double polynomial(const std::array<double, count>& coefficients, double x) {
   double sum = 0;
@@ -23,7 +23,8 @@ struct DoubledSineCosine {
   Doubled sine, cosine;
 };
 
-/// Of an angle in 0..pi / 4: by the power series, whose first terms, which alone matter to the last place, are exact.
+/// Returns sine and cosine of an angle in 0..pi / 4, by the power series. Its first terms are exact; only they affect
+/// the last place.
 DoubledSineCosine sine_and_cosine(Doubled x) {
   constexpr std::array<double, 7> of_sine{1.0 / 120,        -1.0 / 5040,          1.0 / 362880,         -1.0 / 39916800,
                                           1.0 / 6227020800, -1.0 / 1307674368000, 1.0 / 355687428096000};
@@ -44,7 +45,7 @@ DoubledSineCosine sine_and_cosine(Doubled x) {
   return {sine, sum_to_larger(start.high, start.low + (end - 0.5 * square.low))};
 }
 
-/// Of part / whole eighths of a turn, at most one.
+/// Returns sine and cosine of part / whole eighths of a turn, where part <= whole.
 DoubledSineCosine of_eighth(uint64_t part, uint64_t whole) {
   return sine_and_cosine(Doubled{static_cast<double>(part)} / Doubled{static_cast<double>(whole)} * quarter_of_pi);
 }
@@ -58,7 +59,7 @@ double quotient(Doubled a, Doubled b) { return (a / b).high; }
 SineCosine sine_and_cosine_of_turn(uint64_t part, uint64_t whole) {
   part %= whole;
   const bool is_in_lower_half = 2 * part > whole;
-  uint64_t eighths = 8 * (is_in_lower_half ? whole - part : part);  // over `whole`: 0..4
+  uint64_t eighths = 8 * (is_in_lower_half ? whole - part : part);  // eighths of a turn times `whole`: 0..4 whole
   const bool is_in_left_half = eighths > 2 * whole;
   if (is_in_left_half) eighths = 4 * whole - eighths;
   const bool is_steep = eighths > whole;
@@ -81,7 +82,7 @@ double tangent_of_turn(uint64_t part, uint64_t whole) {
   return is_steep ? quotient(found.cosine, found.sine) : quotient(found.sine, found.cosine);
 }
 
-/// What angles are taken from is not so far from them that the differences are rounded.
+// Differences of angles are exact (Sterbenz): the two are within a factor of two.
 double cosine_of_degrees(double degrees) {
   if (degrees > 135) return -of_degrees(180 - degrees).cosine.high;
   return degrees > 45 ? (degrees > 90 ? -of_degrees(degrees - 90).sine.high : of_degrees(90 - degrees).sine.high)
@@ -96,7 +97,7 @@ double tangent_of_degrees(double degrees) {
 
 double cosine_of_small_angle(double radians) { return sine_and_cosine({radians}).cosine.high; }
 
-/// Twice the angle whose sine is the root of (1 - cosine) / 2, by Newton's method.
+// Computes twice the angle whose sine is the root of (1 - cosine) / 2, by Newton's method.
 double arc_cosine(double cosine) {
   const double square = 0.5 * (1 - cosine);
   if (square <= 0) return 0;
@@ -104,7 +105,7 @@ double arc_cosine(double cosine) {
   const Doubled root_squared = exact_product(root, root);
   const Doubled sine{root, 0.5 * ((square - root_squared.high) - root_squared.low) / root};
   Doubled angle{root + root * square / 6};
-  constexpr int steps = 4;  // each doubles the digits: 2 are known at first
+  constexpr int steps = 4;  // each doubles the correct digits, from 2
   for (int i = 0; i < steps; ++i) {
     const DoubledSineCosine at = sine_and_cosine(angle);
     const double missing = (sine.high - at.sine.high) + (sine.low - at.sine.low);

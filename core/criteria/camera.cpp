@@ -95,7 +95,6 @@ double Camera::highest_pixels_per_unit(const Box& box) const {
   return rounding * pixels_per_unit_at(depth);
 }
 
-/// The sine is compared as a square, without a root.
 double Camera::facing(Vec3d point, Vec3d normal) const {
   if (!perspective_) return -dot(forward_, normal);
   const Vec3d sight = point - eye_;
@@ -111,25 +110,6 @@ std::array<double, 2> Camera::project(Vec3d relative) const {
 double Camera::projected_length(Vec3d a, Vec3d b) const {
   const auto [x, y] = projected_difference(a, b);
   return hypotenuse(x, y);
-}
-
-/// What is not near the border is decided by squares, without a root; and in perspective by products with both depths,
-/// without a division.
-bool Camera::looks_shorter(Vec3d a, Vec3d b, double pixels) const {
-  constexpr double rounding = 1e-9;
-  const Vec3d from_eye_a = a - eye_;
-  const Vec3d from_eye_b = b - eye_;
-  const double depth_a = dot(forward_, from_eye_a);
-  const double depth_b = dot(forward_, from_eye_b);
-  if (perspective_ && depth_a >= near_ && depth_b >= near_ && pixels_per_unit_ < most_pixels_per_unit * near_) {
-    const double x = depth_b * dot(right_, from_eye_a) - depth_a * dot(right_, from_eye_b);
-    const double y = depth_b * dot(up_, from_eye_a) - depth_a * dot(up_, from_eye_b);
-    const double seen = pixels_per_unit_ * pixels_per_unit_ * (x * x + y * y);
-    const double border = pixels * depth_a * depth_b * (pixels * depth_a * depth_b);
-    if (seen > (1 + rounding) * border) return false;
-    if (seen < (1 - rounding) * border) return true;
-  }
-  return projected_length(a, b) < pixels;
 }
 
 std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {

@@ -10,48 +10,44 @@
 
 namespace papilio {
 
-/// The view made ready for questions. Throws `Error` bad_option, naming the field ("view.up"), when the view
-/// does not define a picture.
+/// Visibility and screen-size queries of a view. Throws `Error` bad_option, with the name of the field ("view.up"), if
+/// the view does not define a picture.
 class Camera {
  public:
   explicit Camera(const View& view);
 
   struct Plane {
-    Vec3d normal;   ///< unit, inward
-    double offset;  ///< a point p is inside when normal.p >= offset
+    Vec3d normal;   ///< unit normal, pointing inward
+    double offset;  ///< distance from the origin: a point p is inside if normal.p >= offset
   };
-  /// True when the sphere round `centre` lies outside of one of the planes.
+  /// Returns whether the sphere lies outside one of the planes.
   [[nodiscard]] static bool is_outside(std::span<const Plane> planes, Vec3d centre, double radius) {
     for (const Plane& plane : planes)
       if (dot(plane.normal, centre) - plane.offset < -radius) return true;
     return false;
   }
-  /// Tells that of all five planes (four sides, near): section 3.2.1.
+  /// Returns whether the sphere lies outside one of the view's five planes (four sides, near): section 3.2.1.
   [[nodiscard]] bool is_outside(Vec3d centre, double radius) const { return is_outside(planes_, centre, radius); }
-  /// True when a face with unit normal `normal`, `point` being on it, is turned away from the viewer:
-  /// section 3.2.2, with the direction to the face in place of the one view direction where the projection is
-  /// perspective.
+  /// Returns whether a face through `point` with unit normal `normal` is turned away from the viewer: section 3.2.2. In
+  /// a perspective projection, the direction to the point replaces the view direction.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const {
     const Vec3d sight = sight_to(point);
     const double along = dot(sight, normal);
     return along > 0 && along * along > away_epsilon * away_epsilon * dot(sight, sight);
   }
-  /// Whether faces are shown from behind too: then none is hidden for being turned away.
+  /// Returns whether faces are visible from behind, so that none is culled as turned away.
   [[nodiscard]] bool shows_backs() const { return two_sided_; }
-  /// True when it is turned to the viewer, by a normal of any length.
+  /// Returns whether a face through `point` with a normal of any length is turned to the viewer.
   [[nodiscard]] bool is_towards(Vec3d point, Vec3d normal) const { return dot(sight_to(point), normal) < 0; }
-  /// Cosine of the angle between the unit normal and the way from the point to the viewer: 1 when seen from the front.
+  /// Returns the cosine of the angle between the unit normal and the direction to the viewer: 1 if seen from the front.
   [[nodiscard]] double facing(Vec3d point, Vec3d normal) const;
-  /// Length in pixels of the segment's picture, clipped at the near plane, not at the sides.
+  /// Returns the length in pixels of the projected segment, clipped at the near plane, but not at the sides.
   [[nodiscard]] double projected_length(Vec3d a, Vec3d b) const;
-  /// Whether that is less than `pixels`.
-  [[nodiscard]] bool looks_shorter(Vec3d a, Vec3d b, double pixels) const;
-  /// Pixels that a short piece of length 1 at the point covers when seen from its side; nearer than the near plane, as
-  /// on it.
+  /// Returns the pixels per unit of length across the line of sight at the point, clamped to the near plane.
   [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
-  /// No less than that of any point in the box.
+  /// Returns an upper bound of pixels_per_unit() in the box.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const;
-  /// Those of the five planes inside of which not all of the box is certain to be.
+  /// Returns the view's planes that may cut the box, or exclude it.
   [[nodiscard]] std::vector<Plane> planes_through(const Box& box) const;
 
  private:
@@ -62,16 +58,15 @@ class Camera {
     return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
   }
 
-  /// The small positive number of section 3.2.2: the sine of the angle by which a face must be turned past
-  /// edge-on.
+  /// Small positive number of section 3.2.2: the sine of the angle past edge-on from which a face is turned away.
   static constexpr double away_epsilon = 1e-3;
-  /// However near the near plane is: what it is multiplied by stays a number.
+  /// Upper bound of pixels_per_unit() for any near plane, so that products stay finite.
   static constexpr double most_pixels_per_unit = 1e200;
 
   bool perspective_, two_sided_;
   Vec3d eye_, right_, up_, forward_;
   double near_;
-  double pixels_per_unit_;  ///< at distance 1 (perspective) or at any (orthographic)
+  double pixels_per_unit_;  ///< scale at distance 1 (perspective) or at any distance (orthographic)
   std::array<Plane, 5> planes_;
 };
 

@@ -12,7 +12,7 @@
 namespace papilio {
 namespace {
 
-/// One number for each of two triangles: computed at once.
+/// One number for each of two triangles, computed in parallel.
 using Both = double __attribute__((vector_size(16)));
 using BothTrue = int64_t __attribute__((vector_size(16)));
 
@@ -25,11 +25,11 @@ Both dot(Vec3d a, const BothVectors& b) { return a.x * b.x + a.y * b.y + a.z * b
 
 bool is_any(BothTrue both) { return (both[0] | both[1]) != 0; }
 
-/// The distance to two triangles at one side where it is found easily: mostly the point is above one of them, or above
-/// the side itself. Else, and where it is not known for sure, nothing.
+/// Returns the squared distance to two triangles with a common side in the frequent cases: the point is above one of
+/// them, or nearest to the common side. Returns nothing in other or uncertain cases.
 std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, Vec3d apex, Vec3d other_apex) {
   constexpr double least_sine_squared = 1e-8;
-  constexpr double rounding_squared = 1e-30;  // of the height's parts: what is flat is to have none
+  constexpr double rounding_squared = 1e-30;  // share of the height's terms below which the height is 0
   const Vec3d along = b - a;
   const Vec3d to_point = point - a;
   const BothVectors to_apex(apex - a, other_apex - a);
@@ -38,30 +38,30 @@ std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, 
   const double pp = papilio::dot(to_point, to_point);
   const Both ac = dot(along, to_apex);
   const Both cc = to_apex.x * to_apex.x + to_apex.y * to_apex.y + to_apex.z * to_apex.z;
-  const Both area_squared = aa * cc - ac * ac;  // of the parallelogram
+  const Both area_squared = aa * cc - ac * ac;  // squared area of the parallelogram
   const Both pc = dot(to_point, to_apex);
-  // The foot of the point on the plane is made of the corners in these shares of the area.
+  // Barycentric coordinates of the point's foot on the plane, times the squared area.
   const Both of_other_end = cc * pa - ac * pc;
   const Both of_apex = aa * pc - ac * pa;
   const Both of_end = area_squared - of_other_end - of_apex;
   if (is_any((area_squared <= least_sine_squared * aa * cc) | (of_other_end < 0) | (of_end < 0))) return {};
 
-  // What is left is above the triangle, or across the common side and no other.
+  // The foot is inside the triangle, or beyond the common side only.
   const BothTrue is_beyond = of_apex < 0;
-  // From beyond the side the nearest is on the side, which is the other triangle's, too.
+  // If it is beyond the side in both triangles, the nearest point is on the side.
   if (is_beyond[0] != 0 && is_beyond[1] != 0) return squared_distance_to_segment(point, a, b);
   const Both height = to_point.x * (along.y * to_apex.z - along.z * to_apex.y) +
                       to_point.y * (along.z * to_apex.x - along.x * to_apex.z) +
                       to_point.z * (along.x * to_apex.y - along.y * to_apex.x);
   const BothTrue is_flat = height * height <= rounding_squared * pp * aa * cc;
   const Both squared = is_flat ? Both{} : height * height / area_squared;
-  // Which of the two it is nobody can guess: so without branches.
+  // Branch-free: the nearer triangle is unpredictable.
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Both above_either = is_beyond ? Both{infinity, infinity} : squared;
   return std::min(above_either[0], above_either[1]);
 }
 
-/// Infinity is kept for what is not to be reached: a budget's threshold where nothing fits.
+/// Clamps an error to finite floats: infinity is the threshold of a budget that no edge fits.
 float to_finite(double number) {
   return static_cast<float>(std::min<double>(std::numeric_limits<float>::max(), number));
 }
@@ -78,12 +78,13 @@ double deviation_from_faces(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_a
   return std::sqrt(std::min({squared_distance(point, face), squared_distance(point, other), most}));
 }
 
-double deviation(const Mesh& mesh, uint32_t edge, Vec3f q) {
+double deviation(const Mesh& mesh, EdgeId edge, Vec3f q) {
   const Topology& topology = mesh.topology;
-  const auto at = [&](uint32_t v) { return mesh.positions[v]; };
-  uint32_t h = topology.half_edge[edge];
-  const uint32_t t = topology.twin[h];
-  // Which of its half-edges the edge names depends on how the level was made; what is rounded must not.
+  const auto at = [&](VertexId v) { return mesh.positions[v]; };
+  HalfEdgeId h = topology.half_edge[edge];
+  const HalfEdgeId t = topology.twin[h];
+  // The choice of half_edge depends on how the level was made; rounding must not. So h is the half-edge from the lower
+  // vertex.
   if (topology.origin[h] > topology.tip(h) && t != none) h = t;
   const Vec3f a = at(topology.origin[h]);
   const Vec3f b = at(topology.tip(h));
@@ -118,7 +119,7 @@ double ErrorMeasure::least_deviation(float error, double scale) const {
   return rounding * error * std::max(tolerated_, tolerated_pixels_ / scale);
 }
 
-float ErrorMeasure::error(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance) const {
+float ErrorMeasure::error(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId edge, double distance) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
     return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
   double seen = pixels(mesh, edge, distance);

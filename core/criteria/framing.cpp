@@ -8,18 +8,18 @@
 namespace papilio {
 namespace {
 
-constexpr double margin = 1.05;                ///< of the distance, so that the box does not touch the picture's border
-constexpr double least_distance = 0.01;        ///< of the diagonal, where the target is between the eye and the box
-constexpr double most_parallel_cosine = 0.99;  ///< beyond, `up` would be along the line of sight
+constexpr double margin = 1.05;                ///< factor of the distance, which keeps the box off the picture's border
+constexpr double least_distance = 0.01;        ///< share of the diagonal, if the target is between the eye and the box
+constexpr double most_parallel_cosine = 0.99;  ///< upper bound: beyond it, `up` is along the line of sight
 
 }  // namespace
 
 Vec3d framing_eye(const View& view, const Box& box) {
   const double up_length = length(view.up);
-  if (!(up_length > 0 && std::isfinite(up_length))) return view.target + Vec3d{0, 0, 1};  // `Camera` names `view.up`
+  if (!(up_length > 0 && std::isfinite(up_length))) return view.target + Vec3d{0, 0, 1};  // `Camera` reports `view.up`
   const Vec3d up = (1 / up_length) * view.up;
   const bool is_z_up = std::abs(up.z) > most_parallel_cosine;
-  const Vec3d back = is_z_up ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};  // from the target towards the eye
+  const Vec3d back = is_z_up ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};  // direction from the target to the eye
   const Vec3d sideways = cross(up, back);
   const Vec3d right = (1 / length(sideways)) * sideways;
   const Vec3d above = cross(back, right);

@@ -9,13 +9,13 @@
 namespace papilio {
 namespace {
 
-constexpr double floor_weight = 0.4;    // what bends may yet turn towards a light
-constexpr double least_contrast = 0.3;  // what is behind is not known: a dark face may stand before a light one
+constexpr double floor_weight = 0.4;    // lower bound: a surface that bends may turn towards a light
+constexpr double least_contrast = 0.3;  // lower bound: the background is unknown, and may be lighter or darker
 
-/// Of a face, as one light after the other adds to it, white at most.
+/// Shading of a face by the sum of all lights, clamped to white.
 struct Shade {
   double brightness;  ///< 0..1
-  double slope;       ///< by how much it changes when the normal turns by a small angle, over the angle
+  double slope;       ///< derivative of the brightness by the angle of the normal
 };
 
 Shade shade(const View& view, Vec3d normal) {
@@ -31,30 +31,30 @@ Shade shade(const View& view, Vec3d normal) {
   return sum < 1 ? Shade{sum, length(gradient)} : Shade{1, 0};
 }
 
-/// An edge's two faces; the one that there is stands for one that is missing or has no normal.
+/// Normals of an edge's two faces. A face that is missing or has no normal is replaced by the other.
 struct Sides {
   Vec3d normal, other;
-  bool is_open;  ///< a face is missing
+  bool is_open;  ///< whether a face is missing
 };
 
-Sides sides(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge) {
-  const uint32_t h = mesh.topology.half_edge[edge];
-  const uint32_t t = mesh.topology.twin[h];
-  const Vec3f normal = normals[Topology::face(h)];
-  const Vec3f other = t == none ? normal : normals[Topology::face(t)];
+Sides sides(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId edge) {
+  const HalfEdgeId h = mesh.topology.half_edge[edge];
+  const HalfEdgeId t = mesh.topology.twin[h];
+  const Vec3f normal = normals[h.face()];
+  const Vec3f other = t == none ? normal : normals[t.face()];
   return {to_double(has_normal(normal) ? normal : other), to_double(has_normal(other) ? other : normal), t == none};
 }
 
 }  // namespace
 
-double light_weight(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t edge, double distance, const View& view,
+double light_weight(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId edge, double distance, const View& view,
                     const Camera& camera) {
-  const uint32_t h = mesh.topology.half_edge[edge];
+  const HalfEdgeId h = mesh.topology.half_edge[edge];
   const Vec3d a = to_double(mesh.positions[mesh.topology.origin[h]]);
   const Vec3d b = to_double(mesh.positions[mesh.topology.tip(h)]);
   const Vec3d middle = 0.5 * (a + b);
   const Sides faces = sides(mesh, normals, edge);
-  // A back is shaded by the normal that it has seen from there.
+  // The back of a face is shaded by its reversed normal.
   const auto towards = [&](Vec3d normal) {
     return camera.shows_backs() && camera.is_away(middle, normal) ? -1.0 * normal : normal;
   };

@@ -22,7 +22,7 @@ void check_options(const Options& options) {
   require_option(options.tolerance >= 0 && options.tolerance <= 1, "tolerance", "The tolerance must lie in 0..1.");
   if (options.view) (void)Camera(*options.view);
   require_option(!options.simplify_hidden || options.view.has_value(), "simplify_hidden",
-                 "Only with a view is anything hidden: give view.eye and the others, or leave simplify_hidden out.");
+                 "simplify_hidden requires a view. Set the view parameters, or omit simplify_hidden.");
 }
 
 }  // namespace papilio

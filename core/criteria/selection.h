@@ -8,7 +8,6 @@
 #include "base/lazy_values.h"
 #include "criteria/camera.h"
 #include "criteria/deviation.h"
-#include "criteria/deviation_range.h"
 #include "criteria/flatness.h"
 #include "criteria/view_culling.h"
 #include "mesh/part.h"
@@ -16,130 +15,122 @@
 #include "papilio/options.h"
 #include "rules/features.h"
 
-// Which edges a level splits: the criteria of the options, put together. Both schemes ask the same questions.
+// Selection of the edges that a level splits, by all criteria of the options. Both schemes share it.
 
 namespace papilio {
 
-/// What is known of a mesh that is tried: all of it may be left out.
+/// Optional context for the computation of a mesh's new vertices.
 struct TrialContext {
-  const Features* features = nullptr;  ///< its; with `part`, the parents'
-  const Topology* parents = nullptr;   ///< that it was split from (split_in_four.h)
-  /// Those of the parents of whose children normals are asked; null: all.
-  const Buffer<uint32_t>* normals_of = nullptr;
-  const Buffer<uint32_t>* asked_of = nullptr;  ///< between whose children the edges to be tried lie; null: all
-  const Part* part = nullptr;           ///< of the parents that it was split from (split_part_in_four); null: all
-  const EdgeMarks* complete = nullptr;  ///< the edges for which w can be applied; null: all
-  int threads = 1;                      ///< at most so many work on it
+  const Features* features = nullptr;  ///< features of the mesh; with `parents`, of the parents
+  /// Mesh whose split gave this one, if the rules are plain and all features rings: then the mesh's own
+  /// faces are not needed.
+  const Topology* parents = nullptr;
+  const Part* part = nullptr;       ///< part of the parents that was split (split_part_in_four); null: all
+  const Marks* complete = nullptr;  ///< [E] edges to which w can be applied; null: all
+  int threads = 1;                  ///< upper bound of the number of threads
 };
 
-/// What is known of a level's edges before any is split. Of edges that could not be computed, and of those not asked
-/// for, the arrays mean nothing.
+/// Returns whether errors decide: there is a tolerance (of distance or pixels) or a budget.
+[[nodiscard]] bool is_by_error(const Options& options);
+
+/// Values of a level's edges before any is split. Values of edges that could not be computed, or were not requested,
+/// are undefined.
 struct Trial {
   Buffer<Vec3f> normals{};          ///< [F]
-  Buffer<Vec3f> made{};             ///< [E] the positions that their new vertices would have
-  bool is_of_some = false;          ///< whether only some were asked for
-  LazyValues<double> deviations{};  ///< [E] the deviations (deviation.h); or unknown; empty: none is kept
-  LazyValues<float> bounds{};       ///< [E] no less than these; infinity where nothing is known; empty as above
-  LazyValues<float> least{};        ///< [E] no more than these; 0 where nothing is known; empty without rooms
-  Buffer<float> rooms{};            ///< [F] (deviation_range.h); empty where no ranges are found
+  Buffer<Vec3f> made{};             ///< [E] positions of the new vertices
+  LazyValues<double> deviations{};  ///< [E] deviations (deviation.h) or `unknown`; empty: not stored
+  LazyValues<float> bounds{};       ///< [E] upper bounds of deviations; infinity if unknown; empty: not stored
 
-  NormalProducts products{};  ///< (flatness.h)
-  bool is_kept = false;       ///< for later requests too: what one finds serves all
+  bool is_kept = false;  ///< whether values are stored for later requests
 
   static constexpr int unknown = -1;
-  /// Makes room for what is found out about what was made; nothing is known yet.
+  /// Makes room for deviations and bounds, all unknown.
   void forget();
-  /// Makes room for what is found out, and for what only later requests gain by.
-  void keep(const Topology& mesh);
-  [[nodiscard]] Vec3f at(uint32_t edge) const { return made[edge]; }
-  /// Squared distance of a tried edge's vertex from the edge's middle. `mesh` is the one tried.
-  [[nodiscard]] double squared_offset(const Mesh& mesh, uint32_t edge) const {
-    const uint32_t h = mesh.topology.half_edge[edge];
+  /// Makes room for deviations and bounds, and stores them for later requests.
+  void keep();
+  [[nodiscard]] Vec3f at(EdgeId edge) const { return made[edge]; }
+  /// Returns the squared distance of a tried edge's vertex from the edge's midpoint. `mesh` is the mesh tried.
+  [[nodiscard]] double squared_offset(const Mesh& mesh, EdgeId edge) const {
+    const HalfEdgeId h = mesh.topology.half_edge[edge];
     return squared_distance_to_middle(at(edge), mesh.positions[mesh.topology.origin[h]],
                                       mesh.positions[mesh.topology.tip(h)]);
   }
-  /// The deviation of a tried edge.
-  [[nodiscard]] double deviation_at(const Mesh& mesh, uint32_t edge) const;
-  /// Never less than that, and cheap: how far the vertex is from the midpoint, which is on the surface.
-  [[nodiscard]] double most_deviation_at(const Mesh& mesh, uint32_t edge) const;
-  /// Never less than that, of what is known already; infinity where nothing is.
-  [[nodiscard]] float no_less_than_deviation_at(uint32_t edge) const {
+  /// Returns the deviation of a tried edge.
+  [[nodiscard]] double deviation_at(const Mesh& mesh, EdgeId edge) const;
+  /// Returns a cheap upper bound of the deviation: the stored one, or the distance from the vertex to the midpoint,
+  /// which is on the surface.
+  [[nodiscard]] double deviation_bound(const Mesh& mesh, EdgeId edge) const;
+  /// Returns the stored upper bound of the deviation; infinity if there is none.
+  [[nodiscard]] float stored_deviation_bound(EdgeId edge) const {
     return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(edge);
   }
-  /// Never more than that, of what is known already.
-  [[nodiscard]] float no_more_than_deviation_at(uint32_t edge) const { return least.get(edge); }
-  /// Makes room for what the options ask of deviations: none where they hold them against nothing. Where against a
-  /// tolerance, has ranges found (deviation_range.h). Not for what is kept: where more views are to come the deviations
-  /// themselves serve all of them.
-  void prepare_errors(const Mesh& mesh, const Options& options, const TrialContext& context);
-  [[nodiscard]] bool has_ranges() const { return !rooms.empty(); }
-  /// Of these edges, which were tried.
-  void find_ranges(const Mesh& mesh, std::span<const uint32_t> edges) const;
+  /// Makes room for deviations if errors decide.
+  void prepare_errors(const Options& options);
 };
 
-/// Writes to `made` [E] the positions of the new vertices of all edges for which that can be done, under the options'
-/// tension and w; `normals` [F] where there is tension. The mesh's faces may be left out where the rules are plain, its
-/// parents are given, and all features are rings.
+/// Writes to `made` [E] the new vertices of all edges for which they can be computed, under the options' tension and w;
+/// `normals` [F] if there is tension.
 void make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options& options, const TrialContext& context,
                    Vec3f* made);
-/// Computes the new vertices, and the normals that this takes. No room is made for what is found out about them.
+/// Computes the new vertices, and the normals required for them. Makes no room for deviations.
 [[nodiscard]] Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& context = {});
 
 class Selection {
  public:
-  /// `diagonal` of the coarse mesh's box. The options must outlive this.
+  /// `diagonal` is that of the coarse mesh's box. The options must outlive this object.
   Selection(const Options& options, double diagonal);
   Selection(const Selection&) = delete;
   Selection& operator=(const Selection&) = delete;
 
-  /// No criterion: every edge is split.
+  /// Returns whether there is no criterion, so that every edge is split.
   [[nodiscard]] bool is_uniform() const;
-  /// Errors decide, not only yes and no: there is a tolerance or a budget.
+  /// Returns whether errors decide under its options.
   [[nodiscard]] bool is_by_error() const;
-  /// The view alone decides: its outline, which lies below faces that are turned away themselves, is refined too.
-  [[nodiscard]] bool follows_outline() const { return camera_ && options_.flatness.empty() && !is_by_error(); }
-  /// What an edge's error must reach for it to be split.
+  /// Returns whether a view decides, but not errors. Then its outline, below faces that are turned
+  /// away, is refined too.
+  [[nodiscard]] bool follows_outline() const { return camera_ && !is_by_error(); }
+  /// Returns the least error at which an edge is split.
   [[nodiscard]] float threshold() const { return measure_.threshold(); }
-  /// Of the coarse mesh's box.
+  /// Returns the diagonal of the coarse mesh's box.
   [[nodiscard]] double diagonal() const { return measure_.diagonal(); }
   [[nodiscard]] const Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
-  /// No less than the view has anywhere in the box; 0 without one.
+  /// Returns an upper bound of the view's pixels per unit in the box; 0 without a view.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const {
     return camera_ ? camera_->highest_pixels_per_unit(box) : 0;
   }
 
-  /// The edges that the view shows, however small they look; all of them without a view. `longest` [V] edges
-  /// (view_culling.h), `box` of the vertices; `shared`: the half-edges at shared edges.
+  /// Returns the edges that the view shows, whatever their size; all edges without a view. `longest` [V] edges
+  /// (view_culling.h), `box` of the vertices; `shared`: half-edges at shared edges.
   [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
                                  const Buffer<uint32_t>& shared) const;
-  /// The region's edges that flatness (with growth) and the view want split, the paper's method, in its order; of these
-  /// those whose error (below) may be `least` or more. `level` is the one to be made, from 1. In ascending order.
-  [[nodiscard]] Buffer<uint32_t> wanted(const Mesh& mesh, const Trial& trial, int level, const Region& region,
-                                        const EdgesShown& shown, const Box& box, float least) const;
+  /// Returns the region's edges selected by flatness (with growth) and view, in the order of the paper's method.
+  /// Edges whose error (errors()) is surely below `least` are left out. `level` is the level to be made, from 1.
+  /// In ascending order.
+  [[nodiscard]] Buffer<uint32_t> candidates(const Mesh& mesh, const Trial& trial, int level, const Region& region,
+                                            const EdgesShown& shown, const Box& box, float least) const;
 
-  /// Whether the view keeps the edge from being split: it does not show it, or it looks too short.
-  [[nodiscard]] bool is_kept_by_view(const Mesh& mesh, const EdgesShown& shown, uint32_t edge) const;
-  /// Whether the halves of the edge may look long enough for the view; an edge's halves are longer than half of it.
-  [[nodiscard]] bool may_have_long_halves(const Mesh& mesh, uint32_t edge) const;
+  /// Marks the region's edges selected by flatness, with growth, whatever the view shows; all of them without flatness.
+  /// `level` is the level to be made, from 1. [E]
+  [[nodiscard]] Marks curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
 
-  /// What errors that reach a threshold are to be: where more is done with them than to compare them with it, exact.
-  enum class Reaching { exact, no_more };
-  /// The error of each wanted edge, which must have been tried; minus infinity elsewhere. Those below `threshold` may
-  /// come out larger, those that reach it smaller if they may be `no_more`, but on their side of it: they cost less.
-  /// `box` of the vertices. [E]
-  [[nodiscard]] Buffer<float> errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& wanted,
-                                     const Box& box, float threshold, Reaching reaching = Reaching::exact) const;
+  /// Returns whether the view prevents the split of the edge: the edge is not shown, or too short in pixels.
+  [[nodiscard]] bool is_kept_by_view(const Mesh& mesh, const EdgesShown& shown, EdgeId edge) const;
+  /// Returns whether the halves of the edge may be long enough in pixels. Halves are longer than half of the edge.
+  [[nodiscard]] bool may_have_long_halves(const Mesh& mesh, EdgeId edge) const;
 
-  /// The error that the edge would have with this deviation; infinity where that is not known (lights).
-  [[nodiscard]] float error_of(const Mesh& mesh, const Trial& trial, uint32_t edge, double distance) const;
+  /// Returns the error of each edge in `candidates`, which must have been tried; minus infinity elsewhere. [E]
+  /// An error below `threshold` may be replaced by an upper bound that is also below it, which costs less.
+  /// `box` of the vertices.
+  [[nodiscard]] Buffer<float> errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& candidates,
+                                     const Box& box, float threshold) const;
+  /// Returns the error of the edge for this deviation; infinity where that is unknown (lights).
+  [[nodiscard]] float error_of(const Mesh& mesh, const Trial& trial, EdgeId edge, double distance) const;
 
-  /// Whether a level after this one could have targets where this one has none: its flatness threshold is higher.
+  /// Returns whether a later level could have targets if this one has none: its flatness threshold is higher.
   [[nodiscard]] bool later_level_is_finer(int level) const;
 
  private:
   friend class ErrorLeft;
-  /// The region's edges that flatness wants split, with growth; all of them without it.
-  [[nodiscard]] Buffer<uint32_t> curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const;
   [[nodiscard]] double flatness_of(int level) const;
 
   const Options& options_;
@@ -147,31 +138,31 @@ class Selection {
   ErrorMeasure measure_;
 };
 
-/// Collects the largest deviation left, for the result.
+/// Largest deviation left, for the result.
 class ErrorLeft {
  public:
   explicit ErrorLeft(const Selection& selection) : measure_(&selection.measure_) {}
-  /// A tried edge that stays, or, with share 1/4, one of the last level that was split. `scale`: the level's
+  /// Adds a tried edge that stays, or, with share 1/4, one of the last level that was split. `scale` is the level's
   /// `highest_pixels_per_unit`.
-  void add(const Mesh& mesh, const Trial& trial, double scale, uint32_t edge, double share = 1) {
-    if (!may_grow_by(share * trial.most_deviation_at(mesh, edge), scale)) return;
+  void add(const Mesh& mesh, const Trial& trial, double scale, EdgeId edge, double share = 1) {
+    const double most = share * trial.deviation_bound(mesh, edge);
+    if (!may_grow_by(most, scale) || !may_grow_at(mesh, edge, most)) return;
     const double distance = share * trial.deviation_at(mesh, edge);
-    if (!may_grow_by(distance, scale)) return;
     distance_ = std::max(distance_, distance);
     pixels_ = std::max(pixels_, measure_->pixels(mesh, edge, distance));
   }
-  /// A deviation without a view.
+  /// Adds a deviation without a view.
   void add_distance(double distance) { distance_ = std::max(distance_, distance); }
   [[nodiscard]] double distance() const { return distance_; }
-  /// Whether a deviation of at most that may be the largest.
+  /// Returns whether a deviation of at most `most` may be the largest.
   [[nodiscard]] bool may_grow_by(double most, double scale) const {
     return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
   }
-  /// The same of a deviation at the edge, whose own scale is taken.
-  [[nodiscard]] bool may_grow_at(const Mesh& mesh, uint32_t edge, double most) const {
+  /// Returns whether a deviation of at most `most` at the edge may be the largest, by the scale at the edge.
+  [[nodiscard]] bool may_grow_at(const Mesh& mesh, EdgeId edge, double most) const {
     return may_grow_by_distance(most) || may_grow_by_pixels(measure_->pixels(mesh, edge, most));
   }
-  /// A smaller deviation is not the largest. `scale` as above.
+  /// Returns a lower bound of the largest deviation: smaller ones do not count. `scale`: see add().
   [[nodiscard]] double least_that_matters(double scale) const {
     return scale > 0 ? std::min(distance_, pixels_ / scale) : distance_;
   }
@@ -186,7 +177,7 @@ class ErrorLeft {
   double pixels_ = 0;
 };
 
-/// What is left of a deviation where a smooth surface is split once more.
+/// Share of a deviation that is left after one more split, where the surface is smooth.
 inline constexpr double split_leaves = 0.25;
 
 }  // namespace papilio

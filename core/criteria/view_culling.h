@@ -3,33 +3,33 @@
 #include <memory>
 #include <vector>
 
+#include "base/ids.h"
 #include "criteria/camera.h"
+#include "mesh/marks.h"
 #include "mesh/region.h"
-#include "mesh/split_plan.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
 
-/// The faces [F] that the view does not show, the paper's section 3.2: all three vertices are outside (a vertex counts
-/// with its longest edge as radius), or the face is turned away (one without normal never is). Shape: normals [F].
+/// Returns the faces [F] that the view does not show, the paper's section 3.2. Either all three vertices are outside (a
+/// vertex has its longest edge as radius), or the face is turned away (never without a normal). Shape: normals [F].
 [[nodiscard]] std::vector<bool> hidden_faces(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera);
 
-/// The length of each vertex's longest edge. [V]
+/// Returns the length of each vertex's longest edge. [V]
 [[nodiscard]] Buffer<double> longest_edges(const Mesh& mesh);
-/// The same of the level below `parents` (split_in_four.h), from its positions; of the edges of some faces' children
-/// alone, if `faces` is not null.
-[[nodiscard]] Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions,
-                                                 const Buffer<uint32_t>* faces = nullptr);
+/// Returns the length of each vertex's longest edge on the level below `parents` (split_in_four.h), from
+/// its positions. [V]
+[[nodiscard]] Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions);
 
-/// The edges that a view shows, the paper's section 3.2: not those all of whose faces have all three vertices outside
-/// (a vertex counts with its longest edge as radius), nor those all of whose faces are turned away (so edges on the
-/// silhouette are shown; a face without normal is never away). A face is looked at when one of its edges is asked for.
-/// The mesh and its arrays must outlive this.
+/// Edges that a view shows, the paper's section 3.2. An edge is hidden if all its faces have all three vertices outside
+/// (a vertex has its longest edge as radius). It is also hidden if all its faces are turned away: edges on the
+/// silhouette are shown, and a face without normal is never away. A face is tested when one of its edges is first
+/// tested. The mesh and its arrays must outlive this object.
 class EdgesShown {
  public:
-  /// All edges are.
+  /// All edges are shown.
   EdgesShown();
-  /// Shapes: normals [F], longest [V]; `box` of the vertices; `shared`: the half-edges at shared edges.
+  /// Shapes: normals [F], longest [V]; `box` of the vertices; `shared`: half-edges at shared edges.
   EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
              const Camera& camera, const Buffer<uint32_t>& shared);
   EdgesShown(EdgesShown&& other) noexcept;
@@ -38,18 +38,26 @@ class EdgesShown {
   EdgesShown& operator=(const EdgesShown&) = delete;
   ~EdgesShown();
 
-  [[nodiscard]] bool operator[](uint32_t edge) const;
-  /// Keeps those edges of the list that are; they are the region's.
+  [[nodiscard]] bool operator[](EdgeId edge) const {
+    if (cache_ == nullptr) return true;
+    return (of_edge_[edge] >= is_known ? of_edge_[edge] : find(edge)) == shown;
+  }
+  /// Keeps the shown edges of the list, all of which must be in the region.
   void keep_shown(const Region& region, Buffer<uint32_t>& edges) const;
 
  private:
-  class Memory;
-  std::unique_ptr<Memory> memory_;  ///< none: all are
+  class Cache;
+  static constexpr uint8_t is_known = 4, shown = is_known | 3;  ///< besides the bits found for faces
+  /// Computes the bits of an edge from its faces.
+  [[nodiscard]] uint8_t find(EdgeId edge) const;
+
+  std::unique_ptr<Cache> cache_;     ///< null: all edges are shown
+  mutable Buffer<uint8_t> of_edge_;  ///< [E] bits of the edge's faces; below `is_known` unless all were tested
 };
 
-/// Whether an edge looks at least so long, in pixels.
-[[nodiscard]] bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, uint32_t edge);
-/// Keeps those edges of the list that do.
+/// Returns whether the length of an edge is at least `edge_pixels` in pixels.
+[[nodiscard]] bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, EdgeId edge);
+/// Keeps the edges of the list that are long (is_long()).
 void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges);
 
 }  // namespace papilio

@@ -11,12 +11,12 @@
 namespace papilio {
 namespace {
 
-/// Goes through the edges, then through the vertices: encoder and decoder alike. `code(bit, probability)` codes the bit
-/// and returns it, or reads it.
+/// Codes the edges, then the vertices, in encoder and decoder. code(bit, probability) encodes the bit, or ignores it
+/// and decodes one; it returns the bit.
 template <class Code>
 void code_curves(Topology& base, const Code& code) {
   constexpr uint8_t many = 2;
-  std::vector<uint8_t> creases(base.vertex_count, 0);  // at each vertex so far, at most `many`
+  std::vector<uint8_t> creases(base.vertex_count, 0);  // [V] creases coded so far, at most `many`
   std::array<BitModel, 9> crease_models{};
   BitModel corner_model;
   const auto code_by = [&](BitModel& model, bool bit) {
@@ -52,7 +52,7 @@ std::vector<uint8_t> encode_base_curves(const Topology& base) {
   BinaryEncoder encoder;
   code_curves(copy, [&](bool bit, uint32_t probability) { return encoder.code(bit, probability); });
   std::vector<uint8_t> bytes = encoder.finish();
-  if (bytes.empty()) bytes.push_back(0);  // the coder drops trailing zeros; no bytes mean no curves
+  if (bytes.empty()) bytes.push_back(0);  // the coder drops trailing zeros, but no bytes mean no curves
   return bytes;
 }
 

@@ -8,11 +8,11 @@
 
 namespace papilio {
 
-/// Codes which edges of a base are creases, and at which of its vertices with two curve edges curves end. The base must
-/// be manifold. No bytes where it has neither.
+/// Codes the creases of a base, and its corners: vertices with two curve edges at which curves end. Returns no bytes if
+/// there are neither. The base must be manifold.
 [[nodiscard]] std::vector<uint8_t> encode_base_curves(const Topology& base);
 
-/// Marks the creases, darts and corners that encode_base_curves() coded. Any bytes give some curves.
+/// Marks the creases, darts and corners coded by encode_base_curves(). Any bytes are decoded to some curves.
 void decode_base_curves(std::span<const uint8_t> bytes, Topology& base);
 
 }  // namespace papilio

@@ -15,7 +15,7 @@
 namespace papilio {
 namespace {
 
-/// For each of `points`, the number of the nearest of `among`: sorted along x, so that few are looked at.
+/// Returns, for each of `points`, the number of the nearest of `among`. Sorts along x, so that few are compared.
 std::vector<uint32_t> nearest_points(const Buffer<Vec3f>& points, const Buffer<Vec3f>& among) {
   std::vector<uint32_t> order(among.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -24,7 +24,7 @@ std::vector<uint32_t> nearest_points(const Buffer<Vec3f>& points, const Buffer<V
   for (const Vec3f p : points) {
     double best = std::numeric_limits<double>::infinity();
     uint32_t nearest = 0;
-    const auto look_at = [&](uint32_t i) {  // false once all others are farther
+    const auto look_at = [&](uint32_t i) {  // returns false once all further ones are farther
       const Vec3d d = to_double(among[i]) - to_double(p);
       if (d.x * d.x > best) return false;
       if (dot(d, d) < best) best = dot(d, d), nearest = i;
@@ -58,7 +58,7 @@ std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>
 /// Marks the creases and corners of the sequence's base.
 void mark_curves(Topology& topology, const std::vector<uint32_t>& number, const std::vector<FaceMatch>& matches,
                  const BaseMesh& base) {
-  std::vector<uint32_t> place_of(base.face.empty() ? 0 : base.face.back() + 1, none);  // in the base, by face
+  std::vector<uint32_t> place_of(base.face.empty() ? 0 : base.face.back() + 1, none);  // face of the base
   for (uint32_t f = 0; f < base.face.size(); ++f) place_of[base.face[f]] = f;
   for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
     const FaceMatch& match = matches[h / 3];

@@ -17,17 +17,17 @@ struct OriginalPlace {
   Vec3f point{};
 };
 
-/// A base as its decoder has it, with the places on the original that its dyadic points correspond to.
+/// Decoded base, with the places on the original that correspond to its dyadic points.
 struct LiftedBase {
-  Mesh mesh;                                       ///< with edges, creases and corners, and attributes if any
+  Mesh mesh;                                       ///< mesh with edges, creases, corners, and attributes if any
   std::vector<uint32_t> seams;                     ///< edges at which charts of the attributes meet
-  std::vector<FaceMatch> faces;                    ///< [F] in the sequence
-  std::vector<uint32_t> vertex;                    ///< [V] number in the original
-  std::vector<std::vector<OriginalPlace>> places;  ///< by level, of its new vertices [E]
+  std::vector<FaceMatch> faces;                    ///< [F] faces in the sequence
+  std::vector<uint32_t> vertex;                    ///< [V] numbers in the original
+  std::vector<std::vector<OriginalPlace>> places;  ///< [level][E] places of the new vertices
 };
 
-/// Finds the vertices and faces of `base` in what its coder made of it, and lifts the new vertices of `levels` levels.
-/// Throws `Error` bad_surface where the coder moved vertices too far.
+/// Matches the vertices and faces of the decoded base with those of `base`, and lifts the new vertices of `levels`
+/// levels. Throws `Error` bad_surface if the coder moved vertices too far.
 [[nodiscard]] LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
                                    const OriginalSurface& original, int levels, const std::function<void()>& poll);
 

@@ -9,7 +9,7 @@ TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original) {
   TriangleMesh made;
   for (const Attribute& attribute : original.attributes.attributes)
     made.attributes.push_back({.components = attribute.components, .values = {}});
-  std::map<uint32_t, uint32_t> number;  // of the original's points
+  std::map<uint32_t, uint32_t> number;  // new number by the original's point
   made.triangles.reserve(base.point.size());
   for (size_t f = 0; f < base.point.size(); ++f) {
     Triangle triangle{};

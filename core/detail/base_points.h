@@ -5,7 +5,7 @@
 
 namespace papilio {
 
-/// Returns a base as its coder takes it, with the attributes of the original: a vertex at seams is several points.
+/// Returns a base with the attributes of the original, for its coder: a vertex on a seam has several points.
 [[nodiscard]] TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original);
 
 }  // namespace papilio

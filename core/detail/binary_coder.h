@@ -5,17 +5,17 @@
 #include <span>
 #include <vector>
 
-// Arithmetic coding of bits whose probabilities are given as 16-bit shares [Witten, Neal, Cleary 1987; the carry-free
-// form with 32-bit bounds]. Integers only: the same bytes on every processor.
+// Arithmetic coding of bits with 16-bit probabilities [Witten, Neal, Cleary 1987; the carry-free form with 32-bit
+// bounds]. Integers only: bytes are identical on every processor.
 
 namespace papilio {
 
-/// Probabilities are in 1..65535, of 65536.
+/// Bits of a probability, which is in 1..65535, of 65536.
 inline constexpr uint32_t probability_bits = 16;
 
 class BinaryEncoder {
  public:
-  /// Returns the bit.
+  /// Codes a bit, and returns it.
   bool code(bool bit, uint32_t probability_of_one) {
     const uint32_t range = high_ - low_;
     const uint32_t middle = low_ + static_cast<uint32_t>((uint64_t{range} * probability_of_one) >> probability_bits);
@@ -28,9 +28,9 @@ class BinaryEncoder {
     return bit;
   }
 
-  /// The bytes of all bits. Trailing zeros are left out: the decoder reads zeros behind the end.
+  /// Returns the bytes of all bits. Drops trailing zeros: the decoder reads zeros behind the end.
   [[nodiscard]] std::vector<uint8_t> finish() {
-    // The shortest number within the bounds.
+    // Finds the shortest number within the bounds.
     for (uint32_t count = 0; count <= 4; ++count) {
       const uint32_t mask = count == 0 ? 0xFFFFFFFFU : count == 4 ? 0 : 0xFFFFFFFFU >> (8 * count);
       const uint64_t up = (uint64_t{low_} + mask) & ~uint64_t{mask};

@@ -9,12 +9,12 @@
 namespace papilio {
 namespace {
 
-/// Faces in a row that are no nearer, after which a search ends.
+/// Number of successive faces that are no nearer, after which a search ends.
 constexpr int most_misses = 12;
 
-/// Weights of a triangle's corners at its point nearest to a point.
+/// Returns the weights of a triangle's corners at its point nearest to p.
 std::array<double, 3> nearest_weights(Vec3d p, const TriangleCorners& t) {
-  const auto along = [&](Vec3d from, Vec3d to) {  // share of the way of the nearest point of a side
+  const auto along = [&](Vec3d from, Vec3d to) {  // place of the nearest point on a side, 0..1
     const Vec3d way = to - from;
     const double squared = dot(way, way);
     return squared > 0 ? std::clamp(dot(p - from, way) / squared, 0.0, 1.0) : 0.0;

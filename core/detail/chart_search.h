@@ -10,18 +10,18 @@
 
 namespace papilio {
 
-/// Finds the places of an original near points, within the chart where the search begins: no seam is crossed.
+/// Search for the places of an original near points, within the chart of the start: it crosses no seam.
 class ChartSearch {
  public:
-  /// The original must have attributes, and outlive this.
+  /// Marks the seams. The original must have attributes, and outlive this.
   explicit ChartSearch(const OriginalSurface& original);
 
   struct Found {
     uint32_t face;
-    std::array<double, 3> weights;  ///< of its corners
+    std::array<double, 3> weights;  ///< barycentric weights of its corners
   };
-  /// Looks from these faces on, the nearest first, for the face that is nearest to the point, until several in a row
-  /// are no nearer. Returns its point nearest to the point.
+  /// Returns the place nearest to the point. Visits faces from `starts` on, the nearest first, until several in a row
+  /// are no nearer.
   [[nodiscard]] Found nearest(std::span<const uint32_t> starts, Vec3d point);
 
  private:
@@ -34,7 +34,7 @@ class ChartSearch {
   const OriginalSurface& original_;
   std::vector<bool> is_seam_;     // [E]
   std::vector<uint32_t> seen_;    // [F] search that saw a face last
-  uint32_t search_ = 0;           // at hand
+  uint32_t search_ = 0;           // number of the current search
   std::vector<Candidate> queue_;  // heap
 };
 

@@ -8,7 +8,7 @@
 
 namespace papilio {
 
-/// Throws `Error` bad_option unless the pieces of a level, if it has any, are those of its bytes.
+/// Throws `Error` bad_option unless the pieces of a level, if it has any, match its bytes.
 inline void check_pieces(uint64_t base_faces, const DetailStream& level) {
   if (level.pieces.empty()) return;
   if (level.pieces.size() > std::min<uint64_t>(base_faces, most_detail_pieces))
@@ -24,8 +24,8 @@ inline void check_pieces(uint64_t base_faces, const DetailStream& level) {
     throw Error(Fault::bad_option, "The pieces of a level of detail have other bytes than the level.", "pieces");
 }
 
-/// Throws `Error` unless the levels of a base of so many faces can be decoded within the limit: bad_option,
-/// result_too_large.
+/// Throws `Error` bad_option or result_too_large unless the levels of a base of `base_faces` faces can be decoded
+/// within the limit.
 inline void check_levels(uint64_t base_faces, std::span<const DetailStream> levels, uint64_t face_limit) {
   if (levels.size() > static_cast<size_t>(most_detail_levels))
     throw Error(Fault::bad_option,

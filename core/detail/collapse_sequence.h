@@ -16,26 +16,27 @@ namespace papilio {
 struct BaseMesh {
   TriangleMesh triangles;
   std::vector<uint32_t> vertex;                ///< [V] number in the original
-  std::vector<uint32_t> face;                  ///< [F] number in the sequence, whose corners are in the same order
-  std::vector<std::array<bool, 3>> is_crease;  ///< [F] whether the side from each corner to the next is one
-  std::vector<bool> is_corner;                 ///< [V] whether boundaries and creases end there
-  std::vector<Triangle> point;                 ///< [F] points of the original's attributes; empty: there are none
-  size_t collapses = 0;                        ///< of the sequence that led to it
+  std::vector<uint32_t> face;                  ///< [F] number in the sequence; corners are in the sequence's order
+  std::vector<std::array<bool, 3>> is_crease;  ///< [F] whether the side from each corner to the next is a crease
+  std::vector<bool> is_corner;                 ///< [V] whether boundaries and creases end at the vertex
+  std::vector<Triangle> point;                 ///< [F] points of the original's attributes; empty without attributes
+  size_t collapses = 0;                        ///< number of the sequence's collapses that made the mesh
 };
 
-/// Simplification of a manifold by collapses of edges onto one of their ends, which remembers how the surfaces
-/// correspond: each collapse unfolds the faces round the removed vertex into the plane, where they cover the same
-/// polygon before and after. A place on the base is lifted to the original through these polygons, collapse by
-/// collapse: a bijection [Lee et al., "MAPS", 1998; Liu et al., "Neural Subdivision", 2020].
+/// Simplification of a manifold by edge collapses onto one end, with the correspondence of surfaces. Each collapse
+/// unfolds the faces round the removed vertex into the plane, where they cover one polygon before and after. A place on
+/// the base is lifted to the original through these polygons, collapse by collapse. The map is a bijection [Lee et al.,
+/// "MAPS", 1998; Liu et al., "Neural Subdivision", 2020].
 ///
-/// Vertices on boundaries, creases and seams of attributes move along them, and corners stay (sharp_curves.h), as do
-/// vertices at which seams end or meet. So curves and seams of the base correspond to those of the original.
+/// Vertices on boundaries, creases and seams of attributes move along them. Corners (sharp_curves.h) and vertices at
+/// which seams end or meet are kept. So curves and seams of the base correspond to those of the original.
 ///
-/// Collapses are chosen by quadrics weighted by area [Garland, Heckbert 1997] and by the shape of the faces that they
-/// make. Those that change the topology, turn a face over or have no valid unfolding are refused.
+/// Collapses are chosen by area-weighted quadrics [Garland, Heckbert 1997] and by the shape of the new faces. Collapses
+/// that change the topology, turn a face over or have no valid unfolding are refused.
 class CollapseSequence {
  public:
-  /// `original` must be manifold, with edges. `weight` [V] scales quadrics and shapes at a vertex; empty: 1.
+  /// Starts at `original`, which must be manifold, with edges. `weight` [V] scales quadrics and shape costs at a
+  /// vertex; empty: 1.
   explicit CollapseSequence(const Mesh& original, std::vector<float> weight = {});
   ~CollapseSequence();
   CollapseSequence(const CollapseSequence&) = delete;
@@ -46,7 +47,7 @@ class CollapseSequence {
   void collapse_to(uint32_t faces, const std::function<void()>& poll = {});
   [[nodiscard]] BaseMesh base() const;
 
-  /// Moves places on a base, as numbers in the sequence, to the original. O(log(V)) a place.
+  /// Moves places on a base to the original; faces are numbers in the sequence. O(log V) a place.
   void lift(std::vector<SurfacePlace>& places, const BaseMesh& base, const std::function<void()>& poll = {}) const;
 
  private:

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "rules/uniform_butterfly.h"
+#include "rules/butterfly.h"
 #include "split/split_in_four.h"
 
 namespace papilio {
@@ -36,7 +36,7 @@ DetailLevel DetailLevel::next() const {
 
 void DetailLevel::predict(Buffer<Vec3f>& positions) const {
   positions.resize_for_overwrite(size_t{topology_.vertex_count} + topology_.edge_count());
-  uniform_butterfly(topology_, features_, positions.data(), positions.data() + topology_.vertex_count);
+  butterfly<float>(topology_, features_, positions.data(), positions.data() + topology_.vertex_count);
 }
 
 ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,

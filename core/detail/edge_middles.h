@@ -10,26 +10,26 @@
 
 namespace papilio {
 
-/// A face of a sequence of collapses, and which of its corners the first one of a base's face is.
+/// Face of a collapse sequence that matches a base's face, and the corner that matches the first one.
 struct FaceMatch {
   uint32_t face, turn;
 };
 
-/// Places of the middles of edges, level by level, on the faces of the base that they come from.
+/// Places of the middles of edges, level by level, on the faces of the base that contain them.
 class EdgeMiddles {
  public:
-  /// `faces` [F] of the base; must outlive this.
+  /// Starts at the base, with its `faces` [F], which must outlive this.
   explicit EdgeMiddles(std::span<const FaceMatch> faces);
 
-  /// Returns the middles of a level's edges [E], in the faces of their half-edges. Those of edges with one face are
-  /// moved towards the face's other corner by this share of the way.
+  /// Returns [E] the middles of a level's edges, in the faces of their half-edges. The middle of an edge with one face
+  /// is moved towards the face's apex by the share `inward`.
   [[nodiscard]] std::vector<SurfacePlace> of(const Topology& level, double inward = 0) const;
-  /// Goes on to the next level.
+  /// Advances to the next level.
   void next();
 
  private:
   std::span<const FaceMatch> faces_;
-  std::vector<std::array<Vec3d, 3>> weights_;  // [F of the level] of the corners, in the base's face above
+  std::vector<std::array<Vec3d, 3>> weights_;  // [F of the level] weights of the corners in the base's face
   uint32_t level_ = 0;
 };
 

@@ -9,12 +9,12 @@ namespace papilio {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-/// Bounds are wider by this share, for what is rounded on the way to them.
+/// Margin of the bounds against rounding, a share.
 constexpr double margin = 1e-6;
 
 float rounded_up(double value) { return std::nextafter(static_cast<float>(value * (1 + margin)), infinity); }
 
-/// How far the residuals of each piece move a vertex at most.
+/// Returns, for each piece, an upper bound of the distance by which its residuals move a vertex.
 std::vector<float> largest_moves(const DetailLevel& level, const Residuals& residuals, const EdgePieces& pieces) {
   std::vector<double> squared(pieces.count());
   std::vector<int64_t> across(level.topology().edge_count());
@@ -32,7 +32,8 @@ std::vector<float> largest_moves(const DetailLevel& level, const Residuals& resi
   return made;
 }
 
-/// The sphere and the cone of the faces of a surface, so many levels below the base, by the pieces that they lie below.
+/// Returns, for each piece, the bounding sphere and normal cone of its faces on a surface `levels` levels below the
+/// base.
 std::vector<PieceBounds> bounds_of(const TriangleMesh& surface, size_t levels, const PieceOrder& order,
                                    uint32_t pieces) {
   // Calls visit(piece, corners, unit normal).
@@ -71,14 +72,14 @@ std::vector<PieceBounds> bounds_of(const TriangleMesh& surface, size_t levels, c
     PieceBounds& bounds = made[piece];
     for (const Vec3f p : corners)
       bounds.radius = std::max(bounds.radius, rounded_up(length(to_double(p) - to_double(bounds.centre))));
-    if (length(normal) == 0) return;  // it has none
+    if (length(normal) == 0) return;
     const double cosine = dot(normal, to_double(bounds.axis)) - margin;
     bounds.least_cosine = std::min(bounds.least_cosine, std::max(-1.0F, -rounded_up(-cosine)));
   });
   return made;
 }
 
-/// Adds a piece's bytes to those of all, and returns how many.
+/// Appends a piece's bytes to `all`, and returns their number.
 uint32_t append(std::vector<uint8_t>& all, const std::vector<uint8_t>& piece) {
   all.insert(all.end(), piece.begin(), piece.end());
   return static_cast<uint32_t>(piece.size());

@@ -13,13 +13,13 @@ namespace papilio {
 
 /// Texture coordinates and colours of one level, coded.
 struct CodedValues {
-  float step = 0;                            ///< 0: all residuals are 0
-  std::vector<std::vector<uint8_t>> pieces;  ///< then none
+  float step = 0;                            ///< quantization step; 0: all residuals are 0
+  std::vector<std::vector<uint8_t>> pieces;  ///< bytes of each piece; empty if all residuals are 0
 };
-/// Codes those of all levels in so many pieces each. Nothing where there are none.
+/// Function that codes the values of all levels in `piece_counts` [level] pieces. Returns nothing without values.
 using ValueCoder = std::function<std::vector<CodedValues>(std::span<const uint32_t> piece_counts)>;
 
-/// Codes the levels of a fit, each in pieces of about so many bytes.
+/// Codes the levels of a fit, each in pieces of about `piece_bytes` bytes.
 [[nodiscard]] std::vector<DetailStream> encode_pieces(const ResidualFit& fit, const PieceOrder& order,
                                                       uint64_t piece_bytes, const ValueCoder& code_values);
 

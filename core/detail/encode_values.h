@@ -12,10 +12,9 @@
 
 namespace papilio {
 
-/// Encodes the texture coordinates and colours of the levels of a base whose positions are chosen: those that the
-/// original has where the vertices came to lie, in the charts that they correspond to. `positions`: vertices of the
-/// base and of all levels. `lifted` must have either. `step`: of the last level; coarser ones have smaller ones. In so
-/// many pieces a level.
+/// Encodes the texture coordinates and colours of a base's levels, once positions are chosen: the original's values at
+/// the vertices, in the corresponding charts. `positions`: vertices of the base and of all levels. `lifted` must have
+/// either attribute. `step`: step of the last level; coarser levels have smaller steps. `piece_counts` [level]
 [[nodiscard]] std::vector<CodedValues> encode_values(const OriginalSurface& original, const LiftedBase& lifted,
                                                      const CollapseSequence& sequence, const BaseMesh& base,
                                                      const Buffer<Vec3f>& positions, float step,

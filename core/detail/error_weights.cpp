@@ -7,7 +7,7 @@ namespace papilio {
 namespace {
 
 constexpr double largest_weight = 100;
-/// The weights reach so many edges beyond, each with this share of the one before.
+/// Radius of the weights, in edges, and the decay over each edge.
 constexpr int rings = 8;
 constexpr float share_of_ring = 0.9F;
 

@@ -7,8 +7,8 @@
 
 namespace papilio {
 
-/// Multiplies the vertices' weights [V] (none: 1) where a surface is farther from the original than on average, and
-/// round there, so that a simplification by them keeps more.
+/// Multiplies the weights [V] (empty: 1) of vertices where a surface is farther from the original than on average, and
+/// of their neighbourhoods. A simplification with these weights keeps more there.
 void weigh_errors(const OriginalSurface& original, TriangleMesh surface, std::vector<float>& weights);
 
 }  // namespace papilio

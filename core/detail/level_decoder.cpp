@@ -46,7 +46,7 @@ const Topology& LevelDecoder::topology() {
 }
 
 void LevelDecoder::decode(const DetailStream& stream) {
-  (void)topology();  // makes the level to be split
+  (void)topology();  // makes the level that is split
   const Buffer<Vec3f> normals = residual_normals(level_, positions_.data());
   level_.predict(positions_);
   const std::vector<DetailPiece> pieces = pieces_of(stream);

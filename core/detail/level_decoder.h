@@ -18,19 +18,20 @@ namespace papilio {
 /// Decoder of a base's levels, coarse first.
 class LevelDecoder {
  public:
-  /// Takes what mesh_of_base() returns. Texture coordinates and colours are decoded if asked.
+  /// Starts at a result of mesh_of_base(). `with_values`: whether to decode texture coordinates and colours.
   explicit LevelDecoder(const Mesh& base, bool with_values = false);
 
   /// Decodes the next level: positions [V] grow to [V + E]. Throws `Error` not_finite.
   void decode(const DetailStream& stream);
 
-  /// Vertices decoded so far.
+  /// Returns the vertices decoded so far.
   [[nodiscard]] const Buffer<Vec3f>& positions() const { return positions_; }
-  /// Texture coordinates and colours of what was decoded; null where none are.
+  /// Returns the texture coordinates and colours decoded so far; null if there are none.
   [[nodiscard]] const ValueLevels* values() const { return values_ ? &*values_ : nullptr; }
-  /// The finest mesh decoded, which `decode` splits next. Stays as it is until the next call after that.
+  /// Returns the finest decoded mesh, which decode() splits next. Valid until the next call of topology() after
+  /// decode().
   [[nodiscard]] const Topology& topology();
-  /// Returns the finest mesh decoded, with its edges and curves, and with the values if they are; call last.
+  /// Returns the finest decoded mesh with edges, curves, and values if decoded; must be the last call.
   [[nodiscard]] Mesh take_mesh();
 
  private:
@@ -41,7 +42,7 @@ class LevelDecoder {
   std::unique_ptr<ResidualModels> models_ = std::make_unique<ResidualModels>();
   std::optional<ValueLevels> values_;
   DetailLevel level_;
-  bool is_split_ = false;  ///< whether `level_` is decoded: connectivity below it is made when it is needed
+  bool is_split_ = false;  ///< whether `level_` is decoded; topology() then makes the next level on demand
 };
 
 }  // namespace papilio

@@ -49,7 +49,7 @@ class Builder {
     if (!b) add_spoke(t, share);
   }
 
-  /// Whether the origin of h has the regular rules in the fan of h.
+  /// Returns whether the origin of h has the regular rules in the fan of h.
   [[nodiscard]] bool is_regular_at(uint32_t h) {
     const uint32_t v = level_.origin[h];
     if (!is_on_curve_[v]) return valence_[v] == stencil::regular_valence;
@@ -65,7 +65,7 @@ class Builder {
     add(b, Row::end);
     const auto add_beyond = [&](uint32_t vertex, uint32_t end, uint32_t other) {
       if (vertex != none) return add(vertex, Row::next);
-      add(end, 2 * Row::next);  // the curve goes on straight
+      add(end, 2 * Row::next);  // straight continuation of the curve
       add(other, -Row::next);
     };
     add_beyond(curves_.before(h), a, b);
@@ -91,7 +91,7 @@ class Builder {
     add(level_.origin[h], share / 2);
     add(level_.tip(h), share / 2);
   }
-  /// The vertex across the edge of h from h's face.
+  /// Returns the vertex opposite to h in the face beyond h's edge.
   [[nodiscard]] uint32_t wing(uint32_t h) const { return level_.apex(level_.twin[h]); }
 
   void add_eight_points(uint32_t h, uint32_t t) {
@@ -105,12 +105,12 @@ class Builder {
     }
   }
 
-  /// The origin of h is inside the surface, its tip on a curve that runs along the left face.
+  /// Adds the rule of an edge from the interior to a curve that runs along the left face.
   void add_interior_curve_left(uint32_t h, uint32_t t) {
     add_interior_curve(h, {level_.apex(h), level_.apex(t), wing(Topology::previous(h)), wing(Topology::next(t)),
                            wing(Topology::previous(t))});
   }
-  /// The curve runs along the right face.
+  /// Adds the rule of an edge from the interior to a curve that runs along the right face.
   void add_interior_curve_right(uint32_t h, uint32_t t) {
     add_interior_curve(h, {level_.apex(t), level_.apex(h), wing(Topology::next(t)), wing(Topology::previous(h)),
                            wing(Topology::next(h))});
@@ -129,7 +129,7 @@ class Builder {
     add(points.wing_aq, Row::wing_aq);
   }
 
-  /// Curves along both edges of the left face.
+  /// Adds the rule of an edge with curves along both other edges of the left face.
   void add_curve_curve(uint32_t h, uint32_t t) {
     using Row = stencil::CurveCurve<double>;
     add_middle(h, 2 * Row::end);
@@ -138,7 +138,7 @@ class Builder {
     add(wing(Topology::previous(t)), Row::wing);
   }
 
-  /// The rule of the origin of h, which is not regular.
+  /// Adds the rule of the origin of h, which is irregular.
   void add_spoke(uint32_t h, double share) {
     collect_fan(level_, h, fan_);
     if (fan_.closed)
@@ -149,7 +149,7 @@ class Builder {
       add_curve_spoke(h, share);
   }
 
-  /// An open fan's.
+  /// Adds the rule of an irregular origin of h with an open fan.
   void add_curve_spoke(uint32_t h, double share) {
     const uint32_t triangles = fan_.valence();
     const stencil::CurveRule rule(triangles);
@@ -177,7 +177,7 @@ class Builder {
   const Topology& level_;
   CurveNeighbours curves_;
   std::vector<uint32_t> valence_;
-  std::vector<bool> is_on_curve_;  // where not only the valence tells which rules hold
+  std::vector<bool> is_on_curve_;  // [V] on a curve, where the rule depends on more than the valence
   std::map<uint32_t, stencil::Interior> interiors_;
   Fan fan_;
   LinearStencils made_;

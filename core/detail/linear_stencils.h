@@ -7,8 +7,8 @@
 
 namespace papilio {
 
-/// The Modified Butterfly scheme of one level as a sparse matrix: the new vertex of edge e is the weighted sum
-/// of vertices `vertex[first[e]]` to `vertex[first[e + 1] - 1]`.
+/// Modified Butterfly scheme of one level as a sparse matrix: the new vertex of edge e is the weighted sum of vertices
+/// `vertex[first[e]]` to `vertex[first[e + 1] - 1]`.
 struct LinearStencils {
   Buffer<uint32_t> first;  ///< [E + 1]
   Buffer<uint32_t> vertex;
@@ -17,7 +17,7 @@ struct LinearStencils {
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(first.size() - 1); }
 };
 
-/// Of a manifold level with its edges and curves. Weights: rules/stencil.h.
+/// Returns the stencils of a manifold level with edges and curves. Weights: rules/stencil.h.
 [[nodiscard]] LinearStencils linear_stencils(const Topology& level);
 
 }  // namespace papilio

@@ -11,16 +11,29 @@
 namespace papilio {
 namespace {
 
-/// A vertex that is moved may land on another one, which takes another round.
+/// Upper bound of the rounds: a moved vertex may land on another, which takes a further round.
 constexpr int most_rounds = 4;
-/// No vertex moves by a larger share of the way to its neighbours.
+/// Upper bound of a vertex's move, a share of the way to its neighbours.
 constexpr double most_of_way = 0.25;
 
 uint32_t shared_edges(const Topology& t) { return static_cast<uint32_t>(std::ranges::count(t.kind, EdgeKind::shared)); }
 
-bool is_manifold(const Topology& t) { return shared_edges(t) == 0 && t.pinched.empty(); }
+/// Returns whether the face lies back to back with a lower-numbered one: they share all edges, as in a two-sided leaf.
+/// Mesh coders treat them as two surfaces.
+bool is_back(const Topology& t, uint32_t f) {
+  const uint32_t* twin = &t.twin[size_t{3} * f];
+  return twin[0] != none && twin[1] != none && twin[2] != none && twin[0] / 3 < f && twin[0] / 3 == twin[1] / 3 &&
+         twin[1] / 3 == twin[2] / 3;
+}
 
-/// Parts the fans of a mesh.
+bool needs_parting(const Topology& t) {
+  if (shared_edges(t) > 0 || !t.pinched.empty()) return true;
+  for (uint32_t f = 0; f < t.face_count(); ++f)
+    if (is_back(t, f)) return true;
+  return false;
+}
+
+/// Separation of the fans of a mesh.
 class FanParter {
  public:
   FanParter(const Mesh& mesh, double distance)
@@ -36,6 +49,8 @@ class FanParter {
       for (const uint32_t spoke : fan.spokes) visited_[spoke] = true;
       if (fans_[fan.centre]++ > 0) part(fan, fans_[fan.centre]);
     }
+    for (uint32_t h = 0; h < mesh_.topology.half_edge_count(); ++h)
+      if (is_back(mesh_.topology, h / 3)) part_corner(h);
     return std::move(made_);
   }
   [[nodiscard]] uint32_t parted() const {
@@ -43,7 +58,13 @@ class FanParter {
   }
 
  private:
-  /// Gives the vertex's fan of this number, from 2 on, a vertex of its own.
+  /// Gives a corner of a face that lies back to back with another its own vertex.
+  void part_corner(uint32_t h) {
+    const uint32_t v = mesh_.topology.origin[h];
+    part({.centre = v, .spokes = {h}, .ring = {mesh_.topology.tip(h), mesh_.topology.apex(h)}}, ++fans_[v]);
+  }
+
+  /// Gives fan `number` of a vertex, from 2 on, its own vertex.
   void part(const Fan& fan, uint32_t number) {
     const Vec3d place = to_double(mesh_.positions[fan.centre]);
     Vec3d middle;
@@ -52,7 +73,7 @@ class FanParter {
     const Vec3d way = middle - place;
     const double size = length(way);
     const double share = size > 0 ? std::min(most_of_way, distance_ / size) * (1 - 1.0 / number) : 0;
-    std::vector<std::pair<uint32_t, uint32_t>> made;  // points of the fan, before and after
+    std::vector<std::pair<uint32_t, uint32_t>> made;  // old and new points of the fan
     for (const uint32_t spoke : fan.spokes) {
       uint32_t& point = made_.triangles[spoke / 3][spoke % 3];
       auto known = std::ranges::find(made, point, &std::pair<uint32_t, uint32_t>::first);
@@ -61,7 +82,7 @@ class FanParter {
     }
   }
 
-  /// Adds a point at this place with the values of another one.
+  /// Adds a point at `place` with the values of another.
   uint32_t add_point(uint32_t other, Vec3f place) {
     const auto made = static_cast<uint32_t>(made_.positions.size());
     made_.positions.push_back(place);
@@ -74,7 +95,7 @@ class FanParter {
   const Mesh& mesh_;
   double distance_;
   TriangleMesh made_;
-  std::vector<uint32_t> fans_;  // [V] seen
+  std::vector<uint32_t> fans_;  // [V] number of fans so far
   std::vector<bool> visited_;   // [H]
 };
 
@@ -82,7 +103,7 @@ class FanParter {
 
 ManifoldSurface manifold_surface(const TriangleMesh& triangles, double distance) {
   ManifoldSurface made{.mesh = build_mesh(triangles)};
-  for (int round = 0; round < most_rounds && !is_manifold(made.mesh.topology); ++round) {
+  for (int round = 0; round < most_rounds && needs_parting(made.mesh.topology); ++round) {
     FanParter parter(made.mesh, distance);
     const TriangleMesh parted = parter.run();
     made.parted = std::max(made.parted, parter.parted());

@@ -4,15 +4,15 @@
 
 namespace papilio {
 
-/// Surface whose edges have one or two faces, wound alike, and whose vertices have one fan of faces each.
+/// Surface whose edges have one face, or two of consistent orientation, and whose vertices have one fan of faces.
 struct ManifoldSurface {
-  Mesh mesh;            ///< with its edges
-  uint32_t parted = 0;  ///< vertices that were parted
+  Mesh mesh;            ///< mesh with edges
+  uint32_t parted = 0;  ///< number of vertices that were separated
 };
 
 /// Builds the surface. A vertex with several fans becomes one vertex a fan, each moved by at most `distance` into its
-/// own faces: edges that more than two faces share become boundaries. Throws `Error` bad_surface where that does not
-/// part all of them, and what build_mesh() throws. O(F log F).
+/// faces. So edges of more than two faces, and edges of two faces back to back, become boundaries. Throws `Error`
+/// bad_surface if some cannot be separated, and errors of build_mesh(). O(F log F).
 [[nodiscard]] ManifoldSurface manifold_surface(const TriangleMesh& triangles, double distance);
 
 /// Throws `Error` bad_surface unless the mesh is manifold, perhaps with boundaries.

@@ -10,7 +10,7 @@ constexpr int32_t stretch_limit = 3071;  // 12 in units of 1/256
 constexpr uint32_t stretch_shift = 4;    // probabilities are looked up by their upper 12 bits
 constexpr uint32_t most_seen = 255;
 
-/// e^x by multiplications alone, so that every processor has the same bits.
+/// Returns e^x by multiplications alone, bit-identical on every processor.
 double exponential(double x) {
   double term = 1, sum = 1;
   const double small = x / 64;

@@ -11,12 +11,12 @@
 
 namespace papilio {
 
-/// ln(p / (1 - p)) in units of 1/256, for a 16-bit share p.
+/// Returns ln(p / (1 - p)) in units of 1/256, for a 16-bit probability p.
 [[nodiscard]] int32_t stretch(uint32_t probability);
-/// Inverse of `stretch`, clamped to 1..65535.
+/// Returns the inverse of stretch(), clamped to 1..65535.
 [[nodiscard]] uint32_t squash(int32_t stretched);
 
-/// Probability of a bit that is one, learned from the bits seen.
+/// Adaptive probability that a bit is one.
 class BitModel {
  public:
   [[nodiscard]] uint32_t probability() const { return probability_; }
@@ -27,7 +27,7 @@ class BitModel {
   uint16_t seen_ = 0;
 };
 
-/// Mixes the predictions of `inputs` models by weights of one of several sets, which learn from the bits coded.
+/// Mixer of the predictions of `inputs` models, with several sets of weights that adapt to the coded bits.
 template <size_t inputs>
 class BitMixer {
  public:
@@ -35,7 +35,7 @@ class BitMixer {
     for (auto& set : weights_) set.fill(static_cast<int32_t>((1 << 16) * 14 / (10 * inputs)));
   }
 
-  /// Probability that the next bit is one; valid until update().
+  /// Returns the probability that the next bit is one. update() must follow.
   [[nodiscard]] uint32_t mix(const std::array<BitModel*, inputs>& models, size_t set) {
     models_ = models;
     set_ = set;

@@ -12,27 +12,28 @@
 namespace papilio {
 namespace {
 
-/// A boundary's plane counts this many times as much as a face's of the edge's length squared.
+/// Weight of a boundary's plane, per squared length of its edge, relative to a face's area.
 constexpr double boundary_weight = 100;
-/// A collapse that turns a face's normal to a smaller cosine is refused.
+/// Lower bound of the cosine between a face's normals before and after a collapse.
 constexpr double least_cosine_of_turn = 0.2;
 constexpr uint32_t steps_between_polls = 4096;
-/// Collapses that wait before stale ones are looked for.
+/// Lower bound of the queue's length at which stale collapses are dropped.
 constexpr size_t least_to_drop = 10'000;
 
 struct PairCollapse {
   double cost;
-  Vec3d place;  ///< of the vertex that is left
+  Vec3d place;  ///< position of the merged vertex
   uint32_t kept, removed;
-  uint32_t age;  ///< the ages of both vertices when it was computed: a collapse is stale once either has changed
+  uint32_t age;  ///< sum of both vertices' ages when computed; the collapse is stale if it has changed
 };
-/// For a heap whose top is the cheapest. Ties go by index: the result does not depend on the library.
+/// Compares collapses for a heap with the cheapest at its top. Ties go by index, so that the result does not depend on
+/// the standard library.
 bool is_costlier(const PairCollapse& a, const PairCollapse& b) {
   if (a.cost != b.cost) return a.cost > b.cost;
   return a.kept != b.kept ? a.kept > b.kept : a.removed > b.removed;
 }
 
-/// A vertex for each fan of faces: a surface that is not a manifold falls into sheets that are.
+/// Returns faces with one vertex per fan: a non-manifold surface falls into manifold sheets.
 std::vector<Triangle> cut_into_sheets(const Topology& t) {
   DisjointSets fans(t.half_edge_count());
   for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
@@ -64,10 +65,10 @@ class Simplifier {
       for (const uint32_t v : faces_[f]) faces_of_[v].push_back(f);
     for (uint32_t v = 0; v < places_.size(); ++v) quadrics_[v] = quadric_of(v);
     for (uint32_t h = 0; h < t.half_edge_count(); ++h)
-      if (h < t.twin[h]) propose(corner(h), corner(Topology::next(h)));  // `none` is above all
+      if (h < t.twin[h]) propose(corner(h), corner(Topology::next(h)));  // `none` is above all numbers
   }
 
-  /// Returns whether so few faces are left.
+  /// Collapses until at most `faces` faces are left. Returns whether that was reached.
   [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll) {
     while (face_count_ > faces && !queue_.empty()) {
       if (poll && ++steps_ % steps_between_polls == 0) poll();
@@ -93,10 +94,10 @@ class Simplifier {
   }
 
  private:
-  /// Vertex that the half-edge of a mesh not yet collapsed leaves.
+  /// Returns the origin of a half-edge, before any collapse.
   [[nodiscard]] uint32_t corner(uint32_t h) const { return faces_[h / 3][h % 3]; }
 
-  /// Quadric of the vertex's faces and boundaries as they are.
+  /// Returns the quadric of the vertex's present faces and boundaries.
   [[nodiscard]] Quadric quadric_of(uint32_t v) const {
     Quadric sum;
     for (const uint32_t f : faces_of_[v]) {
@@ -135,14 +136,14 @@ class Simplifier {
 
   [[nodiscard]] bool is_stale(const PairCollapse& c) const { return c.age != ages_[c.kept] + ages_[c.removed]; }
 
-  /// Removes what became stale: on flat surfaces vertices have many neighbours, and each collapse proposes all of them.
+  /// Drops stale collapses: on flat surfaces vertices have many neighbours, and each collapse proposes all of them.
   void drop_stale() {
     std::erase_if(queue_, [&](const PairCollapse& c) { return is_stale(c); });
     std::ranges::make_heap(queue_, &is_costlier);
     most_waiting_ = std::max(least_to_drop, 2 * queue_.size());
   }
 
-  /// The quadric's minimum; where it has none, or one far away, the best of both ends and the midpoint.
+  /// Returns the quadric's minimum; if it has none, or a distant one, the best of both ends and the midpoint.
   static Vec3d best_place(const Quadric& quadric, Vec3d a, Vec3d b) {
     const Vec3d middle = 0.5 * (a + b);
     const std::optional<Vec3d> minimum = quadric.minimum();
@@ -171,8 +172,8 @@ class Simplifier {
     return keeps_topology(c.kept, c.removed) && turns_no_face(c);
   }
 
-  /// The link condition: the neighbours of both ends are the apexes of the edge's faces and no others; an edge between
-  /// two boundaries is one; and faces are left over.
+  /// Returns whether the link condition holds: the only common neighbours of both ends are the apexes of the edge's
+  /// faces; an edge between two boundary vertices is a boundary; and faces remain.
   [[nodiscard]] bool keeps_topology(uint32_t a, uint32_t b) const {
     const std::vector<uint32_t> around_a = neighbours(a), around_b = neighbours(b);
     std::vector<uint32_t> common;
@@ -220,7 +221,7 @@ class Simplifier {
     for (const uint32_t v : neighbours(c.kept)) propose(c.kept, v);
   }
 
-  /// Computes the quadrics of a vertex and its neighbours anew and proposes all their edges.
+  /// Recomputes the quadrics of a vertex and its neighbours, and proposes all their edges.
   void renew_around(uint32_t centre) {
     std::vector<uint32_t> changed = neighbours(centre);
     changed.push_back(centre);
@@ -237,11 +238,11 @@ class Simplifier {
   }
 
   Quadrics quadrics_are_;
-  std::vector<Triangle> faces_;  ///< a removed one has all corners equal
+  std::vector<Triangle> faces_;  ///< faces; the corners of a removed one are equal
   std::vector<Vec3d> places_;
   std::vector<std::vector<uint32_t>> faces_of_;
   std::vector<Quadric> quadrics_;
-  std::vector<uint32_t> ages_;  ///< how often the vertex has changed
+  std::vector<uint32_t> ages_;  ///< number of changes of the vertex
   size_t face_count_;
   uint32_t steps_ = 0;
   std::vector<PairCollapse> queue_;  ///< heap

@@ -19,7 +19,7 @@ OriginalCurves::OriginalCurves(const Mesh& mesh, std::span<const uint32_t> edges
     : positions_(mesh.positions) {
   const Topology& t = mesh.topology;
   TriangleMesh faces;
-  std::vector<uint32_t> first(t.vertex_count, none);  // segment at each vertex that curves go through
+  std::vector<uint32_t> first(t.vertex_count, none);  // [V] first segment at a vertex inside a curve
   for (const uint32_t e : edges) {
     const uint32_t h = t.half_edge[e];
     const auto number = static_cast<uint32_t>(segments_.size());
@@ -49,7 +49,7 @@ std::optional<Vec3d> OriginalCurves::meet(uint32_t segment, Vec3d start, Vec3d p
   const double first_height = height(start);
   if (first_height == 0) return start;
   const auto [a, b] = segments_[segment].vertex;
-  // Towards the plane.
+  // Starts towards the plane.
   uint32_t end = (height(place(b)) > height(place(a))) == (first_height < 0) ? 1 : 0;
   Vec3d from = start;
   for (size_t step = 0; step <= segments_.size(); ++step) {

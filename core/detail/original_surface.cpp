@@ -17,7 +17,7 @@ std::array<Vec3d, 3> corners(const Mesh& mesh, uint32_t face) {
   return {to_double(mesh.positions[v[0]]), to_double(mesh.positions[v[1]]), to_double(mesh.positions[v[2]])};
 }
 
-/// Unit normals of the corners [H], each the sum over the faces of its fan by area.
+/// Returns [H] the unit normals of the corners, each the area-weighted mean over the faces of its fan.
 Buffer<Vec3f> corner_normals(const Mesh& mesh) {
   const Topology& t = mesh.topology;
   Buffer<Vec3f> normals(t.half_edge_count());
@@ -40,7 +40,7 @@ Buffer<Vec3f> corner_normals(const Mesh& mesh) {
   return normals;
 }
 
-/// Positions and faces without attributes.
+/// Returns positions and faces without attributes.
 TriangleMesh surface_of(const Mesh& mesh) {
   TriangleMesh surface{.positions = mesh.positions, .triangles = {}};
   surface.triangles.reserve(mesh.topology.face_count());

@@ -10,10 +10,10 @@
 
 namespace papilio {
 
-/// The original with what its encoder looks up.
+/// Original with the search structures of the encoder.
 class OriginalSurface {
  public:
-  /// The mesh must be manifold, with its edges, creases and corners.
+  /// Prepares the mesh, which must be manifold, with edges, creases and corners.
   explicit OriginalSurface(Mesh mesh);
   OriginalSurface(const OriginalSurface&) = delete;
   OriginalSurface& operator=(const OriginalSurface&) = delete;
@@ -22,16 +22,16 @@ class OriginalSurface {
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
   [[nodiscard]] const OriginalCurves& curves() const { return curves_; }
-  /// Edges at which charts of the mesh's attributes meet, in ascending order.
+  /// Returns the edges at which charts of the mesh's attributes meet, in ascending order.
   [[nodiscard]] const std::vector<uint32_t>& seam_edges() const { return seam_edges_; }
-  /// The seams that are smooth edges: others are among the curves.
+  /// Returns the seams on smooth edges. Other seams are on curves.
   [[nodiscard]] const OriginalCurves& seams() const { return seams_; }
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] Vec3d point(const SurfacePlace& place) const;
-  /// Unit normal, interpolated from those of the corners, which are smooth but across creases; zero where they cancel
-  /// out.
+  /// Returns the unit normal, interpolated from normals of corners, which are smooth except across creases; zero where
+  /// they cancel out.
   [[nodiscard]] Vec3d normal(uint32_t face, Vec3d point) const;
-  /// A face at each vertex.
+  /// Returns a face at the vertex.
   [[nodiscard]] uint32_t face_at(uint32_t vertex) const { return face_at_[vertex]; }
 
  private:
@@ -40,7 +40,7 @@ class OriginalSurface {
   OriginalCurves curves_;
   std::vector<uint32_t> seam_edges_;
   OriginalCurves seams_;
-  Buffer<Vec3f> normals_;     // [H] of the faces from curve to curve round each corner
+  Buffer<Vec3f> normals_;     // [H] normals of the faces from curve to curve round each corner
   Buffer<uint32_t> face_at_;  // [V]
   double diagonal_;
 };

@@ -14,13 +14,13 @@ namespace papilio {
 namespace {
 
 constexpr double to_radians = std::numbers::pi / 180;
-/// Normals of one vertex that differ by more are split.
+/// Lower bound of the angle between split normals of a vertex.
 constexpr double hard_angle = 5 * to_radians;
-/// Edges between faces whose normals differ by more are bent.
+/// Lower bound of the angle between the faces of a bent edge.
 constexpr double bent_angle = 1 * to_radians;
-/// Normals at a bent edge are those of its faces if they differ by at least this share of its angle.
+/// Lower bound of the angle between normals at a faceted edge, a share of the angle between its faces.
 constexpr double faceted_share_of_angle = 0.5;
-/// An original is faceted if at least these shares of the bent edges, and of all, have normals of their faces.
+/// Lower bounds of the faceted edges of a faceted original, as shares of the bent edges and of all edges.
 constexpr double faceted_share_of_bent = 0.95, faceted_share_of_all = 0.3;
 
 double angle_between(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
@@ -83,7 +83,7 @@ NormalStyle mark_detail_curves(Mesh& mesh) {
   mark_sharp_curves(mesh, normals.is_hard);
   if (normals.style != NormalStyle::creased) return normals.style;
   const bool has_creases = std::ranges::count(mesh.topology.kind, EdgeKind::crease) > 0;
-  return has_creases ? NormalStyle::creased : NormalStyle::smooth;  // hard edges that are noise are smooth
+  return has_creases ? NormalStyle::creased : NormalStyle::smooth;  // noisy hard edges are smooth
 }
 
 }  // namespace papilio

@@ -10,11 +10,11 @@ namespace papilio {
 /// Normals of an original, by the edges at which they are split.
 struct OwnNormals {
   NormalStyle style = NormalStyle::absent;
-  std::vector<bool> is_hard{};  ///< [E] whether they are split there; empty unless `style` is `creased`
+  std::vector<bool> is_hard{};  ///< [E] whether normals are split at the edge; empty unless `style` is `creased`
 };
 
-/// Finds where the normals of a mesh, its attribute of three components and unit length, are split. The mesh must have
-/// its edges. Normals whose directions alone are right are enough. O(E).
+/// Finds the edges at which the normals of a mesh, its attribute of 3 components and unit length, are split. Only the
+/// directions of normals matter. The mesh must have edges. O(E).
 [[nodiscard]] OwnNormals find_own_normals(const Mesh& mesh);
 
 /// Returns attributes without normals.

@@ -8,14 +8,14 @@ namespace {
 
 constexpr uint32_t bits_of_axis = 10;
 
-/// Bits of the number, two zeros behind each.
+/// Returns the bits of the number with two zeros between neighbours.
 uint32_t spread(uint32_t number) {
   uint32_t made = 0;
   for (uint32_t i = 0; i < bits_of_axis; ++i) made |= (number >> i & 1U) << (3 * i);
   return made;
 }
 
-/// Place of a point in its box along the axis, 0 to 1023.
+/// Returns the place of a point in its box along an axis, 0..1023.
 uint32_t place_along(float least, float most, float at) {
   const float share = most > least ? (at - least) / (most - least) : 0;
   return static_cast<uint32_t>(std::clamp(share * 1024, 0.0F, 1023.0F));

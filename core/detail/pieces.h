@@ -9,69 +9,71 @@
 #include "papilio/detail.h"
 #include "papilio/mesh.h"
 
-// Pieces of a level: the edges below some faces of the base that lie together, coded by themselves.
+// Pieces of a level: independently coded edges below neighbouring faces of the base.
 
 namespace papilio {
 
 /// Edges of a level by piece.
 struct EdgePieces {
   Buffer<uint16_t> of_edge;  ///< [E] number of the piece
-  Buffer<uint32_t> edges;    ///< [E] piece by piece, in each in ascending order
-  Buffer<uint32_t> begin;    ///< [pieces + 1] into `edges`
+  Buffer<uint32_t> edges;    ///< [E] edges by piece, then in ascending order
+  Buffer<uint32_t> begin;    ///< [pieces + 1] offsets into `edges`
 
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(begin.size()) - 1; }
   [[nodiscard]] std::span<const uint32_t> edges_of(uint32_t piece) const {
     return {edges.data() + begin[piece], begin[piece + 1] - begin[piece]};
   }
-  /// The pieces of the same surface when it is cut along seams: an edge's are those of the edge that it was.
+  /// Returns the pieces of the surface cut along seams: a cut edge keeps its piece.
   [[nodiscard]] EdgePieces on_cut(const Topology& whole, const Topology& cut) const;
 };
 
-/// Bytes of a level's pieces; nothing: that piece is not decoded, and its residuals are 0.
+/// Bytes of a level's pieces; nothing for a piece that is not decoded, whose residuals are 0.
 using PieceBytes = std::vector<std::optional<std::span<const uint8_t>>>;
 
-/// Faces of a base in the order that parts them into pieces: along a space-filling curve.
+/// Order of a base's faces along a space-filling curve, which divides them into pieces.
 class PieceOrder {
  public:
   explicit PieceOrder(const Mesh& base);
 
-  /// The piece of a face of the base where there are `count` of them.
+  /// Returns the piece of a face of the base, out of `count` pieces.
   [[nodiscard]] uint32_t piece_of(uint32_t face, uint32_t count) const {
     return static_cast<uint32_t>(uint64_t{rank_[face]} * count / rank_.size());
   }
-  /// The edges that a level of this number (0: the base) splits. An edge is of the face that its half-edge is below.
+  /// Returns the edges that level `number` (0: the base) splits, by piece: an edge belongs to the base's face of its
+  /// half-edge.
   [[nodiscard]] EdgePieces edges(const Topology& level, uint32_t number, uint32_t count) const;
-  /// [3 F] the corners of the base's faces.
+  /// Returns [3F] the corners of the base's faces.
   [[nodiscard]] std::span<const uint32_t> corners() const { return {corners_.data(), corners_.size()}; }
 
  private:
-  Buffer<uint32_t> rank_;  // [F] of the base
+  Buffer<uint32_t> rank_;  // [F of the base] place in the order
   Buffer<uint32_t> corners_;
 };
 
-/// Tells which pieces can be decoded where some are missing, level by level. A piece needs those of the level before of
-/// all faces of the base that share a vertex with one of its own, and the first of its level, whose models it starts
-/// with; that one needs the first of the level before.
+/// Dependencies of pieces, level by level: which ones can be decoded if some are missing. A piece depends on the pieces
+/// of the level before at all vertices of its faces of the base. It also depends on the first piece of its level, with
+/// whose models it starts; that one depends on the first piece of the level before.
 class PieceNeeds {
  public:
-  /// Of a base of so many vertices.
+  /// Starts at a base of `vertices` vertices.
   explicit PieceNeeds(uint32_t vertices) : is_known_(vertices, 1) {}
-  /// Returns [pieces] of the next level whether each can be decoded.
+  /// Advances to the next level, and returns [pieces] whether each can be decoded.
   [[nodiscard]] std::vector<uint8_t> next(const PieceOrder& order, std::span<const DetailPiece> pieces);
 
  private:
-  Buffer<uint8_t> is_known_;     // [V] of the base: whether all was decoded below the faces there
-  bool has_first_piece_ = true;  // of the level before
+  Buffer<uint8_t> is_known_;     // [V of the base] whether all pieces at the vertex were decoded
+  bool has_first_piece_ = true;  // whether the first piece of each level so far was decoded
 };
 
-/// The pieces of a stream: where it has none, one of all its bytes.
+/// Returns the pieces of a stream; one of all its bytes if it has none.
 [[nodiscard]] std::vector<DetailPiece> pieces_of(const DetailStream& stream);
-/// The bytes of each of them, of residuals or of texture coordinates, if it can be decoded.
+/// Returns the bytes of each piece that can be decoded. `all` are the residuals or the texture coordinates of a level,
+/// and `size` the field of a piece's length in them.
 [[nodiscard]] PieceBytes piece_bytes(std::span<const uint8_t> all, std::span<const DetailPiece> pieces,
                                      uint32_t DetailPiece::*size, std::span<const uint8_t> is_decoded);
 
-/// Calls code(piece, models) for all pieces. The first one goes on with the models, which go on to the next level; each
-/// other starts with those at its end.
+/// Calls code(piece, models) for all pieces. The first one updates `models`, for the next level too; each other piece
+/// starts with a copy of them.
 template <class Models, class Code>
 void code_pieces(uint32_t count, Models& models, const Code& code) {
   code(0, models);
@@ -81,7 +83,7 @@ void code_pieces(uint32_t count, Models& models, const Code& code) {
   }
 }
 
-/// Encodes all pieces: pass(piece, models, code) goes through the bits of one, as ResidualModels has it.
+/// Encodes all pieces: pass(piece, models, code) codes the bits of one through `code`, as in ResidualModels.
 template <class Models, class Pass>
 [[nodiscard]] std::vector<std::vector<uint8_t>> encode_each_piece(uint32_t count, Models& models, const Pass& pass) {
   std::vector<std::vector<uint8_t>> made;

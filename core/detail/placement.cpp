@@ -11,10 +11,10 @@
 namespace papilio {
 namespace {
 
-/// A line's hit is taken within so many lengths of the edge of where the vertex is expected.
+/// Upper bound of the distance from a line's hit to the expected vertex, in lengths of the edge.
 constexpr double reach = 2;
-/// A new face is turned over, or nearly, if its area seen along the original's normal is less than this share of a
-/// quarter of its parent's area.
+/// Lower bound of a new face's area along the original's normal, a share of a quarter of its parent's area. Below it,
+/// the face counts as turned over.
 constexpr double least_area = 0.2;
 constexpr int untangling_passes = 6;
 
@@ -58,7 +58,7 @@ class Placement {
   struct Ends {
     uint32_t a, b;
     double length;
-    Vec3d expected;  ///< the lifted place, moved as far as both ends are from theirs
+    Vec3d expected;  ///< lifted place, moved by the mean drift of both ends
   };
   [[nodiscard]] Ends ends(uint32_t e) const {
     const uint32_t h = topology_->half_edge[e];
@@ -69,11 +69,11 @@ class Placement {
     return {a, b, length(pb - pa), to_double(lifted(e).point) + 0.5 * (to_double(drift_[a]) + to_double(drift_[b]))};
   }
   [[nodiscard]] bool is_on_curve(uint32_t e) const { return is_on_curve_[e]; }
-  /// The curves, or seams, that an edge on one is on.
+  /// Returns the original's curves, or its seams, for an edge on one.
   [[nodiscard]] const OriginalCurves& curves_of(uint32_t e) const {
     return topology_->kind[e] == EdgeKind::smooth ? original_.seams() : original_.curves();
   }
-  /// Zero at creases (no face), where there are two.
+  /// Returns the original's normal; zero at creases (no face), where there are two.
   [[nodiscard]] Vec3f normal_at(uint32_t face, Vec3d point) const {
     return face == none ? Vec3f{} : to_float(original_.normal(face, point));
   }
@@ -102,7 +102,8 @@ class Placement {
       set_free_target(e, edge, edge.expected, original_.tree().unit_normal(lifted(e).face));
   }
 
-  /// The place where the original's curve meets the plane across the edge, through the predicted vertex.
+  /// Sets the target to the intersection of the original's curve with the plane across the edge, through the predicted
+  /// vertex.
   void find_target_on_curve(uint32_t c) {
     const uint32_t e = level_->curve_edges()[c];
     const Ends edge = ends(e);
@@ -115,8 +116,8 @@ class Placement {
     made_.across[c] = steps(*met - to_double(predicted_[vertex(e)]), tangents.across);
   }
 
-  /// Sets the place of the original nearest to a point, on a curve if the edge is on one, on a sheet with about this
-  /// normal; else the lifted one.
+  /// Sets the target to the original's place nearest to `near`, on a curve if the edge is on one, else on a sheet of
+  /// about this normal; or to the lifted place if there is none.
   void set_free_target(uint32_t e, const Ends& edge, Vec3d near, Vec3d normal) {
     if (is_on_curve(e)) return set_target(e, curves_of(e).nearest(near).point, lifted(e).face, true);
     const Nearest found = original_.tree().nearest(near, edge.length / 2, normal);
@@ -149,10 +150,10 @@ class Placement {
     return static_cast<int32_t>(std::lround(std::clamp<double>(steps, -largest_residual, largest_residual)));
   }
 
-  using Corners = std::array<uint32_t, 3>;  // vertices of a face of the next level
+  using Corners = std::array<uint32_t, 3>;  // vertices of a next level's face
   struct Children {
     std::array<Corners, 4> corners;
-    Vec3d parent;  ///< twice the area of the face that is split, along its normal
+    Vec3d parent;  ///< normal of the split face, as long as twice its area
   };
   [[nodiscard]] Children children(uint32_t f) const {
     const uint32_t* v = &topology_->origin[size_t{3} * f];
@@ -162,7 +163,7 @@ class Placement {
             area_normal({v[0], v[1], v[2]})};
   }
 
-  /// Finds the edges at whose new vertices faces are turned over. Returns whether there are any.
+  /// Marks the edges at whose new vertices faces are turned over. Returns whether there are any.
   bool find_turned() {
     is_bad_.assign(topology_->edge_count(), false);
     bool found = false;
@@ -179,8 +180,8 @@ class Placement {
     return found;
   }
 
-  /// Moves the new vertex of an edge between its neighbours, as far as that turns faces back. Of all roundings to steps
-  /// the best is taken.
+  /// Moves the new vertex of an edge between its neighbours, as far as that turns faces back. Takes the best of all
+  /// roundings to steps.
   void untangle(uint32_t e) {
     const uint32_t v = vertex(e);
     Vec3d middle;
@@ -215,7 +216,7 @@ class Placement {
     put_back(e, best);
   }
 
-  /// Where a new vertex is, and by which residual.
+  /// Position of a new vertex, and its residual.
   struct Placed {
     Vec3f position, normal, drift;
     uint32_t face;
@@ -258,7 +259,7 @@ class Placement {
         if (std::ranges::find(child, vertex(e)) != child.end()) visit(child, of_face.parent);
     }
   }
-  /// Sum over the faces that are turned over at the new vertex of an edge; 0: there are none.
+  /// Returns the sum of surplus() over the turned faces at the new vertex of an edge; 0 without turned faces.
   [[nodiscard]] double surplus_at(uint32_t e) const {
     double sum = 0;
     for_each_child_at(e, [&](const Corners& child, Vec3d parent) { sum += std::min(surplus(child, parent), 0.0); });
@@ -269,8 +270,8 @@ class Placement {
     const Vec3d a = to_double(positions_[v[0]]);
     return cross(to_double(positions_[v[1]]) - a, to_double(positions_[v[2]]) - a);
   }
-  /// Area of a face above the least that it may have, as seen along the original's normals, or where all three vertices
-  /// are on creases, along the parent's; not positive: it is turned over.
+  /// Returns the area of a face along the original's normals, or along the parent's if all vertices are on creases,
+  /// less its lower bound. A face without a positive surplus counts as turned over.
   [[nodiscard]] double surplus(const Corners& face, Vec3d parent) const {
     Vec3d normal = to_double(normal_[face[0]]) + to_double(normal_[face[1]]) + to_double(normal_[face[2]]);
     if (length(normal) == 0) normal = parent;
@@ -281,16 +282,16 @@ class Placement {
   const OriginalSurface& original_;
   const LiftedBase& base_;
   Buffer<Vec3f> positions_;
-  std::vector<uint32_t> face_;  // [V] of the original, at the vertex's place; none on creases
-  Buffer<Vec3f> normal_;        // [V] of the original there; zero on creases
-  Buffer<Vec3f> drift_;         // [V] from the lifted place to the chosen one
+  std::vector<uint32_t> face_;  // [V] face of the original at the vertex; `none` on creases
+  Buffer<Vec3f> normal_;        // [V] normal of the original at the vertex; zero on creases
+  Buffer<Vec3f> drift_;         // [V] vector from the lifted place to the chosen one
 
-  const DetailLevel* level_ = nullptr;  // at hand
+  const DetailLevel* level_ = nullptr;  // current level
   const Topology* topology_ = nullptr;
   Residuals made_;
   Buffer<Vec3f> directions_;       // [E]
   Buffer<Vec3f> predicted_;        // [V + E]
-  std::vector<bool> is_on_curve_;  // [E] on one, or on a seam
+  std::vector<bool> is_on_curve_;  // [E] whether the edge is on a curve or seam
   std::vector<bool> is_bad_;       // [E] whether a face at the new vertex is turned over
 };
 

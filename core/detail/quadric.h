@@ -10,7 +10,7 @@ namespace papilio {
 class Quadric {
  public:
   Quadric() = default;
-  /// Squared distance to the plane through `point` with the unit `normal`, times `weight`.
+  /// Makes the squared distance to the plane through `point` with the unit `normal`, times `weight`.
   Quadric(Vec3d normal, Vec3d point, double weight) {
     const double offset = -dot(normal, point);
     xx_ = weight * normal.x * normal.x;
@@ -31,7 +31,7 @@ class Quadric {
   }
 
   friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
-  /// Value at p; never negative.
+  /// Returns the value at p; never negative.
   [[nodiscard]] double at(Vec3d p) const {
     const Vec3d product{xx_ * p.x + xy_ * p.y + xz_ * p.z, xy_ * p.x + yy_ * p.y + yz_ * p.z,
                         xz_ * p.x + yz_ * p.y + zz_ * p.z};
@@ -39,7 +39,7 @@ class Quadric {
     return value > 0 ? value : 0;
   }
 
-  /// Point of the least value, by Cramer's rule; nothing where the planes are too nearly parallel to one line.
+  /// Returns the point of the least value, by Cramer's rule; nothing if the planes are nearly parallel to one line.
   [[nodiscard]] std::optional<Vec3d> minimum() const {
     const Vec3d x{xx_, xy_, xz_}, y{xy_, yy_, yz_}, z{xz_, yz_, zz_};
     const Vec3d minors = cross(y, z);
@@ -51,7 +51,7 @@ class Quadric {
   }
 
  private:
-  static constexpr double least_determinant = 1e-9;  ///< relative to that of a sphere's normals, 1
+  static constexpr double least_determinant = 1e-9;  ///< lower bound; a sphere's normals have 1
 
   double xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;
   Vec3d linear_{};

@@ -8,12 +8,12 @@
 
 namespace papilio {
 
-/// Estimate of the bits that residuals of one level take, from how often each magnitude occurs among like ones.
+/// Estimate of the bits of one level's residuals, from the frequency of each magnitude in similar neighbourhoods.
 class RateTable {
  public:
-  /// Counts a residual, whose neighbours' magnitudes have the sum `around`.
+  /// Counts a residual; `around` is the sum of its neighbours' magnitudes.
   void count(uint32_t around, int32_t residual) { ++table_[kind(around)][row(residual)]; }
-  /// Turns counts into bits.
+  /// Converts counts into bits.
   void finish() {
     for (auto& counts : table_) {
       float total = 0;
@@ -28,7 +28,7 @@ class RateTable {
 
  private:
   static constexpr uint32_t kinds = 5, magnitudes = 16;
-  static constexpr float bits_beyond = 0.3F;  ///< of each unit above the last magnitude
+  static constexpr float bits_beyond = 0.3F;  ///< bits of each unit above the last magnitude
 
   static uint32_t kind(uint32_t around) { return around < 3 ? around : around < 6 ? 3 : 4; }
   static uint32_t row(int32_t residual) { return std::min(static_cast<uint32_t>(std::abs(residual)), magnitudes - 1); }

@@ -13,12 +13,15 @@ namespace {
 
 /// Sum of the squared influence of a vertex on the surface, as a share of its area.
 constexpr double squared_influence = 0.55;
-/// Error that a bit saves at a high rate, of a step's square: a bit halves the step, whose error is its square over 12.
+/// Squared error that a bit saves at a high rate, in squared steps. A step has the squared error step^2 / 12, and a bit
+/// halves the step.
 constexpr double error_of_bit = 0.1155;
-/// How far the original is looked for, in steps, where its distance is not known.
+/// Radius of the search for the original at an unknown distance, in steps.
 constexpr float steps_to_look = 8;
+/// Upper bound of the passes that restore residuals: restored residuals may turn over other faces. Few are left then.
+constexpr int most_passes_back = 4;
 
-/// The other edges of an edge's faces; on a boundary those of its one face twice.
+/// Returns the other edges of an edge's faces; on a boundary, those of its one face twice.
 std::array<uint32_t, 4> neighbours_of(const Topology& t, uint32_t e) {
   const uint32_t h = t.half_edge[e];
   const uint32_t twin = t.twin[h] != none ? t.twin[h] : h;
@@ -26,13 +29,14 @@ std::array<uint32_t, 4> neighbours_of(const Topology& t, uint32_t e) {
           t.edge[Topology::previous(twin)]};
 }
 
-/// The change of a residual that is worth most, and what it is worth.
+/// Best change of a residual, and its gain.
 struct Change {
   int32_t steps = 0;
   double gain = 0;
 };
 
-/// `gradient` of half the squared error against the residual's direction, `area` that it moves; `bits(residual)`.
+/// Finds the best change of a residual. `gradient`: decrease of half the squared error along the residual's direction.
+/// `area`: area that the vertex moves. bits(residual) is the rate.
 template <class Bits>
 Change best_change(int32_t now, double gradient, double area, double step, double bit_cost, const Bits& bits) {
   const double curvature = squared_influence * area;
@@ -89,6 +93,9 @@ void ResidualFit::improve(int turns, double rate_weight) {
     level.area.resize(edges);
     level.gradient_across.resize(level.level.curve_edges().size());
   }
+  std::vector<Residuals> before;
+  for (const Level& level : levels_) before.push_back(level.residuals);
+  const Buffer<Vec3f> normals = face_normals();
   distance_.assign(positions_.size(), -1);
   face_.assign(positions_.size(), none);
   for (int turn = 0; turn < turns; ++turn) {
@@ -104,12 +111,47 @@ void ResidualFit::improve(int turns, double rate_weight) {
     improve_across(level, bit_cost);
     forward();
   }
+  for (int pass = 0; pass < most_passes_back && turn_faces_back(before, normals);) ++pass;
+}
+
+// Returns the normals of the last level's faces, as long as twice their areas.
+Buffer<Vec3f> ResidualFit::face_normals() const {
+  Buffer<Vec3f> normals = Buffer<Vec3f>::for_overwrite(last_.face_count());
+  for (uint32_t f = 0; f < last_.face_count(); ++f) {
+    const uint32_t* v = &last_.origin[size_t{3} * f];
+    normals[f] = cross(positions_[v[1]] - positions_[v[0]], positions_[v[2]] - positions_[v[0]]);
+  }
+  return normals;
+}
+
+// Restores the residuals of the vertices of faces that are turned from their `normals`, and of those vertices' parents.
+// Returns whether there were such faces.
+bool ResidualFit::turn_faces_back(const std::vector<Residuals>& before, const Buffer<Vec3f>& normals) {
+  const Buffer<Vec3f> now = face_normals();
+  std::vector<bool> is_back(positions_.size());
+  for (uint32_t f = 0; f < now.size(); ++f)
+    if (dot(now[f], normals[f]) < 0)
+      for (uint32_t i = 0; i < 3; ++i) is_back[last_.origin[size_t{3} * f + i]] = true;
+  if (std::ranges::find(is_back, true) == is_back.end()) return false;
+  for (size_t l = levels_.size(); l-- > 0;) {
+    Level& level = levels_[l];
+    const Topology& t = level.level.topology();
+    for (uint32_t e = 0; e < t.edge_count(); ++e) {
+      if (!is_back[t.vertex_count + e]) continue;
+      level.residuals.along_normal[e] = before[l].along_normal[e];
+      is_back[t.origin[t.half_edge[e]]] = is_back[t.tip(t.half_edge[e])] = true;
+    }
+    for (size_t c = 0; c < level.residuals.across.size(); ++c)
+      if (is_back[t.vertex_count + level.level.curve_edges()[c]]) level.residuals.across[c] = before[l].across[c];
+  }
+  forward();
+  return true;
 }
 
 void ResidualFit::find_forces() {
   const size_t count = positions_.size();
   area_.assign(count, 0);
-  force_.assign(count, Vec3f{});  // the vertices' area normals at first
+  force_.assign(count, Vec3f{});  // area normals of the vertices at first
   for (uint32_t h = 0; h < last_.half_edge_count(); h += 3) {
     const uint32_t* v = &last_.origin[h];
     const Vec3f normal = cross(positions_[v[1]] - positions_[v[0]], positions_[v[2]] - positions_[v[0]]);
@@ -134,7 +176,7 @@ Vec3f ResidualFit::force_to_curve(uint32_t v) const {
   return to_float(area_[v] * (curves.nearest(point).point - point));
 }
 
-/// A vertex that no face of about its normal is near is lost: it is pulled to the nearest point of all.
+// Pulls a vertex to the nearest face of about its normal, or without such a face nearby, to the nearest point of all.
 Vec3f ResidualFit::force_to_surface(uint32_t v, Vec3d normal) {
   const SurfaceTree& tree = original_.tree();
   const Vec3d point = to_double(positions_[v]);
@@ -149,8 +191,8 @@ Vec3f ResidualFit::force_to_surface(uint32_t v, Vec3d normal) {
   return to_float((area_[v] * dot(near.point - point, across)) * across);
 }
 
-/// The original's point nearest to the vertex, as far as it moves from turn to turn. Where the vertex lies straight
-/// above the face that was nearest, no other is looked for.
+// Returns the original's point nearest to the vertex, within the distance that it moves between turns. If the vertex
+// lies straight above its last nearest face, no other face is searched.
 Nearest ResidualFit::nearest(uint32_t v, Vec3d normal) const {
   const SurfaceTree& tree = original_.tree();
   const Vec3d point = to_double(positions_[v]);
@@ -195,7 +237,7 @@ void ResidualFit::improve(Level& level, double bit_cost) {
   const uint32_t edges = t.edge_count();
   Buffer<int32_t>& residual = level.residuals.along_normal;
   RateTable rates;
-  Buffer<uint32_t> around(edges);  // magnitudes of the neighbours
+  Buffer<uint32_t> around(edges);  // [E] sum of the neighbours' magnitudes
   for (uint32_t e = 0; e < edges; ++e) {
     for (const uint32_t n : neighbours_of(t, e)) around[e] += static_cast<uint32_t>(std::abs(residual[n]));
     rates.count(around[e], residual[e]);
@@ -206,7 +248,7 @@ void ResidualFit::improve(Level& level, double bit_cost) {
   for (uint32_t e = 0; e < edges; ++e)
     change[e] = best_change(residual[e], level.gradient[e], level.area[e], level.residuals.step, bit_cost,
                             [&](int32_t value) { return rates.bits(around[e], value); });
-  // The best of each neighbourhood alone: changes beside each other would overshoot.
+  // Applies only the best change of each neighbourhood: adjacent changes would overshoot.
   for (uint32_t e = 0; e < edges; ++e) {
     if (change[e].steps == 0) continue;
     if (std::ranges::all_of(neighbours_of(t, e), [&](uint32_t n) {
@@ -216,7 +258,7 @@ void ResidualFit::improve(Level& level, double bit_cost) {
   }
 }
 
-/// Changes the parts across curves, at most every other one, as the halves of an edge lie beside each other.
+// Changes the parts across curves, at most one of the two halves of an edge, as these are adjacent.
 void ResidualFit::improve_across(Level& level, double bit_cost) {
   Buffer<int32_t>& across = level.residuals.across;
   RateTable rates;

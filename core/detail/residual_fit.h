@@ -12,21 +12,22 @@
 
 namespace papilio {
 
-/// Residuals of a hierarchy, improved by coordinate descent on squared distance and rate: the distances of the last
-/// level's vertices to the original are pushed down through the adjoint of the subdivision, and a residual changes
-/// where that saves more error, or bits, than it costs.
+/// Residuals of a hierarchy, improved by coordinate descent on squared distance and rate. The distances of the last
+/// level's vertices to the original are propagated to coarser levels by the adjoint of the subdivision. A residual
+/// changes if that saves more error, or bits, than it costs.
 class ResidualFit {
  public:
-  /// `original` must outlive this. `poll` is called every turn and may throw to stop.
+  /// Starts from placed residuals. `original` must outlive this. `poll` is called every turn and may throw to stop.
   ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, PlacedLevels placed, std::function<void()> poll);
 
-  /// So many turns, each of one level. `rate_weight`: weight of a bit, 1 being what it saves at a high rate.
+  /// Improves one level in each turn. `rate_weight`: weight of a bit; 1 is the error that a bit saves at a high rate.
+  /// Restores the residuals where faces turn over.
   void improve(int turns, double rate_weight);
 
-  /// Codes the residuals: [levels][pieces], of so many pieces a level.
+  /// Returns the coded residuals [level][piece], in `piece_counts` [level] pieces.
   [[nodiscard]] std::vector<std::vector<std::vector<uint8_t>>> code(const PieceOrder& order,
                                                                     std::span<const uint32_t> piece_counts) const;
-  /// The mesh of the first `levels` levels; all of them: the surface.
+  /// Returns the mesh of the first `levels` levels.
   [[nodiscard]] TriangleMesh surface(size_t levels) const;
   [[nodiscard]] size_t level_count() const { return levels_.size(); }
   [[nodiscard]] float step(size_t level) const { return levels_[level].residuals.step; }
@@ -39,11 +40,13 @@ class ResidualFit {
     Residuals residuals;
     LinearStencils stencils{};
     Buffer<Vec3f> normals{};          // [E]
-    Buffer<float> gradient{};         // [E] of half the squared error, against the normal
-    Buffer<float> gradient_across{};  // [C] against the direction across the edges on curves
-    Buffer<float> area{};             // [E] that a vertex moves
+    Buffer<float> gradient{};         // [E] decrease of half the squared error along the normal
+    Buffer<float> gradient_across{};  // [C] decrease of half the squared error across edges on curves
+    Buffer<float> area{};             // [E] area that a vertex moves
   };
   void forward();
+  [[nodiscard]] Buffer<Vec3f> face_normals() const;
+  bool turn_faces_back(const std::vector<Residuals>& before, const Buffer<Vec3f>& normals);
   void find_forces();
   [[nodiscard]] Nearest nearest(uint32_t v, Vec3d normal) const;
   void push_down();
@@ -57,12 +60,12 @@ class ResidualFit {
   std::vector<Level> levels_;
   Topology last_;
   enum class On : uint8_t { surface, seam, curve };
-  std::vector<On> on_;       // [V] what a vertex keeps to
-  Buffer<Vec3f> positions_;  // [V] of the last level
-  Buffer<Vec3f> force_;      // [V] area times the way to the original
+  std::vector<On> on_;       // [V] where a vertex must lie
+  Buffer<Vec3f> positions_;  // [V] positions of the last level
+  Buffer<Vec3f> force_;      // [V] area times the vector to the original
   Buffer<float> area_;       // [V]
-  Buffer<float> distance_;   // [V] to the original when last looked; negative: not known
-  Buffer<uint32_t> face_;    // [V] of the original, nearest then
+  Buffer<float> distance_;   // [V] last distance to the original; negative: unknown
+  Buffer<uint32_t> face_;    // [V] last nearest face of the original
   uint32_t base_vertices_;
 };
 

@@ -10,7 +10,7 @@ Vec3f area_normal(const Topology& mesh, const Vec3f* positions, uint32_t face) {
   return cross(positions[corner[1]] - a, positions[corner[2]] - a);
 }
 
-/// Whether each vertex is on a boundary or a crease [V]; empty where there are no curves.
+/// Returns [V] whether a vertex is on a boundary or a crease; empty without curves.
 Buffer<uint8_t> vertices_on_curves(const DetailLevel& level) {
   Buffer<uint8_t> is_on_curve;
   if (level.curve_edges().empty()) return is_on_curve;

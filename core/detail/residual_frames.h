@@ -5,12 +5,13 @@
 
 namespace papilio {
 
-/// Directions [E] along which the residuals of a level's new vertices lie: unit normals of the edges, from the area
-/// normals of all faces at both ends. Of an end on a curve only the faces at the edge count. Zero where these cancel
-/// out. Floats in a fixed order: the same bits everywhere.
+/// Returns [E] the directions of the residuals of a level's new vertices: unit normals of the edges, from the area
+/// normals of all faces at both ends, or at an end on a curve, of the faces at the edge. Zero where they cancel out.
+/// Bit-identical on every processor, by floats in a fixed order.
 [[nodiscard]] Buffer<Vec3f> residual_normals(const DetailLevel& level, const Vec3f* positions);
 
-/// Two unit vectors across `normal`, the first along the edge as far as it may be: for residuals of three parts.
+/// Orthonormal tangents of residuals with three parts: perpendicular to the normal, the first as near as possible to
+/// the edge.
 struct Tangents {
   Vec3f along, across;
 };

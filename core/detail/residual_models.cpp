@@ -6,8 +6,8 @@ void ResidualModels::set_context(const ResidualContext& c) {
   level_ = level_of(c);
   uint32_t sum = 0;
   int32_t balance = 0;
-  uint32_t magnitudes = 0;  // those of the neighbours, up to 3, as a number of four digits
-  uint32_t signs = 0;       // theirs, as a number of four digits
+  uint32_t magnitudes = 0;  // neighbours' magnitudes, up to 3, as a number of four digits
+  uint32_t signs = 0;       // neighbours' signs, as a number of four digits
   for (const int32_t n : c.neighbours) {
     const auto magnitude = static_cast<uint32_t>(std::abs(n));
     sum += magnitude;

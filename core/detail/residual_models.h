@@ -11,40 +11,40 @@
 
 namespace papilio {
 
-/// Largest magnitude of a residual, in steps.
+/// Upper bound of the magnitude of a residual, in steps.
 inline constexpr int32_t largest_residual = (1 << 20) - 1;
 
-/// What is known of a residual before it is coded.
+/// Coding context of a residual.
 struct ResidualContext {
-  uint32_t level = 0;                   ///< 1 is the first below the base
+  uint32_t level = 0;                   ///< number; 1 is the first below the base
   bool is_inner = false;                ///< whether its edge lies inside a face of the level before
-  std::array<int32_t, 4> neighbours{};  ///< residuals of the other edges of its two faces; 0 where not coded yet
-  uint32_t known = 0;                   ///< how many of them are coded
-  uint32_t free_neighbours = 0;         ///< how many of these have tangential parts
+  std::array<int32_t, 4> neighbours{};  ///< residuals of the other edges of its two faces; 0 if not coded yet
+  uint32_t known = 0;                   ///< number of coded neighbours
+  uint32_t free_neighbours = 0;         ///< number of coded neighbours with tangential parts
   uint32_t parents = 0;                 ///< mean magnitude round the edge on the level before, in eighths
   uint32_t turn = 0;                    ///< distance of the prediction from the middle of the edge, in eighths of steps
 };
 
-/// What is known of the residual of an edge on a curve.
+/// Coding context of the residual of an edge on a curve.
 struct CurveContext {
-  uint32_t level = 0;                       ///< 1 is the first below the base
+  uint32_t level = 0;                       ///< number; 1 is the first below the base
   uint32_t parent = 0;                      ///< magnitude at the end that the level before made
-  bool has_sibling = false;                 ///< whether the other half of the edge that was split is coded
-  int32_t sibling = 0, sibling_across = 0;  ///< its parts
+  bool has_sibling = false;                 ///< whether the other half of the parent edge is coded
+  int32_t sibling = 0, sibling_across = 0;  ///< parts of the other half's residual
 };
 
-/// Adaptive models of residuals, alike in encoder and decoder. Each function codes through `code(bit, probability)`,
-/// which codes the bit and returns it, or reads it, whatever `bit` is; and returns what was coded or read.
+/// Adaptive models of residuals, shared by encoder and decoder. Functions code through code(bit, probability), which
+/// encodes the bit, or ignores it and decodes one. Each returns the coded or decoded value.
 class ResidualModels {
  public:
-  /// Whether a residual has tangential parts.
+  /// Codes whether a residual has tangential parts.
   template <class Code>
   bool code_freedom(const ResidualContext& context, bool is_free, const Code& code) {
     const size_t at = size_t{level_of(context)} * 5 + context.free_neighbours;
     return code_by(freedom_[at], is_free, code);
   }
 
-  /// The part along the normal.
+  /// Codes the part along the normal.
   template <class Code>
   int32_t code(const ResidualContext& context, int32_t residual, const Code& code) {
     set_context(context);
@@ -58,24 +58,24 @@ class ResidualModels {
     return is_negative ? -value : value;
   }
 
-  /// Whether the residual of an edge on a curve has a part along it.
+  /// Codes whether the residual of an edge on a curve has a part along it.
   template <class Code>
   bool code_curve_freedom(const CurveContext& context, bool is_free, const Code& code) {
     return code_by(curve_freedom_[std::min(context.level, most_levels - 1)], is_free, code);
   }
-  /// Its part along the normal.
+  /// Codes the part along the normal of an edge on a curve.
   template <class Code>
   int32_t code_curve_normal(const CurveContext& context, int32_t part, const Code& code) {
     return code_curve_part(curve_at(context, context.sibling, context.parent), context.sibling, part, code);
   }
-  /// Its part across the edge, once that along the `normal` is coded.
+  /// Codes the part across an edge on a curve, given the coded part along the normal.
   template <class Code>
   int32_t code_curve_across(const CurveContext& context, int32_t normal, int32_t part, const Code& code) {
     const auto magnitude = static_cast<uint32_t>(std::abs(normal));
     return code_curve_part(curve_rows / 2 + curve_at(context, context.sibling_across, magnitude),
                            context.sibling_across, part, code);
   }
-  /// A tangential part.
+  /// Codes a tangential part.
   template <class Code>
   int32_t code_tangential(int32_t part, const Code& code) {
     const uint32_t coded = code_number(tangential_widths_, static_cast<uint32_t>(std::abs(part)), code);
@@ -96,7 +96,7 @@ class ResidualModels {
   using Widths = std::array<BitModel, most_width>;
 
   static uint32_t level_of(const ResidualContext& c) { return std::min(c.level, most_levels - 1); }
-  /// 0, 1, 2, 3 for 3 and 4, 4 for 5 to 8, and so on up to `most`.
+  /// Returns the class of a value, at most `most`: 0, 1 and 2 are their own; 3 is 3..4, 4 is 5..8, and so on.
   static uint32_t class_of(uint32_t value, uint32_t most) {
     if (value == 0) return 0;
     return std::min(static_cast<uint32_t>(std::bit_width(value - 1)) + 1, most);
@@ -111,7 +111,7 @@ class ResidualModels {
     return coded;
   }
 
-  /// Whether the magnitude is greater than `decision`.
+  /// Codes whether the magnitude is greater than `decision`.
   template <class Code>
   bool code_decision(uint32_t decision, bool bit, const Code& code) {
     std::array<BitModel*, inputs> models;
@@ -130,7 +130,7 @@ class ResidualModels {
     return coded;
   }
 
-  /// Row of the models of a part, by its sibling's and another magnitude.
+  /// Returns the row of the models of a part, by the magnitudes of its sibling and of another part.
   static uint32_t curve_at(const CurveContext& c, int32_t sibling, uint32_t other) {
     const uint32_t near = c.has_sibling ? 1 + class_of(static_cast<uint32_t>(std::abs(sibling)), curve_classes - 1) : 0;
     return (std::min(c.level, most_levels - 1) * (curve_classes + 1) + near) * curve_classes +
@@ -147,12 +147,12 @@ class ResidualModels {
     const auto value = static_cast<int32_t>(std::min(coded, static_cast<uint32_t>(largest_residual)));
     return is_negative ? -value : value;
   }
-  /// A number of up to `most_width` bits: Exp-Golomb, its width by adaptive models.
+  /// Codes a number of up to `most_width` bits: Exp-Golomb, its width by adaptive models.
   template <class Code>
   static uint32_t code_number(Widths& widths, uint32_t number, const Code& code) {
-    const uint32_t wanted = static_cast<uint32_t>(std::bit_width(number + 1)) - 1;
+    const uint32_t width_to_code = static_cast<uint32_t>(std::bit_width(number + 1)) - 1;
     uint32_t width = 0;
-    while (width < most_width && code_by(widths[width], wanted > width, code)) ++width;
+    while (width < most_width && code_by(widths[width], width_to_code > width, code)) ++width;
     uint32_t coded = 1;
     for (uint32_t i = width; i-- > 0;) coded = 2 * coded + (code((((number + 1) >> i) & 1) != 0, even) ? 1 : 0);
     return coded - 1;

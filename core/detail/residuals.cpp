@@ -7,7 +7,7 @@
 namespace papilio {
 namespace {
 
-/// What the residuals of a level are coded by.
+/// Pass over the residuals of a level, shared by encoder and decoder.
 struct ResidualPass {
   const DetailLevel& level;
   const EdgePieces& pieces;
@@ -16,7 +16,7 @@ struct ResidualPass {
   const Buffer<Vec3f>& positions;
   Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< [E]
 
-  /// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
+  /// Codes the residuals of a piece in the order of their edges.
   template <class Code>
   void run(uint32_t piece, ResidualModels& models, const Code& code) {
     const std::span<const uint32_t> edges = pieces.edges_of(piece);

@@ -13,30 +13,30 @@
 
 namespace papilio {
 
-/// Residuals of one level in steps. Most new vertices move along their normals alone, those on curves also across their
-/// edges. Free ones have two tangential parts in place of that.
+/// Residuals of one level, in steps. Most new vertices move along their normals only; those on curves also across their
+/// edges. Free residuals have two tangential parts instead of the latter.
 struct Residuals {
   float step = 0;
-  Buffer<int32_t> along_normal;                             ///< [E]
-  Buffer<int32_t> across{};                                 ///< [C] of the edges on curves
-  std::map<uint32_t, std::array<int32_t, 2>> tangential{};  ///< by edge: along the edge, and across it
+  Buffer<int32_t> along_normal;                             ///< [E] parts along normals
+  Buffer<int32_t> across{};                                 ///< [C] parts across edges on curves
+  std::map<uint32_t, std::array<int32_t, 2>> tangential{};  ///< parts along and across the edge, by edge
 
   friend bool operator==(const Residuals&, const Residuals&) = default;
 };
 
-/// Moves the predicted new vertices of a level by their residuals. `positions` [V + E]; `normals` [E]. The same bits
-/// everywhere.
+/// Moves the predicted new vertices of a level by their residuals. Bit-identical on every processor. `positions` [V +
+/// E], `normals` [E]
 void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
               Buffer<Vec3f>& positions);
 
-/// Codes residuals, each piece by itself. `at_vertex` [V] are those of the vertices along their normals, 0 on the base;
-/// `positions` [V + E] hold the predictions. `models` learn, and go on to the next level.
+/// Encodes residuals, each piece independently. `at_vertex` [V]: residuals of the vertices along normals, 0 on the
+/// base. `positions` [V + E] include the predictions. Adapts `models`, for the next level too.
 [[nodiscard]] std::vector<std::vector<uint8_t>> encode_residuals(const DetailLevel& level, const EdgePieces& pieces,
                                                                  const Residuals& residuals,
                                                                  std::span<const int32_t> at_vertex,
                                                                  const Buffer<Vec3f>& positions,
                                                                  ResidualModels& models);
-/// Decodes what encode_residuals() made. Other bytes give other residuals within `largest_residual`.
+/// Decodes the bytes of encode_residuals(). Any other bytes are decoded to residuals within `largest_residual`.
 [[nodiscard]] Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes,
                                          float step, std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
                                          ResidualModels& models);

@@ -9,7 +9,7 @@
 namespace papilio {
 namespace {
 
-/// Gives each fan of faces a vertex, in the order of their lowest half-edges. Fans end where there is no twin.
+/// Gives each fan of faces its own vertex, in the order of their lowest half-edges. Fans end where there is no twin.
 void part_vertices(CutSurface& cut) {
   Topology& t = cut.topology;
   const auto count = static_cast<uint32_t>(t.twin.size());
@@ -32,7 +32,7 @@ void part_vertices(CutSurface& cut) {
   t.vertex_count = static_cast<uint32_t>(cut.half_edge.size());
 }
 
-/// Numbers the edges as faces name them.
+/// Numbers the edges in the order in which the faces first use them.
 void number_edges_of(Topology& cut, const Topology& whole) {
   cut.edge.resize_for_overwrite(cut.twin.size());
   for (uint32_t h = 0; h < cut.twin.size(); ++h) {

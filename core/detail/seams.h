@@ -7,20 +7,20 @@
 
 namespace papilio {
 
-/// Finds the seams of a mesh's attributes: edges whose two faces have different points at an end, in ascending order.
-/// The mesh must have its edges. Without attributes there are none. O(E).
+/// Finds the seams of a mesh's attributes, in ascending order: edges whose two faces have different points at an end.
+/// The mesh must have edges; without attributes it has no seams. O(E).
 [[nodiscard]] std::vector<uint32_t> seam_edges(const Mesh& mesh);
 
-/// A mesh that is cut along its seams. Each vertex of it is one fan of faces, between seams, of one of the mesh's
-/// vertices, so that values at vertices jump at seams alone.
+/// Mesh cut along its seams. Each of its vertices is one fan of faces between seams, so that values at vertices jump at
+/// seams only.
 struct CutSurface {
-  /// Faces and half-edges are those of the mesh; seams are boundaries. Where a vertex of the mesh ends a curve or a
-  /// seam, or several meet, the vertices cut from it are corners.
+  /// Connectivity with the mesh's faces and half-edges; seams are boundaries. Vertices cut from an end of a curve or a
+  /// seam, or from a vertex where several meet, are corners.
   Topology topology;
-  Buffer<uint32_t> half_edge;  ///< [V] the lowest half-edge that leaves the vertex
+  Buffer<uint32_t> half_edge;  ///< [V] lowest half-edge that leaves the vertex
 };
 
-/// Cuts a manifold mesh along its seams, as seam_edges() finds them. O(F).
+/// Cuts a manifold mesh along its seam_edges(). O(F).
 [[nodiscard]] CutSurface cut_at_seams(const Mesh& mesh, const std::vector<uint32_t>& seams);
 
 }  // namespace papilio

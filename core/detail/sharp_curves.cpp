@@ -12,17 +12,18 @@ namespace papilio {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-/// Edges between faces whose normals differ by more are sharp.
+/// Lower bound of the angle between the normals at a sharp edge.
 constexpr double sharp_angle = 40 * degree;
-/// A curve that turns by more at a vertex has a corner there.
+/// Lower bound of the angle by which a curve turns at a corner.
 constexpr double corner_angle = 50 * degree;
-/// Sharp edges count if clean curves are at least this share of their length.
+/// Lower bound of the length of clean curves, a share of the length of sharp edges. Below it, all sharp edges are
+/// noise.
 constexpr double least_clean_share = 0.5;
-/// Edges that are sharp by their angle alone count unless hard ones are at least this share of the sharp ones' length.
+/// Share of hard edges in the length of sharp edges from which on only hard edges count.
 constexpr double decisive_hard_share = 0.5;
 constexpr int most_rounds = 4;
 
-/// Sharp edges of a surface, which become curves, row by row.
+/// Sharp edges of a surface, grouped in rows that become curves.
 class SharpEdges {
  public:
   SharpEdges(Mesh& mesh, const std::vector<bool>& is_hard)
@@ -56,10 +57,10 @@ class SharpEdges {
   /// Sharp edges from one vertex at which they end, or branch, to the next.
   struct Row {
     std::vector<uint32_t> edges;
-    double turn = 0;     ///< between edges, in all
-    int loose_ends = 0;  ///< at which no other curve is
+    double turn = 0;     ///< sum of the turns between edges
+    int loose_ends = 0;  ///< number of ends without another curve
     bool is_closed = false;
-    bool is_hard = true;  ///< whether all edges are
+    bool is_hard = true;  ///< whether all edges are hard
   };
 
   [[nodiscard]] double edge_length(uint32_t e) const {
@@ -72,7 +73,7 @@ class SharpEdges {
     return sum;
   }
 
-  /// Rows that are not clean become smooth. Returns whether there were any.
+  /// Makes rows that are not clean smooth. Returns whether there were any.
   bool drop_noise() {
     at_vertex_.assign(topology_.vertex_count, {});
     on_boundary_.assign(topology_.vertex_count, false);
@@ -135,7 +136,8 @@ class SharpEdges {
     return std::atan2(length(cross(one, two)), dot(one, two));
   }
 
-  /// Noise on a scan makes short rows with loose ends, that turn from edge to edge. Hard edges without are drawn.
+  /// Returns whether a row is no noise. Noise on a scan makes short rows with loose ends that turn at each edge. Hard
+  /// rows without loose ends are intended.
   [[nodiscard]] static bool is_clean(const Row& row) {
     const auto edges = static_cast<double>(row.edges.size());
     const double turn = row.turn / std::max(1.0, edges - 1);
@@ -150,7 +152,7 @@ class SharpEdges {
   Topology& topology_;
   const std::vector<bool>& is_hard_;              // [E] or empty
   std::vector<bool> is_sharp_;                    // [E]
-  std::vector<bool> is_taken_;                    // [E] by a row
+  std::vector<bool> is_taken_;                    // [E] whether the edge is in a row
   std::vector<std::vector<uint32_t>> at_vertex_;  // [V] sharp edges
   std::vector<bool> on_boundary_;                 // [V]
 };
@@ -159,7 +161,7 @@ VertexDegrees degrees_of(const Topology& t, const std::vector<uint32_t>& seams =
   return {t, [&](uint32_t e) { return t.kind[e] != EdgeKind::smooth || std::ranges::binary_search(seams, e); }};
 }
 
-/// Finds the corners of the curves that the mesh has.
+/// Finds the corners of the mesh's curves.
 void mark_corners(Mesh& mesh) {
   Topology& t = mesh.topology;
   const VertexDegrees curves = degrees_of(t);

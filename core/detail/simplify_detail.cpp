@@ -11,13 +11,13 @@
 namespace papilio {
 namespace {
 
-/// Sizes that are tried differ by this factor.
+/// Factor between the sizes of candidates.
 constexpr double ratio_of_sizes = 0.87;
 constexpr size_t fewest_faces = 12;
-/// Of the sizes that reach the distance without a grid, so many are coded, from the smallest on.
+/// Number of coded candidates: the smallest ones that reach the distance before quantization.
 constexpr int coded_sizes = 4;
 constexpr int fewest_bits = 6, most_bits = 18;
-/// RMS distance that a grid leaves, as a share of its step, seen along normals.
+/// RMS distance of quantized positions along normals, a share of the grid's step.
 constexpr double rms_of_step = 0.2;
 constexpr uint32_t few_samples = 20'000, many_samples = 60'000;
 
@@ -40,7 +40,7 @@ class Simplification {
     }
     const std::vector<TriangleMesh> meshes =
         collapse_to_sizes(tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); });
-    // Distances ascend, or nearly so: the first size that is too far.
+    // Finds the first size that is too far; distances are nearly ascending.
     const auto first_beyond = std::ranges::partition_point(
         meshes, [&](const TriangleMesh& mesh) { return is_near(distance_to(mesh, few_samples)); });
     std::optional<SimplifiedDetail> best;
@@ -89,7 +89,7 @@ class Simplification {
 
   const SimplifyOptions& options_;
   const MeshCoder& code_;
-  SurfaceTree tree_;  // of the original
+  SurfaceTree tree_;  // original
   Box box_;
   double wanted_, most_;  // RMS and largest distance, in the mesh's unit
 };

@@ -8,11 +8,12 @@
 namespace papilio {
 namespace {
 
-/// Twice the area of a face as a share of its longest side's square: thinner faces are slivers. Equal sides have .87.
+/// Lower bound of the thickness of a face that is no sliver: twice its area over its longest side's square. An
+/// equilateral face has 0.87.
 constexpr double least_thickness = 0.05;
-/// The normal of a face that is no sliver may not turn to a smaller cosine.
+/// Lower bound of the cosine between the normals before and after, of a face that is no sliver.
 constexpr double least_cosine = 0.5;
-/// Nothing moves by a larger share of the mean edge: a regular mesh stays as it is.
+/// Upper bound of a move, a share of the mean edge, so that a regular mesh stays unchanged.
 constexpr double most_of_edge = 0.1;
 
 struct Face {
@@ -53,17 +54,17 @@ class SliverRemover {
   /// Returns whether a face changed.
   bool run() {
     for (auto f = static_cast<uint32_t>(is_alive_.size()); f-- > 0;)
-      if (is_unwanted(f)) waiting_.push_back(f);
+      if (is_removable(f)) waiting_.push_back(f);
     bool is_changed = false;
     while (!waiting_.empty()) {
       const uint32_t f = waiting_.back();
       waiting_.pop_back();
-      if (is_alive_[f] && is_unwanted(f) && remove(f)) is_changed = true;
+      if (is_alive_[f] && is_removable(f) && remove(f)) is_changed = true;
     }
     return is_changed;
   }
 
-  /// Corners of the faces that are left, as points.
+  /// Returns the corners of the remaining faces, as points.
   [[nodiscard]] Buffer<Triangle> triangles() const {
     Buffer<Triangle> made;
     for (uint32_t f = 0; f < is_alive_.size(); ++f)
@@ -75,9 +76,9 @@ class SliverRemover {
   /// Faces round a vertex, counter-clockwise.
   struct Ring {
     std::vector<uint32_t> spokes;      ///< half-edges that leave the vertex
-    std::vector<uint32_t> neighbours;  ///< one more than spokes where the vertex is on a boundary
+    std::vector<uint32_t> neighbours;  ///< neighbours; one more than spokes at a boundary
     [[nodiscard]] bool is_closed() const { return spokes.size() == neighbours.size(); }
-    /// Whether the vertex may lose a face: inside the surface it keeps three, on a boundary one.
+    /// Returns whether the vertex may lose a face: an interior vertex keeps three, a boundary vertex one.
     [[nodiscard]] bool has_spare_face() const { return neighbours.size() > (is_closed() ? 3 : 2); }
     [[nodiscard]] bool has(uint32_t v) const { return std::ranges::find(neighbours, v) != neighbours.end(); }
   };
@@ -91,8 +92,8 @@ class SliverRemover {
   [[nodiscard]] Face face(uint32_t f) const {
     return {place(origin_[3 * f]), place(origin_[3 * f + 1]), place(origin_[3 * f + 2])};
   }
-  /// Whether a face is to be removed: a sliver, or one whose sides are all short.
-  [[nodiscard]] bool is_unwanted(uint32_t f) const {
+  /// Returns whether a face is to be removed: it is a sliver, or all its sides are short.
+  [[nodiscard]] bool is_removable(uint32_t f) const {
     const Face at = face(f);
     return at.thickness() < least_thickness || at.longest() <= distance_;
   }
@@ -101,7 +102,7 @@ class SliverRemover {
     return t != none && (point_[h] != point_[next(t)] || point_[next(h)] != point_[t]);
   }
 
-  /// Faces round the origin of a half-edge.
+  /// Returns the faces round the origin of a half-edge.
   [[nodiscard]] Ring ring_at(uint32_t h) const {
     uint32_t first = h;
     while (twin_[first] != none) {
@@ -121,7 +122,7 @@ class SliverRemover {
       at = turned;
     }
   }
-  /// Sum of the faces' normals by area.
+  /// Returns the area-weighted sum of the faces' normals.
   [[nodiscard]] Vec3d normal_of(const Ring& ring) const {
     Vec3d sum;
     for (const uint32_t h : ring.spokes) sum += face(h / 3).normal();
@@ -166,7 +167,7 @@ class SliverRemover {
     return true;
   }
 
-  /// Whether the ends of the edge of h share no neighbours but its apexes, which keep enough faces.
+  /// Returns whether the ends of the edge of h share no neighbours but its apexes, which keep enough faces.
   [[nodiscard]] bool keeps_topology(const Ring& ring, const Ring& other, uint32_t h) const {
     const uint32_t twin = twin_[h];
     if (twin != none && !ring.is_closed()) return false;
@@ -176,7 +177,7 @@ class SliverRemover {
     return shared == (twin == none ? 1 : 2);
   }
 
-  /// Whether no face that is left is turned over where the ring's vertex moves.
+  /// Returns whether the move of the ring's vertex turns over no remaining face.
   [[nodiscard]] bool keeps_sides(const Ring& ring, const Ring& other, uint32_t onto) const {
     const Vec3d normal = normal_of(ring) + normal_of(other);
     for (const uint32_t spoke : ring.spokes) {
@@ -191,21 +192,22 @@ class SliverRemover {
     return true;
   }
 
-  /// Points of the corners at the ring's vertex once it is moved along the edge of h; none where seams would end.
+  /// Returns the points of the corners at the ring's vertex after its move along the edge of h; empty if seams would
+  /// end.
   [[nodiscard]] std::vector<uint32_t> moved_points(const Ring& ring, uint32_t h, uint32_t onto) const {
     const auto point_at = [&](uint32_t side) { return origin_[side] == onto ? point_[side] : point_[next(side)]; };
     const auto seams = std::ranges::count_if(ring.spokes, [&](uint32_t spoke) { return is_seam(spoke); });
     std::vector<uint32_t> points(ring.spokes.size(), point_at(h));
     if (seams == 0) return points;
     if (seams != 2 || !ring.is_closed() || !is_seam(h)) return {};
-    // Half-edges that leave the vertex and run along the edge of h.
+    // Finds the half-edge that leaves the vertex along the edge of h.
     const auto start = std::ranges::find_if(ring.spokes, [&](uint32_t spoke) { return tip(spoke) == onto; });
     const auto first = static_cast<size_t>(start - ring.spokes.begin());
     uint32_t point = point_at(*start);
     for (size_t k = 0; k < points.size(); ++k) {
       const size_t i = (first + k) % points.size();
       if (k > 0 && is_seam(ring.spokes[i])) {
-        if (k == 1 || k + 1 == points.size()) return {};  // two seams would become one
+        if (k == 1 || k + 1 == points.size()) return {};  // two seams would merge
         point = point_at(twin_[*start]);
       }
       points[i] = point;
@@ -213,7 +215,7 @@ class SliverRemover {
     return points;
   }
 
-  /// Takes out the face of a side whose ends are one vertex now: its other sides become one edge.
+  /// Removes the face of a side whose ends have merged: its other sides become one edge.
   void take_face(uint32_t side) {
     connect(twin_[next(side)], twin_[previous(side)]);
     is_alive_[side / 3] = false;
@@ -223,10 +225,10 @@ class SliverRemover {
     if (b != none) twin_[b] = a;
   }
   void wait(uint32_t f) {
-    if (is_alive_[f] && is_unwanted(f)) waiting_.push_back(f);
+    if (is_alive_[f] && is_removable(f)) waiting_.push_back(f);
   }
 
-  /// Puts the other diagonal of the two faces at h in its place, so that the vertex opposite h divides them.
+  /// Replaces the edge of h by the other diagonal of its two faces.
   bool flip(uint32_t h, double height) {
     const uint32_t t = twin_[h];
     const uint32_t a = origin_[h], b = tip(h), c = apex(h), d = apex(t);
@@ -263,7 +265,7 @@ class SliverRemover {
     return true;
   }
 
-  /// Takes the face of h, which is on the boundary, so that the boundary goes through the vertex opposite h.
+  /// Removes the face of the boundary half-edge h, so that the boundary goes through the vertex opposite h.
   bool drop(uint32_t h, double height) {
     const float moved = static_cast<float>(height) + moved_[apex(h)];
     if (moved > distance_ || !ring_at(previous(h)).is_closed()) return false;
@@ -278,9 +280,9 @@ class SliverRemover {
   double distance_;
   Buffer<uint32_t> origin_;        // [H]
   Buffer<uint32_t> twin_;          // [H]
-  Buffer<uint32_t> point_;         // [H]; vertices where there are no attributes
+  Buffer<uint32_t> point_;         // [H] points, or vertices without attributes
   std::vector<bool> is_alive_;     // [F]
-  std::vector<float> moved_;       // [V] distance by which the surface was moved onto the vertex, at most
+  std::vector<float> moved_;       // [V] upper bound of the distance by which the surface moved onto the vertex
   std::vector<uint32_t> waiting_;  // faces that may be slivers
 };
 

@@ -5,11 +5,11 @@
 
 namespace papilio {
 
-// How distance and bytes go with the step of the residuals, so that few steps need be tried.
+// Models of distance and bytes as functions of the residuals' step, so that few steps are tried.
 
-/// Step that should leave the wanted distance, where `step` leaves `rms`: the error's square is taken for the sum of
-/// the floor's, which exact residuals leave, and of one in proportion to the step's. No step is taken to leave the
-/// wanted distance where the floor is nearly as much.
+/// Returns the step expected to leave the distance `wanted`, given that `step` leaves `rms`. The squared error is
+/// modelled as the squared floor, which exact residuals leave, plus a term proportional to the squared step. The floor
+/// is clamped below `wanted`.
 [[nodiscard]] inline double expected_step(double step, double rms, double floor, double wanted) {
   constexpr double largest_floor = 0.9;
   floor = std::min(floor, largest_floor * wanted);
@@ -17,8 +17,8 @@ namespace papilio {
   return step * std::clamp(0.99 * std::sqrt((wanted * wanted - floor * floor) / of_step), 0.3, 3.0);
 }
 
-/// Bytes of the residuals at the wanted distance, as a share of those at `step`. They go about with a power of 1 /
-/// step; a larger distance saves no more than a power of it.
+/// Returns the expected bytes of the residuals at the distance `wanted`, as a share of those at `step`. They are about
+/// proportional to a power of 1 / step; the saving by a larger distance is bounded by a power of it.
 [[nodiscard]] inline double expected_share(double step, double rms, double floor, double wanted) {
   constexpr double bytes_by_step = 0.8, bytes_by_distance = 1.2;
   const double by_step = std::pow(step / expected_step(step, rms, floor, wanted), bytes_by_step);

@@ -65,8 +65,8 @@ class StreamedDetail final : public Detail {
  private:
   struct Level {
     Buffer<Vec3f> vertices;
-    Buffer<Texcoord> texcoords;  ///< [H] of the mesh that is split, or none
-    Buffer<Colour> colours;      ///< likewise
+    Buffer<Texcoord> texcoords;  ///< [H of the split mesh] or empty
+    Buffer<Colour> colours;      ///< [H of the split mesh] or empty
     double largest_move = 0;
   };
 
@@ -76,7 +76,7 @@ class StreamedDetail final : public Detail {
            t.edge_count() * (sizeof(uint32_t) + sizeof(EdgeKind)) + vertices * (sizeof(Vec3f) + sizeof(int32_t));
   }
 
-  /// Decodes the levels up to this one that are not decoded yet.
+  /// Decodes the levels up to `level` that are not decoded yet.
   const Level& decoded_to(int level, const std::function<bool()>& cancelled) const {
     const Lock lock(access_);
     while (count_ <= static_cast<size_t>(level)) {
@@ -87,7 +87,7 @@ class StreamedDetail final : public Detail {
   }
 
   void decode_next() const {
-    std::optional<LevelDecoder> decoder = std::exchange(decoder_, std::nullopt);  // lost where decoding fails
+    std::optional<LevelDecoder> decoder = std::exchange(decoder_, std::nullopt);  // discarded if decoding fails
     if (!decoder) {
       decoder.emplace(base_, true);
       for (size_t l = 0; l < count_; ++l) decoder->decode(streams_[l]);
@@ -114,10 +114,10 @@ class StreamedDetail final : public Detail {
   Mesh base_;
   std::vector<DetailStream> streams_;
   uint64_t fixed_bytes_ = 0;
-  mutable Mutex access_;                         ///< guards all below but `bytes_`
-  mutable std::optional<LevelDecoder> decoder_;  ///< of the next level; nothing where it is to be made again
+  mutable Mutex access_;                         ///< guards the fields that follow, except `bytes_`
+  mutable std::optional<LevelDecoder> decoder_;  ///< decoder of the next level; empty after a failure
   mutable std::array<Level, most_detail_levels> levels_;
-  mutable size_t count_ = 0;  ///< of levels that are decoded
+  mutable size_t count_ = 0;  ///< number of decoded levels
   mutable std::atomic<uint64_t> bytes_ = 0;
 };
 

@@ -9,8 +9,8 @@ namespace {
 
 double fraction(double x) { return x - std::floor(x); }
 
-/// Calls visit(point) for samples of a surface. Within a triangle they follow the plastic number's sequence, folded
-/// into it [Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018].
+/// Calls visit(point) for samples of a surface. In a triangle they follow the plastic number's sequence, folded at the
+/// diagonal [Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018].
 template <class Visit>
 void for_each_sample(const SurfaceTree& surface, uint32_t samples, const Visit& visit) {
   const auto faces = static_cast<uint32_t>(surface.surface().triangles.size());

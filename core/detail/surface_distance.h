@@ -8,15 +8,15 @@ namespace papilio {
 
 /// Distances between two surfaces, from samples of each.
 struct SurfaceDistance {
-  double rms = 0;      ///< root mean square, the larger of the two directions
-  double largest = 0;  ///< of both directions
+  double rms = 0;      ///< root mean square, the larger of both directions
+  double largest = 0;  ///< largest distance of either direction
 };
 
 /// Measures from `samples` points of each surface, spread evenly by area. Deterministic. O(samples log F).
 [[nodiscard]] SurfaceDistance surface_distance(const SurfaceTree& a, const SurfaceTree& b, uint32_t samples);
 
-/// Measures the largest distance from the vertices of each surface to the other one. Samples miss thin spikes. O(V log
-/// F).
+/// Returns the largest distance from the vertices of each surface to the other one. (Samples miss thin spikes.)
+/// O(V log F).
 [[nodiscard]] double vertex_distance(const SurfaceTree& a, const SurfaceTree& b);
 
 }  // namespace papilio

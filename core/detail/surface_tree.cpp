@@ -13,7 +13,7 @@ constexpr double least_normal_cosine = 0.25;
 
 float coordinate(Vec3f p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-/// Nearest point of a triangle [Ericson, Real-Time Collision Detection, 5.1.5].
+/// Returns the nearest point of a triangle [Ericson, Real-Time Collision Detection, 5.1.5].
 Vec3d nearest_point(Vec3d p, const TriangleCorners& t) {
   const Vec3d ab = t.b - t.a;
   const Vec3d ac = t.c - t.a;

@@ -9,25 +9,25 @@
 
 namespace papilio {
 
-/// The nearest of a surface's points to a point.
+/// Point of a surface that is nearest to a point.
 struct Nearest {
   double squared_distance = std::numeric_limits<double>::infinity();
   uint32_t face = none;
   Vec3d point{};
 };
 
-/// Tree of boxes over a surface's triangles, to find its nearest points.
+/// Bounding volume hierarchy of a surface's triangles, for nearest points.
 class SurfaceTree {
  public:
-  /// Of at least one triangle. O(F log F).
+  /// Builds the tree of at least one triangle. O(F log F).
   explicit SurfaceTree(TriangleMesh surface);
 
-  /// The nearest point; none (`face`) beyond `reach`. Where `normal` is not zero, only of faces whose normal is within
-  /// 75 degrees of it.
+  /// Returns the nearest point; `face` is `none` beyond `reach`. If `normal` is not zero, only faces whose normal is
+  /// within 75 degrees of it count.
   [[nodiscard]] Nearest nearest(Vec3d point, double reach = std::numeric_limits<double>::infinity(),
                                 Vec3d normal = {}) const;
 
-  /// Zero for a face without area.
+  /// Returns the unit normal of a face; zero if it has no area.
   [[nodiscard]] Vec3d unit_normal(uint32_t face) const { return to_double(normals_[face]); }
   [[nodiscard]] const TriangleMesh& surface() const { return surface_; }
   [[nodiscard]] TriangleCorners corners(uint32_t face) const;
@@ -35,7 +35,7 @@ class SurfaceTree {
  private:
   struct Node {
     Vec3f min, max;
-    uint32_t first;  ///< of its triangles; or, where `count` is 0, its left child, which the right one follows
+    uint32_t first;  ///< first of its triangles; or if `count` is 0, its left child, followed by the right one
     uint32_t count;
   };
   void build(uint32_t node, uint32_t first, uint32_t last, const std::vector<Vec3f>& centres);

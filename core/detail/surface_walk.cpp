@@ -7,7 +7,7 @@ namespace papilio {
 namespace {
 
 constexpr uint32_t most_steps = 1000;
-/// A face whose normal has a smaller cosine with the line turns away.
+/// Lower bound of the cosine between a face's normal and the line: below it, the face turns away.
 constexpr double least_cosine = 0.1;
 
 }  // namespace
@@ -15,14 +15,14 @@ constexpr double least_cosine = 0.1;
 std::optional<LineHit> walk_to_line(const Mesh& surface, uint32_t start_face, Vec3d point, Vec3d direction) {
   const Topology& t = surface.topology;
   uint32_t face = start_face;
-  uint32_t from = none;  // the half-edge of this face that was crossed
+  uint32_t from = none;  // half-edge of this face that was crossed last
   for (uint32_t step = 0; step < most_steps; ++step) {
     std::array<Vec3d, 3> corner;
     for (uint32_t i = 0; i < 3; ++i) corner[i] = to_double(surface.positions[t.origin[size_t{3} * face + i]]) - point;
     const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double along = dot(normal, direction);
     if (!(along > least_cosine * length(normal))) return std::nullopt;
-    // The side beyond which the line lies, the farthest in the picture.
+    // Finds the side that the line is farthest beyond, seen along the line.
     double least = 0;
     uint32_t out = none;
     for (uint32_t i = 0; i < 3; ++i) {

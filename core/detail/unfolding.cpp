@@ -12,7 +12,7 @@
 namespace papilio {
 namespace {
 
-/// Twice the area of a face of the fan as a share of the squares of its sides: thinner ones are refused.
+/// Lower bound of twice a face's area in the fan, over the sum of its sides' squares.
 constexpr double least_thickness = 0.01;
 constexpr size_t unfoldings_between_polls = 4096;
 
@@ -25,7 +25,7 @@ double squared(Point a) { return a.x * a.x + a.y * a.y; }
 
 std::array<double, 3> numbers_of(Vec3d a) { return {a.x, a.y, a.z}; }
 
-/// A place's weights in a face whose corner number `first` has weight a, the next one b, and the last one c.
+/// Returns the place in a face whose corner at `half_edge` has weight a, the next one b, and the last one c.
 SurfacePlace place_in(uint32_t half_edge, double a, double b, double c) {
   std::array<double, 3> weight{};
   const uint32_t first = half_edge % 3;
@@ -46,7 +46,7 @@ void Unfolding::add(uint32_t half_edge, double length, double angle) {
 
 void Unfolding::lay_out(size_t curve_tip) {
   double longest = 0;
-  std::array<double, 2> turn{};  // before and after the second tip of the curve
+  std::array<double, 2> turn{};  // angles before and after the second tip of the curve
   for (size_t i = 0; i < faces_.size(); ++i) {
     longest = std::max(longest, faces_[i].length);
     turn[i < curve_tip ? 0 : 1] += faces_[i].angle;
@@ -84,8 +84,8 @@ void UnfoldingSequence::push(const Unfolding& unfolding) {
 
 void UnfoldingSequence::lift(std::vector<SurfacePlace>& places, size_t count, uint32_t faces,
                              const std::function<void()>& poll) const {
-  std::vector<uint32_t> first_on(faces, none);  // the first place on each face
-  std::vector<uint32_t> next(places.size());    // the next one on the same face
+  std::vector<uint32_t> first_on(faces, none);  // [F] first place on each face
+  std::vector<uint32_t> next(places.size());    // next place on a place's face
   const auto put = [&](uint32_t place) { next[place] = std::exchange(first_on[places[place].face], place); };
   for (uint32_t i = 0; i < places.size(); ++i) put(i);
 
@@ -94,7 +94,7 @@ void UnfoldingSequence::lift(std::vector<SurfacePlace>& places, size_t count, ui
     if (poll && u % unfoldings_between_polls == 0) poll();
     const std::span<const Spoke> spokes(spokes_.data() + first_[u], spokes_.data() + first_[u + 1]);
     moved.clear();
-    for (size_t i = 1; i + 1 < spokes.size(); ++i) {  // the faces that are left, with the first neighbour as a corner
+    for (size_t i = 1; i + 1 < spokes.size(); ++i) {  // remaining faces, which have the first neighbour as a corner
       const uint32_t f = spokes[i].half_edge / 3;
       const uint32_t corner = spokes[i].half_edge % 3;
       for (uint32_t place = first_on[f]; place != none; place = next[place]) {

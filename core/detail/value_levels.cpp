@@ -9,13 +9,13 @@
 namespace papilio {
 namespace {
 
-/// A face is no frame where the square of its area is a smaller share of that of the rectangle of its sides.
+/// Lower bound of a face's squared area, relative to the rectangle of its sides, below which it defines no frame.
 constexpr float least_relative_area = 1e-6F;
 
-/// Moves of fewer steps are not coded. On a subdivided duck 24 % fewer bytes than with 0.5 had 16 % more error.
+/// Lower bound of coded moves, in steps. On a subdivided duck it takes 24 % fewer bytes than 0.5, with 16 % more error.
 constexpr double least_coded = 0.75;
 
-/// Step of colours, in the step of texture coordinates: colours are numbers of bytes, 0 to 255.
+/// Step of colours, in steps of texture coordinates: colours are in 0..255.
 constexpr float colour_steps = 2048;
 
 bool is_finite(float number) { return std::abs(number) <= coordinate_limit; }
@@ -29,9 +29,8 @@ void require_finite(const Buffer<Vec3f>& values) {
 
 float& component(Vec3f& value, uint32_t number) { return number == 0 ? value.x : number == 1 ? value.y : value.z; }
 
-/// Returns how much a linear function changes along `move`, or along as much of it as lies in the plane of three
-/// points. `value`: the function at these. At most the differences between them are added; zero where they are on a
-/// line.
+/// Returns the change of a linear function along `move`, projected onto the plane of three points. `value`: the
+/// function at the points. The change is clamped to one difference along each side; zero for collinear points.
 Vec3f change_along(Vec3f move, const Vec3f (&point)[3], const Vec3f (&value)[3]) {
   const Vec3f one = point[1] - point[0];
   const Vec3f two = point[2] - point[0];
@@ -94,8 +93,8 @@ void ValueLevels::predict(const Topology& whole, const Buffer<Vec3f>& positions)
   }
 }
 
-/// Moves the values of edge e's new vertex as far as its position is from what the rules within the chart give: by the
-/// mean over the edge's faces.
+// Corrects the values of edge e's new vertex, whose position differs by `move` from the rules' position within the
+// chart: by the mean change over the edge's faces.
 void ValueLevels::correct(uint32_t e, Vec3f move, const Buffer<Vec3f>& positions) {
   const Topology& t = level_.topology();
   const uint32_t h = t.half_edge[e];

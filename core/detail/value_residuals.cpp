@@ -3,16 +3,16 @@
 namespace papilio {
 namespace {
 
-/// What the residuals of a level are coded by.
+/// Pass over the residuals of a level, shared by encoder and decoder.
 struct ValuePass {
   const DetailLevel& level;
   const EdgePieces& pieces;
   std::span<const ValueChannel> channels;
   ValueResiduals& residuals;
   const ValueResiduals& at_vertex;
-  const Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< none is
+  const Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< all 0: no residual is free
 
-  /// Goes through the residuals of a piece in the order of their edges and codes each: encoder and decoder alike.
+  /// Codes the residuals of a piece in the order of their edges.
   template <class Code>
   void run(uint32_t piece, ValueModels& models, const Code& code) {
     for (const uint32_t e : pieces.edges_of(piece))

@@ -10,17 +10,17 @@
 namespace papilio {
 namespace {
 
-/// Of a triangle, as long as twice its area.
+/// Returns a triangle's normal, of the length of twice its area.
 Vec3d area_normal(Vec3d a, Vec3d b, Vec3d c) { return cross(b - a, c - a); }
 
-/// Of length one; 0 of a triangle without area.
+/// Returns a triangle's unit normal; 0 if it has no area.
 Vec3d unit_normal(const Corners& corner) {
   const Vec3d area = area_normal(corner[0], corner[1], corner[2]);
   const double size = length(area);
   return size > 0 ? 1 / size * area : Vec3d{};
 }
 
-/// Whether one of the triangles is turned to the viewer that a transition face may be cut into.
+/// Returns whether any triangle that a transition face may be cut into faces the viewer.
 bool has_piece_towards(const Corners& corner, const Corners& made, const Camera& camera) {
   const std::array<Vec3d, 6> point{corner[0], corner[1], corner[2], made[0], made[1], made[2]};
   return std::any_of(split_patterns.begin() + 2, split_patterns.end() - 2, [&](const SplitPattern& cut) {
@@ -30,10 +30,9 @@ bool has_piece_towards(const Corners& corner, const Corners& made, const Camera&
   });
 }
 
-/// The largest number of pixels per unit at a face if the picture may show any of it, of its pieces, or of what lies
-/// below; else 0. The normals of the last are taken to be no further from its own than three times those of its
-/// children are.
-double scale_at(const LevelChoice& choice, uint32_t face, const Camera& camera) {
+/// Returns the most pixels per unit at a face; 0 if the picture shows neither the face nor its pieces nor its
+/// descendants, whose normals are assumed to differ from its own by at most three times as much as its children's.
+double scale_at(const LevelChoice& choice, FaceId face, const Camera& camera) {
   constexpr double all_turns = 3;
   const Corners corner = corners_of(choice, face);
   const Corners made = new_vertices_of(choice, face, corner);
@@ -60,7 +59,7 @@ double scale_at(const LevelChoice& choice, uint32_t face, const Camera& camera) 
 Buffer<float> DistanceLimit::at_faces(const LevelChoice& choice) const {
   Buffer<float> limits(choice.level->mesh.topology.face_count(), static_cast<float>(everywhere));
   if (camera == nullptr) return limits;
-  for (uint32_t f : choice.region.faces) {
+  for (FaceId f : choice.region.faces) {
     const double scale = scale_at(choice, f, *camera);
     limits[f] = static_cast<float>(scale > 0 ? std::max(everywhere, pixels / scale) : AllowedDistance::any);
   }
@@ -72,7 +71,7 @@ AllowedDistance::AllowedDistance(std::span<const LevelChoice> levels, const Dist
   for (size_t k = levels.size(); k-- > 0;) {
     const LevelChoice& choice = levels[k];
     at_[k] = limit.at_faces(choice);
-    for (uint32_t f : choice.region.faces) {
+    for (FaceId f : choice.region.faces) {
       if (k + 1 < levels.size() && choice.red[f] != 0) {
         const float* below = &at_[k + 1][levels[k + 1].level->first_child_of(f)];
         at_[k][f] = std::min({at_[k][f], below[0], below[1], below[2], below[3]});

@@ -8,18 +8,19 @@
 
 namespace papilio {
 
-/// How far a result may be from the uniform surface: everywhere alike, or so many pixels of a picture.
+/// Upper bound of the distance between a result and the uniform surface.
 struct DistanceLimit {
   double everywhere;               ///< in the mesh's unit
   const Camera* camera = nullptr;  ///< null: none
-  double pixels = 0;               ///< with a camera: further where this is less than so many
+  double pixels = 0;               ///< with a camera, the bound in pixels, where that is the larger one
 
-  /// [F] of the choice's region, in the mesh's unit. Infinite where the picture shows neither the face nor its pieces,
-  /// nor what lies below, whose normals are taken to be within three times the turn of its children's.
+  /// Returns the bound at each face [F] of the choice's region, in the mesh's unit. It is infinite where the picture
+  /// shows neither the face nor its pieces nor its descendants, whose normals are assumed to be within three times the
+  /// turn of its children's.
   [[nodiscard]] Buffer<float> at_faces(const LevelChoice& choice) const;
 };
 
-/// The same at the faces of all levels. What a face below has, has the face above.
+/// Upper bounds of the distance at the faces of all levels. A face has the least bound of its descendants.
 class AllowedDistance {
  public:
   static constexpr double any = std::numeric_limits<double>::infinity();

@@ -13,38 +13,38 @@
 namespace papilio {
 namespace {
 
-/// A level, and what becomes of its faces.
+/// Level, and the results of its faces.
 struct AssembledLevel {
   const LevelChoice* choice;
   const Topology* mesh;
   AssembledLevel* below = nullptr;  ///< the next level; null: this is the last
   const uint32_t* edge;             ///< [H] of the mesh
-  Buffer<uint32_t> new_vertex;      ///< [E] number in the result of the edge's vertex; written where split
+  Buffer<uint32_t> new_vertex;      ///< [E] number of the edge's vertex in the result; set if split
 
-  /// With attributes only: the faces that are in the result, or their children are, in ascending order; and of each
-  /// what becomes of it.
-  struct Fate {
-    uint32_t first;           ///< the first half-edge in the result of the faces that it is cut into,
-    const SplitPattern* cut;  ///< in this way; null: its children are in the result
+  /// Faces that are in the result, or whose children are, in ascending order, and the pieces of each.
+  /// Only with attributes.
+  struct FacePieces {
+    uint32_t first;           ///< first half-edge in the result of the face's pieces
+    const SplitPattern* cut;  ///< pattern of the pieces; null: its children are in the result
   };
   Buffer<uint32_t> shown;
-  Buffer<Fate> fates;
+  Buffer<FacePieces> pieces;
 
-  [[nodiscard]] bool is_divided(uint32_t f) const { return below != nullptr && choice->red[f] != 0; }
-  /// The first child of a divided face.
-  [[nodiscard]] uint32_t child(uint32_t f) const { return below->choice->level->first_child_of(f); }
+  [[nodiscard]] bool is_divided(FaceId f) const { return below != nullptr && choice->red[f] != 0; }
+  /// Returns the first child of a divided face.
+  [[nodiscard]] uint32_t child(FaceId f) const { return below->choice->level->first_child_of(f); }
 };
 
-/// Goes through the levels' faces, and writes down what is in the result. Each edge of the result has a number, its
-/// slot, which both faces at it know, whatever level they are of: in it the one that comes first leaves its half-edge,
-/// and the one that comes second finds its twin there.
+/// Traversal of the levels' faces that writes the result. Each edge of the result has a number, its slot, which
+/// both its faces can compute, whatever their levels. The first face stores its half-edge in the slot; the second
+/// finds its twin there.
 class Assembler {
  public:
   Assembler(std::span<const LevelChoice> levels, double most_cosine)
       : most_cosine_(most_cosine), coarse_(levels[0].level->mesh) {
     const Topology& coarse = coarse_.topology;
     uint32_t vertices = coarse.vertex_count;
-    size_t divided = 0;  // faces, at most
+    size_t divided = 0;  // upper bound of the number of divided faces
     for (const LevelChoice& choice : levels) {
       vertices += static_cast<uint32_t>(choice.split_edges.size());
       if (&choice != levels.data()) divided += choice.region.faces.size() / 4;
@@ -57,20 +57,20 @@ class Assembler {
     const uint32_t half_edges = 3 * static_cast<uint32_t>(count_assembled(levels));
     topology.origin.resize_for_overwrite(half_edges);
     topology.twin.resize_for_overwrite(size_t{half_edges} + 1);
-    nobody_ = half_edges;
+    sentinel_ = half_edges;
     origin_ = topology.origin.data();
     twin_ = topology.twin.data();
     add_vertices(levels);
-    // Two for each vertex, as if each were of an edge that is split; behind these those of the coarse edges, and three
-    // for each face that is divided.
+    // Two slots for each vertex, as if each were on a split edge; then those of the coarse edges, and three for each
+    // divided face.
     first_coarse_ = 2 * vertices;
     next_inner_ = first_coarse_ + coarse.edge_count();
-    slots_.assign(next_inner_ + 3 * divided, nobody_);
+    slots_.assign(next_inner_ + 3 * divided, sentinel_);
   }
 
   Mesh run(bool with_edges, std::span<const Displacements> displaced) {
     const Topology& coarse = coarse_.topology;
-    for (uint32_t f = 0; f < coarse.face_count(); ++f) {
+    for (FaceId f = 0; f < coarse.face_count(); ++f) {
       const uint32_t* edge = &coarse.edge[size_t{3} * f];
       const OfSides side{first_coarse_ + edge[0], first_coarse_ + edge[1], first_coarse_ + edge[2]};
       place(levels_[0], f, &coarse.origin[size_t{3} * f], side.data());
@@ -85,7 +85,7 @@ class Assembler {
   }
 
  private:
-  /// A half-edge of the result that lies on a curve.
+  /// Half-edge of the result that lies on a curve.
   struct OnCurve {
     uint32_t half_edge;
     EdgeKind kind;
@@ -102,20 +102,19 @@ class Assembler {
       AssembledLevel& level = levels_.emplace_back();
       level.choice = &choice;
       level.mesh = &mesh;
-      if (levels_.size() > 1) levels_[levels_.size() - 2].below = &level;  // which stays where it is
+      if (levels_.size() > 1) levels_[levels_.size() - 2].below = &level;  // reserved: its address is stable
       level.edge = mesh.edge.data();
       level.new_vertex.resize_for_overwrite(mesh.edge_count());
-      for (uint32_t e : marked(choice.split)) {
+      for (EdgeId e : marked(choice.split)) {
         out_.positions[vertex] = choice.level->trial.at(e);
         level.new_vertex[e] = vertex++;
       }
     }
   }
 
-  /// Writes down what is in the result of a face and of what lies below it. `corner` [3]: its corners there; `side`
-  /// [3]: the slots of its sides, of which those count that are not split. (Inlined for each child on its own: what
-  /// becomes of it is then foreseen better.)
-  [[gnu::always_inline]] void place(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
+  /// Writes the result of a face and of the faces below it. `corner` [3]: its corners in the result; `side` [3]: slots
+  /// of its sides, used if not split. (Inlined separately for each child: this improves branch prediction.)
+  [[gnu::always_inline]] void place(AssembledLevel& level, FaceId f, const uint32_t* corner, const uint32_t* side) {
     const unsigned mask = level.choice->split_mask(f);
     if (mask == 0)
       place_whole(level, f, corner, side);
@@ -123,18 +122,18 @@ class Assembler {
       cut_in_part(level, f, mask, corner, side);
     else if (level.is_divided(f))
       place_children(level, f, corner);
-    else  // what has children as support only is cut into the same four
+    else  // with children as support only: cut into the same four
       cut_in_four(level, f, corner);
   }
 
-  void place_whole(AssembledLevel& level, uint32_t f, const uint32_t* corner, const uint32_t* side) {
+  void place_whole(AssembledLevel& level, FaceId f, const uint32_t* corner, const uint32_t* side) {
     const uint32_t made = half_edge_count_;
     put(origin_ + made, corner[0], corner[1], corner[2]);
     put(twin_ + made, meet(side[0], made), meet(side[1], made + 1), meet(side[2], made + 2));
     end_face(level, f, split_pattern(0, false));
   }
 
-  [[gnu::noinline]] void place_children(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
+  [[gnu::noinline]] void place_children(AssembledLevel& level, FaceId f, const uint32_t* corner) {
     if (!coarse_.attributes.empty()) remember(level, f, nullptr);
     const OfSides middle = middles(level, f);
     AssembledLevel& below = *level.below;
@@ -151,7 +150,7 @@ class Assembler {
     place(below, child + 3, &corners[9], &sides[9]);
   }
 
-  void cut_in_four(AssembledLevel& level, uint32_t f, const uint32_t* corner) {
+  void cut_in_four(AssembledLevel& level, FaceId f, const uint32_t* corner) {
     const uint32_t made = half_edge_count_;
     const OfSides middle = middles(level, f);
     const Halves half = halves(corner, middle);
@@ -164,9 +163,9 @@ class Assembler {
     end_face(level, f, split_pattern(7, false));
   }
 
-  /// A face with one or two sides split, seen from the first of these, which runs from corner a to b.
+  /// Face with one or two split sides, from the first of them, which runs from corner a to b.
   struct CutFace {
-    CutFace(const AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
+    CutFace(const AssembledLevel& level, FaceId f, unsigned mask, const uint32_t* corners, const uint32_t* sides) {
       const uint8_t* number = &turned[first_target[mask]];
       a = corners[number[0]];
       b = corners[number[1]];
@@ -178,12 +177,12 @@ class Assembler {
     }
     uint32_t a, b, c;
     uint32_t side_bc, side_ca;  ///< slots
-    uint32_t on_ab;             ///< the vertex there
-    uint32_t edge_bc;           ///< of the level
+    uint32_t on_ab;             ///< new vertex of side ab
+    uint32_t edge_bc;           ///< edge bc of the level
   };
 
-  /// With one or two sides split.
-  void cut_in_part(AssembledLevel& level, uint32_t f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
+  /// Cuts a face with one or two split sides.
+  void cut_in_part(AssembledLevel& level, FaceId f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
     const bool second_diagonal = takes_second_diagonal(*level.choice, f, mask, most_cosine_);
     const CutFace face(level, f, mask, corner, side);
     if (has_two_targets(mask))
@@ -193,7 +192,7 @@ class Assembler {
     end_face(level, f, split_pattern(mask, second_diagonal));
   }
 
-  /// The pieces, here and below, are those of split_pattern.cpp, in their order.
+  /// Cuts a face in two. The pieces are those of split_pattern.cpp, in their order.
   void cut_in_two(const CutFace& face) {
     const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
     const uint32_t made = half_edge_count_;
@@ -203,7 +202,7 @@ class Assembler {
         meet(first ^ 1, made + 3), meet(side_bc, made + 4), made + 1);
   }
 
-  /// Which of the two diagonals it is nobody can guess: so without branches.
+  /// Cuts a face in three pieces, in the order of split_pattern.cpp. Branch-free: the diagonal is unpredictable.
   void cut_in_three(const AssembledLevel& level, const CutFace& face, bool second_diagonal) {
     const auto& [a, b, c, side_bc, side_ca, on_ab, edge_bc] = face;
     const uint32_t made = half_edge_count_;
@@ -219,18 +218,18 @@ class Assembler {
         made + choose(5, 2), meet(first_of_bc ^ 1, made + 7), choose(against_ca, made + 4));
   }
 
-  /// The vertices in the middles of a face's sides; of those that are split.
-  [[nodiscard]] static OfSides middles(const AssembledLevel& level, uint32_t f) {
+  /// Returns the new vertices of a face's sides; undefined for unsplit sides.
+  [[nodiscard]] static OfSides middles(const AssembledLevel& level, FaceId f) {
     const uint32_t* edge = &level.edge[size_t{3} * f];
     return {level.new_vertex[edge[0]], level.new_vertex[edge[1]], level.new_vertex[edge[2]]};
   }
 
-  /// The slots of the halves of sides that are split.
+  /// Slots of the halves of split sides.
   struct Halves {
     OfSides first, second;
   };
-  /// The one at `from` of a side with this middle; the other is beside it. The half at the lower vertex comes first: so
-  /// both faces at a side agree.
+  /// Returns the slot of the half at `from` of a side with this new vertex; the other half is slot ^ 1. The half at the
+  /// lower vertex comes first, so both faces at a side agree.
   [[nodiscard]] static uint32_t first_half(uint32_t middle, uint32_t from, uint32_t to) {
     return 2 * middle + (from > to ? 1 : 0);
   }
@@ -240,7 +239,8 @@ class Assembler {
     return {first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}};
   }
 
-  /// Leaves a half-edge in a slot, and returns what was there: its twin, if that came before. That one learns of it.
+  /// Stores a half-edge in a slot, and makes it the twin of the previous value. Returns that value: its
+  /// twin, or `sentinel_`.
   uint32_t meet(uint32_t slot, uint32_t half_edge) {
     const uint32_t other = slots_[slot];
     slots_[slot] = half_edge;
@@ -248,23 +248,23 @@ class Assembler {
     return other;
   }
 
-  /// A face was cut in this way.
-  void end_face(AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+  /// Ends a face that was cut by this pattern.
+  void end_face(AssembledLevel& level, FaceId f, const SplitPattern& cut) {
     if (has_curves_or_points_) [[unlikely]]
       remember_more(level, f, cut);
     half_edge_count_ += 3U * cut.children;
   }
 
-  void remember_more(AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+  void remember_more(AssembledLevel& level, FaceId f, const SplitPattern& cut) {
     if (!coarse_.attributes.empty()) remember(level, f, &cut);
     find_curves(level, f, cut);
   }
-  void remember(AssembledLevel& level, uint32_t f, const SplitPattern* cut) const {
+  void remember(AssembledLevel& level, FaceId f, const SplitPattern* cut) const {
     level.shown.push_back(f);
-    level.fates.push_back({half_edge_count_, cut});
+    level.pieces.push_back({half_edge_count_, cut});
   }
 
-  void find_curves(const AssembledLevel& level, uint32_t f, const SplitPattern& cut) {
+  void find_curves(const AssembledLevel& level, FaceId f, const SplitPattern& cut) {
     for (uint32_t c = 0; c < 3U * cut.children; ++c) {
       if (!cut.is_outside(c)) continue;
       const EdgeKind kind = level.mesh->kind[level.edge[3 * f + cut.edge[c] / 2]];
@@ -281,23 +281,23 @@ class Assembler {
       if (on.kind == EdgeKind::crease) mesh.kind[mesh.edge[on.half_edge]] = EdgeKind::crease;
   }
 
-  /// Top down: the points of each shown face's corners.
+  /// Computes the points of each shown face's corners, top down.
   void make_points(std::span<const Displacements> displaced) {
     out_.attributes = coarse_.attributes;
     auto result = Buffer<uint32_t>::for_overwrite(half_edge_count_);
     const Displacements nothing;
     for (size_t k = 0; k < levels_.size(); ++k) {
       const AssembledLevel& level = levels_[k];
-      const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, level.shown, out_.attributes,
-                                                 displaced.empty() ? nothing : displaced[k]);
+      const Buffer<uint32_t> made = split_points(*level.mesh, level.choice->split, IndexRange(level.shown),
+                                                 out_.attributes, displaced.empty() ? nothing : displaced[k]);
       const Buffer<uint32_t> corners = std::move(out_.attributes.point);
-      const auto point = [&](uint32_t f, uint8_t corner) {
+      const auto point = [&](FaceId f, uint8_t corner) {
         return corner < 3 ? corners[3 * f + corner] : made[3 * f + corner - 3U];
       };
       out_.attributes.point.assign(level.below != nullptr ? level.below->mesh->half_edge_count() : 0, none);
       for (size_t i = 0; i < level.shown.size(); ++i) {
-        const uint32_t f = level.shown[i];
-        const auto& [first, cut_in_result] = level.fates[i];
+        const FaceId f = level.shown[i];
+        const auto& [first, cut_in_result] = level.pieces[i];
         const bool divided = cut_in_result == nullptr;
         const SplitPattern& cut = divided ? split_pattern(7, false) : *cut_in_result;
         uint32_t* out = divided ? &out_.attributes.point[3 * size_t{level.child(f)}] : &result[first];
@@ -311,11 +311,11 @@ class Assembler {
   const Mesh& coarse_;
   std::vector<AssembledLevel> levels_;
   bool has_curves_or_points_ = false;
-  uint32_t half_edge_count_ = 0;  ///< so far
-  uint32_t *origin_, *twin_;      ///< of the result
-  Buffer<uint32_t> slots_;        ///< half-edges of the result, or `nobody_`
+  uint32_t half_edge_count_ = 0;  ///< number of half-edges written
+  uint32_t *origin_, *twin_;      ///< arrays of the result
+  Buffer<uint32_t> slots_;        ///< half-edges of the result, or `sentinel_`
   uint32_t first_coarse_, next_inner_;
-  uint32_t nobody_;  ///< a half-edge behind the result's
+  uint32_t sentinel_;  ///< half-edge after the last of the result
   Buffer<OnCurve> on_curves_;
   Mesh out_;
 };
@@ -323,7 +323,7 @@ class Assembler {
 }  // namespace
 
 uint64_t count_assembled(std::span<const LevelChoice> levels) {
-  // A split edge may only be one all of whose faces are in the result: each of them becomes one more.
+  // All faces at a split edge are in the result: each adds one face.
   uint64_t faces = levels[0].region.faces.size();
   for (const LevelChoice& choice : levels) faces += choice.count_faces_of_split();
   return faces;

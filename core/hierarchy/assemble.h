@@ -8,14 +8,14 @@
 
 namespace papilio {
 
-/// Faces of the mesh that the levels give with the edges that each has marked as split.
+/// Returns the number of faces of the mesh that assemble() makes of the levels and their split edges.
 [[nodiscard]] uint64_t count_assembled(std::span<const LevelChoice> levels);
 
-/// That mesh: faces with three split edges give way to their children, those with one or two are cut (transition.h).
-/// Each level below the first is made of what the one above has marked red. Faces lie where their coarse face lies;
-/// vertices are those of the coarse mesh, then those of each level in the order of its edges. Twins are found in one
-/// pass over the faces, without a search. `most_cosine`: see transition.h. Edges may be left out (mesh.h).
-/// `displaced`: of the levels (displaced_levels.h); empty where the coarse mesh has no displacements.
+/// Assembles the mesh of the levels: faces with three split edges are replaced by their children; faces with one or two
+/// are cut (transition.h). Each level below the first holds children of the faces marked red above. Faces are in the
+/// order of their coarse faces. Vertices are those of the coarse mesh, then those of each level in the order of its
+/// edges. Twins are found in one pass over the faces, without a search. `most_cosine`: see transition.h. Edges may be
+/// left out (mesh.h). `displaced` [level]: see displaced_levels.h; empty if the coarse mesh has no displacements.
 [[nodiscard]] Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges,
                             std::span<const Displacements> displaced);
 

@@ -17,14 +17,14 @@ Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& 
   if (level.is_whole) {
     std::ranges::copy(vertices, trial.made.begin());
   } else {
-    for (uint32_t e = 0; e < trial.made.size(); ++e) trial.made[e] = vertices[level.in_whole.edge[e]];
+    for (EdgeId e = 0; e < trial.made.size(); ++e) trial.made[e] = vertices[level.in_whole.edge[e]];
   }
   return trial;
 }
 
 namespace {
 
-/// The numbers of a span of arrays.
+/// Returns a span of arrays as a span of their elements.
 template <size_t Components>
 std::span<const float> numbers_of(std::span<const std::array<float, Components>> values) {
   return values.empty() ? std::span<const float>{} : std::span(values[0].data(), values.size() * Components);

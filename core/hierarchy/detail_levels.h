@@ -12,27 +12,27 @@
 
 namespace papilio {
 
-/// Tries the edges of a level of the hierarchy of `coarse`: with the vertices of its detail as far as it goes, below by
-/// the rules (try_split). Throws `Error` cancelled, and what Detail::new_vertices() throws.
+/// Computes the new vertices of the edges of a level of the hierarchy of `coarse`: from its detail on levels that it
+/// has, else by the rules (try_split). Throws `Error` cancelled, and errors of Detail::new_vertices().
 [[nodiscard]] Trial try_level(const HierarchyLevel& level, const Mesh& coarse, const Options& options,
                               const TrialContext& context, const std::function<bool()>& cancelled = {});
 
-/// Adds the texture coordinates and colours that a detail gives the points on the half-edges of the whole level that
-/// `number` levels give, if it does, to the last attributes of two components and of three that are no normals.
-/// `parent`: as of Displacement. Throws `Error` as Detail::new_texcoords().
+/// Adds the texture coordinates and colours of a detail, if it has any, for the points on the half-edges of the whole
+/// level after `number` levels. They belong to the last attributes of 2 and of 3 components that are not normals.
+/// `parent`: `Displacement::parent`. Throws `Error` as Detail::new_texcoords().
 void add_values_of_detail(const Mesh& mesh, const Detail& detail, int number, std::span<const uint32_t> parent,
                           Displacements& displaced, const std::function<bool()>& cancelled = {});
 
-/// Whole level of a mesh with detail.
+/// Size of a whole level of a mesh with detail.
 struct DecodedSize {
   uint64_t faces = 0;
-  uint64_t bytes = 0;  ///< taken while it is decoded
+  uint64_t bytes = 0;  ///< bytes taken while it is decoded
 };
-/// Returns the size of the level that `level` levels give.
+/// Returns the size of the mesh after `level` levels.
 [[nodiscard]] DecodedSize decoded_size(const Mesh& coarse, int level, const MemoryPlan& plan);
 
-/// Returns the largest move of the levels of detail from `first` on (0 is that of the coarse edges), as far as the
-/// options have levels and the limits room to decode them; 0 where there are none.
+/// Returns the largest move of the levels of detail from `first` on, where 0 splits the coarse edges. Counts levels
+/// within the options' levels and limits only; 0 if there are none.
 [[nodiscard]] double largest_move_below(const Mesh& coarse, int first, const Options& options, const MemoryPlan& plan,
                                         const Progress& progress);
 

@@ -6,7 +6,7 @@
 namespace papilio {
 namespace {
 
-/// At the vertices of the level below, of what is at the vertices and the edges of the level above.
+/// Returns the displacements at the vertices of the level below, given those at vertices and edges of the level above.
 Displacements at_vertices_below(const HierarchyLevel& above, const HierarchyLevel& below,
                                 const Displacements& at_vertices, const Displacements& at_edges) {
   const Topology& parents = above.mesh.topology;
@@ -21,7 +21,7 @@ Displacements at_vertices_below(const HierarchyLevel& above, const HierarchyLeve
       const uint32_t* edge = &parents.edge[size_t{3} * parent];
       const uint32_t* of_children = &mesh.origin[size_t{3} * child];
       for (uint32_t c = 0; c < 3; ++c) {
-        // Child c has the parent's corner c, then the middle of its side c.
+        // Corner c of child c is the parent's corner c; the next is the middle of the parent's side c.
         at[of_children[3 * c + c]] = at_vertices[i].at[corner[c]];
         at[of_children[3 * c + (c + 1) % 3]] = at_edges[i].at[edge[c]];
       }
@@ -37,7 +37,7 @@ std::vector<Displacements> rule_displacements_of(std::span<const LevelChoice> le
   Displacements at_vertices = displacements_at_vertices(coarse);
   for (size_t k = 0; k < levels.size(); ++k) {
     const HierarchyLevel& level = *levels[k].level;
-    of_levels.push_back(split_displacements(at_vertices, level.mesh, options, SplitPlan(complete_edges(level))));
+    of_levels.push_back(split_displacements(at_vertices, level.mesh, options, complete_edges(level)));
     if (k + 1 < levels.size())
       at_vertices = at_vertices_below(level, *levels[k + 1].level, at_vertices, of_levels.back());
   }

@@ -9,9 +9,9 @@
 
 namespace papilio {
 
-/// For each level, what the coarse mesh's displacements are at the new vertices of its edges [level], as the rules make
-/// it (split_displacements.h), and the texture coordinates that its detail gives; empty where the mesh has neither.
-/// None of the levels may be one of refine_last_level(). O(faces held) for each displacement.
+/// Returns [level] the coarse mesh's displacements at the new vertices of the level's edges (split_displacements.h),
+/// and the values of its detail (add_values_of_detail()). Empty if the mesh has neither. No level may be the result of
+/// refine_last_level(). O(held faces) for each displacement.
 [[nodiscard]] std::vector<Displacements> displacements_of(std::span<const LevelChoice> levels, const Options& options);
 
 }  // namespace papilio

@@ -14,8 +14,8 @@
 namespace papilio {
 namespace {
 
-/// Finds the largest deviation left at the edges of the faces that are not divided. Edges are looked at in their
-/// level's order; which of them count is asked only of those that may matter.
+/// Search for the largest deviation left at the edges of undivided faces. Visits edges in their level's order. Whether
+/// an edge counts is tested only if its deviation may be the largest.
 class ErrorFinder {
  public:
   ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection) : levels_(levels), left_(selection) {
@@ -35,12 +35,12 @@ class ErrorFinder {
   }
 
  private:
-  /// What is left of a deviation of level k where its edge is split: nothing of the last one of detail, which is the
-  /// surface itself.
+  /// Returns the share of a deviation of level k that is left where its edge is split: 0 on the last level of detail,
+  /// whose vertices lie on the surface.
   [[nodiscard]] double split_share(size_t k) const { return levels_[k].level->detail_levels == 1 ? 0 : split_leaves; }
   [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
 
-  /// Finds the faces of the level's region above which all are divided.
+  /// Finds the faces of the level's region whose ancestors are all divided.
   void find_reached(size_t k) {
     const LevelChoice& choice = levels_[k];
     if (k == 0) {
@@ -49,7 +49,7 @@ class ErrorFinder {
     }
     Buffer<uint8_t> below(mesh_of(k).face_count(), 0);
     for (size_t i = 0; i < choice.region.faces.size(); i += 4) {
-      const uint32_t f = choice.region.faces[i];
+      const FaceId f = choice.region.faces[i];
       const uint32_t parent = choice.level->parent_of(f);
       const uint8_t is_reached = levels_[k - 1].split_mask(parent) == 7 ? reached_[parent] : 0;
       std::fill_n(below.begin() + f, 4, is_reached);
@@ -57,16 +57,16 @@ class ErrorFinder {
     reached_ = std::move(below);
   }
 
-  /// Smaller deviations of the level are not the largest.
-  [[nodiscard]] float surely_too_little(size_t k) const {
+  /// Returns a lower bound of the largest deviation, for edges of level k.
+  [[nodiscard]] float cutoff(size_t k) const {
     constexpr double rounding = 1 - 1e-6;
     return static_cast<float>(rounding * left_.least_that_matters(scales_[k]));
   }
 
-  /// Whether an edge that stays may have the largest deviation. (Its error in the choice does not tell: that may be of
-  /// what lies below.)
-  [[nodiscard]] bool may_matter(const HierarchyLevel& level, uint32_t e, double scale) const {
-    const double most = level.trial.no_less_than_deviation_at(e);
+  /// Returns whether an unsplit edge may have the largest deviation. Its error in the choice is no bound: it may come
+  /// from an edge of a level below.
+  [[nodiscard]] bool may_matter(const HierarchyLevel& level, EdgeId e, double scale) const {
+    const double most = level.trial.stored_deviation_bound(e);
     return left_.may_grow_by(most, scale) && left_.may_grow_at(level.mesh, e, most);
   }
 
@@ -77,141 +77,95 @@ class ErrorFinder {
     if (trial.bounds.empty()) {
       add_far(k);
     } else {
-      float too_little = surely_too_little(k);
-      // Of a level that was kept most are known to be too little; of a new one nobody can guess which are split.
+      float least = cutoff(k);
+      // Branch-free on a new level, where splits are unpredictable. On a kept level, most edges are below the cutoff.
       Buffer<uint32_t> edges = choice.region.edges();
-      if (!trial.is_kept) keep_if(edges, [&](uint32_t e) { return choice.split[e] == 0; });
-      for (uint32_t e : edges) {
-        if (trial.no_less_than_deviation_at(e) < too_little || choice.split[e] != 0) continue;
+      if (!trial.is_kept) keep_if(edges, [&](EdgeId e) { return choice.split[e] == 0; });
+      for (EdgeId e : edges) {
+        if (trial.stored_deviation_bound(e) < least || choice.split[e] != 0) continue;
         if (!may_matter(*choice.level, e, scales_[k]) || is_near(k, e, 1)) continue;
         add_whole(k, e);
-        too_little = surely_too_little(k);
+        least = cutoff(k);
       }
     }
-    for (uint32_t h : choice.level->shared) {
-      const uint32_t e = mesh.edge[h];
-      if (choice.region.has_edge[e] != 0 && choice.split[e] == 0 && choice.shown[e] && reached_[Topology::face(h)] != 0)
+    for (HalfEdgeId h : choice.level->shared) {
+      const EdgeId e = mesh.edge[h];
+      if (choice.region.has_edge[e] != 0 && choice.split[e] == 0 && choice.shown[e] && reached_[h.face()] != 0)
         add(k, e);
     }
   }
 
-  /// An edge of the region that stays.
-  void add_whole(size_t k, uint32_t e) {
+  /// Adds an unsplit edge of the region.
+  void add_whole(size_t k, EdgeId e) {
     const Topology& mesh = mesh_of(k);
-    const uint32_t h = mesh.half_edge[e];
-    const uint32_t t = mesh.twin[h];
-    if (reached_[Topology::face(h)] == 0 && (t == none || reached_[Topology::face(t)] == 0)) return;
+    const HalfEdgeId h = mesh.half_edge[e];
+    const HalfEdgeId t = mesh.twin[h];
+    if (reached_[h.face()] == 0 && (t == none || reached_[t.face()] == 0)) return;
     if (levels_[k].shown[e]) add(k, e);
   }
 
-  /// The same for all of the region's edges, and for those that are split, where nothing is known of deviations: those
-  /// are looked at whose vertex is far enough from the middle.
+  /// Adds the region's edges, split or not, on a level without bounds of deviations. Skips edges whose new vertex is
+  /// too near the middle.
   void add_far(size_t k) {
-    const Topology& mesh = mesh_of(k);
+    const LevelChoice& choice = levels_[k];
+    const Mesh& mesh = choice.level->mesh;
+    const Vec3f* const positions = mesh.positions.data();
+    const Vec3f* const made = choice.level->trial.made.data();
+    const uint8_t* const may_be_split = choice.region.has_edge.data();
+    const uint8_t* const is_split = choice.split.data();
+    const std::array<float, 2> share_squared{1, static_cast<float>(split_share(k) * split_share(k))};  // [is split]
+    DeviationCutoff too_near(choice.level->box.largest_coordinate());
+    const auto raise = [&] { too_near.raise(left_.least_that_matters(scales_[k])); };
+    raise();
+    const auto look_at = [&](EdgeId e, Vec3fa from, Vec3fa to) __attribute__((always_inline)) {
+      const float squared = share_squared[is_split[e]] * squared_length(widen(made[e]) - 0.5F * (from + to));
+      if (squared <= too_near.squared() || may_be_split[e] == 0 || !choice.shown[e]) [[likely]]
+        return;
+      add_far(k, e);
+      raise();
+    };
     if (k == 0) {
-      FarFinder far(*this, 0);
-      for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
-        const uint32_t h = mesh.half_edge[e];
-        far.look_at(e, far.position(mesh.origin[h]), far.position(mesh.tip(h)));
+      for (EdgeId e = 0; e < mesh.topology.edge_count(); ++e) {
+        const HalfEdgeId h = mesh.topology.half_edge[e];
+        look_at(e, widen(positions[mesh.topology.origin[h]]), widen(positions[mesh.topology.tip(h)]));
       }
       return;
     }
-    FarFinder far(*this, k);
-    const Buffer<uint32_t>& faces = levels_[k].region.faces;
-    for (size_t i = 0; i < faces.size(); i += 4) {
-      if (reached_[faces[i]] == 0 || are_all_divided(levels_[k], faces[i])) continue;
-      const uint32_t h = 3 * faces[i];
-      const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.origin[h]);
+    for (size_t i = 0; i < choice.region.faces.size(); i += 4) {
+      const FaceId f = choice.region.faces[i];
+      if (reached_[f] == 0 || are_all_divided(choice, f)) continue;
+      const uint32_t* edge = &mesh.topology.edge[size_t{3} * f];
+      const std::array<uint32_t, 6> vertex = vertices_of_four(&mesh.topology.origin[size_t{3} * f]);
       std::array<Vec3fa, 6> at;
-      for (uint32_t c = 0; c < 6; ++c) at[c] = far.position(vertex[c]);
-      const uint32_t* edge = &mesh.edge[h];
-      Vec3fa farthest{};
-      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to) __attribute__((always_inline)) {
-        farthest = larger(far.weighed(edge[half_edge], at[from], at[to]), farthest);
-      });
-      if (!far.is_too_near(farthest)) [[unlikely]]
-        far.look_at_four(edge, at);
+      for (uint32_t c = 0; c < 6; ++c) at[c] = widen(positions[vertex[c]]);
+      visit_edges_of_four([&](uint32_t half_edge, uint32_t from, uint32_t to)
+                              __attribute__((always_inline)) { look_at(edge[half_edge], at[from], at[to]); });
     }
   }
-
-  /// Whether each of the four children of a face is divided in its turn: then nothing of them is in the result.
+  [[gnu::noinline]] void add_far(size_t k, EdgeId e) {
+    if (levels_[k].split[e] == 0)
+      add_whole(k, e);
+    else if (k + 1 == levels_.size())
+      add_last_split(k, e);
+    else
+      add_split_far(k, e);
+  }
+  /// Returns whether all four children of a face are divided, so that the result has none of their edges.
   [[nodiscard]] static bool are_all_divided(const LevelChoice& choice, uint32_t child) {
     if (choice.red.empty()) return false;
-    const uint8_t* red = &choice.red[child];
-    if ((red[0] & red[1] & red[2] & red[3]) == 0) return false;
-    if (choice.at_outline.empty()) return true;
     unsigned mask = 7;
-    for (uint32_t c = 0; c < 4; ++c) mask &= choice.split_mask(child + c);
+    for (uint32_t c = child; c < child + 4; ++c) mask &= choice.red[c] != 0 ? choice.split_mask(c) : 0;
     return mask == 7;
   }
 
-  /// Looks at the edges of one level, as above.
-  class FarFinder {
-   public:
-    FarFinder(ErrorFinder& of, size_t k)
-        : of_(of),
-          k_(k),
-          choice_(of.levels_[k]),
-          may_be_split_(choice_.region.has_edge.data()),
-          is_split_(choice_.split.data()),
-          positions_(choice_.level->mesh.positions.data()),
-          made_(choice_.level->trial.made.data()),
-          share_squared_{no_share, no_share, 1, static_cast<float>(of.split_share(k) * of.split_share(k))},
-          too_near_(choice_.level->box.largest_coordinate()) {
-      too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
-    }
-    [[nodiscard, gnu::always_inline]] Vec3fa position(uint32_t vertex) const { return widen(positions_[vertex]); }
-    /// How far an edge's vertex is from the middle, squared, in each direction, and as its share counts: not at all
-    /// where the edge does not. (What is read of such an edge may not even be a number.)
-    [[nodiscard, gnu::always_inline]] Vec3fa weighed(uint32_t e, Vec3fa from, Vec3fa to) const {
-      const Vec3fa off = widen(made_[e]) - 0.5F * (from + to);
-      return {share_squared_[2 * may_be_split_[e] + is_split_[e]] * (off.v * off.v)};
-    }
-    /// Of the largest of each direction of some edges: whether all of these are too little to matter.
-    [[nodiscard, gnu::always_inline]] bool is_too_near(Vec3fa farthest) const {
-      return farthest.v[0] + farthest.v[1] + farthest.v[2] <= too_near_.squared();
-    }
-    void look_at(uint32_t e, Vec3fa from, Vec3fa to) {
-      const Vec3fa parts = weighed(e, from, to);
-      if (parts.v[0] + parts.v[1] + parts.v[2] > too_near_.squared()) [[unlikely]]
-        add(e);
-    }
-    /// At the nine edges of the four children of a face, of their 12 half-edges' and between their vertices.
-    [[gnu::noinline]] void look_at_four(const uint32_t* edge, const std::array<Vec3fa, 6>& at) {
-      visit_edges_of_four(
-          [&](uint32_t half_edge, uint32_t from, uint32_t to) { look_at(edge[half_edge], at[from], at[to]); });
-    }
-
-   private:
-    static constexpr float no_share = -std::numeric_limits<float>::infinity();
-
-    void add(uint32_t e) {
-      if (choice_.split[e] == 0)
-        of_.add_whole(k_, e);
-      else if (k_ + 1 == of_.levels_.size())
-        of_.add_last_split(k_, e);
-      else
-        of_.add_split_far(k_, e);
-      too_near_.raise(of_.left_.least_that_matters(of_.scales_[k_]));
-    }
-
-    ErrorFinder& of_;
-    size_t k_;
-    const LevelChoice& choice_;
-    const uint8_t *may_be_split_, *is_split_;
-    const Vec3f *positions_, *made_;
-    std::array<float, 4> share_squared_;  ///< by whether the edge may be split (2), and whether it is (1)
-    DeviationCutoff too_near_;
-  };
-
-  /// Of the last level nothing below was judged.
+  /// Adds split edges of the last level, below which no edge was judged.
   void add_last_split(size_t k) {
     const LevelChoice& choice = levels_[k];
     if (choice.level->trial.bounds.empty()) return;  // add_far did it
-    for (uint32_t e : choice.split_edges)
+    for (EdgeId e : choice.split_edges)
       if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k))) add_last_split(k, e);
   }
-  void add_last_split(size_t k, uint32_t e) {
+  void add_last_split(size_t k, EdgeId e) {
     if (levels_[k].shown[e]) add(k, e, split_share(k));
   }
 
@@ -219,81 +173,79 @@ class ErrorFinder {
     const LevelChoice& choice = levels_[k];
     if (choice.level->trial.bounds.empty()) return add_sides_at_outline(k);  // add_far did the others
     has_children_ = choice.with_children();
-    Buffer<uint32_t> faces = choice.faces_at_split();
-    keep_if(faces, [&](uint32_t f) {
+    const Buffer<uint32_t> faces = chosen(choice.region.faces, [&](FaceId f) {
       const bool has_children = has_children_[f] != 0;
-      const bool is_whole_or_cut = choice.split_mask(f) != 7;
+      const unsigned mask = choice.split_mask(f);
       const bool is_reached = reached_[f] != 0;
-      return is_reached & (!has_children | is_whole_or_cut);
+      return mask != 0 && is_reached && (!has_children || mask != 7);
     });
     Buffer<uint32_t> sides(3 * faces.size());
     for (size_t i = 0; i < faces.size(); ++i)
       for (uint32_t c = 0; c < 3; ++c) sides[3 * i + c] = 3 * faces[i] + c;
     const Topology& mesh = mesh_of(k);
-    keep_if(sides, [&](uint32_t h) { return choice.split[mesh.edge[h]] != 0; });
-    for (uint32_t h : sides) add_side(k, h);
+    keep_if(sides, [&](HalfEdgeId h) { return choice.split[mesh.edge[h]] != 0; });
+    for (HalfEdgeId h : sides) add_side(k, h);
   }
 
-  /// The sides that are split of faces at an outline that are not divided.
+  /// Adds the split sides of undivided faces at an outline.
   void add_sides_at_outline(size_t k) {
     const LevelChoice& choice = levels_[k];
-    for (uint32_t f : choice.at_outline) {
+    for (FaceId f : choice.at_outline) {
       if (reached_[f] == 0 || choice.split_mask(f) == 7) continue;
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
         if (choice.split[mesh_of(k).edge[h]] != 0 && are_halves_judged(k, h)) add_halves(k, h);
     }
   }
 
-  /// Of a side whose face has children.
-  [[nodiscard]] bool are_halves_judged(size_t k, uint32_t h) const {
-    const auto [first, second] = halves(k, Topology::face(h), h % 3);
-    const EdgeMarks& has_edge = levels_[k + 1].region.has_edge;
+  /// Returns whether the halves of a side were judged. Its face must have children.
+  [[nodiscard]] bool are_halves_judged(size_t k, HalfEdgeId h) const {
+    const auto [first, second] = halves(k, h.face(), h % 3);
+    const Marks& has_edge = levels_[k + 1].region.has_edge;
     return (has_edge[first] & has_edge[second]) != 0;
   }
-  void add_halves(size_t k, uint32_t h) {
-    const auto [first, second] = halves(k, Topology::face(h), h % 3);
+  void add_halves(size_t k, HalfEdgeId h) {
+    const auto [first, second] = halves(k, h.face(), h % 3);
     for (uint32_t half : {first, second})
       if (may_be_largest(k + 1, half) && levels_[k].shown[mesh_of(k).edge[h]] && levels_[k + 1].shown[half])
         add(k + 1, half);
   }
 
-  /// A side of a face, which is split: its halves may have been judged, though nothing below was wanted.
-  void add_side(size_t k, uint32_t h) {
+  /// Adds a split side of a face: its halves if they were judged, else the side.
+  void add_side(size_t k, HalfEdgeId h) {
     const LevelChoice& choice = levels_[k];
-    const uint32_t e = mesh_of(k).edge[h];
-    if (has_children_[Topology::face(h)] != 0 && are_halves_judged(k, h)) return add_halves(k, h);
+    const EdgeId e = mesh_of(k).edge[h];
+    if (has_children_[h.face()] != 0 && are_halves_judged(k, h)) return add_halves(k, h);
     if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k)) && choice.shown[e])
       add(k, e, split_share(k));
   }
 
-  /// An edge that is split where errors do not decide, so that what is below it is not judged unless all of a face is
-  /// divided, or at an outline.
-  void add_split_far(size_t k, uint32_t e) {
+  /// Adds a split edge of a choice without errors. Its halves are judged only below divided faces, or at an outline.
+  void add_split_far(size_t k, EdgeId e) {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
-    const auto is_cut = [&](uint32_t h) {
-      return h != none && reached_[Topology::face(h)] != 0 && choice.split_mask(Topology::face(h)) != 7;
+    const auto is_cut = [&](HalfEdgeId h) {
+      return h != none && reached_[h.face()] != 0 && choice.split_mask(h.face()) != 7;
     };
     bool is_any_cut = is_cut(mesh.half_edge[e]) || is_cut(mesh.twin[mesh.half_edge[e]]);
     if (mesh.kind[e] == EdgeKind::shared)
-      for (uint32_t h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
+      for (HalfEdgeId h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
     if (is_any_cut && choice.shown[e] && !is_judged_at_outline(k, mesh.half_edge[e])) add(k, e, split_share(k));
   }
 
-  [[nodiscard]] bool is_judged_at_outline(size_t k, uint32_t h) const {
+  [[nodiscard]] bool is_judged_at_outline(size_t k, HalfEdgeId h) const {
     const LevelChoice& choice = levels_[k];
-    return !choice.at_outline.empty() && choice.red[Topology::face(h)] != 0 && are_halves_judged(k, h);
+    return !choice.at_outline.empty() && choice.red[h.face()] != 0 && are_halves_judged(k, h);
   }
 
-  /// By what is known of the deviation.
-  [[nodiscard]] bool may_be_largest(size_t k, uint32_t e, double share = 1) const {
-    return left_.may_grow_by(share * levels_[k].level->trial.no_less_than_deviation_at(e), scales_[k]);
+  /// Returns whether a share of the edge's deviation may be the largest, by its upper bound.
+  [[nodiscard]] bool may_be_largest(size_t k, EdgeId e, double share = 1) const {
+    return left_.may_grow_by(share * levels_[k].level->trial.stored_deviation_bound(e), scales_[k]);
   }
 
-  /// The two edges of the level below that side i of a face is split into.
-  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, uint32_t f, uint32_t i) const {
+  /// Returns the two edges of the level below that side i of a face is split into.
+  [[nodiscard]] std::pair<uint32_t, uint32_t> halves(size_t k, FaceId f, uint32_t i) const {
     const HierarchyLevel& below = *levels_[k + 1].level;
-    const uint32_t e = mesh_of(k).edge[3 * f + i];
+    const EdgeId e = mesh_of(k).edge[3 * f + i];
     if (below.child.empty()) return {2 * e, 2 * e + 1};
     const auto half = [&](uint32_t which) {
       return below.mesh.topology.edge[3 * below.child[f] + split_pattern(7, false).outer[2 * i + which]];
@@ -301,28 +253,26 @@ class ErrorFinder {
     return {half(0), half(1)};
   }
 
-  /// Whether the share of how far the edge's vertex is from the midpoint, which is on the surface, is too little to
-  /// matter.
-  [[nodiscard]] bool is_near(size_t k, uint32_t e, double share) const {
+  /// Returns whether a share of the distance from the edge's vertex to its midpoint is too small to matter.
+  [[nodiscard]] bool is_near(size_t k, EdgeId e, double share) const {
     const HierarchyLevel& level = *levels_[k].level;
-    // Where more views are to come what was found serves them, too.
-    if (level.trial.is_kept)
-      return !left_.may_grow_by(share * level.trial.most_deviation_at(level.mesh, e), scales_[k]);
+    // A kept level caches its deviations for later views.
+    if (level.trial.is_kept) return !left_.may_grow_by(share * level.trial.deviation_bound(level.mesh, e), scales_[k]);
     const Vec3d off = share * (to_double(level.trial.at(e)) - midpoint(level.mesh, e));
     constexpr double rounding = 1 - 1e-6;
     const double least = left_.least_that_matters(scales_[k]);
     return dot(off, off) < rounding * least * least;
   }
 
-  void add(size_t k, uint32_t e, double share = 1) {
+  void add(size_t k, EdgeId e, double share = 1) {
     const HierarchyLevel& level = *levels_[k].level;
     left_.add(level.mesh, level.trial, scales_[k], e, share);
   }
 
   std::span<const LevelChoice> levels_;
-  Buffer<double> scales_;         ///< [level] the highest pixels per unit
-  Buffer<uint8_t> has_children_;  ///< [F] of a level of which splits are looked at
-  Buffer<uint8_t> reached_;       ///< [F] of the level at hand: whether all faces above are divided
+  Buffer<double> scales_;         ///< [level] highest pixels per unit
+  Buffer<uint8_t> has_children_;  ///< [F] whether faces of the current level have children
+  Buffer<uint8_t> reached_;       ///< [F] whether all ancestors of faces of the current level are divided
   ErrorLeft left_;
 };
 

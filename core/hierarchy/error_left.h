@@ -6,7 +6,7 @@
 
 namespace papilio {
 
-/// The largest deviation left in the mesh that the levels give with the edges that each has marked as split.
+/// Returns the largest deviation left in the result of the levels with their split edges.
 [[nodiscard]] ErrorLeft error_left(std::span<const LevelChoice> levels, const Selection& selection);
 
 }  // namespace papilio

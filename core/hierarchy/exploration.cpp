@@ -12,10 +12,10 @@ Buffer<uint32_t> Exploration::faces_to_look_into(const std::vector<LevelChoice>&
   const LevelChoice& choice = choices.back();
   const Topology& mesh = choice.level->mesh.topology;
   auto touched = limit ? vertices_that_may_leave(choices, *limit) : Buffer<uint8_t>(mesh.vertex_count, 0);
-  const auto touch = [&](uint32_t f) {
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
+  const auto touch = [&](FaceId f) {
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) touched[mesh.origin[h]] = 1;
   };
-  for (uint32_t f : choice.region.faces) {
+  for (FaceId f : choice.region.faces) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
     if (std::max({choice.error[edge[0]], choice.error[edge[1]], choice.error[edge[2]]}) >= error) touch(f);
   }
@@ -23,21 +23,21 @@ Buffer<uint32_t> Exploration::faces_to_look_into(const std::vector<LevelChoice>&
     if (!limit)
       move_below_ =
           largest_move_below(choices[0].level->mesh, static_cast<int>(choices.size()), options_, plan_, progress_);
-    for (uint32_t f : choice.region.faces)
+    for (FaceId f : choice.region.faces)
       if (limit ? allowed_[f] < AllowedDistance::any : choice.may_divide(f) && may_have_detail_below(choice, f, error))
         touch(f);
   }
-  const auto is_touched = [&](uint32_t f) {
+  const auto is_touched = [&](FaceId f) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
     return (touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0;
   };
   if (mesh.shape.is_mechanical) {
     Buffer<uint32_t> near = choice.region.faces;
     keep_if(near, is_touched);
-    for (uint32_t f : near) touch(f);
+    for (FaceId f : near) touch(f);
   }
   Buffer<uint32_t> faces = choice.region.faces;
-  keep_if(faces, [&](uint32_t f) {
+  keep_if(faces, [&](FaceId f) {
     const bool may_divide = choice.may_divide(f);
     return is_touched(f) & may_divide;
   });
@@ -53,17 +53,17 @@ Buffer<uint8_t> Exploration::vertices_that_may_leave(const std::vector<LevelChoi
                        : sums_above(choices[k - 1], sums_above_, moves_, choice);
   allowed_ = limit.at_faces(choice);
   auto least = static_cast<float>(AllowedDistance::any);
-  for (uint32_t f : choice.region.faces) least = std::min(least, allowed_[f]);
+  for (FaceId f : choice.region.faces) least = std::min(least, allowed_[f]);
   moves_ = largest_moves(choice, share_known * least);
   return papilio::vertices_that_may_leave(choice, sums_above_, moves_, allowed_);
 }
 
-/// Whether the detail may have a move of large error below a face: how large those of a level are says nothing of the
-/// next.
-bool Exploration::may_have_detail_below(const LevelChoice& choice, uint32_t face, float error) const {
+/// Returns whether the detail may have a move of large error below a face. The moves of a level do not bound those of
+/// the next one.
+bool Exploration::may_have_detail_below(const LevelChoice& choice, FaceId face, float error) const {
   const HierarchyLevel& level = *choice.level;
   const uint32_t* edge = &level.mesh.topology.edge[size_t{3} * face];
-  return std::any_of(edge, edge + 3, [&](uint32_t e) {
+  return std::any_of(edge, edge + 3, [&](EdgeId e) {
     return choice.shown[e] && selection_.error_of(level.mesh, level.trial, e, move_below_) >= error;
   });
 }

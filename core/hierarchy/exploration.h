@@ -11,26 +11,25 @@
 
 namespace papilio {
 
-/// Where errors decide, finds level by level below which faces further ones must be known.
+/// Search, level by level, for the faces below which the next level is needed. For criteria by error.
 class Exploration {
  public:
   /// All must outlive this.
   Exploration(const Options& options, const Selection& selection, const MemoryPlan& plan, const Progress& progress)
       : options_(options), selection_(selection), plan_(plan), progress_(progress) {}
 
-  /// Faces of the lowest level, to be called once for each: every one that touches one with an edge of at least this
-  /// error, or one below which the result may be further from the surface than `limit`, unless its edges may not be
-  /// split. (Edges of half that error were tried too, and a tenth: results were the same.) Of a mesh with detail also
-  /// every face below which a move of its finer levels may be: where there is a limit these are all that the view
-  /// shows. In a mechanical mesh an edge that stays in a flat may bend a level further, once the faces beside it have:
-  /// there their neighbours are looked into, too.
+  /// Returns faces of the lowest level; call it once a level. A face is returned if it touches a face with an edge of
+  /// at least this error, or a face below which the distance from the surface may exceed `limit`, unless its edges must
+  /// not be split. (Half of that error, and a tenth, gave the same results.) In a mesh with detail, faces with moves of
+  /// finer levels below are returned too: with a limit, every visible face. In a mechanical mesh also their neighbours:
+  /// an edge in a flat may bend a level later, once the faces beside it have.
   [[nodiscard]] Buffer<uint32_t> faces_to_look_into(const std::vector<LevelChoice>& choices, float error,
                                                     const std::optional<DistanceLimit>& limit);
 
  private:
   [[nodiscard]] Buffer<uint8_t> vertices_that_may_leave(const std::vector<LevelChoice>& choices,
                                                         const DistanceLimit& limit);
-  [[nodiscard]] bool may_have_detail_below(const LevelChoice& choice, uint32_t face, float error) const;
+  [[nodiscard]] bool may_have_detail_below(const LevelChoice& choice, FaceId face, float error) const;
 
   const Options& options_;
   const Selection& selection_;

@@ -14,7 +14,7 @@ namespace {
 
 int detail_levels_below(const HierarchyLevel& above) { return std::max(above.detail_levels - 1, 0); }
 
-/// Splits faces in four, leaving the other faces out.
+/// Splitter of some faces in four, leaving the other faces out.
 class LevelMaker {
  public:
   LevelMaker(const HierarchyLevel& above, const Buffer<uint8_t>& red)
@@ -31,8 +31,8 @@ class LevelMaker {
     below_.parent = faces_.numbers();
     below_.child.assign(mesh_.face_count(), none);
     for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
-    for (uint32_t h : above_.shared)
-      if (faces_.has(Topology::face(h))) {
+    for (HalfEdgeId h : above_.shared)
+      if (faces_.has(h.face())) {
         below_.shared.push_back(first_half(in_part(h)));
         below_.shared.push_back(second_half(in_part(h)));
       }
@@ -42,7 +42,7 @@ class LevelMaker {
   }
 
  private:
-  /// The faces that get children, as a mesh of their own; where others are missing, edges are cut.
+  /// Returns the faces that get children, as a mesh of their own; where others are missing, edges are cut.
   [[nodiscard]] Topology held_part() const {
     Topology part;
     part.vertex_count = vertices_.count();
@@ -53,16 +53,16 @@ class LevelMaker {
     part.half_edge.resize_for_overwrite(edges_.count());
     part.kind.resize_for_overwrite(edges_.count());
     uint32_t at = 0;
-    for (uint32_t f : faces_.numbers())
+    for (FaceId f : faces_.numbers())
       for (uint32_t i = 0; i < 3; ++i, ++at) {
-        const uint32_t h = 3 * f + i;
+        const HalfEdgeId h = 3 * f + i;
         part.origin[at] = vertices_[mesh_.origin[h]];
         part.edge[at] = edges_[mesh_.edge[h]];
         part.twin[at] = in_part_or_none(mesh_.twin[h]);
       }
     name_half_edges(part);
     const auto carry = [&](const std::vector<uint32_t>& list, std::vector<uint32_t>& out) {
-      for (uint32_t v : list)
+      for (VertexId v : list)
         if (vertices_.has(v)) out.push_back(vertices_[v]);
     };
     carry(mesh_.pinched, part.pinched);
@@ -72,34 +72,34 @@ class LevelMaker {
     return part;
   }
 
-  /// Edges name the half-edges that they name where everything is held, if those are; else another one.
+  /// Sets the kind and the half-edge of each edge: the half-edge of the level above if it is held, else another one.
   void name_half_edges(Topology& part) const {
-    for (uint32_t e = 0; e < edges_.count(); ++e) {
-      const uint32_t h = mesh_.half_edge[edges_.numbers()[e]];
-      const uint32_t t = mesh_.twin[h];
+    for (EdgeId e = 0; e < edges_.count(); ++e) {
+      const HalfEdgeId h = mesh_.half_edge[edges_.numbers()[e]];
+      const HalfEdgeId t = mesh_.twin[h];
       const uint32_t one = in_part_or_none(h);
       const uint32_t other = in_part_or_none(t);
       part.half_edge[e] = one != none ? one : other;
       part.kind[e] = t != none && (one == none || other == none) ? EdgeKind::cut : mesh_.kind[edges_.numbers()[e]];
     }
-    for (uint32_t h : above_.shared)
-      if (faces_.has(Topology::face(h)) && part.half_edge[edges_[mesh_.edge[h]]] == none)
+    for (HalfEdgeId h : above_.shared)
+      if (faces_.has(h.face()) && part.half_edge[edges_[mesh_.edge[h]]] == none)
         part.half_edge[edges_[mesh_.edge[h]]] = in_part(h);
   }
 
   void make_vertices() {
     const uint32_t count = below_.mesh.topology.vertex_count;
     below_.mesh.positions.resize_for_overwrite(count);
-    below_.complete.assign(count + 1, 1);  // one more, for what is not held
+    below_.complete.assign(count + 1, 1);  // the last entry is for vertices that are not held
     uint32_t at = 0;
-    for (uint32_t v : vertices_.numbers()) {
+    for (VertexId v : vertices_.numbers()) {
       below_.mesh.positions[at] = above_.mesh.positions[v];
       below_.complete[at++] = above_.complete[v];
     }
-    for (uint32_t e : edges_.numbers()) below_.mesh.positions[at++] = above_.trial.at(e);
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
+    for (EdgeId e : edges_.numbers()) below_.mesh.positions[at++] = above_.trial.at(e);
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       if (faces_.has(f)) continue;
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
         below_.complete[std::min(vertices_[mesh_.origin[h]], count)] = 0;
         below_.complete[edges_.has(mesh_.edge[h]) ? new_vertex(mesh_.edge[h]) : count] = 0;
       }
@@ -107,14 +107,14 @@ class LevelMaker {
     below_.complete.pop_back();
   }
 
-  /// What descend() makes of the features, of what is held.
+  /// Carries the features of held elements down, as descend() does.
   void carry_features() {
     const Features& above = above_.features;
     Features& out = below_.features;
     out.level = above.level + 1;
     out.has_darts = above.has_darts;
     for (size_t i = 0; i < above.fan_count(); ++i) {
-      const uint32_t centre = above.centre[i];
+      const VertexId centre = above.centre[i];
       if (!vertices_.has(centre) || below_.complete[vertices_[centre]] == 0) continue;
       for (const Features::Spoke& spoke : above.spokes_of(i))
         out.spokes.push_back({first_half(in_part(spoke.half_edge)),
@@ -124,9 +124,9 @@ class LevelMaker {
       out.is_closed.push_back(above.is_closed[i]);
     }
     const Topology& below = below_.mesh.topology;
-    for (uint32_t h : above.curve_half_edges) {
-      if (!faces_.has(Topology::face(h))) continue;
-      if (below.kind[below.edge[first_half(in_part(h))]] == EdgeKind::cut) continue;  // a crease: its other face is not
+    for (HalfEdgeId h : above.curve_half_edges) {
+      if (!faces_.has(h.face())) continue;
+      if (below.kind[below.edge[first_half(in_part(h))]] == EdgeKind::cut) continue;  // a crease: one face is missing
       for (uint32_t half : {first_half(in_part(h)), second_half(in_part(h))}) out.curve_half_edges.push_back(half);
     }
   }
@@ -150,15 +150,15 @@ class LevelMaker {
     }
   }
 
-  /// Numbers in the part that is held.
-  [[nodiscard]] uint32_t in_part(uint32_t h) const { return 3 * faces_[Topology::face(h)] + h % 3; }
-  [[nodiscard]] uint32_t in_part_or_none(uint32_t h) const {
-    const uint32_t face = faces_[h == none ? 0 : Topology::face(h)];  // no branch: what is held nobody can guess
-    const bool is_held = (h != none) & (face != none);
+  /// Returns the number of the half-edge in the held part.
+  [[nodiscard]] uint32_t in_part(HalfEdgeId h) const { return 3 * faces_[h.face()] + h % 3; }
+  [[nodiscard]] uint32_t in_part_or_none(HalfEdgeId h) const {
+    const FaceId face = faces_[h == none ? FaceId(0) : h.face()];  // branch-free: unpredictable
+    const uint32_t missing = (h == none ? none : 0U) | (face == none ? none : 0U);
     static_assert(none == ~0U);
-    return (3 * face + h % 3) | (is_held ? 0U : none);
+    return (3 * face + h % 3) | missing;
   }
-  [[nodiscard]] uint32_t new_vertex(uint32_t e) const { return vertices_.count() + edges_[e]; }
+  [[nodiscard]] uint32_t new_vertex(EdgeId e) const { return vertices_.count() + edges_[e]; }
 
   const HierarchyLevel& above_;
   const Topology& mesh_;
@@ -168,10 +168,10 @@ class LevelMaker {
 
 }  // namespace
 
-bool HierarchyLevel::is_complete(uint32_t edge) const {
+bool HierarchyLevel::is_complete(EdgeId edge) const {
   const Topology& t = mesh.topology;
-  const uint32_t h = t.half_edge[edge];
-  const auto is_complete_at = [&](uint32_t vertex) { return complete[vertex] != 0; };
+  const HalfEdgeId h = t.half_edge[edge];
+  const auto is_complete_at = [&](VertexId vertex) { return complete[vertex] != 0; };
   if (!is_complete_at(t.origin[h]) || !is_complete_at(t.tip(h))) return false;
   return !t.shape.has_rules || sides_of_strip(t, h)[0] == none ||
          (is_complete_at(t.apex(h)) && is_complete_at(t.apex(t.twin[h])));
@@ -181,11 +181,11 @@ uint64_t HierarchyLevel::bytes() const {
   const auto size = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
   const Topology& t = mesh.topology;
   uint64_t bytes = size(t.origin, t.twin, t.edge, t.half_edge, t.kind, t.pinched, t.darts, mesh.positions) +
-                   size(complete, parent, child, red, shared, longest) + size(trial.normals, trial.rooms, trial.made) +
+                   size(complete, parent, child, red, shared, longest) + size(trial.normals, trial.made) +
                    size(mesh.attributes.point);
   for (const Attribute& attribute : mesh.attributes.attributes) bytes += size(attribute.values);
   bytes += size(in_whole.edge, in_whole.parent);
-  bytes += trial.deviations.bytes() + trial.bounds.bytes() + trial.least.bytes() + trial.products.bytes();
+  bytes += trial.deviations.bytes() + trial.bounds.bytes();
   bytes += size(features.curve_half_edges, features.spokes, features.first_spoke, features.centre, features.is_closed);
   return bytes;
 }
@@ -202,30 +202,30 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   return level;
 }
 
-EdgeMarks edges_below_red(const HierarchyLevel& level) {
+Marks edges_below_red(const HierarchyLevel& level) {
   if (level.is_whole) return complete_edges(level);
   const Topology& mesh = level.mesh.topology;
-  EdgeMarks marks(mesh.edge_count(), 0);
-  for (const uint8_t is_red : {1, 0})  // first those of red faces, then without those of the others
+  Marks marks(mesh.edge_count(), 0);
+  for (const uint8_t is_red : {1, 0})  // marks edges of red faces, then unmarks edges of the others
     for (uint32_t i = 0; i < mesh.face_count() / 4; ++i)
       if (level.red[level.parent_of(4 * i)] == is_red)
-        for (uint32_t h = 12 * i; h < 12 * i + 12; ++h) marks[mesh.edge[h]] = is_red;
+        for (HalfEdgeId h = 12 * i; h < 12 * i + 12; ++h) marks[mesh.edge[h]] = is_red;
   return marks;
 }
 
-EdgeMarks complete_edges(const HierarchyLevel& level) {
-  EdgeMarks marks(level.mesh.topology.edge_count(), 1);
+Marks complete_edges(const HierarchyLevel& level) {
+  Marks marks(level.mesh.topology.edge_count(), 1);
   if (level.is_whole) return marks;
-  for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = level.is_complete(e) ? 1 : 0;
+  for (EdgeId e = 0; e < marks.size(); ++e) marks[e] = level.is_complete(e) ? 1 : 0;
   return marks;
 }
 
 Buffer<uint8_t> with_neighbours(const Topology& mesh, const Buffer<uint8_t>& faces) {
   Buffer<uint8_t> touched(mesh.vertex_count, 0);
-  for (uint32_t f : marked(faces))
+  for (FaceId f : marked(faces))
     for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] = 1;
   Buffer<uint8_t> marks(faces.size());
-  for (uint32_t f = 0; f < faces.size(); ++f) {
+  for (FaceId f = 0; f < faces.size(); ++f) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
     marks[f] = touched[corner[0]] | touched[corner[1]] | touched[corner[2]];
   }
@@ -234,7 +234,7 @@ Buffer<uint8_t> with_neighbours(const Topology& mesh, const Buffer<uint8_t>& fac
 
 namespace {
 
-/// The level below a mesh all of whose edges were tried, its vertices numbered as split_in_four() does it.
+/// Returns the level below one all of whose edges were tried, its vertices numbered as by split_in_four().
 HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) {
   HierarchyLevel below;
   below.mesh.positions.reserve(topology.vertex_count);
@@ -261,7 +261,7 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> r
 }
 
 LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads) {
-  if (level.is_tried_whole() && std::ranges::find(red, 0) == red.end())
+  if (level.is_whole && std::ranges::find(red, 0) == red.end())
     return {refine_whole_level(level, std::move(red), threads), {}};
   LevelBelow below = LevelMaker(level, red).run(threads);
   below.level.red = std::move(red);
@@ -271,12 +271,12 @@ LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int th
 
 namespace {
 
-/// The box of the level above and the new vertices of these of its edges.
+/// Returns the box of the level above and the new vertices of `edges`.
 Box box_with_new_vertices(const HierarchyLevel& above, const Buffer<uint32_t>& edges) {
   const auto& [min, max] = above.box;
   Vec3fa least{{min.x, min.y, min.z, 0}};
   Vec3fa most{{max.x, max.y, max.z, 0}};
-  for (uint32_t e : edges) {
+  for (EdgeId e : edges) {
     const Vec3fa p = widen(above.trial.made[e]);
     least = lesser(p, least);
     most = larger(p, most);
@@ -294,7 +294,7 @@ HierarchyLevel refine_last_level(const HierarchyLevel& level, Buffer<uint8_t> re
   below.parent = part.faces.numbers();
   below.parent.push_back(none);
   below.child.resize(red.size());
-  for (uint32_t f = 0; f < red.size(); ++f) below.child[f] = 4 * part.faces[f];
+  for (FaceId f = 0; f < red.size(); ++f) below.child[f] = 4 * part.faces[f];
   below.red = std::move(red);
   below.box = box_with_new_vertices(level, part.edges.numbers());
   return below;

@@ -21,13 +21,14 @@ double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d p
   double least = std::numeric_limits<double>::infinity();
   for (;; --k) {
     least = std::min(least, squared_distance_to_level(k, f, point, enough));
-    if (least > enough) least = std::min(least, squared_distance_where_it_slid(k, f, point, enough));
+    if (least > enough && result_->has_children(k, f))
+      least = std::min(least, squared_distance_where_it_slid(k, f, point, enough));
     if (least <= enough || k == coarsest) return least;
     f = result_->level(k).parent_of(f);
   }
 }
 
-double LevelSurface::squared_distance_to_level(uint32_t k, uint32_t f, Vec3d point, double enough) {
+double LevelSurface::squared_distance_to_level(uint32_t k, FaceId f, Vec3d point, double enough) {
   visited_.assign(1, walk_towards(k, f, point));
   double least = squared_distance_to_children(k, visited_[0], point, enough);
   for (size_t at = 0; at < visited_.size() && least > enough; ++at)
@@ -44,37 +45,39 @@ double LevelSurface::squared_distance_to_level(uint32_t k, uint32_t f, Vec3d poi
   return least;
 }
 
-double LevelSurface::squared_distance_to_children(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+double LevelSurface::squared_distance_to_children(uint32_t k, FaceId f, Vec3d point, double enough) const {
   for (; result_->has_children(k, f); ++k) f = result_->first_child(k, f) + child_below(k, f, point);
   return squared_distance_to_new_faces(k, f, point, enough);
 }
 
-double LevelSurface::squared_distance_where_it_slid(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+double LevelSurface::squared_distance_where_it_slid(uint32_t k, FaceId f, Vec3d point, double enough) const {
   f = walk_towards(k, f, point);
   while (result_->has_children(k, f)) {
     f = result_->first_child(k, f) + child_below(k, f, point);
     ++k;
-    // Where a face beside was not explored as deep, it does not tell where the surface is.
+    // A neighbour that was not explored as deep is too coarse to locate the surface.
     const uint32_t beside = walk_towards(k, f, point);
     if (result_->has_children(k, beside) || !result_->has_children(k, f)) f = beside;
   }
   return squared_distance_to_new_faces(k, f, point, enough);
 }
 
-double LevelSurface::squared_distance_to_new_faces(uint32_t k, uint32_t f, Vec3d point, double enough) const {
+double LevelSurface::squared_distance_to_new_faces(uint32_t k, FaceId f, Vec3d point, double enough) const {
   const Corners corner = result_->corners(k, f);
   const std::array<Corners, 4> children = children_of(corner, result_->new_vertices(k, f, corner));
-  double least = squared_distance_to(children[child_below(k, f, point)], point);
-  for (uint32_t c = 0; c < 4 && least > enough; ++c) least = std::min(least, squared_distance_to(children[c], point));
+  const uint32_t first = child_below(k, f, point);
+  double least = squared_distance_to(children[first], point);
+  for (uint32_t c = 0; c < 4 && least > enough; ++c)
+    if (c != first) least = std::min(least, squared_distance_to(children[c], point));
   return least;
 }
 
-uint32_t LevelSurface::twin_in_region(uint32_t k, uint32_t h) const {
+uint32_t LevelSurface::twin_in_region(uint32_t k, HalfEdgeId h) const {
   const Topology& mesh = result_->topology(k);
   return result_->choice(k).region.has_edge[mesh.edge[h]] != 0 ? mesh.twin[h] : none;
 }
 
-uint32_t LevelSurface::walk_towards(uint32_t k, uint32_t f, Vec3d point) const {
+FaceId LevelSurface::walk_towards(uint32_t k, FaceId f, Vec3d point) const {
   uint32_t from = none;
   for (size_t step = 0; step < most_faces_visited; ++step) {
     const std::array<double, 3> inside = weights_in(k, f, point);
@@ -87,7 +90,7 @@ uint32_t LevelSurface::walk_towards(uint32_t k, uint32_t f, Vec3d point) const {
   return f;
 }
 
-std::array<double, 3> LevelSurface::weights_in(uint32_t k, uint32_t f, Vec3d point) const {
+std::array<double, 3> LevelSurface::weights_in(uint32_t k, FaceId f, Vec3d point) const {
   const Corners corner = result_->corners(k, f);
   const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   std::array<double, 3> inside{};
@@ -95,7 +98,7 @@ std::array<double, 3> LevelSurface::weights_in(uint32_t k, uint32_t f, Vec3d poi
   return inside;
 }
 
-uint32_t LevelSurface::child_below(uint32_t k, uint32_t f, Vec3d point) const {
+uint32_t LevelSurface::child_below(uint32_t k, FaceId f, Vec3d point) const {
   const std::array<double, 3> inside = weights_in(k, f, point);
   const double half = 0.5 * (inside[0] + inside[1] + inside[2]);
   for (uint32_t i = 0; i < 3; ++i)

@@ -13,28 +13,28 @@
 namespace papilio {
 namespace {
 
-/// Of a level that is kept: about the sum of its arrays. What is kept in the end is counted to the byte.
-constexpr uint64_t bytes_per_kept_face = 108;
-/// All of a level costs about as much as so large a part of it.
-constexpr double part_as_dear_as_all = 0.75;
-/// All of its connectivity, which follows by formula, as much as so large a part's.
-constexpr double part_as_dear_as_formula = 0.45;
-/// Where a level is kept, later views are likely to ask for the rest of it: then all of it is made earlier.
-constexpr double part_as_dear_as_all_kept = 1.0 / 3;
+/// Estimated bytes of a kept level per face: about the sum of its arrays. In the end, kept levels are
+/// counted to the byte.
+constexpr uint64_t bytes_per_kept_face = 102;
+/// Share of a level's faces from which the whole level is built: it costs about as much.
+constexpr double whole_level_share = 0.6;
+/// Share of a kept level's faces from which the whole level is built: later views are likely to need the rest.
+constexpr double whole_kept_level_share = 1.0 / 3;
 
-/// Takes over the deviations that were found on a level of the same depth that holds less. `moved` [F of known]: where
-/// its faces are in the level.
+/// Copies the deviations of a level of equal depth that holds less. `moved` [F of known]: number of the
+/// face in the level.
 void carry_deviations(const HierarchyLevel& known, const Buffer<uint32_t>& moved, const HierarchyLevel& level) {
-  for (uint32_t e = 0; e < known.mesh.topology.edge_count(); ++e) {
-    const uint32_t h = known.mesh.topology.half_edge[e];
-    const uint32_t at = level.mesh.topology.edge[3 * moved[Topology::face(h)] + h % 3];
+  for (EdgeId e = 0; e < known.mesh.topology.edge_count(); ++e) {
+    const HalfEdgeId h = known.mesh.topology.half_edge[e];
+    const uint32_t at = level.mesh.topology.edge[3 * moved[h.face()] + h % 3];
     level.trial.deviations.put(at, known.trial.deviations.get(e));
     level.trial.bounds.put(at, known.trial.bounds.get(e));
   }
 }
 
 bool covers(const Buffer<uint8_t>& known, const Buffer<uint8_t>& red) {
-  return std::ranges::equal(known, red, [](uint8_t has, uint8_t wants) { return has >= wants; });
+  return std::ranges::equal(known, red,
+                            [](uint8_t is_known, uint8_t is_requested) { return is_known >= is_requested; });
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   if (options.view) level->longest = longest_edges(level->mesh);
   const TrialContext context{.features = &level->features, .threads = progress.threads()};
   level->trial = try_level(*level, level->mesh, options, context, progress.cancelled());
-  level->trial.prepare_errors(level->mesh, options, context);
+  level->trial.prepare_errors(options);
   levels_.push_back(std::move(level));
 }
 
@@ -70,7 +70,7 @@ void Levels::deepen(const Buffer<uint8_t>& red) {
       return;
     }
     if (make_with_known(*known, with_margin(red)) || make_with_known(*known, red)) return;
-    known_.resize(depth);  // this one takes its place
+    known_.resize(depth);  // the new level replaces it
   }
   make(red);
 }
@@ -82,7 +82,7 @@ bool Levels::make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red) {
   add_level(std::move(red), Retention::kept);
   const HierarchyLevel& level = *levels_.back();
   Buffer<uint32_t> moved(known.mesh.topology.face_count());
-  for (uint32_t f = 0; f < moved.size(); ++f) {
+  for (FaceId f = 0; f < moved.size(); ++f) {
     const uint32_t parent = known.parent_of(f);
     moved[f] = level.first_child_of(moved_.empty() ? parent : moved_[parent]) + f % 4;
   }
@@ -96,8 +96,8 @@ Buffer<uint8_t> Levels::with_margin(const Buffer<uint8_t>& red) const {
   const Topology& mesh = level.mesh.topology;
   Buffer<uint8_t> wide = with_neighbours(mesh, red);
   if (levels_.size() == 1) return wide;
-  const EdgeMarks may_split = edges_below_red(level);
-  for (uint32_t f = 0; f < wide.size(); ++f) {
+  const Marks may_split = edges_below_red(level);
+  for (FaceId f = 0; f < wide.size(); ++f) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
     if (red[f] == 0 && (may_split[edge[0]] & may_split[edge[1]] & may_split[edge[2]]) == 0) wide[f] = 0;
   }
@@ -112,22 +112,23 @@ bool Levels::may_keep(const Buffer<uint8_t>& red) const {
   return bytes <= prepared_->budget();
 }
 
-Buffer<uint8_t> Levels::or_everything(Buffer<uint8_t> red, double as_dear) const {
+Buffer<uint8_t> Levels::or_whole_level(Buffer<uint8_t> red, double least_share) const {
   const HierarchyLevel& level = *levels_.back();
-  if (!level.is_tried_whole() || !has_room_for_whole()) return red;
+  if (!level.is_whole || !has_room_for_whole()) return red;
   const Buffer<uint8_t> support = with_neighbours(level.mesh.topology, red);
   const auto held = static_cast<double>(std::ranges::count(support, 1));
-  if (held >= as_dear * static_cast<double>(red.size())) red.assign(red.size(), 1);
+  if (held >= least_share * static_cast<double>(red.size())) red.assign(red.size(), 1);
   return red;
 }
 
 void Levels::make(const Buffer<uint8_t>& red) {
   if (prepared_ != nullptr) {
-    Buffer<uint8_t> more = or_everything(with_margin(red), part_as_dear_as_all_kept);
-    if (!may_keep(more)) more = or_everything(red, part_as_dear_as_all);
+    Buffer<uint8_t> more = or_whole_level(with_margin(red), whole_kept_level_share);
+    if (!may_keep(more)) more = or_whole_level(red, whole_level_share);
     if (may_keep(more)) return add_level(std::move(more), Retention::kept);
   }
-  add_level(red, Retention::for_once);
+  const bool may_be_whole = is_plain() && !may_hold_red_alone();
+  add_level(may_be_whole ? or_whole_level(red, whole_level_share) : red, Retention::for_once);
 }
 
 void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
@@ -135,68 +136,47 @@ void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
   const Topology& mesh = above.mesh.topology;
   const int threads = progress_.threads();
   const bool is_kept = retention == Retention::kept;
-  const bool is_plain = options_.tension == Tension::off && options_.w == 0;
+
   LevelBelow below;
   std::optional<Part> part;
-  Buffer<uint32_t> held;  // faces that have children, where all are made and some tried
-  if (!is_kept && is_plain && may_hold_red_alone()) {
+  if (!is_kept && may_hold_red_alone()) {
     part.emplace(mesh, red);
     below.level = refine_last_level(above, std::move(red), *part, threads);
   } else {
-    if (!is_kept && above.is_tried_whole() && has_room_for_whole()) held = marked(with_neighbours(mesh, red));
-    const double as_dear = is_plain ? part_as_dear_as_formula : part_as_dear_as_all;
-    if (!held.empty() && static_cast<double>(held.size()) >= as_dear * static_cast<double>(red.size()))
-      below.level = refine_whole_level(above, std::move(red), threads);
-    else
-      below = refine_level(above, std::move(red), threads);
+    below = refine_level(above, std::move(red), threads);
   }
   const auto level = std::make_shared<HierarchyLevel>(std::move(below.level));
   progress_.poll();
 
   const Topology& parents = level->is_whole || part ? mesh : below.parents;
-  if (is_kept || options_.view) {
-    const Buffer<uint32_t> round_red = part ? marked(with_neighbours(mesh, level->red)) : Buffer<uint32_t>{};
-    level->longest = longest_edges_below(parents, level->mesh.positions, part ? &round_red : nullptr);
-  }
-  const EdgeMarks complete = options_.w != 0 ? complete_edges(*level) : EdgeMarks{};
-  TrialContext context{.features = part ? &above.features : &level->features,
-                       .parents = &parents,
-                       .part = part ? &*part : nullptr,
-                       .complete = &complete,
-                       .threads = threads};
-  Buffer<uint32_t> below_red;  // fours of faces
-  if (!is_kept && !part) {
-    const uint32_t fours = level->mesh.topology.face_count() / 4;
-    below_red.resize(fours);
-    std::iota(below_red.begin(), below_red.end(), 0U);
-    keep_if(below_red, [&](uint32_t i) { return level->red[level->parent_of(4 * i)] != 0; });
-    context.normals_of = &below_red;
-    if (is_plain && is_next_last())
-      context.asked_of = &below_red;
-    else if (is_plain && level->is_whole && !held.empty() && held.size() < fours)
-      context.asked_of = &held;
-  }
+  if (is_kept || options_.view) level->longest = longest_edges_below(parents, level->mesh.positions);
+  const Marks complete = options_.w != 0 ? complete_edges(*level) : Marks{};
+  const bool is_by_families = part || (level->is_whole && is_plain() && above.features.are_rings());
+  const TrialContext context{.features = is_by_families ? &above.features : &level->features,
+                             .parents = is_by_families ? &mesh : nullptr,
+                             .part = part ? &*part : nullptr,
+                             .complete = &complete,
+                             .threads = threads};
   level->trial = try_level(*level, levels_[0]->mesh, options_, context, progress_.cancelled());
   if (is_kept)
-    level->trial.keep(level->mesh.topology);
+    level->trial.keep();
   else
-    level->trial.prepare_errors(level->mesh, options_, context);
+    level->trial.prepare_errors(options_);
   levels_.push_back(level);
   to_keep_ += is_kept ? 1 : 0;
   has_grown_ |= is_kept;
 }
 
 bool Levels::may_hold_red_alone() const {
-  return is_next_last() && levels_.back()->features.are_rings() && !has_displacements(levels_[0]->mesh.attributes) &&
-         levels_.back()->detail_levels <= 1 && has_room_for_whole();
+  const bool is_next_last = static_cast<int>(levels_.size()) + 1 >= options_.levels;
+  return is_plain() && is_next_last && levels_.back()->features.are_rings() &&
+         !has_displacements(levels_[0]->mesh.attributes) && levels_.back()->detail_levels <= 1 && has_room_for_whole();
 }
 
 bool Levels::has_room_for_whole() const {
   const uint64_t faces = 4ULL * levels_.back()->mesh.topology.face_count();
   return progress_.has_room(faces, plan_.made(faces, static_cast<int>(levels_.size()), bytes_per_held_face));
 }
-
-bool Levels::is_next_last() const { return static_cast<int>(levels_.size()) + 1 >= options_.levels; }
 
 void Levels::hand_back() {
   if (!has_grown_) return;

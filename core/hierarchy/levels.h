@@ -10,61 +10,61 @@
 
 namespace papilio {
 
-/// The levels of the hierarchy that one request works on: made for it alone, or shared with others through a prepared
-/// mesh.
+/// Levels of the hierarchy that one request uses: made for it alone, or shared through a prepared mesh.
 class Levels {
  public:
-  /// Made for this request: no more than it needs is computed. Level 0 is there and tried. Throws `Error` cancelled.
+  /// Makes levels for this request: only required values are computed. Level 0 exists and is tried. Throws
+  /// `Error` cancelled.
   Levels(Mesh coarse, const Options& options, const Progress& progress);
-  /// Those of a prepared mesh, which must outlive this.
+  /// Uses the levels of a prepared mesh, which must outlive this object.
   Levels(const PreparedMesh& prepared, const Options& options, const Progress& progress);
 
   [[nodiscard]] const MemoryPlan& plan() const { return plan_; }
   [[nodiscard]] const std::shared_ptr<const HierarchyLevel>& deepest() const { return levels_.back(); }
-  /// Of the coarse mesh, in radians.
+  /// Returns the smallest angle of the coarse mesh, in radians.
   [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
 
-  /// Adds a level that holds the children of the deepest one's faces marked `red` [F], and maybe others; its edges are
-  /// tried. Throws `Error` cancelled.
+  /// Adds a level that holds the children of the deepest level's faces marked `red` [F], and perhaps others; its edges
+  /// are tried. Throws `Error` cancelled.
   void deepen(const Buffer<uint8_t>& red);
 
-  /// Gives what was made to the prepared mesh, if there is one.
+  /// Stores the levels made in the prepared mesh, if there is one.
   void hand_back();
 
  private:
-  /// Adds a level for the children of these faces and of all that the known level of its depth has; false, and nothing
-  /// is done, where that is more than may be kept.
+  /// Adds a level for the children of `red` and of all faces with children in the known level of its depth. Returns
+  /// false, and does nothing, if that exceeds the memory to be kept.
   bool make_with_known(const HierarchyLevel& known, Buffer<uint8_t> red);
   [[nodiscard]] bool may_keep(const Buffer<uint8_t>& red) const;
-  /// The faces of the deepest level marked `red` [F] and those round them that may have children too: with them the
-  /// next view, from a little further on, finds what it needs.
+  /// Returns the faces of the deepest level marked `red` [F] and their neighbours that may have children too. The
+  /// margin serves the next view, from a slightly different position.
   [[nodiscard]] Buffer<uint8_t> with_margin(const Buffer<uint8_t>& red) const;
-  /// All faces of the deepest level if it is whole and so large a part of them would be held: then all cost less. Else
-  /// those marked.
-  [[nodiscard]] Buffer<uint8_t> or_everything(Buffer<uint8_t> red, double as_dear) const;
+  /// Returns all faces of the deepest level if it is whole, there is room, and at least a share `least_share` of it
+  /// would be held. Otherwise returns `red`.
+  [[nodiscard]] Buffer<uint8_t> or_whole_level(Buffer<uint8_t> red, double least_share) const;
   void make(const Buffer<uint8_t>& red);
-  /// Whether a level is held for later requests too, or for this one alone, of which then no more is tried than this
-  /// request may ask for.
+  /// Lifetime of a level: kept for later requests, or for this one alone.
   enum class Retention { kept, for_once };
-  /// Adds a level that holds the children of the deepest one's faces marked `red` [F] and of those round them; all of
-  /// it where that costs less, and where nothing will lie below and it is for once, `red` alone (refine_last_level).
+  /// Adds a level that holds the children of the deepest level's faces marked `red` [F] and of their neighbours. If it
+  /// is the last and not kept, it may hold `red` alone (refine_last_level).
   void add_level(Buffer<uint8_t> red, Retention retention);
-  /// Whether that last is possible for the plain rules.
+  /// Returns whether new vertices are those of the published scheme.
+  [[nodiscard]] bool is_plain() const { return options_.tension == Tension::off && options_.w == 0; }
+  /// Returns whether the next level may hold `red` alone (refine_last_level).
   [[nodiscard]] bool may_hold_red_alone() const;
-  /// Whether the limits allow all of the next level.
+  /// Returns whether the limits allow all of the next level.
   [[nodiscard]] bool has_room_for_whole() const;
-  /// Whether no level will lie below the one below the deepest.
-  [[nodiscard]] bool is_next_last() const;
 
   const Options& options_;
   const Progress& progress_;
   const PreparedMesh::State* prepared_ = nullptr;
-  KeptLevels known_;   ///< what was kept when the request began
-  KeptLevels levels_;  ///< what it works on
+  KeptLevels known_;   ///< levels kept when the request began
+  KeptLevels levels_;  ///< levels that the request uses
   MemoryPlan plan_;
-  size_t to_keep_ = 0;      ///< how many of these may be kept
-  bool has_grown_ = false;  ///< one of those was made
-  /// Where the deepest level is made of more than the known one of its depth: [F of the known] the same face in it.
+  size_t to_keep_ = 0;      ///< number of `levels_` that may be kept
+  bool has_grown_ = false;  ///< whether this request made one to be kept
+  /// [F of the known level] number of the face in the deepest level, if that holds more than the known
+  /// level of its depth.
   Buffer<uint32_t> moved_;
   double smallest_angle_;
 };

@@ -8,9 +8,9 @@
 namespace papilio {
 namespace {
 
-constexpr uint64_t face_bytes_of_result = 60;    // connectivity and positions, with the room that arrays keep
-constexpr uint64_t face_bytes_of_decoding = 40;  // of a level of detail
-/// Values are held in arrays that grow, while those of the level before are still there.
+constexpr uint64_t face_bytes_of_result = 60;    // connectivity and positions, with spare capacity
+constexpr uint64_t face_bytes_of_decoding = 40;  // decoding of a level of detail
+/// Factor for values in growing arrays, held together with the values of the level before.
 constexpr uint64_t growth = 2;
 
 }  // namespace
@@ -20,16 +20,15 @@ MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
       coarse_points_(coarse.attributes.empty() ? coarse.topology.vertex_count : coarse.attributes.point_count),
       output_(options.output) {
   if (coarse.detail) detail_levels_ = coarse.detail->level_count();
-  for (uint32_t h = 0; h < coarse.topology.half_edge_count(); ++h)
+  for (HalfEdgeId h = 0; h < coarse.topology.half_edge_count(); ++h)
     open_ += coarse.topology.twin[h] == none || is_seam(coarse.topology, coarse.attributes, h) ? 1 : 0;
   for (const Attribute& attribute : coarse.attributes.attributes)
     point_bytes_ += (attribute.is_displacement ? 2 : 1) * growth * attribute.components * sizeof(double);
-  if (!coarse.attributes.empty())
-    corner_bytes_ = 6 * sizeof(uint32_t);  // of the corners and of those made on the edges
+  if (!coarse.attributes.empty()) corner_bytes_ = 6 * sizeof(uint32_t);  // points at a face's corners and on its edges
 }
 
-// Each half-edge that is split adds one face. A point is made for each, but two half-edges share it unless they are
-// open; and each level doubles these.
+// Each split half-edge adds one face and one point, which two half-edges share unless they are open. Each level doubles
+// the open half-edges.
 uint64_t MemoryPlan::points(uint64_t faces, int level) const {
   const uint64_t made = faces - std::min(faces, coarse_faces_);
   const uint64_t open = open_ * ((uint64_t{1} << level) - 1);

@@ -7,24 +7,25 @@
 
 namespace papilio {
 
-/// Upper bounds of the memory that the levels of a refinement take. They hold for both schemes.
+/// Upper bounds of the memory of a refinement's levels, in either scheme.
 class MemoryPlan {
  public:
   MemoryPlan(const Mesh& coarse, const Options& options);
 
-  /// Points at most of a mesh of so many faces after so many levels; vertices where there are no attributes.
+  /// Returns an upper bound of the points of `faces` faces after `level` levels; of the vertices without attributes.
   [[nodiscard]] uint64_t points(uint64_t faces, int level) const;
-  /// Bytes of so many faces of a level while they are made: `face_bytes` a face, and the attributes.
+  /// Returns an upper bound of the bytes of `faces` faces of a level while it is made: `face_bytes` a face, and
+  /// attributes.
   [[nodiscard]] uint64_t made(uint64_t faces, int level, uint64_t face_bytes) const;
-  /// Bytes of a level that the caller is given, with what the caller needs for it (`Options::output`).
+  /// Returns an upper bound of the bytes of a level passed to the caller, including `Options::output`.
   [[nodiscard]] uint64_t given(uint64_t faces, int level) const;
 
  private:
   uint64_t coarse_faces_, coarse_points_;
-  uint64_t open_ = 0;  ///< half-edges of the coarse mesh at whose edge the next face has other points, or none is
-  uint64_t point_bytes_ = 0;   ///< of a point's values
-  uint64_t corner_bytes_ = 0;  ///< of a face's point numbers
-  int detail_levels_ = 0;      ///< that the coarse mesh's detail gives
+  uint64_t open_ = 0;          ///< half-edges of the coarse mesh at a seam, or without a twin
+  uint64_t point_bytes_ = 0;   ///< bytes of a point's values
+  uint64_t corner_bytes_ = 0;  ///< bytes of a face's point numbers
+  int detail_levels_ = 0;      ///< levels of the coarse mesh's detail
   OutputBytes output_;
 };
 

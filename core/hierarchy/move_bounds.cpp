@@ -8,43 +8,42 @@
 namespace papilio {
 namespace {
 
-/// Whether the face is not in the result, but its children are.
-bool is_divided(const LevelChoice& choice, uint32_t face) { return choice.split_mask(face) == 7; }
+/// Returns whether the face's children are in the result in its place.
+bool is_divided(const LevelChoice& choice, FaceId face) { return choice.split_mask(face) == 7; }
 
-bool is_at_middle(const Mesh& mesh, uint32_t edge, double offset) {
+bool is_at_middle(const Mesh& mesh, EdgeId edge, double offset) {
   constexpr double rounding = 1e-6;
-  const uint32_t h = mesh.topology.half_edge[edge];
+  const HalfEdgeId h = mesh.topology.half_edge[edge];
   const Vec3d along =
       to_double(mesh.positions[mesh.topology.tip(h)]) - to_double(mesh.positions[mesh.topology.origin[h]]);
   return offset * offset <= rounding * rounding * dot(along, along);
 }
 
-/// What a smooth edge that stays where it is may move at further levels, about. Between two curves an edge has no rule
-/// (the published one is its middle), but what it is split into has.
-double move_to_come(const LevelChoice& choice, uint32_t edge) {
+/// Returns an estimate of the moves at further levels of a smooth edge that does not move now. Between curves or
+/// corners an edge has no rule (the published one is its middle), but its halves have.
+double move_to_come(const LevelChoice& choice, EdgeId edge) {
   constexpr double share_of_bend = 1.0 / 8;  // the rule's weight of what lies beside
   const Topology& mesh = choice.level->mesh.topology;
-  if (mesh.shape.is_mechanical) return 0;  // whose flat edges have none either
-  const uint32_t h = mesh.half_edge[edge];
+  const HalfEdgeId h = mesh.half_edge[edge];
   const Buffer<Vec3f>& normals = choice.level->trial.normals;
-  const Vec3d turn = to_double(normals[Topology::face(h)]) - to_double(normals[Topology::face(mesh.twin[h])]);
+  const Vec3d turn = to_double(normals[h.face()]) - to_double(normals[Topology::face(mesh.twin[h])]);
   const Buffer<Vec3f>& at = choice.level->mesh.positions;
   return share_of_bend * length(turn) * length(to_double(at[mesh.tip(h)]) - to_double(at[mesh.origin[h]]));
 }
 
 }  // namespace
 
-double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
+double move_bound(const LevelChoice& choice, EdgeId edge, double enough) {
   const HierarchyLevel& level = *choice.level;
   const Topology& mesh = level.mesh.topology;
-  const uint32_t h = mesh.half_edge[edge];
+  const HalfEdgeId h = mesh.half_edge[edge];
   const double offset = std::sqrt(level.trial.squared_offset(level.mesh, edge));
   if (mesh.kind[edge] != EdgeKind::smooth) return offset;
   if (offset <= enough)
     return is_at_middle(level.mesh, edge, offset) ? std::max(offset, move_to_come(choice, edge)) : offset;
-  // A vertex that slides along one side of a bend leaves the edge behind.
+  // A vertex that slides along one side of a bend leaves the edge uncovered.
   const Buffer<Vec3f>& normals = level.trial.normals;
-  const double cosine = dot(normals[Topology::face(h)], normals[Topology::face(mesh.twin[h])]);
+  const double cosine = dot(normals[h.face()], normals[Topology::face(mesh.twin[h])]);
   const double sine = cosine > 0 ? std::sqrt(std::max(0.0, 1 - cosine * cosine)) : 1;
   return std::min(offset, level.trial.deviation_at(level.mesh, edge) + sine * offset);
 }
@@ -52,10 +51,10 @@ double move_bound(const LevelChoice& choice, uint32_t edge, double enough) {
 Buffer<float> largest_moves(const LevelChoice& choice, double enough) {
   const Topology& mesh = choice.level->mesh.topology;
   auto at_edge = Buffer<float>::for_overwrite(mesh.edge_count());
-  for (uint32_t e = 0; e < mesh.edge_count(); ++e)
+  for (EdgeId e = 0; e < mesh.edge_count(); ++e)
     at_edge[e] = choice.region.has_edge[e] != 0 ? static_cast<float>(move_bound(choice, e, enough)) : 0;
   Buffer<float> moves(mesh.face_count(), 0);
-  for (uint32_t f : choice.region.faces) {
+  for (FaceId f : choice.region.faces) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
     moves[f] = std::max({at_edge[edge[0]], at_edge[edge[1]], at_edge[edge[2]]});
   }
@@ -66,7 +65,7 @@ Buffer<float> sums_above(const LevelChoice& above, const Buffer<float>& sums, co
                          const LevelChoice& below) {
   Buffer<float> all(below.level->mesh.topology.face_count(), 0);
   for (size_t i = 0; i < below.region.faces.size(); i += 4) {
-    const uint32_t f = below.region.faces[i];
+    const FaceId f = below.region.faces[i];
     const uint32_t parent = below.level->parent_of(f);
     if (!is_divided(above, parent)) std::fill_n(&all[f], 4, sums[parent] + moves[parent]);
   }
@@ -79,15 +78,19 @@ Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<
   const Topology& mesh = choice.level->mesh.topology;
   Buffer<float> further(mesh.vertex_count, 0);  // the largest move at the vertex
   float known = 0;                              // share
-  for (uint32_t f : choice.region.faces) {
+  for (FaceId f : choice.region.faces) {
     if (!is_divided(choice, f) && sums[f] + moves[f] > 0) known = std::max(known, (sums[f] + moves[f]) / allowed[f]);
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) further[mesh.origin[h]] = std::max(further[mesh.origin[h]], moves[f]);
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
+      further[mesh.origin[h]] = std::max(further[mesh.origin[h]], moves[f]);
   }
+  // On smooth surfaces further levels add a third of the last move. If every distance is below the allowed one, the
+  // largest is stated, and less smooth surfaces add more.
+  const float share_of_rest = known < 1 ? 1 : 0.5F;
   Buffer<uint8_t> marks(mesh.vertex_count, 0);
-  for (uint32_t f : choice.region.faces) {
+  for (FaceId f : choice.region.faces) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
     const float matters = known < 1 ? known * allowed[f] : allowed[f];  // not a number where anything is allowed
-    const float more = std::max({further[corner[0]], further[corner[1]], further[corner[2]]});
+    const float more = share_of_rest * std::max({further[corner[0]], further[corner[1]], further[corner[2]]});
     const bool is_open = moves[f] + more > share_that_counts * matters && sums[f] + moves[f] + more > matters;
     if (is_divided(choice, f) || is_open)
       for (uint32_t i = 0; i < 3; ++i) marks[corner[i]] = 1;
@@ -102,7 +105,7 @@ std::vector<Buffer<float>> sums_below(std::span<const LevelChoice> levels, int l
     const LevelChoice& choice = levels[k];
     sums[k] = largest_moves(choice, enough);
     const bool has_rest = static_cast<int>(k) + 1 < level_count;
-    for (uint32_t f : choice.region.faces) {
+    for (FaceId f : choice.region.faces) {
       if (k + 1 < levels.size() && choice.red[f] != 0) {
         const float* child = &sums[k + 1][levels[k + 1].level->first_child_of(f)];
         sums[k][f] += std::max({child[0], child[1], child[2], child[3]});

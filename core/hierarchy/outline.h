@@ -7,14 +7,16 @@
 
 namespace papilio {
 
-/// Finds the faces at the outline of what a view shows that are not divided, though the outline of the levels below may
-/// run through them: they touch a vertex at which one edge is wanted, as its halves may be, and another is not shown;
-/// they may be divided, and the view keeps an edge of theirs from being split. Notes them in the choice, and adds them
-/// to the faces that are to have children. Both are in ascending order.
-void add_faces_at_outline(LevelChoice& choice, const Selection& selection, Buffer<uint32_t>& red);
+/// Finds undivided faces through which the view's outline on the levels below may run. All of these hold:
+/// - the face has a vertex at a candidate edge whose halves may be candidates, and at an edge that is not shown;
+/// - flatness selects all its edges;
+/// - the view prevents the split of at least one.
+/// Stores them in `LevelChoice::at_outline` and adds them to `red`, the faces that get children; both in ascending
+/// order. `level` is the number of the level below.
+void add_faces_at_outline(LevelChoice& choice, int level, const Selection& selection, Buffer<uint32_t>& red);
 
-/// Divides the faces at outlines below which something is split, from the lowest level up, and what that needs so that
-/// no transition face becomes a sliver (transition.h).
+/// Divides the faces at outlines below which an edge is split, from the lowest level up, and further faces to avoid
+/// slivers (transition.h).
 void divide_at_outlines(std::span<LevelChoice> levels, double most_cosine);
 
 }  // namespace papilio

@@ -3,7 +3,7 @@
 namespace papilio {
 namespace {
 
-/// By bits, the sides of a child that lie on the parent's, of the same number.
+/// Sides of each child, as bits, that lie on the parent's side of equal number.
 constexpr std::array<unsigned, 4> sides_of_child{0b101, 0b011, 0b110, 0};
 
 }  // namespace

@@ -30,7 +30,7 @@ PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budg
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
     level->trial = try_level(*level, level->mesh, rules_, {.features = &level->features});
-    level->trial.keep(level->mesh.topology);
+    level->trial.keep();
     kept_ = {std::move(level)};
     bytes_ = bytes_of(kept_);
   });
@@ -50,7 +50,7 @@ void PreparedMesh::State::keep(KeptLevels levels) const {
   while (levels.size() > 1 && bytes_of(levels) > budget_) levels.pop_back();
   const uint64_t bytes = bytes_of(levels);
   const Lock lock(access_);
-  kept_.swap(levels);  // what was kept is given back after the lock
+  kept_.swap(levels);  // the old levels are freed after the lock
   bytes_ = bytes;
 }
 

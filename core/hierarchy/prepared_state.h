@@ -11,10 +11,10 @@
 
 namespace papilio {
 
-/// Levels that requests share, the coarse one first.
+/// Levels shared by requests, the coarse one first.
 using KeptLevels = std::vector<std::shared_ptr<const HierarchyLevel>>;
 
-/// What a prepared mesh holds. Any number of threads may use one object at once.
+/// State of a prepared mesh. Thread-safe.
 class PreparedMesh::State {
  public:
   State(Mesh coarse, const Options& rules, uint64_t byte_budget);
@@ -25,16 +25,16 @@ class PreparedMesh::State {
   [[nodiscard]] const ShapeReport& shape() const { return shape_; }
   [[nodiscard]] KeptLevels kept() const;
   [[nodiscard]] uint64_t bytes() const;
-  /// Replaces what is kept, as far as the budget holds it.
+  /// Replaces the kept levels, without the deepest ones that exceed the budget. Always keeps the coarse level.
   void keep(KeptLevels levels) const;
 
  private:
   Options rules_;
   uint64_t budget_;
   ShapeReport shape_;
-  double smallest_angle_;    ///< of the coarse mesh, in radians
-  mutable Mutex access_;     ///< to the two below
-  mutable KeptLevels kept_;  ///< the coarse level first
+  double smallest_angle_;    ///< smallest angle of the coarse mesh, in radians
+  mutable Mutex access_;     ///< guards `kept_` and `bytes_`
+  mutable KeptLevels kept_;  ///< kept levels, the coarse one first
   mutable uint64_t bytes_;
 };
 

@@ -4,13 +4,11 @@
 
 #include "hierarchy/result_surface.h"
 
-// Distances of points above triangles: a fraction of the work of squared_distance() (papilio/triangle_distance.h), and
-// mostly enough.
+// Distances of points above triangles, at a fraction of the cost of squared_distance() (papilio/triangle_distance.h).
 
 namespace papilio {
 
-/// The distance, squared, of a point above or below a triangle; infinite of others. A fraction of the work of
-/// squared_distance(), and mostly enough.
+/// Returns the squared distance of a point above or below a triangle; infinity for other points.
 [[nodiscard]] inline double squared_height_above(const Corners& triangle, Vec3d point) {
   const Vec3d normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   for (uint32_t i = 0; i < 3; ++i)
@@ -20,7 +18,7 @@ namespace papilio {
   return height * height / dot(normal, normal);
 }
 
-/// A triangle made ready for the question whether many points are above it.
+/// Triangle prepared for tests of whether points are above it.
 class Prism {
  public:
   explicit Prism(const TriangleCorners& triangle) : corner_{triangle.a, triangle.b, triangle.c} {
@@ -31,7 +29,7 @@ class Prism {
     for (uint32_t i = 0; i < 3; ++i) inward_[i] = cross(normal, corner_[(i + 1) % 3] - corner_[i]);
   }
 
-  /// Whether the point is above or below the triangle, no further than the root of `squared`.
+  /// Returns whether the point is above or below the triangle, at most the root of `squared` away.
   [[nodiscard]] bool has_near(Vec3d point, double squared) const {
     const double height = dot(point - corner_[0], normal);
     return height * height <= squared && is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);

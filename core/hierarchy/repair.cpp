@@ -9,9 +9,9 @@
 namespace papilio {
 namespace {
 
-/// A candidate that is split whatever the threshold.
+/// Error of a candidate that is split at any threshold.
 constexpr float largest_error = std::numeric_limits<float>::max();
-/// Of what is allowed: the sums of smaller moves may be bounded loosely.
+/// Share of the allowed distance up to which sums of moves may be bounded loosely.
 constexpr double share_known = 1.0 / 64;
 
 }  // namespace
@@ -26,7 +26,7 @@ void set_splits(std::vector<LevelChoice>& choices, const Splits& splits) {
   for (size_t k = 0; k < choices.size(); ++k) {
     choices[k].split_nothing();
     if (k < splits.size())
-      for (uint32_t e : splits[k]) choices[k].split_edge(e);
+      for (EdgeId e : splits[k]) choices[k].split_edge(e);
   }
 }
 
@@ -69,16 +69,16 @@ void Repair::look_again() {
   for (size_t k = 0; k < choices_.size(); ++k) {
     const LevelChoice& choice = choices_[k];
     const Topology& mesh = choice.level->mesh.topology;
-    EdgeMarks has_changed = choice.split;
-    for (uint32_t e : before_[k]) has_changed[e] ^= 1U;  // a split that only kept slivers away may be gone
+    Marks has_changed = choice.split;
+    for (EdgeId e : before_[k]) has_changed[e] ^= 1U;  // a split that only kept slivers away may be gone
     Buffer<uint8_t> touched(mesh.vertex_count, 0);
-    const auto touch = [&](uint32_t e) {
+    const auto touch = [&](EdgeId e) {
       touched[mesh.origin[mesh.half_edge[e]]] |= has_changed[e];
       touched[mesh.tip(mesh.half_edge[e])] |= has_changed[e];
     };
-    for (uint32_t e : choice.split_edges) touch(e);
-    for (uint32_t e : before_[k]) touch(e);
-    for (uint32_t f : choice.region.faces) {
+    for (EdgeId e : choice.split_edges) touch(e);
+    for (EdgeId e : before_[k]) touch(e);
+    for (FaceId f : choice.region.faces) {
       const uint32_t* corner = &mesh.origin[size_t{3} * f];
       if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) == 0) continue;
       near_[k][f] = 0;

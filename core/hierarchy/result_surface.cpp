@@ -12,24 +12,24 @@ constexpr size_t most_visited = 64;
 
 }  // namespace
 
-Corners corners_of(const LevelChoice& choice, uint32_t face) {
+Corners corners_of(const LevelChoice& choice, FaceId face) {
   const Mesh& mesh = choice.level->mesh;
   const uint32_t* corner = &mesh.topology.origin[size_t{3} * face];
   return {to_double(mesh.positions[corner[0]]), to_double(mesh.positions[corner[1]]),
           to_double(mesh.positions[corner[2]])};
 }
 
-Corners new_vertices_of(const LevelChoice& choice, uint32_t face, const Corners& corner) {
+Corners new_vertices_of(const LevelChoice& choice, FaceId face, const Corners& corner) {
   Corners made;
   for (uint32_t i = 0; i < 3; ++i) {
-    const uint32_t e = choice.level->mesh.topology.edge[3 * face + i];
+    const EdgeId e = choice.level->mesh.topology.edge[3 * face + i];
     made[i] =
         choice.region.has_edge[e] != 0 ? to_double(choice.level->trial.at(e)) : 0.5 * (corner[i] + corner[(i + 1) % 3]);
   }
   return made;
 }
 
-bool ResultSurface::has_second_diagonal(uint32_t k, uint32_t f, unsigned mask) const {
+bool ResultSurface::has_second_diagonal(uint32_t k, FaceId f, unsigned mask) const {
   return takes_second_diagonal(choice(k), f, mask, most_cosine_);
 }
 
@@ -59,7 +59,7 @@ void ResultSurface::find_beside(const LevelFace& leaf, uint32_t i, std::vector<L
   }
 }
 
-LevelFace ResultSurface::face_across(uint32_t k, uint32_t f, uint32_t i) const {
+LevelFace ResultSurface::face_across(uint32_t k, FaceId f, uint32_t i) const {
   const uint32_t other = Topology::face(topology(k).twin[3 * f + i]);
   if (k == 0 || level(k).parent_of(other) != none) return {k, other};
   // A last level may hold children of red faces alone (refine_last_level). The side is half of one of the face above.

@@ -25,11 +25,7 @@ void check_attributes(const TriangleMesh& input) {
 
 namespace {
 
-std::span<const double> values_of(const Attribute& attribute, uint32_t point) {
-  return {attribute.values.data() + size_t{point} * attribute.components, attribute.components};
-}
-
-/// -1, 0 or 1: the values of two points in order.
+/// Compares the values of two points in lexicographic order; returns -1, 0 or 1.
 int compare(const std::vector<Attribute>& attributes, uint32_t p, uint32_t q) {
   for (const Attribute& attribute : attributes) {
     const auto a = values_of(attribute, p);
@@ -40,12 +36,13 @@ int compare(const std::vector<Attribute>& attributes, uint32_t p, uint32_t q) {
   return 0;
 }
 
-/// For each point of the input the lowest of its vertex with equal values; points that no corner names keep `none`.
+/// Returns, for each point of the input, the lowest point of its vertex with equal values; `none` for points without
+/// corners.
 Buffer<uint32_t> merge_equal_points(const TriangleMesh& input, const Topology& mesh,
                                     const std::vector<uint32_t>& corner_point) {
   Buffer<uint32_t> vertex(input.positions.size(), none);
   Buffer<uint32_t> points;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+  for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h) {
     const uint32_t p = corner_point[h];
     if (vertex[p] == none) points.push_back(p);
     vertex[p] = mesh.origin[h];
@@ -108,15 +105,15 @@ PointAttributes gather_attributes(const TriangleMesh& input, const Topology& mes
   return out;
 }
 
-Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, const Buffer<uint32_t>& faces,
+Buffer<uint32_t> split_points(const Topology& mesh, const Marks& split, const IndexRange& faces,
                               PointAttributes& attributes, const Displacements& displaced) {
   Buffer<uint32_t> made(mesh.half_edge_count(), none);
   const Buffer<uint32_t>& point = attributes.point;
-  const auto split_half_edge = [&](uint32_t h) {
+  const auto split_half_edge = [&](HalfEdgeId h) {
     if (split[mesh.edge[h]] == 0) return;
     const uint32_t p = point[h];
-    const uint32_t q = point[Topology::next(h)];
-    const uint32_t t = mesh.twin[h];
+    const uint32_t q = point[h.next()];
+    const HalfEdgeId t = mesh.twin[h];
     if (t != none && t < h && made[t] != none && !is_seam(mesh, attributes, h)) {
       made[h] = made[t];
       return;
@@ -131,8 +128,8 @@ Buffer<uint32_t> split_points(const Topology& mesh, const EdgeMarks& split, cons
         std::ranges::copy(std::array{at.x, at.y, at.z}, values.end() - 3);
     }
   };
-  for (uint32_t f : faces)
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) split_half_edge(h);
+  for (uint32_t i = 0; i < faces.size(); ++i)
+    for (HalfEdgeId h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h) split_half_edge(h);
   return made;
 }
 

@@ -8,15 +8,15 @@
 namespace papilio {
 namespace {
 
-constexpr double rounding = 1e-5;  // of an attribute's largest value at the two points
+constexpr double rounding = 1e-5;  // share of an attribute's largest value at the two points
 
-/// Returns the values between those of two points, of length one if the attribute is.
+/// Interpolates the values of two points, and normalizes them if the attribute is of unit length.
 std::vector<double> blend(const Attribute& attribute, uint32_t p, uint32_t q, double share) {
   std::vector<double> values;
   double squared = 0;
   for (uint32_t i = 0; i < attribute.components; ++i) {
-    const double from = attribute.values[size_t{p} * attribute.components + i];
-    const double to = attribute.values[size_t{q} * attribute.components + i];
+    const double from = values_of(attribute, p)[i];
+    const double to = values_of(attribute, q)[i];
     values.push_back(from == to ? from : (1 - share) * from + share * to);
     squared += values.back() * values.back();
   }
@@ -28,7 +28,7 @@ std::vector<double> blend(const Attribute& attribute, uint32_t p, uint32_t q, do
 bool is_nearly(const Attribute& attribute, uint32_t point, const std::vector<double>& values) {
   double largest = 0, apart = 0;
   for (uint32_t i = 0; i < attribute.components; ++i) {
-    const double value = attribute.values[size_t{point} * attribute.components + i];
+    const double value = values_of(attribute, point)[i];
     largest = std::max({largest, std::abs(value), std::abs(values[i])});
     apart = std::max(apart, std::abs(value - values[i]));
   }

@@ -6,14 +6,14 @@
 
 namespace papilio {
 
-/// The points of an input, and points whose attributes lie between those of two others.
+/// Points of an input, and new points with attributes interpolated between two of them.
 class BlendedPoints {
  public:
-  /// The input must outlive this.
+  /// Starts with the input's points. The input must outlive this.
   explicit BlendedPoints(const TriangleMesh& input) : input_(input) {}
 
-  /// Returns a point whose attributes are `share` of the way from those of p to those of q: one of `known` if its
-  /// values differ by rounding only, else a new one. Throws `Error` like `check_attributes`.
+  /// Returns a point with the attributes of p and q blended in the ratio 1 - share to share. It is one of `known` if
+  /// its values differ by rounding only, else a new one. Throws as check_attributes().
   uint32_t between(uint32_t p, uint32_t q, double share, std::span<const uint32_t> known);
 
   /// Returns the input with the new points. Their positions are unset.

@@ -12,7 +12,7 @@ Box bounding_box(std::span<const Vec3f> positions) {
   if (positions.empty()) return box;
   Vec3fa least{Vec3fa::Register{} + infinity};
   Vec3fa most{Vec3fa::Register{} - infinity};
-  for (const Vec3f& p : positions.first(positions.size() - 1)) {  // four floats are read
+  for (const Vec3f& p : positions.first(positions.size() - 1)) {  // widen() reads four floats
     least = lesser(widen(p), least);
     most = larger(widen(p), most);
   }

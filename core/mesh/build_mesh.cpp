@@ -1,9 +1,8 @@
 #include <cmath>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "base/memory_guard.h"
 #include "mesh/attributes.h"
 #include "mesh/blended_points.h"
 #include "mesh/close_gaps.h"
@@ -56,13 +55,8 @@ Mesh build(const TriangleMesh& input, BuildReport* report, double gap) {
 }  // namespace
 
 Mesh build_mesh(const TriangleMesh& input, BuildReport* report, double gap) {
-  try {
-    return build(input, report, gap);
-  } catch (const std::bad_alloc&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
-  } catch (const std::length_error&) {
-    throw Error(Fault::out_of_memory, "There is not enough memory for this mesh. Use a smaller one.");
-  }
+  return guard_memory([&] { return build(input, report, gap); },
+                      "There is not enough memory for this mesh. Use a smaller one.");
 }
 
 }  // namespace papilio

@@ -13,12 +13,12 @@ namespace {
 
 constexpr int most_attempts = 4;
 
-/// Returns a draft with its gaps welded; nothing if it has none.
+/// Returns the draft with its gaps welded; nothing if it has no gaps.
 std::optional<Draft> welded(const Draft& draft, double distance) {
   const Buffer<uint32_t> vertex = weld_gaps(draft.topology, draft.positions, distance);
   if (vertex.empty()) return std::nullopt;
   Draft welded = draft;
-  for (uint32_t v = 0; v < vertex.size(); ++v) welded.report.near_duplicates += vertex[v] == v ? 0 : 1;
+  for (VertexId v = 0; v < vertex.size(); ++v) welded.report.near_duplicates += vertex[v] == v ? 0 : 1;
   for (uint32_t& v : welded.topology.origin) v = vertex[v];
   for (uint32_t& v : welded.tracked) v = vertex[v];
   settle(welded);
@@ -28,13 +28,13 @@ std::optional<Draft> welded(const Draft& draft, double distance) {
 /// Returns [V] whether a vertex has several fans or lies on an edge that several faces share.
 std::vector<bool> defective_vertices(const Topology& mesh) {
   std::vector<bool> is_defective(mesh.vertex_count);
-  for (const uint32_t v : mesh.pinched) is_defective[v] = true;
-  for (const uint32_t h : mesh.half_edge)
+  for (const VertexId v : mesh.pinched) is_defective[v] = true;
+  for (const HalfEdgeId h : mesh.half_edge)
     if (mesh.kind[mesh.edge[h]] == EdgeKind::shared) is_defective[mesh.origin[h]] = is_defective[mesh.tip(h)] = true;
   return is_defective;
 }
 
-/// Leaves out the insertions of vertices that are defective afterwards. Returns whether there are any.
+/// Removes the insertions of vertices that are defective in the closed draft. Returns whether there are any.
 bool drop_defective(std::vector<Insertion>& insertions, const Draft& closed) {
   const std::vector<bool> is_defective = defective_vertices(closed.topology);
   size_t kept = 0;

@@ -5,9 +5,9 @@
 
 namespace papilio {
 
-/// Closes the gaps of a connected draft that are no wider than `distance`: welds boundary vertices (weld_gaps.h), then
-/// inserts those of T-junctions (t_junctions.h) and welds again. Keeps the draft as it is, to the bit, where there is
-/// nothing to close; leaves open what would make a defect. Counts what it does. O(H log H), bounded work.
+/// Closes gaps of at most `distance` in a connected draft: welds boundary vertices (weld_gaps.h), inserts those of
+/// T-junctions (t_junctions.h) and welds again. Gaps stay open where closing them would make a defect. Without gaps,
+/// the draft stays bit-identical. Counts changes in the report. O(H log H), bounded work.
 void close_gaps(Draft& draft, BlendedPoints& points, double distance);
 
 }  // namespace papilio

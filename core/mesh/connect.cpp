@@ -4,25 +4,26 @@
 #include <compare>
 #include <span>
 
+#include "base/ids.h"
 #include "base/sort.h"
 
 namespace papilio {
 namespace {
 
-/// A half-edge, to be sorted by the two vertices that it runs between.
+/// Half-edge, to be sorted by its two vertices.
 struct EdgeSide {
   uint32_t lower, higher, half_edge;
   friend auto operator<=>(const EdgeSide&,
                           const EdgeSide&) = default;  // NOLINT(modernize-use-nullptr): a bug of version 14
 };
-/// All between the same two vertices, in ascending order.
+/// Half-edges between one pair of vertices, in ascending order.
 using EdgeSides = std::span<const EdgeSide>;
 
-/// The half-edges that are chosen, edge by edge.
+/// Returns the chosen half-edges, edge by edge.
 template <class IsChosen>
 Buffer<EdgeSide> sort_into_edges(const Topology& mesh, const IsChosen& is_chosen) {
   Buffer<EdgeSide> sides;
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h)
+  for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h)
     if (is_chosen(h))
       sides.push_back({std::min(mesh.origin[h], mesh.tip(h)), std::max(mesh.origin[h], mesh.tip(h)), h});
   sort_range(sides);
@@ -42,12 +43,12 @@ void for_each_edge(const Buffer<EdgeSide>& sides, const Visit& visit) {
   }
 }
 
-/// Drops each face that has the vertices and orientation of an earlier one. Only faces at edges that two
-/// half-edges run along in one direction can repeat. Returns how many were dropped. `corner_point` [H] or empty.
+/// Drops each face that has the vertices and orientation of an earlier one. Only faces at edges with two half-edges in
+/// one direction are candidates. Returns the number of dropped faces. `corner_point` [H] or empty.
 uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std::vector<uint32_t>& corner_point) {
   struct Candidate {
-    Triangle rotated;  ///< starting at its lowest vertex
-    uint32_t face;
+    Triangle rotated;  ///< vertices, the lowest first
+    FaceId face;
   };
   std::vector<Candidate> candidates;
   for_each_edge(sides, [&](EdgeSides edge) {
@@ -55,9 +56,9 @@ uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std:
         std::ranges::count_if(edge, [&](const EdgeSide& side) { return mesh.origin[side.half_edge] == side.lower; });
     if (forward < 2 && static_cast<ptrdiff_t>(edge.size()) - forward < 2) return;
     for (const EdgeSide& side : edge) {
-      uint32_t h = Topology::face(side.half_edge) * 3;
+      HalfEdgeId h = Topology::face(side.half_edge) * 3;
       for (int turn = 0; turn < 2 && mesh.origin[h] > std::min(mesh.tip(h), mesh.apex(h)); ++turn) ++h;
-      candidates.push_back({{mesh.origin[h], mesh.tip(h), mesh.apex(h)}, Topology::face(h)});
+      candidates.push_back({{mesh.origin[h], mesh.tip(h), mesh.apex(h)}, h.face()});
     }
   });
   sort_range(candidates, [](const Candidate& a, const Candidate& b) {
@@ -73,7 +74,7 @@ uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std:
   }
   if (dropped == 0) return 0;
   uint32_t kept = 0;
-  for (uint32_t f = 0; f < repeated.size(); ++f) {
+  for (FaceId f = 0; f < repeated.size(); ++f) {
     if (repeated[f]) continue;
     std::copy_n(mesh.origin.begin() + 3 * f, 3, mesh.origin.begin() + 3 * kept);
     if (!corner_point.empty()) std::copy_n(corner_point.begin() + 3 * f, 3, corner_point.begin() + 3 * kept);
@@ -84,9 +85,9 @@ uint32_t drop_repeated_faces(Topology& mesh, const Buffer<EdgeSide>& sides, std:
   return dropped;
 }
 
-/// Finds twins, and numbers edges as number_edges() does, in one pass, where every edge has one face, or two that are
-/// wound alike, as most meshes have it: edges that are known are looked up in a list at their lower vertex. False, and
-/// to be done in another way, where one has more, or such a list is too long to be gone through for every edge.
+/// Finds twins, and numbers edges as number_edges() does, in one pass, if every edge has one face or two with
+/// consistent orientation. Known edges are listed at their lower vertex. Fails where an edge has other faces, or a list
+/// exceeds `most_steps`.
 class ManifoldConnector {
  public:
   explicit ManifoldConnector(Topology& mesh) : mesh_(mesh), first_at_(mesh.vertex_count, none) {}
@@ -98,12 +99,12 @@ class ManifoldConnector {
     mesh_.half_edge.resize_for_overwrite(count);
     known_.resize_for_overwrite(count);
     for (uint32_t first = 0; first < count; first += 3)
-      for (uint32_t h = first; h < first + 3; ++h)
+      for (HalfEdgeId h = first; h < first + 3; ++h)
         if (!add(h, mesh_.origin[h], mesh_.origin[h == first + 2 ? first : h + 1])) return false;
     mesh_.half_edge.resize_for_overwrite(edges_);
     mesh_.kind.assign(edges_, EdgeKind::smooth);
     if (2 * size_t{edges_} == count) return true;
-    for (uint32_t e = 0; e < edges_; ++e) {
+    for (EdgeId e = 0; e < edges_; ++e) {
       if (mesh_.twin[mesh_.half_edge[e]] != none) continue;
       mesh_.kind[e] = EdgeKind::boundary;
       ++report.boundary_edges;
@@ -113,16 +114,16 @@ class ManifoldConnector {
 
  private:
   struct Known {
-    uint32_t higher;  ///< vertex
-    uint32_t next;    ///< edge with the same lower vertex; `none`
+    uint32_t higher;  ///< higher vertex of the edge
+    uint32_t next;    ///< next edge in the list of its lower vertex, or `none`
   };
   static constexpr int most_steps = 32;
 
-  bool add(uint32_t h, uint32_t from, uint32_t to) {
+  bool add(HalfEdgeId h, uint32_t from, uint32_t to) {
     uint32_t& first = first_at_[std::min(from, to)];
     const uint32_t higher = std::max(from, to);
     int steps = 0;
-    for (uint32_t e = first; e != none; e = known_[e].next) {
+    for (EdgeId e = first; e != none; e = known_[e].next) {
       if (known_[e].higher == higher) return join(h, from, e);
       if (++steps > most_steps) return false;
     }
@@ -134,7 +135,7 @@ class ManifoldConnector {
     return true;
   }
 
-  bool join(uint32_t h, uint32_t from, uint32_t e) {
+  bool join(HalfEdgeId h, uint32_t from, EdgeId e) {
     const uint32_t t = mesh_.half_edge[e];
     if (mesh_.twin[t] != none || mesh_.origin[t] == from) return false;
     mesh_.twin[h] = t;
@@ -144,13 +145,13 @@ class ManifoldConnector {
   }
 
   Topology& mesh_;
-  Buffer<uint32_t> first_at_;  ///< [V] an edge of which this is the lower vertex; `none`
+  Buffer<uint32_t> first_at_;  ///< [V] first edge of which this is the lower vertex, or `none`
   Buffer<Known> known_;        ///< [E]
   uint32_t edges_ = 0;
 };
 
-/// How many faces the fan of half-edge h has. Fans end where there is no twin.
-uint32_t fan_size(const Topology& mesh, uint32_t h) {
+/// Returns the number of faces in the fan of half-edge h. Fans end where there is no twin.
+uint32_t fan_size(const Topology& mesh, HalfEdgeId h) {
   uint32_t size = 0;
   uint32_t s = h;
   do {
@@ -189,27 +190,27 @@ void connect(Topology& mesh, std::vector<uint32_t>& corner_point, BuildReport& r
 std::vector<uint32_t> find_pinched(const Topology& mesh) {
   Buffer<uint32_t> corners(mesh.vertex_count, 0);
   auto last = Buffer<uint32_t>::for_overwrite(mesh.vertex_count);
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+  for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h) {
     ++corners[mesh.origin[h]];
     last[mesh.origin[h]] = h;
   }
-  std::vector<uint32_t> pinched;  // the fan of one corner leaves out another
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v)
+  std::vector<uint32_t> pinched;  // vertices at which the fan of one corner does not contain all others
+  for (VertexId v = 0; v < mesh.vertex_count; ++v)
     if (fan_size(mesh, last[v]) != corners[v]) pinched.push_back(v);
   return pinched;
 }
 
-// In the order of their first half-edges, so that edges lie in memory as the faces do.
+// Numbers edges in the order of their first half-edges, so that they lie in memory in the order of faces.
 void number_edges(Topology& mesh) {
   if (mesh.has_edges()) return;
   mesh.darts.clear();
   mesh.edge.assign(mesh.half_edge_count(), none);
-  // Half-edges without a twin between the same two vertices have one edge: all but the first get its number later.
-  const Buffer<EdgeSide> open = sort_into_edges(mesh, [&](uint32_t h) { return mesh.twin[h] == none; });
+  // Half-edges without a twin between one pair of vertices share an edge: all but the first get its number later.
+  const Buffer<EdgeSide> open = sort_into_edges(mesh, [&](HalfEdgeId h) { return mesh.twin[h] == none; });
   for_each_edge(open, [&](EdgeSides edge) {
     for (const EdgeSide& side : edge.subspan(1)) mesh.edge[side.half_edge] = 0;
   });
-  for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+  for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h) {
     if (mesh.edge[h] != none) continue;
     mesh.edge[h] = mesh.edge_count();
     if (mesh.twin[h] != none) mesh.edge[mesh.twin[h]] = mesh.edge[h];

@@ -15,9 +15,9 @@ Displacements displacements_at_vertices(const Mesh& mesh) {
     out.push_back({a, Buffer<Vec3d>(mesh.topology.vertex_count)});
     Buffer<Vec3d>& at = out.back().at;
     Buffer<uint8_t> is_set(mesh.topology.vertex_count, 0);
-    for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
+    for (HalfEdgeId h = 0; h < mesh.topology.half_edge_count(); ++h) {
       const Vec3d of_point = vector_at(attribute, mesh.attributes.point[h]);
-      const uint32_t v = mesh.topology.origin[h];
+      const VertexId v = mesh.topology.origin[h];
       if (is_set[v] == 0)
         at[v] = of_point;
       else if (at[v] != of_point)
@@ -28,10 +28,9 @@ Displacements displacements_at_vertices(const Mesh& mesh) {
   return out;
 }
 
-void append_new_vertices(Displacements& at_vertices, const Displacements& at_edges, const SplitPlan& plan) {
+void append_new_vertices(Displacements& at_vertices, const Displacements& at_edges, const Marks& split) {
   for (size_t i = 0; i < at_vertices.size(); ++i)
-    for (uint32_t e = 0; e < at_edges[i].at.size(); ++e)
-      if (plan.is_split(e)) at_vertices[i].at.push_back(at_edges[i].at[e]);
+    for (EdgeId e : marked(split)) at_vertices[i].at.push_back(at_edges[i].at[e]);
 }
 
 bool has_displacements(const PointAttributes& attributes) {

@@ -10,15 +10,15 @@
 namespace papilio {
 namespace {
 
-constexpr double least_share = 1e-9;  // of a part in its face's area
+constexpr double least_share = 1e-9;  // lower bound of a part's area, a share of its face's
 
 struct Corner {
-  uint32_t vertex = none, point = none;
+  VertexId vertex = none, point = none;
 };
 using Piece = std::array<Corner, 3>;
 using Side = std::vector<Corner>;
 
-/// Cuts a triangle into parts, given its sides with the corners on them, ends included.
+/// Divides a triangle into parts, given the corners on each side, ends included.
 std::vector<Piece> cut(const std::array<Side, 3>& sides) {
   const auto& [first, second, third] = sides;
   std::vector<Piece> parts;
@@ -43,7 +43,7 @@ class FaceDivider {
       : draft_(draft), insertions_(insertions), points_(points), known_(draft.topology.vertex_count) {
     for (const Insertion& insertion : insertions) known_[insertion.vertex].is_inserted = true;
     const Topology& mesh = draft.topology;
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) {
+    for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h) {
       Known& known = known_[mesh.origin[h]];
       if (known.is_inserted && known.half_edge == none && mesh.twin[h] == none) known.half_edge = h;
       if (known.is_inserted || known_[mesh.tip(h)].is_inserted) runs_.push_back(direction(mesh.origin[h], mesh.tip(h)));
@@ -57,7 +57,7 @@ class FaceDivider {
     divided.report = draft_.report;
     out_ = &divided;
     const Topology& mesh = draft_.topology;
-    for (uint32_t f = 0; f < mesh.face_count(); ++f) {
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
       const uint32_t inserted = divide(f);
       divided.report.t_junctions += inserted;
       if (inserted == 0) add({corner(3 * f), corner(3 * f + 1), corner(3 * f + 2)});
@@ -69,14 +69,14 @@ class FaceDivider {
 
  private:
   struct Known {
-    uint32_t half_edge = none;  ///< that leaves the vertex at the boundary
+    uint32_t half_edge = none;  ///< boundary half-edge that leaves the vertex
     bool is_inserted = false;
   };
 
   static uint64_t direction(uint32_t from, uint32_t to) { return uint64_t{from} << 32 | to; }
-  [[nodiscard]] Vec3d at(uint32_t vertex) const { return to_double(draft_.positions[vertex]); }
+  [[nodiscard]] Vec3d at(VertexId vertex) const { return to_double(draft_.positions[vertex]); }
   [[nodiscard]] bool has_points() const { return !draft_.corner_point.empty(); }
-  [[nodiscard]] Corner corner(uint32_t h) const {
+  [[nodiscard]] Corner corner(HalfEdgeId h) const {
     return {draft_.topology.origin[h], has_points() ? draft_.corner_point[h] : none};
   }
   [[nodiscard]] Vec3d normal(uint32_t a, uint32_t b, uint32_t c) const { return cross(at(b) - at(a), at(c) - at(a)); }
@@ -88,9 +88,9 @@ class FaceDivider {
     }
   }
 
-  /// Returns the corners along a half-edge; takes the insertions there off the list.
-  Side side(uint32_t h) {
-    const Corner from = corner(h), to = corner(Topology::next(h));
+  /// Returns the corners along a half-edge, and consumes its insertions.
+  Side side(HalfEdgeId h) {
+    const Corner from = corner(h), to = corner(h.next());
     Side side{from};
     for (; next_ < insertions_.size() && insertions_[next_].half_edge == h; ++next_) {
       const auto& [half_edge, share, vertex] = insertions_[next_];
@@ -100,14 +100,14 @@ class FaceDivider {
     return side;
   }
 
-  uint32_t point_at(uint32_t vertex, uint32_t from, uint32_t to, double share) {
-    const uint32_t h = known_[vertex].half_edge;
+  uint32_t point_at(VertexId vertex, uint32_t from, uint32_t to, double share) {
+    const HalfEdgeId h = known_[vertex].half_edge;
     const std::array<uint32_t, 1> known{h == none ? none : draft_.corner_point[h]};
     return points_.between(from, to, share, h == none ? std::span<const uint32_t>{} : known);
   }
 
   /// Adds the parts of a face in its place. Returns how many vertices were inserted; 0 if the face stays whole.
-  uint32_t divide(uint32_t f) {
+  uint32_t divide(FaceId f) {
     if (next_ == insertions_.size() || Topology::face(insertions_[next_].half_edge) != f) return 0;
     const size_t first = next_;
     std::array<Side, 3> sides;
@@ -118,7 +118,7 @@ class FaceDivider {
     return static_cast<uint32_t>(next_ - first);
   }
 
-  [[nodiscard]] bool have_area(uint32_t f, const std::vector<Piece>& parts) const {
+  [[nodiscard]] bool have_area(FaceId f, const std::vector<Piece>& parts) const {
     const uint32_t* v = &draft_.topology.origin[3 * f];
     const Vec3d whole = normal(v[0], v[1], v[2]);
     return std::ranges::all_of(parts, [&](const Piece& part) {
@@ -126,23 +126,24 @@ class FaceDivider {
     });
   }
 
-  /// Takes the directions between vertices that the parts' half-edges run in; none if one of them is taken.
+  /// Claims the directions between vertices that the parts' half-edges run in. Returns false, and claims none, if one
+  /// of them is taken.
   bool claim_runs(const std::vector<Piece>& parts) {
-    std::vector<uint64_t> wanted;
+    std::vector<uint64_t> runs;
     for (const Piece& part : parts)
       for (size_t i = 0; i < 3; ++i) {
         const uint32_t from = part[i].vertex, to = part[(i + 1) % 3].vertex;
-        if (known_[from].is_inserted || known_[to].is_inserted) wanted.push_back(direction(from, to));
+        if (known_[from].is_inserted || known_[to].is_inserted) runs.push_back(direction(from, to));
       }
     const Topology& mesh = draft_.topology;
     const uint32_t first = 3 * Topology::face(insertions_[next_ - 1].half_edge);
-    const auto is_free = [&](uint64_t wish) {
-      for (uint32_t h = first; h < first + 3; ++h)
-        if (wish == direction(mesh.origin[h], mesh.tip(h))) return true;  // the face's own
-      return !std::ranges::binary_search(runs_, wish) && !claimed_.contains(wish);
+    const auto is_free = [&](uint64_t run) {
+      for (HalfEdgeId h = first; h < first + 3; ++h)
+        if (run == direction(mesh.origin[h], mesh.tip(h))) return true;  // a side of the face itself
+      return !std::ranges::binary_search(runs_, run) && !claimed_.contains(run);
     };
-    if (!std::ranges::all_of(wanted, is_free)) return false;
-    claimed_.insert(wanted.begin(), wanted.end());
+    if (!std::ranges::all_of(runs, is_free)) return false;
+    claimed_.insert(runs.begin(), runs.end());
     return true;
   }
 
@@ -151,8 +152,8 @@ class FaceDivider {
   BlendedPoints& points_;
   std::vector<Known> known_;    ///< [V]
   std::vector<uint64_t> runs_;  ///< directions at inserted vertices in which half-edges run, in ascending order
-  std::set<uint64_t> claimed_;  ///< those of the parts
-  size_t next_ = 0;             ///< insertion that comes next
+  std::set<uint64_t> claimed_;  ///< directions in which half-edges of parts run
+  size_t next_ = 0;             ///< first insertion not yet consumed
   Draft* out_ = nullptr;
 };
 

@@ -6,7 +6,7 @@
 
 namespace papilio {
 
-/// A mesh that is being built: its attributes are not gathered yet.
+/// Mesh under construction, without attributes yet.
 struct Draft {
   Topology topology;
   Buffer<Vec3f> positions;             ///< [V]
@@ -15,15 +15,15 @@ struct Draft {
   std::vector<uint32_t> tracked;  ///< vertices whose numbers are kept up to date
 };
 
-/// Connects the faces of a draft, of which only `Topology::origin` and `positions` must be right, and counts what is
-/// found. Vertices are numbered in the order in which the faces name them; those that none names are dropped.
+/// Connects the faces of a draft, given `Topology::origin` and `positions`, and counts defects. Renumbers vertices in
+/// the order in which the faces first use them, and drops unused ones.
 void settle(Draft& draft);
 
-/// Connects a draft whose vertices are numbered so already.
+/// Connects a draft whose vertices are already numbered in the order in which the faces first use them.
 void connect(Draft& draft);
 
-/// Returns whether a mesh has more defects of connectivity than another: edges with three faces, edges with two faces
-/// that run along them in one direction, pinched vertices, faces without area or repeated.
+/// Returns whether a mesh has more defects of connectivity than another: non-manifold or misoriented edges, pinched
+/// vertices, degenerate or repeated faces.
 [[nodiscard]] bool is_worse(const BuildReport& report, const BuildReport& than);
 
 }  // namespace papilio

@@ -4,25 +4,27 @@
 
 namespace papilio {
 
-bool is_dart(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.darts, vertex); }
+bool is_dart(const Topology& mesh, VertexId vertex) { return std::ranges::binary_search(mesh.darts, uint32_t{vertex}); }
 
-bool is_corner(const Topology& mesh, uint32_t vertex) { return std::ranges::binary_search(mesh.shape.corners, vertex); }
+bool is_corner(const Topology& mesh, VertexId vertex) {
+  return std::ranges::binary_search(mesh.shape.corners, uint32_t{vertex});
+}
 
 namespace {
 
-/// Steps from spoke to spoke, `none` across a curve; round a dart its crease does not count. (A cut does: beyond it no
-/// faces are held.)
+/// Steps from spoke to spoke; `none` across a curve. A crease does not stop steps round a dart, but a cut does, as
+/// faces beyond it are missing.
 class Steps {
  public:
-  Steps(const Topology& mesh, uint32_t centre) : mesh_(mesh), is_dart_(is_dart(mesh, centre)) {}
-  [[nodiscard]] uint32_t clockwise(uint32_t h) const { return ends_at(h) ? none : Topology::next(mesh_.twin[h]); }
-  [[nodiscard]] uint32_t counter_clockwise(uint32_t h) const {
-    const uint32_t incoming = Topology::previous(h);
+  Steps(const Topology& mesh, VertexId centre) : mesh_(mesh), is_dart_(is_dart(mesh, centre)) {}
+  [[nodiscard]] uint32_t clockwise(HalfEdgeId h) const { return ends_at(h) ? none : Topology::next(mesh_.twin[h]); }
+  [[nodiscard]] uint32_t counter_clockwise(HalfEdgeId h) const {
+    const HalfEdgeId incoming = h.previous();
     return ends_at(incoming) ? none : mesh_.twin[incoming];
   }
 
  private:
-  [[nodiscard]] bool ends_at(uint32_t h) const {
+  [[nodiscard]] bool ends_at(HalfEdgeId h) const {
     return mesh_.is_curve(h) && !(is_dart_ && mesh_.kind[mesh_.edge[h]] == EdgeKind::crease);
   }
   const Topology& mesh_;
@@ -31,7 +33,7 @@ class Steps {
 
 }  // namespace
 
-void collect_fan(const Topology& mesh, uint32_t h, Fan& fan) {
+void collect_fan(const Topology& mesh, HalfEdgeId h, Fan& fan) {
   const Steps steps(mesh, mesh.origin[h]);
   fan.centre = mesh.origin[h];
   const auto walk_from = [&](uint32_t first) {

@@ -3,28 +3,28 @@
 #include <array>
 #include <cstdint>
 
-// The four children of a face all of whose edges are split (split_in_four.h): their twelve half-edges, three a child.
+// The four children of a face whose edges are all split (split_in_four.h), with twelve half-edges, three a child.
 
 namespace papilio {
 
-/// The child half-edge that leaves the same vertex as half-edge h and runs to the middle of its edge.
+/// Returns the child half-edge from the origin of half-edge h to the middle of its edge.
 [[nodiscard]] constexpr uint32_t first_half(uint32_t h) { return 4 * h; }
 
-/// The child half-edge from the middle of half-edge h's edge to h's tip.
+/// Returns the child half-edge from the middle of half-edge h's edge to the tip of h.
 [[nodiscard]] constexpr uint32_t second_half(uint32_t h) {
-  // Of child i + 1, in place i: 12 f + 3 (i + 1 mod 3) + i, which is 4 h but for this.
+  // Half-edge i of child i + 1 mod 3: 12 f + 3 (i + 1 mod 3) + i, where h = 3 f + i.
   return h % 3 == 2 ? 4 * h - 6 : 4 * h + 3;
 }
 
 using OfSides = std::array<uint32_t, 3>;  ///< one number a side of the parent, side i running from its corner i
 
-/// One after the other: built in an array first and then copied, they are waited for.
+/// Stores the numbers one by one: copying them from an array would stall on its stores.
 template <class... Numbers>
 void put(uint32_t* at, Numbers... numbers) {
   ((*at++ = numbers), ...);
 }
 
-/// Their corners, from the parent's and the middles of its sides.
+/// Stores the corners of the children [12], from the parent's corners and the middles of its sides.
 inline void put_corners_of_four(const OfSides& corner, const OfSides& middle, uint32_t* to) {
   put(to, corner[0], middle[0], middle[2],  //
       middle[0], corner[1], middle[1],      //
@@ -32,7 +32,8 @@ inline void put_corners_of_four(const OfSides& corner, const OfSides& middle, ui
       middle[0], middle[1], middle[2]);
 }
 
-/// Their twins, from what runs against the first and second halves of the sides; `base` is their first half-edge.
+/// Stores the twins of the children's half-edges [12], given the twins of the first and second halves of the parent's
+/// sides. `base` is the first child's first half-edge.
 inline void put_twins_of_four(uint32_t base, const OfSides& against_first, const OfSides& against_second,
                               uint32_t* to) {
   put(to, against_first[0], base + 11, against_second[2],  //
@@ -41,7 +42,8 @@ inline void put_twins_of_four(uint32_t base, const OfSides& against_first, const
       base + 5, base + 6, base + 1);
 }
 
-/// Their edges, from the halves of the sides; the inner ones begin at `inner`.
+/// Stores the edges of the children's half-edges [12], given the edges of the halves of the parent's sides. The three
+/// inner edges start at `inner`.
 inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint32_t inner, uint32_t* to) {
   put(to, first[0], inner, second[2],  //
       second[0], first[1], inner + 1,  //
@@ -49,13 +51,14 @@ inline void put_edges_of_four(const OfSides& first, const OfSides& second, uint3
       inner + 1, inner + 2, inner);
 }
 
-/// The six vertices of the four, from their corners [12]: the parent's, and then the middles of its sides.
+/// Returns the six vertices of the children, from their corners [12]: the parent's corners, then the middles of its
+/// sides.
 [[nodiscard]] inline std::array<uint32_t, 6> vertices_of_four(const uint32_t* corner) {
   return {corner[0], corner[4], corner[8], corner[9], corner[10], corner[11]};
 }
 
-/// Calls visit(half-edge, from, to) for each of their nine edges: which of the twelve half-edges runs there, and
-/// between which of the six vertices. Written out, so that all of it is known when this is compiled.
+/// Calls visit(half-edge, from, to) for each of the children's nine edges: the number of its half-edge, 0..11, and of
+/// its vertices in vertices_of_four(). Unrolled, so that all numbers are compile-time constants.
 template <class Visit>
 [[gnu::always_inline]] inline void visit_edges_of_four(const Visit& visit) {
   visit(0, 0, 3);

@@ -10,7 +10,7 @@ namespace {
 
 using Two = double __attribute__((vector_size(16)));
 
-/// Two vectors, each divided by its length, whose roots and divisions are computed side by side; 0 where that is 0.
+/// Normalizes two vectors, so that their roots and divisions overlap; a zero vector stays zero.
 void put_unit(Vec3d a, Vec3d b, Vec3f& unit_a, Vec3f& unit_b) {
   const Two x{a.x, b.x};
   const Two y{a.y, b.y};
@@ -28,15 +28,12 @@ void put_unit(Vec3d a, Vec3d b, Vec3f& unit_a, Vec3f& unit_b) {
 
 }  // namespace
 
-Buffer<Vec3f> face_normals(const Mesh& mesh, int threads, const Buffer<uint32_t>* fours) {
-  const uint32_t faces = mesh.topology.face_count();
-  const uint32_t count = fours == nullptr ? faces : 4 * static_cast<uint32_t>(fours->size());
-  const auto face = [fours](uint32_t i) { return fours == nullptr ? i : 4 * (*fours)[i / 4] + i % 4; };
-  auto normals = Buffer<Vec3f>::for_overwrite(faces);
+Buffer<Vec3f> face_normals(const Mesh& mesh, int threads) {
+  const uint32_t count = mesh.topology.face_count();
+  auto normals = Buffer<Vec3f>::for_overwrite(count);
   for_each_part(parts_of(count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
-    for (uint32_t i = first; i < last; i += 2) {
-      const uint32_t f = face(i);
-      const uint32_t g = face(std::min(i + 1, last - 1));
+    for (uint32_t f = first; f < last; f += 2) {
+      const uint32_t g = std::min(f + 1, last - 1);
       put_unit(area_normal(mesh, f), area_normal(mesh, g), normals[f], normals[g]);
     }
   });
@@ -45,7 +42,7 @@ Buffer<Vec3f> face_normals(const Mesh& mesh, int threads, const Buffer<uint32_t>
 
 Buffer<Vec3f> vertex_normals(const Mesh& mesh) {
   Buffer<Vec3d> sums(mesh.topology.vertex_count, Vec3d{});
-  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+  for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d n = area_normal(mesh, f);
     for (uint32_t i = 0; i < 3; ++i) sums[mesh.topology.origin[3 * f + i]] += n;
   }

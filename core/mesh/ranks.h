@@ -6,10 +6,10 @@
 
 namespace papilio {
 
-/// Numbers marked things closely, in their order.
+/// Compact indices of marked elements, in their order.
 class Ranks {
  public:
-  /// What the others get: no number (`none`), or all the same, the one behind the last.
+  /// Index of unmarked elements: `none`, or one shared index behind the last.
   enum class Others { without, alike };
 
   explicit Ranks(const Buffer<uint8_t>& marks, Others others = Others::without)
@@ -19,7 +19,7 @@ class Ranks {
   [[nodiscard]] uint32_t operator[](uint32_t i) const { return rank_[i]; }
   [[nodiscard]] bool has(uint32_t i) const { return rank_[i] < count(); }
   [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(numbers_.size()); }
-  /// What is marked.
+  /// Returns the marked elements.
   [[nodiscard]] const Buffer<uint32_t>& numbers() const { return numbers_; }
 
  private:

@@ -15,9 +15,11 @@ namespace papilio {
 namespace {
 
 constexpr double flat_degrees = 0.5, least_outline_degrees = 3, sharp_degrees = 31;
-constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;
-constexpr double broader = 1.5;              // by so much a flat must be broader than what it ends at
-constexpr double flat_share_of_size = 2e-6;  // of the diagonal or the largest coordinate
+constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;  // shares of the edges
+constexpr double least_sharp_share = 0.1, least_share_of_flats = 0.25;      // shares of the edges, and of the area
+constexpr uint32_t least_faces_of_flat = 4;                                 // quads, common in any model, have two
+constexpr double broader = 1.5;              // factor by which a flat must be broader than its neighbour
+constexpr double flat_share_of_size = 2e-6;  // share of the diagonal or the largest coordinate
 
 class ShapeFinder {
  public:
@@ -25,6 +27,7 @@ class ShapeFinder {
       : mesh_(mesh),
         topology_(mesh.topology),
         components_(topology_.face_count()),
+        flats_(topology_.face_count()),
         cosines_(Buffer<double>::for_overwrite(topology_.edge_count())) {}
 
   ShapeReport run(const Options& options) {
@@ -52,14 +55,14 @@ class ShapeFinder {
     topology_.shape.flat_distance = flat_share_of_size * size;
   }
 
-  [[nodiscard]] bool has_two_faces(uint32_t e) const { return topology_.kind[e] == EdgeKind::smooth; }
-  [[nodiscard]] uint32_t face_of(uint32_t e) const { return Topology::face(topology_.half_edge[e]); }
-  [[nodiscard]] uint32_t other_face_of(uint32_t e) const {
+  [[nodiscard]] bool has_two_faces(EdgeId e) const { return topology_.kind[e] == EdgeKind::smooth; }
+  [[nodiscard]] uint32_t face_of(EdgeId e) const { return Topology::face(topology_.half_edge[e]); }
+  [[nodiscard]] uint32_t other_face_of(EdgeId e) const {
     return Topology::face(topology_.twin[topology_.half_edge[e]]);
   }
 
   void find_cosines() {
-    for (uint32_t e = 0; e < topology_.edge_count(); ++e)
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e)
       if (has_two_faces(e)) {
         const Hinge hinge(topology_, mesh_.positions, topology_.half_edge[e]);
         cosines_[e] = hinge.is_flat(topology_.shape.flat_distance) ? 1 : hinge.cosine();
@@ -67,13 +70,13 @@ class ShapeFinder {
   }
 
   void find_components() {
-    Buffer<uint32_t> first(topology_.edge_count(), none);  // face at the edge
-    for (uint32_t h = 0; h < topology_.half_edge_count(); ++h) {
+    Buffer<uint32_t> first(topology_.edge_count(), none);  // first face at the edge
+    for (HalfEdgeId h = 0; h < topology_.half_edge_count(); ++h) {
       uint32_t& face = first[topology_.edge[h]];
       if (face == none)
-        face = Topology::face(h);
+        face = h.face();
       else
-        components_.join(face, Topology::face(h));
+        components_.join(face, h.face());
     }
   }
 
@@ -81,37 +84,45 @@ class ShapeFinder {
     const uint32_t faces = topology_.face_count();
     is_mechanical_.assign(faces, shape == Shape::mechanical ? 1 : 0);
     if (shape != Shape::automatic) return;
-    struct Edges {
-      uint32_t all = 0, flat = 0, sharp = 0;
+    struct Component {
+      uint32_t edges = 0, flat = 0, sharp = 0;
+      double area = 0, area_of_flats = 0;
+      [[nodiscard]] bool is_mechanical() const {
+        return (flat >= least_flat_share * edges && flat + sharp >= least_flat_or_sharp_share * edges && edges > 0) ||
+               (flat > 0 && flat + sharp == edges) ||
+               (is_sharp_enough() && area_of_flats >= least_share_of_flats * area && area > 0);
+      }
+      [[nodiscard]] bool is_sharp_enough() const { return sharp > 0 && sharp >= least_sharp_share * edges; }
     };
-    std::vector<Edges> of(faces);  // of the component that this face stands for
-    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+    std::vector<Component> of(faces);  // component that this face represents
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
       if (!has_two_faces(e)) continue;
-      Edges& edges = of[components_.find(face_of(e))];
-      ++edges.all;
-      edges.flat += is_flat(e) ? 1 : 0;
-      edges.sharp += is_sharp(e) ? 1 : 0;
+      Component& component = of[components_.find(face_of(e))];
+      ++component.edges;
+      component.flat += is_flat(e) ? 1 : 0;
+      component.sharp += is_sharp(e) ? 1 : 0;
     }
-    for (uint32_t f = 0; f < faces; ++f) {
-      const Edges& edges = of[components_.find(f)];
-      const bool is_flat_enough = edges.flat >= least_flat_share * edges.all;
-      is_mechanical_[f] =
-          edges.all > 0 && is_flat_enough && edges.flat + edges.sharp >= least_flat_or_sharp_share * edges.all ? 1 : 0;
+    if (std::ranges::any_of(of, &Component::is_sharp_enough)) {
+      find_flats();
+      for (FaceId f = 0; f < faces; ++f) {
+        const double area = area_of(f);
+        Component& component = of[components_.find(f)];
+        component.area += area;
+        if (flat_of(f).faces >= least_faces_of_flat) component.area_of_flats += area;
+      }
     }
+    for (uint32_t f = 0; f < faces; ++f) is_mechanical_[f] = of[components_.find(f)].is_mechanical() ? 1 : 0;
   }
 
-  [[nodiscard]] bool is_flat(uint32_t e) const { return cosines_[e] > flat_cosine_; }
-  [[nodiscard]] bool is_sharp(uint32_t e) const { return cosines_[e] < sharp_cosine_; }
+  [[nodiscard]] bool is_flat(EdgeId e) const { return cosines_[e] > flat_cosine_; }
+  [[nodiscard]] bool is_sharp(EdgeId e) const { return cosines_[e] < sharp_cosine_; }
 
   void find_creases() {
-    DisjointSets flats(topology_.face_count());
-    for (uint32_t e = 0; e < topology_.edge_count(); ++e)
-      if (has_two_faces(e) && is_flat(e)) flats.join(face_of(e), other_face_of(e));
-    const std::vector<Flat> of = measure(flats);
-    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+    find_flats();
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
       if (!has_two_faces(e) || is_mechanical_[face_of(e)] == 0) continue;
-      const Flat& one = of[flats.find(face_of(e))];
-      const Flat& other = of[flats.find(other_face_of(e))];
+      const Flat& one = flat_of(face_of(e));
+      const Flat& other = flat_of(other_face_of(e));
       if (is_sharp(e) || (cosines_[e] < outline_cosine_ && (one.is_broader(other) || other.is_broader(one))))
         topology_.kind[e] = EdgeKind::crease;
     }
@@ -120,48 +131,58 @@ class ShapeFinder {
   struct Flat {
     uint32_t faces = 0;
     double area = 0, perimeter = 0;
-    /// By area over perimeter; neither need be known to be more than nothing.
+    /// Compares ratios of area to perimeter, as products: all of these may be 0.
     [[nodiscard]] bool is_broader(const Flat& other) const {
       return faces >= 2 && area * other.perimeter >= broader * other.area * perimeter;
     }
   };
 
-  std::vector<Flat> measure(DisjointSets& flats) const {
-    std::vector<Flat> of(topology_.face_count());  // of the flat that this face stands for
-    const auto at = [&](uint32_t h) { return to_double(mesh_.positions[topology_.origin[h]]); };
-    for (uint32_t f = 0; f < topology_.face_count(); ++f) {
-      Flat& flat = of[flats.find(f)];
+  [[nodiscard]] const Flat& flat_of(FaceId face) { return flat_of_[flats_.find(face)]; }
+
+  [[nodiscard]] Vec3d origin_of(HalfEdgeId h) const { return to_double(mesh_.positions[topology_.origin[h]]); }
+  [[nodiscard]] double area_of(FaceId f) const {
+    const Vec3d a = origin_of(3 * f);
+    return 0.5 * length(cross(origin_of(3 * f + 1) - a, origin_of(3 * f + 2) - a));
+  }
+
+  /// Finds and measures the regions that flat edges join, once.
+  void find_flats() {
+    if (!flat_of_.empty()) return;
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e)
+      if (has_two_faces(e) && is_flat(e)) flats_.join(face_of(e), other_face_of(e));
+    flat_of_.resize(topology_.face_count());
+    for (FaceId f = 0; f < topology_.face_count(); ++f) {
+      Flat& flat = flat_of_[flats_.find(f)];
       ++flat.faces;
-      flat.area += 0.5 * length(cross(at(3 * f + 1) - at(3 * f), at(3 * f + 2) - at(3 * f)));
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-        const uint32_t t = topology_.twin[h];
-        if (t == none || flats.find(Topology::face(t)) != flats.find(f))
-          flat.perimeter += length(at(Topology::next(h)) - at(h));
+      flat.area += area_of(f);
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
+        const HalfEdgeId t = topology_.twin[h];
+        if (t == none || flats_.find(t.face()) != flats_.find(f))
+          flat.perimeter += length(origin_of(h.next()) - origin_of(h));
       }
     }
-    return of;
   }
 
   void find_corners() {
-    const auto is_curve = [&](uint32_t e) { return topology_.kind[e] != EdgeKind::smooth; };
+    const auto is_curve = [&](EdgeId e) { return topology_.kind[e] != EdgeKind::smooth; };
     const VertexDegrees curves(topology_, is_curve);
-    Buffer<uint32_t> last(topology_.vertex_count, none);  // the other end of the last edge of a curve at the vertex
-    for (uint32_t e = 0; e < topology_.edge_count(); ++e) {
+    Buffer<uint32_t> last(topology_.vertex_count, none);  // other end of the last curve edge at the vertex
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
       if (!is_curve(e)) continue;
-      const uint32_t h = topology_.half_edge[e];
+      const HalfEdgeId h = topology_.half_edge[e];
       last[topology_.origin[h]] = topology_.tip(h);
       last[topology_.tip(h)] = topology_.origin[h];
     }
     Buffer<uint8_t> is_mechanical(topology_.vertex_count, 0);
-    for (uint32_t h = 0; h < topology_.half_edge_count(); ++h)
-      is_mechanical[topology_.origin[h]] |= is_mechanical_[Topology::face(h)];
-    const auto turns = [&](uint32_t v, uint32_t before, uint32_t after) {
-      const auto at = [&](uint32_t vertex) { return to_double(mesh_.positions[vertex]); };
+    for (HalfEdgeId h = 0; h < topology_.half_edge_count(); ++h)
+      is_mechanical[topology_.origin[h]] |= is_mechanical_[h.face()];
+    const auto turns = [&](VertexId v, uint32_t before, uint32_t after) {
+      const auto at = [&](VertexId vertex) { return to_double(mesh_.positions[vertex]); };
       const Vec3d u = at(v) - at(before);
       const Vec3d w = at(after) - at(v);
       return dot(u, w) < sharp_cosine_ * length(u) * length(w);
     };
-    for (uint32_t v = 0; v < topology_.vertex_count; ++v) {
+    for (VertexId v = 0; v < topology_.vertex_count; ++v) {
       if (is_mechanical[v] == 0 || curves.degree[v] == 0 || is_dart(topology_, v)) continue;
       if (curves.degree[v] != 2 || turns(v, curves.neighbours[v] ^ last[v], last[v]))
         topology_.shape.corners.push_back(v);
@@ -170,7 +191,7 @@ class ShapeFinder {
 
   ShapeReport report() {
     ShapeReport report;
-    for (uint32_t f = 0; f < topology_.face_count(); ++f) {
+    for (FaceId f = 0; f < topology_.face_count(); ++f) {
       if (components_.find(f) != f) continue;
       ++report.components;
       report.mechanical += is_mechanical_[f];
@@ -185,8 +206,9 @@ class ShapeFinder {
   const double sharp_cosine_ = cosine_of_degrees(sharp_degrees);
   Mesh& mesh_;
   Topology& topology_;
-  DisjointSets components_;
-  Buffer<double> cosines_;         ///< [E] of the angle between the two faces' normals
+  DisjointSets components_, flats_;
+  std::vector<Flat> flat_of_;      ///< [F] region that this face represents; empty before find_flats()
+  Buffer<double> cosines_;         ///< [E] cosine of the angle between the two faces' normals
   Buffer<uint8_t> is_mechanical_;  ///< [F]
   uint32_t marked_ = 0;            ///< creases of smoothing groups
 };
@@ -194,7 +216,7 @@ class ShapeFinder {
 }  // namespace
 
 ShapeReport mark_shape(Mesh& mesh, const Options& options) {
-  if (mesh.detail) return {};  // which shapes the surface
+  if (mesh.detail) return {};  // the detail shapes the surface
   if (options.shape != Shape::plain && options.tension != Tension::off) return ShapeFinder(mesh).run(options);
   if (options.crease_angle < 180) {
     mark_creases(mesh, options.crease_angle);

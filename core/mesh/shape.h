@@ -6,22 +6,27 @@
 
 namespace papilio {
 
-/// Marks what of a coarse mesh is to stay as it is, and says what was found: its creases, darts and `Topology::shape`.
-/// The mesh must have its edges, none of them a crease. Levels inherit the marks, as they inherit creases.
+/// Marks the creases, darts and `Topology::shape` of a coarse mesh, and returns their counts. The mesh must have edges,
+/// none of them a crease. Levels inherit the marks. A mesh with detail gets none. O(F log F).
 ///
-/// `Options::crease_angle` below 180, given by hand, replaces all other creases. Without it, creases are those of
-/// smoothing groups (smoothing_groups.h) and those of the shape.
+/// `Options::crease_angle` below 180 replaces all other creases. Otherwise creases come from smoothing groups
+/// (smoothing_groups.h) and from the shape. Without tension, or with `Shape::plain`, the shape adds none.
 ///
-/// Without tension or by `Shape::plain` no creases of the shape are marked. Else a component, faces
-/// connected by edges, is mechanical where the option says so or, by itself, where of its edges between two faces at
-/// least a quarter lie flat (under half a degree) and at least half are either flat or sharp (over 31 degrees). Of a
-/// mechanical component creases are, unless an angle is given,
-/// - all sharp edges;
-/// - the outlines of broad flats: of the regions that flat edges join, width is area by perimeter; an edge of 3 degrees
-///   and more is a crease where one of its regions has two faces or more and 1.5 times the other's width.
-/// Its corners are the vertices on curves where the curve turns by more than 31 degrees, or where other than two curve
-/// edges meet. An edge is flat, too, where the apex of its smaller face lies within `ShapeMarks::flat_distance` of the
-/// larger one's plane: the angles of slivers mean nothing. Nothing is marked of a mesh with detail. O(F log F).
+/// A component is a set of faces connected by edges. `Shape::automatic` makes it mechanical in one of three cases,
+/// counting edges between two faces:
+/// - at least a quarter of its edges are flat (under half a degree), and at least half are flat or sharp (over 31
+///   degrees);
+/// - every edge is flat or sharp, and one is flat, as in a pyramid of six faces;
+/// - at least a tenth of its edges are sharp, and at least a quarter of its area lies in flats of four faces or more.
+///
+/// Flats are the regions that flat edges connect; their width is area over perimeter. Creases of a mechanical component
+/// are:
+/// - sharp edges;
+/// - edges of 3 degrees or more between two flats, if one has at least two faces and 1.5 times the other's width.
+///
+/// Corners of a mechanical component are vertices at which a curve turns by more than 31 degrees, or at which other
+/// than two curve edges meet. An edge is also flat if the apex of its smaller face lies within
+/// `ShapeMarks::flat_distance` of the larger face's plane, as angles of slivers are meaningless.
 ShapeReport mark_shape(Mesh& mesh, const Options& options);
 
 }  // namespace papilio

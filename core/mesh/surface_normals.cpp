@@ -21,9 +21,9 @@ void put_value(Attribute& attribute, uint32_t point, Vec3d value) {
   std::tie(v[0], v[1], v[2]) = std::tuple{value.x, value.y, value.z};
 }
 
-/// Two normals that are no further apart are one, as rounding makes several of one: a degree.
+/// Cosine of a degree, the largest angle between normals that count as equal: rounding may split one normal.
 constexpr double same_cosine = 0.99985;
-/// A point is compared with so many others of its vertex at most: those next to it in the order of their values.
+/// Upper bound of the points of its vertex that a point is compared with: those before it in the order of values.
 constexpr size_t most_compared = 16;
 
 bool are_same(Vec3d a, Vec3d b) {
@@ -31,11 +31,11 @@ bool are_same(Vec3d a, Vec3d b) {
   return a == b || (product > 0 && product * product > same_cosine * same_cosine * dot(a, a) * dot(b, b));
 }
 
-/// For each point one of its vertex that has the same value, to a degree; the same for all of these.
+/// Returns, for each point, the representative of the points of its vertex with equal values, within a degree.
 std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attribute) {
   const PointAttributes& points = mesh.attributes;
   std::vector<uint32_t> vertex(points.point_count, none);
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) vertex[points.point[h]] = mesh.topology.origin[h];
+  for (HalfEdgeId h = 0; h < mesh.topology.half_edge_count(); ++h) vertex[points.point[h]] = mesh.topology.origin[h];
   std::vector<uint32_t> order(points.point_count);
   std::vector<uint32_t> equal(points.point_count);
   for (uint32_t p = 0; p < order.size(); ++p) order[p] = equal[p] = p;
@@ -45,7 +45,7 @@ std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attri
     return std::tuple{vertex[p], v.x, v.y, v.z, p};
   };
   sort_range(order, [&](uint32_t p, uint32_t q) { return place(p) < place(q); });
-  std::vector<uint32_t> kept;  // of the vertex at hand, those that equal none before
+  std::vector<uint32_t> kept;  // representatives at the current vertex
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t p = order[i];
     if (i > 0 && vertex[order[i - 1]] != vertex[p]) kept.clear();
@@ -61,37 +61,38 @@ std::vector<uint32_t> find_equal_points(const Mesh& mesh, const Attribute& attri
   return equal;
 }
 
-/// The corners of one vertex between creases, all the way round or from curve to curve: their numbers [H].
+/// Returns [H] the sector of each corner, and their count. A sector is a run of corners at one vertex, from curve to
+/// curve or all the way round.
 std::vector<uint32_t> find_sectors(const Topology& mesh, uint32_t& count) {
   std::vector<uint32_t> sector(mesh.half_edge_count(), none);
-  const auto clockwise = [&](uint32_t h) { return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]); };
-  const auto counter_clockwise = [&](uint32_t h) {
-    const uint32_t incoming = Topology::previous(h);
+  const auto clockwise = [&](HalfEdgeId h) { return mesh.is_curve(h) ? none : Topology::next(mesh.twin[h]); };
+  const auto counter_clockwise = [&](HalfEdgeId h) {
+    const HalfEdgeId incoming = h.previous();
     return mesh.is_curve(incoming) ? none : mesh.twin[incoming];
   };
   count = 0;
   for (uint32_t start = 0; start < mesh.half_edge_count(); ++start) {
     if (sector[start] != none) continue;
-    for (uint32_t h = start; h != none && sector[h] == none; h = counter_clockwise(h)) sector[h] = count;
-    for (uint32_t h = clockwise(start); h != none && sector[h] == none; h = clockwise(h)) sector[h] = count;
+    for (HalfEdgeId h = start; h != none && sector[h] == none; h = counter_clockwise(h)) sector[h] = count;
+    for (HalfEdgeId h = clockwise(start); h != none && sector[h] == none; h = clockwise(h)) sector[h] = count;
     ++count;
   }
   return sector;
 }
 
-/// The sums of the faces' normals, by area, of what the corners belong to. `of(h)` is below `count`. [count]
+/// Returns [count] the area-weighted sums of face normals over groups of corners; of(h) is the group, below `count`.
 template <class Of>
 std::vector<Vec3d> sum_normals(const Mesh& mesh, uint32_t count, const Of& of) {
   std::vector<Vec3d> sums(count);
-  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+  for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d normal = area_normal(mesh, f);
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += normal;
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += normal;
   }
   return sums;
 }
 
 /// Returns the angle of a face at a corner, in radians.
-double angle_at(const Mesh& mesh, uint32_t h) {
+double angle_at(const Mesh& mesh, HalfEdgeId h) {
   const Vec3d place = to_double(mesh.positions[mesh.topology.origin[h]]);
   const Vec3d one = to_double(mesh.positions[mesh.topology.tip(h)]) - place;
   const Vec3d other = to_double(mesh.positions[mesh.topology.apex(h)]) - place;
@@ -101,15 +102,15 @@ double angle_at(const Mesh& mesh, uint32_t h) {
   return cosine < 0 ? std::numbers::pi - arc_cosine(-cosine) : arc_cosine(cosine);
 }
 
-/// The sums of the faces' unit normals, by their angles at the corners. As sum_normals().
+/// Returns [count] the sums of unit face normals weighted by the angles at the corners, as sum_normals().
 template <class Of>
 std::vector<Vec3d> sum_by_angle(const Mesh& mesh, uint32_t count, const Of& of) {
   std::vector<Vec3d> sums(count);
-  for (uint32_t f = 0; f < mesh.topology.face_count(); ++f) {
+  for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d normal = area_normal(mesh, f);
     const double size = length(normal);
     if (!(size > 0)) continue;
-    for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += angle_at(mesh, h) / size * normal;
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += angle_at(mesh, h) / size * normal;
   }
   return sums;
 }
@@ -121,7 +122,7 @@ void renew_normals(Mesh& mesh, size_t number) {
   const Buffer<uint32_t>& point = mesh.attributes.point;
   const std::vector<uint32_t> equal = find_equal_points(mesh, attribute);
   const std::vector<Vec3d> sums =
-      sum_normals(mesh, mesh.attributes.point_count, [&](uint32_t h) { return equal[point[h]]; });
+      sum_normals(mesh, mesh.attributes.point_count, [&](HalfEdgeId h) { return equal[point[h]]; });
   double agreement = 0;
   for (uint32_t p = 0; p < sums.size(); ++p) agreement += dot(sums[p], vector_at(attribute, p));
   for (uint32_t p = 0; p < sums.size(); ++p) {
@@ -137,15 +138,15 @@ void add_weighted_normals(Mesh& mesh, FaceWeight weight) {
   PointAttributes& attributes = mesh.attributes;
   uint32_t sectors = 0;
   const std::vector<uint32_t> sector = find_sectors(mesh.topology, sectors);
-  std::vector<uint32_t> sector_of;  // of each new point
-  std::vector<uint32_t> old_point;  // where there are attributes
+  std::vector<uint32_t> sector_of;  // sector of each new point
+  std::vector<uint32_t> old_point;  // old point of each new point, if there are attributes
   if (attributes.empty()) {
     attributes.point.assign(sector.size(), 0);
     std::ranges::copy(sector, attributes.point.begin());
     for (uint32_t s = 0; s < sectors; ++s) sector_of.push_back(s);
   } else {
-    std::vector<std::pair<uint64_t, uint32_t>> corners(sector.size());  // sector and old point; the half-edge
-    for (uint32_t h = 0; h < sector.size(); ++h) corners[h] = {uint64_t{sector[h]} << 32 | attributes.point[h], h};
+    std::vector<std::pair<uint64_t, uint32_t>> corners(sector.size());  // (sector, old point) and half-edge
+    for (HalfEdgeId h = 0; h < sector.size(); ++h) corners[h] = {uint64_t{sector[h]} << 32 | attributes.point[h], h};
     sort_range(corners);
     for (size_t i = 0; i < corners.size(); ++i) {
       const auto [both, h] = corners[i];
@@ -161,12 +162,12 @@ void add_weighted_normals(Mesh& mesh, FaceWeight weight) {
     std::vector<double> values;
     values.reserve(old_point.size() * attribute.components);
     for (uint32_t p : old_point) {
-      const double* value = &attribute.values[size_t{p} * attribute.components];
-      values.insert(values.end(), value, value + attribute.components);
+      const auto value = values_of(attribute, p);
+      values.insert(values.end(), value.begin(), value.end());
     }
     attribute.values = std::move(values);
   }
-  const auto sector_at = [&](uint32_t h) { return sector[h]; };
+  const auto sector_at = [&](HalfEdgeId h) { return sector[h]; };
   const std::vector<Vec3d> sums =
       weight == FaceWeight::area ? sum_normals(mesh, sectors, sector_at) : sum_by_angle(mesh, sectors, sector_at);
   Attribute normals{.components = 3, .unit_length = true, .values = std::vector<double>(3 * sector_of.size())};

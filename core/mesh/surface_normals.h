@@ -6,13 +6,13 @@
 
 namespace papilio {
 
-/// What the normals of a vertex's faces count by in its normal.
+/// Weight of a face's normal in the normal of its vertex.
 enum class FaceWeight : uint8_t {
   area,
-  angle,  ///< at the vertex: what modelling programs do
+  angle,  ///< angle at the vertex, as in modelling programs
 };
 
-/// Adds normals as add_normals() does, with these weights.
+/// Adds normals as add_normals(), with face normals weighted by `weight`.
 void add_weighted_normals(Mesh& mesh, FaceWeight weight);
 
 }  // namespace papilio

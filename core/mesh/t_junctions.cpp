@@ -10,18 +10,18 @@
 namespace papilio {
 namespace {
 
-constexpr size_t most_candidates = 4096;       // near an edge
-constexpr ptrdiff_t most_boundary_edges = 16;  // looked at, at a vertex
+constexpr size_t most_candidates = 4096;       // upper bound near an edge
+constexpr ptrdiff_t most_boundary_edges = 16;  // upper bound of those examined at a vertex
 
 /// Boundary half-edges by one of their vertices.
 class EdgesAt {
  public:
-  void add(uint32_t vertex, uint32_t half_edge) { edges_.emplace_back(vertex, half_edge); }
+  void add(VertexId vertex, uint32_t half_edge) { edges_.emplace_back(vertex, half_edge); }
   void sort() { sort_range(edges_); }
   /// Returns whether the predicate holds of any half-edge at the vertex.
   template <class Predicate>
-  [[nodiscard]] bool any(uint32_t vertex, Predicate is) const {
-    auto edge = std::ranges::lower_bound(edges_, vertex, {}, &std::pair<uint32_t, uint32_t>::first);
+  [[nodiscard]] bool any(VertexId vertex, Predicate is) const {
+    auto edge = std::ranges::lower_bound(edges_, uint32_t{vertex}, {}, &std::pair<uint32_t, uint32_t>::first);
     for (ptrdiff_t looks = 0; edge != edges_.end() && edge->first == vertex && looks < most_boundary_edges; ++looks)
       if (is((edge++)->second)) return true;
     return false;
@@ -35,7 +35,7 @@ class TJunctionFinder {
  public:
   TJunctionFinder(const Topology& mesh, const Buffer<Vec3f>& positions, double distance)
       : mesh_(mesh), positions_(positions), distance_(distance) {
-    for (const uint32_t h : mesh.half_edge) {
+    for (const HalfEdgeId h : mesh.half_edge) {
       if (mesh.kind[mesh.edge[h]] != EdgeKind::boundary) continue;
       open_.push_back(h);
       leaving_.add(mesh.origin[h], h);
@@ -50,10 +50,10 @@ class TJunctionFinder {
 
   std::vector<Insertion> run() {
     std::vector<Vec3d> points;
-    for (const uint32_t v : vertices_) points.push_back(at(v));
+    for (const VertexId v : vertices_) points.push_back(at(v));
     PointTree tree(std::move(points));
     std::vector<Insertion> found;
-    for (const uint32_t h : open_) {
+    for (const HalfEdgeId h : open_) {
       append_of(h, tree, found);
       if (tree.is_exhausted() || found.size() >= open_.size()) break;
     }
@@ -61,13 +61,13 @@ class TJunctionFinder {
   }
 
  private:
-  [[nodiscard]] Vec3d at(uint32_t vertex) const { return to_double(positions_[vertex]); }
+  [[nodiscard]] Vec3d at(VertexId vertex) const { return to_double(positions_[vertex]); }
 
-  void append_of(uint32_t h, PointTree& tree, std::vector<Insertion>& found) const {
+  void append_of(HalfEdgeId h, PointTree& tree, std::vector<Insertion>& found) const {
     const Vec3d a = at(mesh_.origin[h]), b = at(mesh_.tip(h));
     std::vector<Insertion> on_edge;
     tree.for_each_near(a, b, distance_, [&](uint32_t number) {
-      const uint32_t v = vertices_[number];
+      const VertexId v = vertices_[number];
       if (is_apart(v, h) && connects(v, h)) on_edge.push_back({h, dot(at(v) - a, b - a) / dot(b - a, b - a), v});
       return on_edge.size() < most_candidates;
     });
@@ -84,23 +84,23 @@ class TJunctionFinder {
 
   [[nodiscard]] bool is_farther(Vec3d p, Vec3d q) const { return dot(p - q, p - q) > distance_ * distance_; }
 
-  /// Returns whether a vertex is none of the face's, and not at an end of the edge.
-  [[nodiscard]] bool is_apart(uint32_t v, uint32_t h) const {
+  /// Returns whether a vertex is no corner of h's face, and apart from both ends of h's edge.
+  [[nodiscard]] bool is_apart(VertexId v, HalfEdgeId h) const {
     return v != mesh_.origin[h] && v != mesh_.tip(h) && v != mesh_.apex(h) && is_farther(at(v), at(mesh_.origin[h])) &&
            is_farther(at(v), at(mesh_.tip(h)));
   }
 
-  /// Returns whether a boundary edge at the vertex runs along the edge of h, the other way.
-  [[nodiscard]] bool connects(uint32_t v, uint32_t h) const {
+  /// Returns whether a boundary edge at the vertex runs along the edge of h in the opposite direction.
+  [[nodiscard]] bool connects(VertexId v, HalfEdgeId h) const {
     const auto runs_to = [&](uint32_t g, uint32_t one, uint32_t other) {
-      return Topology::face(g) != Topology::face(h) && lie_in_one_direction(v, one, other);
+      return Topology::face(g) != h.face() && lie_in_one_direction(v, one, other);
     };
     return leaving_.any(v, [&](uint32_t g) { return runs_to(g, mesh_.tip(g), mesh_.origin[h]); }) ||
            arriving_.any(v, [&](uint32_t g) { return runs_to(g, mesh_.origin[g], mesh_.tip(h)); });
   }
 
   /// Returns whether one of two vertices lies on the way from v to the other.
-  [[nodiscard]] bool lie_in_one_direction(uint32_t v, uint32_t one, uint32_t other) const {
+  [[nodiscard]] bool lie_in_one_direction(VertexId v, uint32_t one, uint32_t other) const {
     if (!is_farther(at(v), at(one))) return false;
     const double most = distance_ * distance_;
     return squared_distance_to_segment(at(one), at(v), at(other)) <= most ||

@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "base/ids.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -15,7 +16,7 @@ Buffer<Triangle> in_threes(const Buffer<uint32_t>& corners) {
 TriangleMesh points_and_triangles(const Mesh& mesh) {
   const PointAttributes& points = mesh.attributes;
   TriangleMesh out{Buffer<Vec3f>::for_overwrite(points.point_count), in_threes(points.point), points.attributes};
-  for (uint32_t h = 0; h < points.point.size(); ++h)
+  for (HalfEdgeId h = 0; h < points.point.size(); ++h)
     out.positions[points.point[h]] = mesh.positions[mesh.topology.origin[h]];
   return out;
 }

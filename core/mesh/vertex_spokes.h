@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "base/ids.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -9,16 +10,16 @@ namespace papilio {
 /// Half-edges that leave each vertex, in ascending order.
 class VertexSpokes {
  public:
-  /// O(H).
+  /// Sorts half-edges by origin. O(H).
   explicit VertexSpokes(const Topology& mesh)
       : starts_(size_t{mesh.vertex_count} + 1, 0), half_edges_(mesh.half_edge_count()) {
-    for (const uint32_t v : mesh.origin) ++starts_[v + 1];
-    for (uint32_t v = 0; v < mesh.vertex_count; ++v) starts_[v + 1] += starts_[v];
+    for (const VertexId v : mesh.origin) ++starts_[v + 1];
+    for (VertexId v = 0; v < mesh.vertex_count; ++v) starts_[v + 1] += starts_[v];
     Buffer<uint32_t> next = starts_;
-    for (uint32_t h = 0; h < mesh.half_edge_count(); ++h) half_edges_[next[mesh.origin[h]]++] = h;
+    for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h) half_edges_[next[mesh.origin[h]]++] = h;
   }
 
-  [[nodiscard]] std::span<const uint32_t> of(uint32_t vertex) const {
+  [[nodiscard]] std::span<const uint32_t> of(VertexId vertex) const {
     return {half_edges_.data() + starts_[vertex], half_edges_.data() + starts_[vertex + 1]};
   }
 

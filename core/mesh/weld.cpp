@@ -6,20 +6,20 @@
 namespace papilio {
 namespace {
 
-/// Of this process: nobody else can make meshes whose positions collide. Once, for it takes a tenth of a millisecond to
-/// get where the processor is a virtual one.
+/// Returns the random seed of this process, so that no mesh can be made to collide in the hash. Drawn once: on virtual
+/// processors it takes a tenth of a millisecond.
 uint64_t hash_seed() {
   static const uint64_t seed = std::random_device{}() | uint64_t{std::random_device{}()} << 32;
   return seed;
 }
 
-/// Finds a point of equal position among those already seen: open addressing, at most half full.
+/// Hash table of points by position: open addressing, at most half full.
 class PositionTable {
  public:
   explicit PositionTable(const Buffer<Vec3f>& points)
       : points_(points), mask_(std::bit_ceil(2 * points.size() + 2) - 1), slots_(mask_ + 1, none), seed_(hash_seed()) {}
 
-  /// The first point seen with p's position: p itself when there was none.
+  /// Returns the first inserted point with p's position; inserts p if there is none.
   uint32_t first_at(uint32_t p) {
     const Vec3f position = points_[p];
     for (size_t slot = hash(position) & mask_;; slot = (slot + 1) & mask_) {

@@ -15,9 +15,9 @@
 namespace papilio {
 namespace {
 
-constexpr size_t most_partners = 16;   // of an edge
-constexpr size_t most_together = 256;  // vertices that become one
-constexpr uint64_t looks_a_face = 32;  // at a face's corners, on average
+constexpr size_t most_partners = 16;   // upper bound of the candidates for an edge
+constexpr size_t most_together = 256;  // upper bound of the vertices welded to one
+constexpr uint64_t looks_a_face = 32;  // upper bound of the average number of checks of a face
 constexpr uint64_t least_looks = 1 << 18;
 
 class GapWelder {
@@ -27,13 +27,13 @@ class GapWelder {
         positions_(positions),
         distance_(distance),
         most_looks_(looks_a_face * mesh.face_count() + least_looks) {
-    for (const uint32_t h : mesh.half_edge)
+    for (const HalfEdgeId h : mesh.half_edge)
       if (mesh.kind[mesh.edge[h]] == EdgeKind::boundary) open_.push_back(h);
   }
 
   Buffer<uint32_t> run() {
     std::vector<Vec3d> middles;
-    for (const uint32_t h : open_) middles.push_back(0.5 * (at(mesh_.origin[h]) + at(mesh_.tip(h))));
+    for (const HalfEdgeId h : open_) middles.push_back(0.5 * (at(mesh_.origin[h]) + at(mesh_.tip(h))));
     PointTree tree(middles);
     is_closed_.assign(open_.size(), false);
     for (uint32_t i = 0; i < open_.size() && !tree.is_exhausted() && looks_ < most_looks_; ++i)
@@ -43,17 +43,17 @@ class GapWelder {
 
  private:
   struct Candidate {
-    double distance;  ///< squared, of both ends
-    uint32_t number;  ///< in `open_`
+    double distance;  ///< sum of the squared distances between the ends
+    uint32_t number;  ///< index in `open_`
   };
 
-  [[nodiscard]] Vec3d at(uint32_t vertex) const { return to_double(positions_[vertex]); }
-  [[nodiscard]] double squared_distance(uint32_t v, uint32_t w) const {
+  [[nodiscard]] Vec3d at(VertexId vertex) const { return to_double(positions_[vertex]); }
+  [[nodiscard]] double squared_distance(VertexId v, uint32_t w) const {
     const Vec3d apart = at(v) - at(w);
     return dot(apart, apart);
   }
 
-  /// Closes an open edge with the nearest that fits.
+  /// Closes an open edge with the nearest one that join_ends() accepts.
   void close(uint32_t i, Vec3d middle, PointTree& tree) {
     std::vector<Candidate> candidates;
     tree.for_each_near(middle, middle, distance_, [&](uint32_t j) {
@@ -70,10 +70,10 @@ class GapWelder {
     }
   }
 
-  /// Returns how far two open edges are apart; nothing if they cannot close.
+  /// Returns the sum of the squared distances between the ends of two open edges; nothing if they cannot close.
   [[nodiscard]] std::optional<double> gap(uint32_t i, uint32_t j) const {
-    const uint32_t h = open_[i], g = open_[j];
-    if (is_closed_[j] || Topology::face(h) == Topology::face(g)) return std::nullopt;
+    const HalfEdgeId h = open_[i], g = open_[j];
+    if (is_closed_[j] || h.face() == Topology::face(g)) return std::nullopt;
     const double first = squared_distance(mesh_.origin[h], mesh_.tip(g));
     const double second = squared_distance(mesh_.tip(h), mesh_.origin[g]);
     if (std::max(first, second) > distance_ * distance_) return std::nullopt;
@@ -89,8 +89,8 @@ class GapWelder {
     size_.assign(mesh_.vertex_count, 1);
   }
 
-  /// Makes the ends of two edges one if nothing gets worse. Returns whether it does.
-  bool join_ends(uint32_t h, uint32_t g) {
+  /// Welds the ends of two edges if that makes no defect. Returns whether it did.
+  bool join_ends(HalfEdgeId h, uint32_t g) {
     prepare();
     const Merge merge(root_[mesh_.origin[h]], root_[mesh_.tip(g)], root_[mesh_.tip(h)], root_[mesh_.origin[g]]);
     if (!may_move(merge) || !keeps_faces(merge)) return false;
@@ -99,7 +99,7 @@ class GapWelder {
     return true;
   }
 
-  /// Roots that change, each to a lower one.
+  /// Roots to be replaced, each by a lower one.
   struct Merge {
     Merge() = default;
     Merge(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -138,30 +138,30 @@ class GapWelder {
       may = may && size_[move.from] + size_[move.to] <= most_together;
       const uint32_t root = merge(move.to);
       if (may)
-        for_each_member(move.from, [&](uint32_t v) { may &= squared_distance(v, root) <= distance_ * distance_; });
+        for_each_member(move.from, [&](VertexId v) { may &= squared_distance(v, root) <= distance_ * distance_; });
     }
     return may;
   }
 
-  /// Returns whether all faces at the merged vertices keep three corners and their side, and no more half-edges run
-  /// between two vertices in one direction than before.
+  /// Returns whether all faces at the merged vertices keep three corners and their orientation, and the number of
+  /// repeated half-edges does not grow.
   bool keeps_faces(const Merge& merge) {
     faces_.clear();
     for (const auto& [from, to] : merge.moves())
       for (const uint32_t root : {from, to})
-        for_each_member(root, [&](uint32_t v) {
-          for (const uint32_t h : spokes_->of(v)) faces_.push_back(Topology::face(h));
+        for_each_member(root, [&](VertexId v) {
+          for (const HalfEdgeId h : spokes_->of(v)) faces_.push_back(h.face());
         });
     sort_range(faces_);
     faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
     looks_ += faces_.size();
-    for (const uint32_t f : faces_)
+    for (const FaceId f : faces_)
       if (!keeps_side(f, merge)) return false;
     const size_t repeated = count_repeated(merge);
     return repeated == 0 || repeated <= count_repeated({});
   }
 
-  [[nodiscard]] bool keeps_side(uint32_t face, const Merge& merge) const {
+  [[nodiscard]] bool keeps_side(FaceId face, const Merge& merge) const {
     Triangle before{}, after{};
     for (uint32_t i = 0; i < 3; ++i) {
       before[i] = root_[mesh_.origin[3 * face + i]];
@@ -173,11 +173,11 @@ class GapWelder {
     return dot(old, old) == 0 || dot(old, normal(after)) > 0;
   }
 
-  /// Returns how many half-edges of the faces run as another does.
+  /// Returns the number of half-edges of `faces_` that run between two vertices in one direction with an earlier one.
   [[nodiscard]] size_t count_repeated(const Merge& merge) {
     runs_.clear();
-    for (const uint32_t f : faces_)
-      for (uint32_t h = 3 * f; h < 3 * f + 3; ++h)
+    for (const FaceId f : faces_)
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
         runs_.emplace_back(merge(root_[mesh_.origin[h]]), merge(root_[mesh_.tip(h)]));
     sort_range(runs_);
     size_t repeated = 0;
@@ -186,7 +186,7 @@ class GapWelder {
   }
 
   void join(uint32_t from, uint32_t to) {
-    for_each_member(from, [&](uint32_t v) { root_[v] = to; });
+    for_each_member(from, [&](VertexId v) { root_[v] = to; });
     std::swap(next_[from], next_[to]);
     size_[to] += size_[from];
   }
@@ -197,11 +197,11 @@ class GapWelder {
   std::vector<uint32_t> open_;  ///< half-edges at the boundary
   std::vector<bool> is_closed_;
   std::optional<VertexSpokes> spokes_;
-  Buffer<uint32_t> root_;                            ///< [V] lowest vertex of those that become one with it
-  Buffer<uint32_t> next_;                            ///< [V] another of them, round and round
-  std::vector<uint32_t> faces_;                      ///< at the vertices that would become one
-  std::vector<std::pair<uint32_t, uint32_t>> runs_;  ///< of their half-edges
-  Buffer<uint32_t> size_;                            ///< [V] of a root: how many
+  Buffer<uint32_t> root_;                            ///< [V] lowest vertex welded with the vertex
+  Buffer<uint32_t> next_;                            ///< [V] next vertex welded with the vertex, in a cycle
+  std::vector<uint32_t> faces_;                      ///< faces at the vertices of the merge
+  std::vector<std::pair<uint32_t, uint32_t>> runs_;  ///< origin and tip of half-edges of `faces_`
+  Buffer<uint32_t> size_;                            ///< [V] number of vertices welded with a root
   bool is_changed_ = false;
   uint64_t looks_ = 0, most_looks_;
 };

@@ -10,7 +10,6 @@
 #include "base/trigonometry.h"
 #include "mesh/curve.h"
 #include "mesh/fan.h"
-#include "rules/child_stencil.h"
 #include "rules/edge_accumulator.h"
 #include "rules/stencil.h"
 #include "rules/tensed_rules.h"
@@ -41,20 +40,20 @@ class InteriorWeights {
 template <class Real>
 inline const InteriorWeights<Real> interior_weights;
 
-/// The points of the rule for a closed fan that is not regular: its centre and its ring, the vertices ring(0),
-/// ring(1), .. The valence is below `stencil::harmonic_valence`; one that is known when this is compiled is faster.
+/// Points of the rule for an irregular closed fan: its centre and its ring, the vertices ring(0), ring(1), .. The
+/// valence is below `stencil::harmonic_valence`; a valence known at compile time is faster.
 template <class Real, uint32_t known_valence = 0>
 class InteriorRing {
  public:
   template <class Ring>
-  InteriorRing(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring)
+  InteriorRing(const Vec3T<Real>* positions, VertexId centre, uint32_t valence, const Ring& ring)
       : valence_(valence),
         weights_(interior_weights<Real>.ring(valence)),
         centre_(interior_weights<Real>.centre(valence) * widen(positions[centre])) {
     for (uint32_t j = 0; j < this->valence(); ++j)
       points_[j] = points_[this->valence() + j] = widen(positions[ring(j)]);
   }
-  [[nodiscard]] Vec3T<Real> split(uint32_t spoke) const {
+  [[nodiscard]] Vec3T<Real> split(HalfEdgeId spoke) const {
     Wide<Real> sum = centre_;
     for (uint32_t j = 0; j < valence(); ++j) sum += weights_[j] * points_[spoke + j];
     Vec3T<Real> q;
@@ -71,14 +70,15 @@ class InteriorRing {
   std::array<Wide<Real>, size_t{2} * (known_valence != 0 ? known_valence : stencil::harmonic_valence)> points_;
 };
 
-/// A closed fan's opinion on all its spokes, without tension: calls add(j, position) for the j-th. Arguments as above.
+/// Computes a closed fan's contributions to all its spokes, without tension: calls add(j, position) for spoke j.
+/// Arguments: see InteriorRing.
 template <class Real, class Ring, class Add>
-void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence, const Ring& ring, const Add& add) {
+void split_ring(const Vec3T<Real>* positions, VertexId centre, uint32_t valence, const Ring& ring, const Add& add) {
   const auto split = [&]<uint32_t known_valence>(std::integral_constant<uint32_t, known_valence> /*of*/) {
     const InteriorRing<Real, known_valence> points(positions, centre, valence, ring);
     for (uint32_t i = 0; i < (known_valence != 0 ? known_valence : valence); ++i) add(i, points.split(i));
   };
-#if defined(__wasm__)  // where size counts more
+#if defined(__wasm__)  // where code size has priority
   split(std::integral_constant<uint32_t, 0>());
 #else
   switch (valence) {
@@ -100,87 +100,48 @@ void split_ring(const Vec3T<Real>* positions, uint32_t centre, uint32_t valence,
 #endif
 }
 
-/// The eight-point rule where every edge is split, for four faces at once (child_stencil.h): each position is loaded
-/// once, and the edges between the four are done. `positions` are those of the faces' level.
-template <class Real>
-class FamilyRule {
- public:
-  explicit FamilyRule(const Vec3T<Real>* positions) : p_(positions) {}
-
-  /// Adds what the family of face `parent` knows of its edges: for each of its four faces what
-  /// `ButterflyRules::add_face_shares` adds, to the bit.
-  template <class Shares>
-  void add_shares(uint32_t parent, const ChildStencil& family, Shares& shares) const {
-    std::array<Wide<Real>, 3> corner, middle, across_first, across_second;
-    for (uint32_t i = 0; i < 3; ++i) {
-      corner[i] = widen(p_[family.corner[i]]);
-      middle[i] = widen(p_[family.middle[i]]);
-      across_first[i] = widen(p_[family.across_first[i]]);
-      across_second[i] = widen(p_[family.across_second[i]]);
-    }
-    for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t next = (i + 1) % 3;
-      const uint32_t before = (i + 2) % 3;
-      // Child i has the corners corner[i], middle[i] and middle[before].
-      const Wide<Real>& wing = middle[next];  // across its inner side
-      shares.add(parent, family.twin[i], family.first_half(i),
-                 share_(corner[i], middle[i], middle[before], wing, across_second[before]));
-      shares.add(parent, family.twin[before], family.second_half(before),
-                 share_(middle[before], corner[i], middle[i], across_first[i], wing));
-      shares.set(family.inner_edge(i),
-                 share_(middle[i], middle[before], corner[i], across_second[before], across_first[i]) +
-                     share_(middle[before], middle[i], wing, corner[next], corner[before]));
-    }
-  }
-
- private:
-  const Vec3T<Real>* p_;
-  stencil::FaceShare<Real> share_{};
-};
-
-/// The rules of one level: the new vertex of an edge from the positions round it. Which rule holds where is told in
-/// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so that both
-/// half-edges of an edge give the same.
+/// Rules of one level for the new vertex of an edge, given the positions round it. For which rule holds where, see
+/// butterfly.h. Each result depends on its stencil alone, to the bit: sums are of symmetric pairs, so both half-edges
+/// of an edge give equal results.
 template <class Real>
 class ButterflyRules {
   using Point = Vec3T<Real>;
 
  public:
-  /// `positions` [V] and the others must outlive this; `tension` may be null.
+  /// All arguments must outlive this object; `positions` [V]; `tension` may be null.
   ButterflyRules(const Topology& topology, const Point* positions, Real w, const TensionField* tension)
       : ButterflyRules(topology, positions, positions, w, tension) {}
-  /// The rules that hold at `places` [V], applied to `points` [V].
+  /// Applies the rules that hold at `places` [V] to `points` [V].
   ButterflyRules(const Topology& topology, const Point* places, const Point* points, Real w,
                  const TensionField* tension)
       : mesh_(topology), place_(places), p_(points), w_(w), share_(w) {
     if (tension != nullptr) tensed_.emplace(topology, places, points, *tension);
   }
 
-  /// An irregular fan's opinion on each of its spokes that lie inside the surface: calls add(spoke, position) for those
-  /// of them that wants(spoke).
-  template <class Wants, class Add>
-  void split_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
+  /// Computes an irregular fan's contributions to its spokes inside the surface: calls add(spoke, position).
+  template <class Add>
+  void split_spokes(const Fan& fan, const Add& add) const {
     if (fan.closed && fan.valence() < stencil::harmonic_valence)
-      split_interior_spokes(fan, wants, add);
+      split_interior_spokes(fan, add);
     else if (fan.closed)
       split_interior_spokes_by_harmonics(fan, add);
     else
       split_curve_spokes(fan, add);
   }
 
-  /// Whether all of a closed fan's hinges count whole, so that its rule is the plain one: without tension they do.
+  /// Returns whether all hinge factors of a closed fan are 1, so that its rule is the plain one. True without tension.
   template <class Spokes, class EdgeOf>
   [[nodiscard]] bool are_whole(const Spokes& spokes, const EdgeOf& edge_of) const {
     return !tensed_ ||
            std::ranges::all_of(spokes, [&](const auto& spoke) { return tensed_->is_whole(edge_of(spoke)); });
   }
 
-  [[nodiscard]] Point along_curve(const CurveNeighbours& curves, uint32_t e) const {
-    const uint32_t h = mesh_.half_edge[e];
+  [[nodiscard]] Point along_curve(const CurveNeighbours& curves, EdgeId e) const {
+    const HalfEdgeId h = mesh_.half_edge[e];
     const auto along = [&](const Point* points) {
       const Point a = points[mesh_.origin[h]];
       const Point b = points[mesh_.tip(h)];
-      const auto beyond = [&](uint32_t vertex, Point end, Point other) {
+      const auto beyond = [&](VertexId vertex, Point end, Point other) {
         return vertex == none ? Real(2) * end - other : points[vertex];
       };
       return std::array<Point, 4>{beyond(curves.before(h), a, b), a, b, beyond(curves.after(h), b, a)};
@@ -191,36 +152,38 @@ class ButterflyRules {
     return stencil::Curve<Real>::end * (a + b) + stencil::Curve<Real>::next * (before + after);
   }
 
-  /// Both ends regular: which row applies depends on the sides on which a curve touches them.
-  [[nodiscard]] Point regular(uint32_t h) const {
-    const uint32_t t = mesh_.twin[h];
+  /// Returns the new vertex of an edge with both ends regular. The row depends on the sides on which a
+  /// curve touches them.
+  [[nodiscard]] Point regular(HalfEdgeId h) const {
+    const HalfEdgeId t = mesh_.twin[h];
     if (!tensed_) return regular(h, t);
     if (touches_curve(h, t)) return tensed_->scaled(h, regular(h, t));
     const Point q = tensed_->interior_interior(h, t);
     return w_ == 0 ? q : q + tensed_->least_factor(h) * (interior_interior(h, t) - eight_points(h, t));
   }
 
-  /// What comes last for every edge, whatever its rule. `h` is the edge's half-edge; `curves` may be null where there
-  /// are none.
-  [[nodiscard, gnu::always_inline]] Point finish(uint32_t h, Point q, const CurveNeighbours* curves) const {
+  /// Applies the final steps of every rule: follow(), then limit(). `h` is the edge's half-edge; `curves` may be null
+  /// where there are none.
+  [[nodiscard, gnu::always_inline]] Point finish(HalfEdgeId h, Point q, const CurveNeighbours* curves) const {
     return limit(h, follow(h, q, curves));
   }
-  /// The first part of that, which is linear in the points.
-  [[nodiscard]] Point follow(uint32_t h, Point q, const CurveNeighbours* curves) const {
+  /// Applies the rules for strips and sharp edges, which are linear in the points.
+  [[nodiscard]] Point follow(HalfEdgeId h, Point q, const CurveNeighbours* curves) const {
     if (!tensed_) return q;
     if (curves != nullptr && tensed_->is_diagonal_of_strip(h)) q = across_strip(*curves, h);
     return tensed_->followed(h, q);
   }
-  [[nodiscard]] Point middle(uint32_t h) const { return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))); }
-  /// The second part. Of places alone.
-  [[nodiscard, gnu::always_inline]] Point limit(uint32_t h, Point q) const {
+  [[nodiscard]] Point middle(HalfEdgeId h) const { return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))); }
+  /// Applies the limits of tension and shape rules. For places only.
+  [[nodiscard, gnu::always_inline]] Point limit(HalfEdgeId h, Point q) const {
     return tensed_ ? tensed_->limited(h, q) : q;
   }
 
-  /// Where every edge is split, the eight-point rule goes face by face: adds what face f knows of its three edges. The
-  /// face must have a twin at each. Two faces make the bits of `regular`. `shares` as in edge_accumulator.h.
+  /// Adds the contributions of face f to its three edges, by the eight-point rule where every edge is split. The face
+  /// must have a twin at each side. Contributions of two faces add up to `regular`, to the bit. `shares`: see
+  /// edge_accumulator.h.
   template <class Shares>
-  void add_face_shares(uint32_t f, Shares& shares) const {
+  void add_face_shares(FaceId f, Shares& shares) const {
     const uint32_t* corner = &mesh_.origin[size_t{3} * f];
     const uint32_t* twin = &mesh_.twin[size_t{3} * f];
     const uint32_t* edge = &mesh_.edge[size_t{3} * f];
@@ -237,14 +200,14 @@ class ButterflyRules {
   }
 
  private:
-  template <class Wants, class Add>
-  void split_interior_spokes(const Fan& fan, const Wants& wants, const Add& add) const {
+  template <class Add>
+  void split_interior_spokes(const Fan& fan, const Add& add) const {
     const uint32_t k = fan.valence();
     const InteriorRing<Real> points(p_, fan.centre, k, [&](uint32_t j) { return fan.ring[j]; });
     const Real* s = interior_weights<Real>.ring(k);
-    const bool is_plain = k == 2 || are_whole(fan.spokes, [&](uint32_t spoke) { return mesh_.edge[spoke]; });
+    const bool is_plain = k == 2 || are_whole(fan.spokes, [&](HalfEdgeId spoke) { return mesh_.edge[spoke]; });
     for (uint32_t i = 0; i < k; ++i)
-      if (wants(fan.spokes[i])) add(fan.spokes[i], is_plain ? points.split(i) : tensed_->interior_spoke(fan, s, i));
+      add(fan.spokes[i], is_plain ? points.split(i) : tensed_->interior_spoke(fan, s, i));
   }
 
   template <class Add>
@@ -274,7 +237,7 @@ class ButterflyRules {
   template <class Add>
   void split_curve_spokes(const Fan& fan, const Add& add) const {
     const uint32_t k = fan.valence();
-    if (k < 2) return;  // none lies inside
+    if (k < 2) return;  // no spoke lies inside
     if (is_corner(mesh_, fan.centre)) {
       for (uint32_t i = 1; i < k; ++i) add(fan.spokes[i], Real(0.5) * (p_[fan.centre] + p_[fan.ring[i]]));
       return;
@@ -295,16 +258,16 @@ class ButterflyRules {
     }
   }
 
-  [[nodiscard]] bool touches_curve(uint32_t h, uint32_t t) const {
-    return mesh_.is_curve(Topology::previous(h)) || mesh_.is_curve(Topology::next(h)) ||
-           mesh_.is_curve(Topology::next(t)) || mesh_.is_curve(Topology::previous(t));
+  [[nodiscard]] bool touches_curve(HalfEdgeId h, HalfEdgeId t) const {
+    return mesh_.is_curve(h.previous()) || mesh_.is_curve(h.next()) || mesh_.is_curve(t.next()) ||
+           mesh_.is_curve(t.previous());
   }
 
-  [[nodiscard]] Point regular(uint32_t h, uint32_t t) const {
-    const bool a_left = mesh_.is_curve(Topology::previous(h));
-    const bool b_left = mesh_.is_curve(Topology::next(h));
-    const bool a_right = mesh_.is_curve(Topology::next(t));
-    const bool b_right = mesh_.is_curve(Topology::previous(t));
+  [[nodiscard]] Point regular(HalfEdgeId h, HalfEdgeId t) const {
+    const bool a_left = mesh_.is_curve(h.previous());
+    const bool b_left = mesh_.is_curve(h.next());
+    const bool a_right = mesh_.is_curve(t.next());
+    const bool b_right = mesh_.is_curve(t.previous());
     const bool a_curve = a_left || a_right;
     const bool b_curve = b_left || b_right;
     if (!a_curve && !b_curve) return interior_interior(h, t);
@@ -316,9 +279,9 @@ class ButterflyRules {
     return Real(0.5) * (p_[mesh_.origin[h]] + p_[mesh_.origin[t]]);
   }
 
-  /// The diagonal of a flat quadrangle between two curves moves as they do, half as far as both together: so the wall
-  /// of a drum is as round as its rims. (The published rule is the midpoint, which leaves it faceted.)
-  [[nodiscard]] Point across_strip(const CurveNeighbours& curves, uint32_t h) const {
+  /// Moves the diagonal of a flat quadrangle between two curves by half the sum of their moves. So the wall of a drum
+  /// is as round as its rims. (The published rule is the midpoint, which leaves the wall faceted.)
+  [[nodiscard]] Point across_strip(const CurveNeighbours& curves, HalfEdgeId h) const {
     const auto [one, other] = sides_of_strip(mesh_, h);
     const auto moved = [&](uint32_t side) {
       return along_curve(curves, mesh_.edge[side]) - Real(0.5) * (at(mesh_.origin[side]) + at(mesh_.tip(side)));
@@ -326,54 +289,51 @@ class ButterflyRules {
     return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))) + Real(0.5) * (moved(one) + moved(other));
   }
 
-  /// The vertex across the edge of h from h's face.
-  [[nodiscard]] Point wing(uint32_t h) const { return p_[mesh_.apex(mesh_.twin[h])]; }
-  [[nodiscard]] Point at(uint32_t vertex) const { return p_[vertex]; }
+  /// Returns the vertex across the edge of h from h's face.
+  [[nodiscard]] Point wing(HalfEdgeId h) const { return p_[mesh_.apex(mesh_.twin[h])]; }
+  [[nodiscard]] Point at(VertexId vertex) const { return p_[vertex]; }
 
-  [[nodiscard]] Point interior_interior(uint32_t h, uint32_t t) const {
+  [[nodiscard]] Point interior_interior(HalfEdgeId h, HalfEdgeId t) const {
     const Point q = eight_points(h, t, share_);
     return w_ == 0 ? q : q + share_.far * (far_point(h) + far_point(t));
   }
-  [[nodiscard]] Point eight_points(uint32_t h, uint32_t t,
+  [[nodiscard]] Point eight_points(HalfEdgeId h, HalfEdgeId t,
                                    const stencil::FaceShare<Real>& share = stencil::FaceShare<Real>()) const {
     return sum(face_share(h, t, share), face_share(t, h, share));
   }
-  [[nodiscard]] Point face_share(uint32_t h, uint32_t t, const stencil::FaceShare<Real>& share) const {
-    return share(at(mesh_.origin[h]), at(mesh_.origin[t]), at(mesh_.apex(h)), wing(Topology::next(h)),
-                 wing(Topology::previous(h)));
+  [[nodiscard]] Point face_share(HalfEdgeId h, HalfEdgeId t, const stencil::FaceShare<Real>& share) const {
+    return share(at(mesh_.origin[h]), at(mesh_.origin[t]), at(mesh_.apex(h)), wing(h.next()), wing(h.previous()));
   }
 
-  /// The vertex opposite to h's tip in the ring of its (regular) origin.
-  [[nodiscard]] Point far_point(uint32_t h) const {
-    for (int step = 0; step < 3; ++step) h = mesh_.twin[Topology::previous(h)];
+  /// Returns the vertex opposite to h's tip in the ring of its (regular) origin.
+  [[nodiscard]] Point far_point(HalfEdgeId h) const {
+    for (int step = 0; step < 3; ++step) h = mesh_.twin[h.previous()];
     return at(mesh_.tip(h));
   }
 
-  /// A = origin(h) interior, B on a curve that runs along the left face.
-  [[nodiscard]] Point interior_curve_left(uint32_t h, uint32_t t) const {
-    return interior_curve(h, mesh_.apex(h), mesh_.apex(t), wing(Topology::previous(h)), wing(Topology::next(t)),
-                          wing(Topology::previous(t)));
+  /// Applies the row for A = origin(h) interior and B on a curve that runs along the left face.
+  [[nodiscard]] Point interior_curve_left(HalfEdgeId h, HalfEdgeId t) const {
+    return interior_curve(h, mesh_.apex(h), mesh_.apex(t), wing(h.previous()), wing(t.next()), wing(t.previous()));
   }
-  /// The same with the curve along the right face.
-  [[nodiscard]] Point interior_curve_right(uint32_t h, uint32_t t) const {
-    return interior_curve(h, mesh_.apex(t), mesh_.apex(h), wing(Topology::next(t)), wing(Topology::previous(h)),
-                          wing(Topology::next(h)));
+  /// Applies the row for A = origin(h) interior and B on a curve that runs along the right face.
+  [[nodiscard]] Point interior_curve_right(HalfEdgeId h, HalfEdgeId t) const {
+    return interior_curve(h, mesh_.apex(t), mesh_.apex(h), wing(t.next()), wing(h.previous()), wing(h.next()));
   }
-  [[nodiscard]] Point interior_curve(uint32_t h, uint32_t p, uint32_t q, Point wing_ap, Point wing_aq,
+  [[nodiscard]] Point interior_curve(HalfEdgeId h, uint32_t p, uint32_t q, Point wing_ap, Point wing_aq,
                                      Point b_next) const {
     using Row = stencil::InteriorCurve<Real>;
     return Row::a * at(mesh_.origin[h]) + Row::b * at(mesh_.tip(h)) + Row::p * at(p) + Row::q * at(q) +
            Row::b_next * b_next + Row::wing_ap * wing_ap + Row::wing_aq * wing_aq;
   }
 
-  /// Curves along both edges of the left face; the stencil lies on the right.
-  [[nodiscard]] Point curve_curve(uint32_t h, uint32_t t) const {
+  /// Applies the row for curves along both edges of the left face; the stencil lies on the right.
+  [[nodiscard]] Point curve_curve(HalfEdgeId h, HalfEdgeId t) const {
     using Row = stencil::CurveCurve<Real>;
     return Row::end * (at(mesh_.origin[h]) + at(mesh_.origin[t])) + Row::apex * at(mesh_.apex(t)) +
-           Row::wing * (wing(Topology::next(t)) + wing(Topology::previous(t)));
+           Row::wing * (wing(t.next()) + wing(t.previous()));
   }
 
-  [[nodiscard]] Wide<Real> wide(uint32_t vertex) const { return papilio::widen(p_[vertex]); }
+  [[nodiscard]] Wide<Real> wide(VertexId vertex) const { return papilio::widen(p_[vertex]); }
   static Point sum(Point one, Point other) { return one + other; }
   static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }

@@ -2,19 +2,20 @@
 
 #include <array>
 
+#include "base/ids.h"
 #include "mesh/part.h"
 
 namespace papilio {
 
-/// The four faces that one face, their parent, is split into (split_in_four.h), and the vertices across their outer
-/// sides. All is read off the level of the parent: with it the children are split in turn without being connected.
+/// Four children of a face, their parent (split_in_four.h), and the vertices across their outer sides. It is read from
+/// the parent's level: so the children are split in turn without connectivity of their own.
 ///
 ///            corner 2              Sides are the parent's: side i runs from corner i to corner i + 1. Child i < 3 has
 ///             /    \               corner i, child 3 lies in the middle. The parent must have a twin at each side.
-///            /  2   \              Vertices and edges are those of the children's level, which has these `numbers`.
+///            /  2   \              Vertices and edges are of the children's level, numbered by `numbers`.
 ///     middle 2 --- middle 1
 ///       /    \  3  /   \           across_first[i]: the vertex across the first half of side i, at corner i;
-///      /  0   \   /  1  \          across_second[i]: the one across its second half.
+///      /  0   \   /  1  \          across_second[i]: the vertex across its second half.
 /// corner 0 -- middle 0 -- corner 1
 class ChildStencil {
  public:
@@ -24,12 +25,12 @@ class ChildStencil {
   ChildStencil(const Topology& parents, uint32_t parent, const Numbers& numbers)
       : first_inner_(2 * numbers.edge_count() + 3 * numbers.face(parent)) {
     for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t h = 3 * parent + i;
-      const uint32_t t = parents.twin[h];
-      const uint32_t first = 3 * Topology::face(t);
+      const HalfEdgeId h = 3 * parent + i;
+      const HalfEdgeId t = parents.twin[h];
+      const uint32_t first = 3 * t.face();
       corner[i] = parents.origin[h];
       twin[i] = t;
-      const uint32_t e = parents.edge[h];
+      const EdgeId e = parents.edge[h];
       edge_[i] = numbers.edge(e);
       middle[i] = parents.vertex_count + e;
       across_first[i] = parents.vertex_count + parents.edge[first + next_side[t - first]];
@@ -37,23 +38,23 @@ class ChildStencil {
     }
   }
 
-  /// The two halves of side i.
+  /// Returns the edge that is the half of side i at corner i, or at corner i + 1.
   [[nodiscard]] uint32_t first_half(uint32_t i) const { return 2 * edge_[i] + is_downward(i); }
   [[nodiscard]] uint32_t second_half(uint32_t i) const { return 2 * edge_[i] + 1 - is_downward(i); }
-  /// The edge between child i and child 3.
+  /// Returns the edge between child i and child 3.
   [[nodiscard]] uint32_t inner_edge(uint32_t i) const { return first_inner_ + i; }
 
   std::array<uint32_t, 3> corner, middle, across_first, across_second;
-  std::array<uint32_t, 3> twin;  ///< of each side, in the parent's level
+  std::array<uint32_t, 3> twin;  ///< twin of each side, in the parent's level
 
  private:
-  // Without a branch: which side it is that two faces share nobody can guess.
+  // Branch-free: which side two faces share is unpredictable.
   static constexpr std::array<uint8_t, 3> next_side{1, 2, 0}, previous_side{2, 0, 1};
 
-  /// The half at the lower vertex has the lower number.
+  /// Returns 1 if side i runs to its lower vertex. The half at the lower vertex has the lower number.
   [[nodiscard]] uint32_t is_downward(uint32_t i) const { return corner[i] > corner[(i + 1) % 3] ? 1 : 0; }
 
-  std::array<uint32_t, 3> edge_;  ///< number of each side's
+  std::array<uint32_t, 3> edge_;  ///< number of each side's edge
   uint32_t first_inner_;
 };
 

@@ -51,7 +51,7 @@ class FeatureFinder {
   void find_curves() {
     const auto is_curve = [](EdgeKind kind) { return kind != EdgeKind::smooth; };
     if (std::none_of(mesh_.kind.begin(), mesh_.kind.end(), is_curve)) return;
-    for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h)
+    for (HalfEdgeId h = 0; h < mesh_.half_edge_count(); ++h)
       if (mesh_.kind[mesh_.edge[h]] == EdgeKind::cut)
         cut_half_edges_.push_back(h);
       else if (mesh_.is_curve(h))
@@ -63,14 +63,14 @@ class FeatureFinder {
       ++corners_[mesh_.origin[h]];
       first_[mesh_.origin[h]] = h;
     }
-    for (uint32_t h : found_.curve_half_edges) corners_[mesh_.origin[h]] = corners_[mesh_.tip(h)] = several;
-    for (uint32_t v : mesh_.pinched) corners_[v] = several;
-    for (uint32_t h : cut_half_edges_) corners_[mesh_.origin[h]] = corners_[mesh_.tip(h)] = unknown;
+    for (HalfEdgeId h : found_.curve_half_edges) corners_[mesh_.origin[h]] = corners_[mesh_.tip(h)] = several;
+    for (VertexId v : mesh_.pinched) corners_[v] = several;
+    for (HalfEdgeId h : cut_half_edges_) corners_[mesh_.origin[h]] = corners_[mesh_.tip(h)] = unknown;
   }
 
-  /// Of the vertices all of whose faces go round them: how many there are is known, and by what number of faces.
+  /// Adds the closed fans of irregular vertices without other fans: their number and sizes are known.
   void find_closed_fans() {
-    std::array<uint32_t, classes + 1> start{};  // of each class among the fans; classes counted one further on at first
+    std::array<uint32_t, classes + 1> start{};  // first fan of each class; at first, counts shifted by one class
     uint32_t spokes = 0;
     for (uint32_t corners : corners_)
       if (is_irregular(corners)) {
@@ -83,11 +83,11 @@ class FeatureFinder {
     found_.is_closed.assign(fans, 1);
     found_.first_spoke.resize_for_overwrite(fans + 1);
     found_.spokes.resize_for_overwrite(spokes);
-    for (uint32_t v = 0; v < mesh_.vertex_count; ++v)
+    for (VertexId v = 0; v < mesh_.vertex_count; ++v)
       if (is_irregular(corners_[v])) found_.centre[start[class_of(corners_[v])]++] = v;
     uint32_t known = 0;
     for (uint32_t i = 0; i < fans; ++i) {
-      const uint32_t v = found_.centre[i];
+      const VertexId v = found_.centre[i];
       found_.first_spoke[i] = known;
       uint32_t s = first_[v];
       for (const uint32_t end = known + corners_[v]; known < end; ++known) {
@@ -101,7 +101,7 @@ class FeatureFinder {
   void find_other_fans() {
     Buffer<uint8_t> visited(mesh_.half_edge_count(), 0);
     Fan fan;
-    for (uint32_t h = 0; h < mesh_.half_edge_count(); ++h) {
+    for (HalfEdgeId h = 0; h < mesh_.half_edge_count(); ++h) {
       if (corners_[mesh_.origin[h]] != several || visited[h] != 0) continue;
       collect_fan(mesh_, h, fan);
       for (uint32_t s : fan.spokes) visited[s] = 1;
@@ -116,16 +116,16 @@ class FeatureFinder {
   [[nodiscard]] static bool is_irregular(uint32_t corners) {
     return corners != stencil::regular_valence && corners != several && corners != unknown;
   }
-  /// The number of faces, or one class for all that are many.
+  /// Returns the number of faces, or one class for all large numbers.
   [[nodiscard]] static uint32_t class_of(uint32_t corners) { return std::min(corners, classes - 1); }
 
   static constexpr uint32_t classes = stencil::harmonic_valence + 1;
-  static constexpr uint32_t several = none;  ///< fans, maybe; there is a curve, or the vertex is pinched
-  static constexpr uint32_t unknown = 0;     ///< faces are missing here
+  static constexpr uint32_t several = none;  ///< perhaps several fans: there is a curve, or the vertex is pinched
+  static constexpr uint32_t unknown = 0;     ///< some faces are missing
 
   const Topology& mesh_;
-  Buffer<uint32_t> corners_;  ///< [V] of faces at the vertex; or `several`, or `unknown`
-  Buffer<uint32_t> first_;    ///< [V] its first half-edge
+  Buffer<uint32_t> corners_;  ///< [V] number of faces at the vertex, or `several`, or `unknown`
+  Buffer<uint32_t> first_;    ///< [V] lowest half-edge that leaves the vertex
   Buffer<uint32_t> cut_half_edges_;
   Features found_;
 };
@@ -144,7 +144,7 @@ void descend(Features& features, uint32_t vertex_count) {
     }
   Buffer<uint32_t> halves;
   halves.reserve(2 * features.curve_half_edges.size());
-  for (uint32_t h : features.curve_half_edges)
+  for (HalfEdgeId h : features.curve_half_edges)
     for (uint32_t half : {first_half(h), second_half(h)}) halves.push_back(half);
   features.curve_half_edges = std::move(halves);
 }

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "mesh/hinge.h"
+#include "mesh/normals.h"
 
 namespace papilio {
 namespace {
 
-double squared_height(const Mesh& mesh, uint32_t f) {
+double squared_height(const Mesh& mesh, FaceId f) {
   const auto at = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * f + i]]); };
   const std::array<Vec3d, 3> side{at(1) - at(0), at(2) - at(1), at(0) - at(2)};
   const double longest = std::max({dot(side[0], side[0]), dot(side[1], side[1]), dot(side[2], side[2])});
@@ -16,10 +18,10 @@ double squared_height(const Mesh& mesh, uint32_t f) {
   return longest > 0 ? dot(normal, normal) / longest : 0;
 }
 
-/// Whether the faces at h are surely not in one plane: most are spared the exact answer.
-bool is_surely_bent(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t h) {
+/// Returns whether the faces at h are surely not in one plane: a cheap test before the exact one.
+bool is_surely_bent(const Mesh& mesh, const Buffer<Vec3f>& normals, HalfEdgeId h) {
   const Topology& topology = mesh.topology;
-  const uint32_t t = topology.twin[h];
+  const HalfEdgeId t = topology.twin[h];
   const Vec3f a = mesh.positions[topology.origin[h]];
   const auto is_beside = [&](uint32_t side, uint32_t apex) {
     const Vec3f off = mesh.positions[topology.apex(apex)] - a;
@@ -28,18 +30,45 @@ bool is_surely_bent(const Mesh& mesh, const Buffer<Vec3f>& normals, uint32_t h) 
   return is_beside(h, t) && is_beside(t, h);
 }
 
-/// Along u without what it has along `unit`, of length one.
+/// Returns the least cosine of the face's hinges. Faces without a normal, and sides without a twin, have none.
+float sharpest_hinge(const Topology& mesh, const Buffer<Vec3f>& normals, FaceId f) {
+  float least = 1;
+  for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
+    const HalfEdgeId t = mesh.twin[h];
+    if (t != none && has_normal(normals[t.face()])) least = std::min(least, dot(normals[f], normals[t.face()]));
+  }
+  return has_normal(normals[f]) ? least : 1;
+}
+
+/// Computes `ShapeField::squared_height_at_shared`.
+Buffer<double> squared_heights_at_shared(const Topology& mesh, const Buffer<double>& squared_height) {
+  Buffer<double> least;
+  if (std::ranges::find(mesh.kind, EdgeKind::shared) == mesh.kind.end()) return least;
+  least.assign(mesh.edge_count(), std::numeric_limits<double>::infinity());
+  const double flat = mesh.shape.flat_distance * mesh.shape.flat_distance;
+  for (HalfEdgeId h = 0; h < mesh.half_edge_count(); ++h)
+    if (squared_height[h.face()] > flat) least[mesh.edge[h]] = std::min(least[mesh.edge[h]], squared_height[h.face()]);
+  return least;
+}
+
+/// Returns u without its component along `unit`, a unit vector.
 Vec3d without(Vec3d u, Vec3d unit) { return u - dot(u, unit) * unit; }
 
 }  // namespace
 
 ShapeField shape_field(const Mesh& mesh, const Buffer<Vec3f>& normals) {
   const Topology& topology = mesh.topology;
+  const uint32_t faces = topology.face_count();
   ShapeField field{.is_flat = Buffer<uint8_t>(topology.edge_count(), 0),
-                   .squared_height = Buffer<double>::for_overwrite(topology.face_count())};
-  for (uint32_t f = 0; f < topology.face_count(); ++f) field.squared_height[f] = squared_height(mesh, f);
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
-    const uint32_t h = topology.half_edge[e];
+                   .squared_height = Buffer<double>::for_overwrite(faces),
+                   .sharpest = Buffer<float>::for_overwrite(topology.shape.is_mechanical ? faces : 0)};
+  for (FaceId f = 0; f < faces; ++f) {
+    field.squared_height[f] = squared_height(mesh, f);
+    if (topology.shape.is_mechanical) field.sharpest[f] = sharpest_hinge(topology, normals, f);
+  }
+  field.squared_height_at_shared = squared_heights_at_shared(topology, field.squared_height);
+  for (EdgeId e = 0; e < topology.edge_count(); ++e) {
+    const HalfEdgeId h = topology.half_edge[e];
     if (topology.kind[e] != EdgeKind::smooth || is_surely_bent(mesh, normals, h)) continue;
     field.is_flat[e] = Hinge(topology, mesh.positions, h).is_flat(topology.shape.flat_distance) ? 1 : 0;
   }
@@ -70,8 +99,22 @@ Vec3d keep_unfolded(Vec3d off, Vec3d a, Vec3d b, std::span<const FaceAtEdge> fac
   }
   off -= excess[0] * inward[0] + excess[1] * inward[1];
   const Vec3d across = without(off, along);
+  double share = 1;
+  const auto limit = [&](double moved, double most) {
+    if (moved > most) share = std::min(share, most / moved);
+  };
+  limit(length(across), across_bound * least);
+  for (size_t i = 0; i < faces.size(); ++i)
+    limit(std::abs(dot(across, cross(along, inward[i]))), faces[i].room * across_bound * faces[i].height);
+  return share < 1 ? off - (1 - share) * across : off;
+}
+
+Vec3d shorten_across(Vec3d off, Vec3d a, Vec3d b, double most) {
+  const Vec3d edge = b - a;
+  const double size = length(edge);
+  if (!(size > 0)) return off;
+  const Vec3d across = without(off, 1 / size * edge);
   const double distance = length(across);
-  const double most = across_bound * least;
   return distance > most ? off - (1 - most / distance) * across : off;
 }
 

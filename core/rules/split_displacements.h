@@ -5,9 +5,10 @@
 
 namespace papilio {
 
-/// What the rules under the options' tension and w make of displacements at the vertices of a level, at the new
-/// vertices of the plan's edges (ButterflyOfVectors); elsewhere not a number. The mesh may have further positions.
+/// Splits displacements at the vertices of a level by the rules under the options' tension and w
+/// (ButterflyOfVectors). Returns values at the new vertices of the `complete` edges [E], and NaN elsewhere. The mesh
+/// may have further positions.
 [[nodiscard]] Displacements split_displacements(const Displacements& at_vertices, const Mesh& mesh,
-                                                const Options& options, const SplitPlan& plan);
+                                                const Options& options, const Marks& complete);
 
 }  // namespace papilio

@@ -16,14 +16,14 @@ double hinge_factor(double normal_product) {
 TensionField tension_field(const Mesh& mesh, const Buffer<Vec3f>& normals, Tension tension) {
   const Topology& topology = mesh.topology;
   TensionField field{.factor = Buffer<float>(topology.edge_count(), 1), .follow_features = tension == Tension::sharp};
-  for (uint32_t e = 0; e < topology.edge_count(); ++e) {
+  for (EdgeId e = 0; e < topology.edge_count(); ++e) {
     if (topology.kind[e] != EdgeKind::smooth) continue;
-    const uint32_t h = topology.half_edge[e];
-    const Vec3f n1 = normals[Topology::face(h)];
+    const HalfEdgeId h = topology.half_edge[e];
+    const Vec3f n1 = normals[h.face()];
     const Vec3f n2 = normals[Topology::face(topology.twin[h])];
     if (has_normal(n1) && has_normal(n2)) field.factor[e] = static_cast<float>(hinge_factor(dot(n1, n2)));
   }
-  if (field.follow_features) field.features = {topology, [&](uint32_t e) { return field.is_sharp(e); }};
+  if (field.follow_features) field.features = {topology, [&](EdgeId e) { return field.is_sharp(e); }};
   if (topology.shape.has_rules) field.shape = shape_field(mesh, normals);
   return field;
 }

@@ -12,8 +12,7 @@
 namespace papilio {
 namespace {
 
-constexpr uint64_t bytes_per_in_place_face =
-    130;  // of a level's arrays, while those of the level before are still there
+constexpr uint64_t bytes_per_in_place_face = 130;  // arrays of a level and of the level before
 
 class InPlace {
  public:
@@ -28,8 +27,7 @@ class InPlace {
       progress_.poll();
       const int level = find_targets();
       if (level == 0) break;
-      const SplitPlan plan(targets_);
-      const uint64_t faces = count_children(mesh_.topology, plan);
+      const uint64_t faces = count_children(mesh_.topology, targets_);
       const uint64_t bytes = std::max(plan_->made(faces, level, bytes_per_in_place_face), plan_->given(faces, level));
       if (progress_.ends_before(faces, bytes)) {
         end_at_limit();
@@ -38,7 +36,7 @@ class InPlace {
       progress_.report(result_.levels, mesh_);
       progress_.require_room(faces, bytes, level);
       progress_.poll();
-      split_targets(level, plan);
+      split_targets(level);
     }
     if (!out_of_budget_ && !is_at_limit_)
       result_.stop_reason = result_.levels == options_.levels ? StopReason::levels : StopReason::converged;
@@ -47,9 +45,9 @@ class InPlace {
   }
 
  private:
-  /// Finds the next level that has targets, and these; 0 when there is none. Notes the deviation that is left.
+  /// Finds the targets of the next level that has any, and returns its number, or 0. Records the deviation left.
   int find_targets() {
-    if (result_.levels == options_.levels && options_.levels > 0) return 0;  // its split edges are noted already
+    if (result_.levels == options_.levels && options_.levels > 0) return 0;  // the error is already recorded
     trial_.emplace(try_split(mesh_, options_));
     trial_->forget();
     region_ = whole_region(mesh_.topology);
@@ -58,11 +56,11 @@ class InPlace {
     shown_ = selection_.shown(mesh_, *trial_, longest_, box_, shared_half_edges(mesh_.topology));
     const float least = options_.max_faces > 0 ? 0 : selection_.threshold();
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
-      const Buffer<uint32_t> wanted = selection_.wanted(mesh_, *trial_, level, region_, shown_, box_, least);
+      const Buffer<uint32_t> candidates = selection_.candidates(mesh_, *trial_, level, region_, shown_, box_, least);
       targets_.assign(mesh_.topology.edge_count(), 0);
-      for (uint32_t e : wanted) targets_[e] = 1;
-      if (selection_.is_by_error()) keep_largest_errors(wanted);
-      if (SplitPlan(targets_).count() > 0) {
+      for (EdgeId e : candidates) targets_[e] = 1;
+      if (selection_.is_by_error()) keep_largest_errors(candidates);
+      if (std::ranges::find(targets_, 1) != targets_.end()) {
         note_error();
         return level;
       }
@@ -73,9 +71,9 @@ class InPlace {
     return 0;
   }
 
-  void keep_largest_errors(const Buffer<uint32_t>& wanted) {
+  void keep_largest_errors(const Buffer<uint32_t>& candidates) {
     float threshold = selection_.threshold();
-    const Buffer<float> errors = selection_.errors(mesh_, *trial_, wanted, box_, threshold);
+    const Buffer<float> errors = selection_.errors(mesh_, *trial_, candidates, box_, threshold);
     if (options_.max_faces > 0) {
       Buffer<WeighedEdge> edges;
       append_edges(mesh_.topology, region_, errors, threshold, edges);
@@ -91,14 +89,14 @@ class InPlace {
   void note_error() {
     if (!options_.measure_error) return;
     ErrorLeft left(selection_);
-    for (uint32_t e : region_.edges())
+    for (EdgeId e : region_.edges())
       if (shown_[e])
         left.add(mesh_, *trial_, selection_.highest_pixels_per_unit(box_), e, targets_[e] != 0 ? split_leaves : 1);
     result_.error = left.error();
     result_.error_pixels = left.pixels();
   }
 
-  /// Nothing more is split: the error left is that of the mesh as it is.
+  /// Stops without further splits, and records the error of the present mesh.
   void end_at_limit() {
     is_at_limit_ = true;
     result_.stop_reason = StopReason::limits;
@@ -106,13 +104,13 @@ class InPlace {
     note_error();
   }
 
-  void split_targets(int level, const SplitPlan& plan) {
-    const Displacements displaced = split_displacements(displacements_, mesh_, options_, plan);
-    append_new_vertices(displacements_, displaced, plan);
-    mesh_.positions.reserve(mesh_.positions.size() + plan.count());
-    for (uint32_t e = 0; e < targets_.size(); ++e)
-      if (targets_[e] != 0) mesh_.positions.push_back(trial_->at(e));
-    mesh_.topology = split(mesh_.topology, plan, mesh_.positions, mesh_.attributes, displaced);
+  void split_targets(int level) {
+    const Displacements displaced = split_displacements(displacements_, mesh_, options_, targets_);
+    append_new_vertices(displacements_, displaced, targets_);
+    const Buffer<uint32_t> targets = marked(targets_);
+    mesh_.positions.reserve(mesh_.positions.size() + targets.size());
+    for (EdgeId e : targets) mesh_.positions.push_back(trial_->at(e));
+    mesh_.topology = split(mesh_.topology, targets_, mesh_.positions, mesh_.attributes, displaced);
     result_.levels = level;
   }
 
@@ -120,15 +118,15 @@ class InPlace {
   const Selection& selection_;
   const Progress& progress_;
   Mesh mesh_;
-  Displacements displacements_;  ///< at its vertices
+  Displacements displacements_;  ///< values at the vertices of `mesh_`
   std::optional<MemoryPlan> plan_;
   Result result_;
   std::optional<Trial> trial_;
   Region region_;
-  Box box_;                 ///< all of the mesh
-  Buffer<double> longest_;  ///< [V] edges (view_culling.h); empty without a view
+  Box box_;                 ///< bounding box of `mesh_`
+  Buffer<double> longest_;  ///< [V] longest edges (view_culling.h); empty without a view
   EdgesShown shown_;
-  EdgeMarks targets_;
+  Marks targets_;
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

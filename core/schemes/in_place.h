@@ -6,7 +6,7 @@
 
 namespace papilio {
 
-/// Refines by the paper's scheme: each level works on the mesh that the level before left, transition faces included.
+/// Refines by the paper's scheme: each level splits edges of the level before, transition faces included.
 [[nodiscard]] Result refine_in_place(Mesh coarse, const Options& options, const Selection& selection,
                                      const Progress& progress);
 

@@ -19,9 +19,13 @@
 namespace papilio {
 namespace {
 
-/// Within this share of the tolerance the result is repaired: distances are sampled, if densely, and levels that would
-/// add no more than a small share are not explored.
+/// Share of the tolerance that repair() keeps to: distances are sampled, and levels that add little are not explored.
 constexpr double share_of_tolerance = 0.97;
+/// Share of the tolerance from which edges are split for their own error. Those just below the tolerance nearly all
+/// have to be split by repair(), which takes longer.
+constexpr float share_chosen_by_error = 0.88F;
+/// Share of an upper bound that a sampled distance must exceed for the bound to be tight enough.
+constexpr double least_share_of_bound = 0.5;
 constexpr float no_edge = -std::numeric_limits<float>::infinity();
 
 class RedGreen {
@@ -32,19 +36,21 @@ class RedGreen {
         progress_(progress),
         levels_(std::move(levels)),
         most_cosine_(most_cosine_beside(levels_.smallest_angle())),
-        threshold_(selection.threshold()),
+        least_error_(selection.threshold() *
+                     (bounds_distance() && selection.camera() == nullptr ? share_chosen_by_error : 1)),
+        threshold_(least_error_),
         exploration_(options, selection, levels_.plan(), progress) {}
 
   Result run() {
     choices_.push_back(choose_coarsest(levels_.deepest()));
-    Mesh latest;  // the last level that changed something, when the caller wants to see levels
-    if (progress_.wants_levels()) latest = choices_[0].level->mesh;
+    Mesh latest;  // last level that changed the mesh, if levels are reported
+    if (progress_.reports_levels()) latest = choices_[0].level->mesh;
     Result result;
     for (int level = 1; level <= std::max(options_.levels, 1); ++level) {
       progress_.poll();
       weigh_edges();
       progress_.poll();
-      if (options_.levels == 0) break;  // weighed for the sake of the error that is reported
+      if (options_.levels == 0) break;  // the result's error needs weighed edges
       const bool changes = choose();
       if (changes) {
         const uint64_t faces = count_assembled(choices_);
@@ -55,13 +61,13 @@ class RedGreen {
         progress_.require_room(faces, bytes, level);
         result.levels = level;
         keep();
-        if (progress_.wants_levels()) latest = assembled();
+        if (progress_.reports_levels()) latest = assembled();
       }
       if (level == options_.levels || !go_deeper(level)) break;
     }
     if (bounds_distance() && has_limit() && !out_of_budget_ && !is_at_limit_ && repair(result.levels)) {
       keep();
-      if (progress_.wants_levels()) latest = assembled();
+      if (progress_.reports_levels()) latest = assembled();
     }
     finish(result, std::move(latest));
     levels_.hand_back();
@@ -69,7 +75,7 @@ class RedGreen {
   }
 
  private:
-  /// Whether the distance to the uniform surface is bounded: where errors decide, and nothing else.
+  /// Returns whether the distance to the uniform surface is bounded, as errors alone decide.
   [[nodiscard]] bool bounds_distance() const {
     return selection_.is_by_error() && options_.flatness.empty() && options_.levels > 0 &&
            (selection_.camera() == nullptr || is_view_verified(*options_.view));
@@ -79,7 +85,7 @@ class RedGreen {
   }
   [[nodiscard]] bool has_limit() const { return options_.tolerance > 0 || selection_.camera() != nullptr; }
 
-  /// What is asked for, or a share of that.
+  /// Returns a share of the requested limit.
   [[nodiscard]] DistanceLimit limit(double share) const {
     DistanceLimit limit{.everywhere = share * options_.tolerance * selection_.diagonal()};
     if (selection_.camera() == nullptr) return limit;
@@ -88,70 +94,66 @@ class RedGreen {
     return limit;
   }
 
-  /// Finds how much the edges of the lowest level want to be split.
+  /// Computes the candidates of the lowest level, and their errors if these decide.
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
     choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
     const float least = options_.max_faces > 0 ? 0 : threshold_;
-    Buffer<uint32_t> wanted = selection_.wanted(level.mesh, level.trial, static_cast<int>(choices_.size()),
-                                                choice.region, choice.shown, level.box, least);
+    Buffer<uint32_t> candidates = selection_.candidates(level.mesh, level.trial, static_cast<int>(choices_.size()),
+                                                        choice.region, choice.shown, level.box, least);
     if (!selection_.is_by_error()) {
-      choice.candidates = std::move(wanted);
+      choice.candidates = std::move(candidates);
       return;
     }
-    choice.error = selection_.errors(level.mesh, level.trial, wanted, level.box, least, reaching());
-    choice.candidates = std::move(wanted);
-    keep_if(choice.candidates, [&](uint32_t e) { return choice.error[e] >= selection_.threshold(); });
+    choice.error = selection_.errors(level.mesh, level.trial, candidates, level.box, least);
+    choice.candidates = std::move(candidates);
+    keep_if(choice.candidates, [&](EdgeId e) { return choice.error[e] >= least_error_; });
   }
 
-  /// With a budget errors are compared with each other, too; and where nothing is split, they are what is left.
-  [[nodiscard]] Selection::Reaching reaching() const {
-    return options_.max_faces > 0 || options_.levels == 0 ? Selection::Reaching::exact : Selection::Reaching::no_more;
-  }
-
-  /// Decides what is split. True when the lowest level changes anything.
+  /// Chooses the edges to split. Returns whether the lowest level has any.
   bool choose() {
     if (!selection_.is_by_error()) {
       split_deepest();
       if (selection_.follows_outline()) divide_at_outlines(choices_, most_cosine_);
     } else {
       for (size_t k = choices_.size() - 1; k > 0; --k) carry_up(choices_[k], choices_[k - 1]);
-      threshold_ = selection_.threshold();
+      threshold_ = least_error_;
       split_from(threshold_);
       if (options_.max_faces > 0) keep_within_budget();
     }
     return !choices_.back().split_edges.empty();
   }
 
-  /// Where errors do not decide: below divided faces all is as wanted, and above nothing changes but at an outline.
+  /// Splits the candidates of the lowest level, if errors do not decide. Levels above change only at an outline.
   void split_deepest() {
     LevelChoice& choice = choices_.back();
     choice.split_first(choice.candidates);
     avoid_slivers(choice, most_cosine_);
   }
 
-  /// An edge must be split as long as a child of one of its faces has an edge that is: else that child is not there.
+  /// Raises errors of the level above to the largest error below each face: children exist only if all its edges are
+  /// split.
   void carry_up(const LevelChoice& below, LevelChoice& above) const {
-    const float least = selection_.threshold();
+    const float least = least_error_;
     below.visit_parents([&](uint32_t parent, const uint32_t* edges) {
       float largest = no_edge;
       for (uint32_t i = 0; i < 12; ++i) largest = std::max(largest, below.error[edges[i]]);
       if (!(largest >= least)) return;
       for (uint32_t i = 0; i < 3; ++i) {
-        const uint32_t e = above.level->mesh.topology.edge[3 * parent + i];
+        const EdgeId e = above.level->mesh.topology.edge[3 * parent + i];
         if (above.error[e] < least) above.candidates.push_back(e);
         above.error[e] = std::max(above.error[e], largest);
       }
     });
   }
 
-  /// Marks what has at least this error, and what that needs so that no transition face becomes a sliver.
+  /// Splits the edges with at least this error, and further edges to avoid slivers.
   void split_from(float threshold) {
     for (LevelChoice& choice : choices_) {
       choice.split_nothing();
       Buffer<uint32_t> edges = choice.candidates;
-      if (!choice.error.empty()) keep_if(edges, [&](uint32_t e) { return choice.error[e] >= threshold; });
+      if (!choice.error.empty()) keep_if(edges, [&](EdgeId e) { return choice.error[e] >= threshold; });
       choice.split_first(std::move(edges));
     }
     for (size_t k = choices_.size(); k-- > 0;) {
@@ -170,33 +172,33 @@ class RedGreen {
     });
   }
 
-  /// Raises the threshold until no more is split than the budget allows. What avoiding slivers costs is known only
-  /// afterwards; where it is too much, the errors themselves get that much less.
+  /// Raises the threshold until the result is within the budget. The faces that avoid slivers are known only
+  /// afterwards; their excess is deducted from the room of the edges with errors.
   void keep_within_budget() {
     const uint64_t coarse = choices_[0].region.faces.size();
     const Buffer<WeighedEdge> edges = weighed_edges();
     uint64_t room = options_.max_faces;
     for (uint64_t faces = count_assembled(choices_); faces > options_.max_faces; faces = count_assembled(choices_)) {
-      float raised = threshold_within(edges, selection_.threshold(), coarse, room);
+      float raised = threshold_within(edges, least_error_, coarse, room);
       while (raised <= threshold_) {
         room -= std::min(room - coarse, faces - options_.max_faces);
-        raised = threshold_within(edges, selection_.threshold(), coarse, room);
+        raised = threshold_within(edges, least_error_, coarse, room);
       }
       threshold_ = raised;
       split_from(threshold_);
     }
-    out_of_budget_ = threshold_ > selection_.threshold();
+    out_of_budget_ = threshold_ > least_error_;
   }
 
   [[nodiscard]] Buffer<WeighedEdge> weighed_edges() const {
     Buffer<WeighedEdge> edges;
     for (const LevelChoice& choice : choices_)
-      append_edges(choice.level->mesh.topology, choice.region, choice.error, selection_.threshold(), edges);
+      append_edges(choice.level->mesh.topology, choice.region, choice.error, least_error_, edges);
     return edges;
   }
 
-  /// Remembers the splits that the result is made of, where a further level may have to be taken back: one that passes
-  /// a limit, or with a budget one that raises the threshold so far that the result has a larger error.
+  /// Keeps the splits of the result if a further level may have to be undone: one that exceeds a limit, or one that
+  /// raises the threshold within a budget, so that the error grows.
   void keep() {
     if (!may_take_back()) return;
     kept_ = splits_of(choices_);
@@ -204,11 +206,11 @@ class RedGreen {
 
   [[nodiscard]] bool may_take_back() const { return options_.max_faces > 0 || options_.stop_at_limits; }
 
-  void bring_back_what_was_kept() {
+  void restore_kept() {
     if (may_take_back()) set_splits(choices_, kept_);
   }
 
-  /// Makes the next level where it may be needed; false when it is needed nowhere.
+  /// Makes the next level below faces that may be divided; returns false if there are none, or no room.
   bool go_deeper(int level) {
     const Buffer<uint32_t> red = selection_.is_by_error()
                                      ? exploration_.faces_to_look_into(choices_, threshold_, limit_to_explore())
@@ -221,13 +223,14 @@ class RedGreen {
     return true;
   }
 
-  /// Whether the level may be made; throws where it passes a limit and the options do not end there. Faces that are
-  /// held but not in the result count too; those held for other requests do not. Detail is decoded for whole levels.
+  /// Returns whether the level is within the limits. Throws beyond a limit, unless the options stop there. Held faces
+  /// count even if they are not in the result, but not those held for other requests. Detail is decoded for whole
+  /// levels.
   [[nodiscard]] bool has_room_below(int level) {
     const LevelChoice& choice = choices_.back();
     if (choice.level->detail_levels > 1) {
       const DecodedSize size = decoded_size(coarse(), level, levels_.plan());
-      // Without the rest of the levels the distance is not known.
+      // A bounded distance requires all levels.
       is_at_limit_ = !bounds_distance() && progress_.ends_before(size.faces, size.bytes);
       if (is_at_limit_) return false;
       progress_.require_room(size.faces, size.bytes, level);
@@ -243,27 +246,25 @@ class RedGreen {
     return true;
   }
 
-  /// What the distance is bounded by; nothing where it is not.
+  /// Returns the bound of the distance at the present threshold; nothing if it is not bounded.
   [[nodiscard]] std::optional<DistanceLimit> limit_to_explore() const {
     if (!bounds_distance()) return std::nullopt;
-    if (selection_.camera() != nullptr) return limit(threshold_ / selection_.threshold());
+    if (has_limit()) return limit(threshold_ / least_error_);
     return DistanceLimit{.everywhere = threshold_ * selection_.diagonal()};
   }
 
-  /// Those that are divided, and those at an outline.
+  /// Returns the divided faces of the lowest level, and its faces at an outline.
   [[nodiscard]] Buffer<uint32_t> faces_to_divide() {
     LevelChoice& choice = choices_.back();
-    Buffer<uint32_t> red = choice.region.faces;
-    keep_if(red, [&](uint32_t f) { return choice.split_mask(f) == 7; });
-    if (selection_.follows_outline()) add_faces_at_outline(choice, selection_, red);
+    Buffer<uint32_t> red = chosen(choice.region.faces, [&](FaceId f) { return choice.split_mask(f) == 7; });
+    if (selection_.follows_outline()) add_faces_at_outline(choice, static_cast<int>(choices_.size()), selection_, red);
     return red;
   }
 
-  /// Splits further edges until the result is within the tolerance of the uniform surface, as far as budget and limits
-  /// allow. Returns whether any was split.
+  /// Splits further edges until the result is within the tolerance of the uniform surface, subject to budget and
+  /// limits. Returns whether any edge was split.
   bool repair(int& level) {
-    Repair repair(choices_, selection_.threshold(), most_cosine_, allowed(share_of_tolerance), options_.levels,
-                  progress_);
+    Repair repair(choices_, least_error_, most_cosine_, allowed(share_of_tolerance), options_.levels, progress_);
     bool has_repaired = false;
     while (repair.add_candidates()) {
       progress_.poll();
@@ -280,16 +281,19 @@ class RedGreen {
     }
     is_within_limit_ = repair.is_complete();
     has_repaired_ = has_repaired;
+    // Otherwise the distance is measured, which takes longer.
+    is_limit_near_ =
+        is_within_limit_ && (has_repaired || selection_.camera() != nullptr) && repair.exceeds(least_share_of_bound);
     return has_repaired;
   }
 
-  /// That of limit().
+  /// Returns the allowed distance for a share of the requested limit.
   [[nodiscard]] AllowedDistance allowed(double share) const {
     if (selection_.camera() == nullptr) return AllowedDistance(limit(share).everywhere);
     return {choices_, limit(share)};
   }
 
-  /// Whether the result may be as large as it is now.
+  /// Returns whether the result is within budget and limits; throws beyond a limit, unless the options stop there.
   [[nodiscard]] bool is_allowed(int level) {
     const uint64_t faces = count_assembled(choices_);
     const uint64_t bytes = levels_.plan().given(faces, level);
@@ -312,18 +316,19 @@ class RedGreen {
     return count_assembled(choices_) == coarse << (2 * static_cast<uint64_t>(options_.levels));
   }
 
-  /// Upper bound of the distance from the uniform surface.
+  /// Returns an upper bound of the distance to the uniform surface.
   [[nodiscard]] double distance() const {
     if (has_detail() && is_uniform()) return 0;
     const double limit_kept = limit(share_of_tolerance).everywhere;
-    if (is_within_limit_ && has_repaired_) return limit_kept;
+    if (is_limit_near_) return limit_kept;
     const double found = surface_check(AllowedDistance(1)).largest_share();
-    return is_within_limit_ && has_detail() ? std::min(found, limit_kept) : found;
+    return is_within_limit_ && (has_detail() || has_repaired_) ? std::min(found, limit_kept) : found;
   }
 
-  /// The same in pixels, of what the view shows.
+  /// Returns an upper bound of the visible distance to the uniform surface, in pixels.
   [[nodiscard]] double distance_in_pixels() const {
     if (has_detail() && is_uniform()) return 0;
+    if (is_limit_near_) return options_.view->error_pixels * share_of_tolerance;
     const SurfaceCheck check = surface_check(allowed(1));
     return options_.view->error_pixels *
            (is_within_limit_ ? std::min(check.largest_bound(), share_of_tolerance) : check.largest_share());
@@ -334,7 +339,7 @@ class RedGreen {
   }
 
   void finish(Result& result, Mesh latest) {
-    bring_back_what_was_kept();
+    restore_kept();
     if (options_.measure_error) {
       const ErrorLeft left = error_left(choices_, selection_);
       result.error = left.error();
@@ -350,7 +355,7 @@ class RedGreen {
       result.stop_reason = StopReason::limits;
     else
       result.stop_reason = result.levels == options_.levels ? StopReason::levels : StopReason::converged;
-    if (progress_.wants_levels())
+    if (progress_.reports_levels())
       result.mesh = std::move(latest);
     else if (result.levels == 0)
       result.mesh = choices_[0].level->mesh;
@@ -363,12 +368,14 @@ class RedGreen {
   const Progress& progress_;
   Levels levels_;
   std::vector<LevelChoice> choices_;  ///< [level]
-  double most_cosine_;                ///< what transition faces keep to
-  float threshold_;
-  Splits kept_;  ///< [level] the edges split when a level last changed something
+  double most_cosine_;                ///< upper bound of transition faces' cosines (transition.h)
+  float least_error_;                 ///< edges of smaller errors are split by repair() alone
+  float threshold_;                   ///< lower bound of the errors of edges to split; least_error_ within the budget
+  Splits kept_;                       ///< [level] edges split when a level last changed the mesh
   Exploration exploration_;
-  bool is_within_limit_ = false;  ///< of the surface, as repair() found; which may have split more
+  bool is_within_limit_ = false;  ///< whether repair() ended within the limit
   bool has_repaired_ = false;
+  bool is_limit_near_ = false;  ///< whether a bound that is the limit is tight enough
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

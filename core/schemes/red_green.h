@@ -7,16 +7,15 @@
 
 namespace papilio {
 
-/// Refines by the red-green scheme: level by level down the hierarchy of the uniform subdivision (`levels`), then
-/// closed in the result by transition faces. Every vertex is, to the bit, that of the uniform result, and neighbours
-/// differ by one level at most.
+/// Refines by the red-green scheme: level by level down the hierarchy of the uniform subdivision (`levels`). Transition
+/// faces close the result. Every vertex is bit-identical to a vertex of the uniform result, and neighbours differ by at
+/// most one level.
 ///
-/// Without a tolerance or budget a level asks which edges the criteria want, and a face goes on when all three are
-/// wanted. With one, errors decide, and what lies deeper counts: an edge is also split when a face below needs it
-/// (as its own half, or so that neighbours do not differ by more than a level). So faces are divided only where
-/// something below still exceeds the tolerance, and elsewhere single edges are split. Moves below the tolerance add up
-/// from level to level: at the end the result is compared with the surface, and split where it is further away
-/// (hierarchy/repair.h).
+/// Without tolerance or budget, criteria select edges level by level, and a face is divided if all three are selected.
+/// With either, errors decide, including those of deeper levels: an edge is also split if a face below requires it, for
+/// its halves or to keep neighbours within one level. So faces are divided only above errors that exceed the tolerance;
+/// elsewhere single edges are split. Moves below the tolerance add up over levels: finally the result is compared with
+/// the surface, and split where it is too far away (hierarchy/repair.h).
 [[nodiscard]] Result refine_red_green(Levels levels, const Options& options, const Selection& selection,
                                       const Progress& progress);
 

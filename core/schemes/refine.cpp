@@ -16,7 +16,7 @@
 namespace papilio {
 namespace {
 
-/// The mesh, with its creases marked, as the schemes take it: their own, or a prepared one.
+/// Returns the levels or the mesh for a scheme, from a mesh with its creases marked, or from a prepared one.
 Levels levels_of(Mesh&& mesh, const Options& options, const Progress& progress) {
   return {std::move(mesh), options, progress};
 }
@@ -26,7 +26,7 @@ Levels levels_of(const PreparedMesh& prepared, const Options& options, const Pro
 Mesh mesh_of(Mesh&& mesh) { return std::move(mesh); }
 Mesh mesh_of(const PreparedMesh& prepared) { return prepared.coarse(); }
 
-/// Throws where the scheme makes vertices that the detail does not have.
+/// Throws `Error` bad_option if the scheme makes vertices that the detail does not have.
 void check_scheme(const Mesh& coarse, const Options& options) {
   if (coarse.detail && options.scheme == Scheme::in_place && options.levels > 0 && !Selection(options, 1).is_uniform())
     throw Error(
@@ -56,7 +56,7 @@ Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks
         simplify_hidden(std::move(result.mesh), *selection.camera(), default_hidden_error, [&] { progress.poll(); });
   }
   if (!options.edges) forget_edges(result.mesh.topology);
-  result.mesh.detail.reset();  // which belongs to the coarse mesh
+  result.mesh.detail.reset();  // it applies to the coarse mesh only
   progress.report_last(result.levels, result.mesh);
   return result;
 }

@@ -12,18 +12,12 @@
 namespace papilio {
 namespace {
 
-float largest_coordinate(const Buffer<Vec3f>& positions) {
-  Vec3fa largest{};
-  for (const Vec3f& p : positions) largest = larger(largest, larger(widen(p), -1.0F * widen(p)));
-  return std::max({largest.v[0], largest.v[1], largest.v[2]});
-}
-
-/// Collects deviations, each of which is asked for only where the edge's vertex is far enough from the midpoint.
+/// Largest deviation so far. Computes a deviation only if the edge's vertex is far enough from the midpoint.
 class Largest {
  public:
   explicit Largest(DeviationCutoff too_near) : too_near_(too_near) {}
 
-  /// Of the edge from a to b.
+  /// Adds the edge from a to b with the new vertex `made`.
   template <class Deviation>
   void add(const Vec3f& made, const Vec3f& a, const Vec3f& b, const Deviation& deviation) {
     if (squared_length(widen(made) - 0.5F * (widen(a) + widen(b))) <= too_near_.squared()) return;
@@ -37,10 +31,10 @@ class Largest {
   double distance_ = 0;
 };
 
-/// The largest of what add(first, last, largest) adds, for `count` things in all.
+/// Returns the largest deviation that add(begin, end, largest) adds over ranges of [0, count).
 template <class Add>
 double find_largest(const Buffer<Vec3f>& positions, uint32_t count, int threads, const Add& add) {
-  const Largest none_yet(DeviationCutoff(largest_coordinate(positions)));
+  const Largest none_yet(DeviationCutoff(bounding_box({positions.data(), positions.size()}).largest_coordinate()));
   const uint32_t parts = parts_of(count, threads);
   std::vector<Largest> found(parts, none_yet);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {
@@ -51,11 +45,12 @@ double find_largest(const Buffer<Vec3f>& positions, uint32_t count, int threads,
   return std::ranges::max_element(found, {}, &Largest::distance)->distance();
 }
 
-/// Adds the inner edges of the family of face `parent`, and the halves of its sides where it is the lower of two faces.
+/// Adds the inner edges of the children of face `parent`, and the halves of sides at which it is the lower of two
+/// faces.
 void add_family(const Topology& parents, uint32_t parent, const Vec3f* p, const Vec3f* made, Largest& largest) {
   const ChildStencil family(parents, parent);
-  // An edge, from its lower vertex to the other, with the apexes of its two faces, the one on its left first.
-  const auto add = [&](uint32_t edge, uint32_t a, uint32_t b, uint32_t apex, uint32_t other_apex) {
+  // Adds an edge from its lower vertex a to b, with the apexes of its left and right face.
+  const auto add = [&](EdgeId edge, uint32_t a, uint32_t b, uint32_t apex, uint32_t other_apex) {
     largest.add(made[edge], p[a], p[b],
                 [&] { return deviation_from_faces(made[edge], p[a], p[b], p[apex], p[other_apex]); });
   };
@@ -77,8 +72,8 @@ void add_family(const Topology& parents, uint32_t parent, const Vec3f* p, const 
 double largest_deviation(const Mesh& mesh, const Vec3f* made, int threads) {
   const Topology& topology = mesh.topology;
   const auto add = [&](uint32_t first, uint32_t last, Largest& largest) {
-    for (uint32_t e = first; e < last; ++e) {
-      const uint32_t h = topology.half_edge[e];
+    for (EdgeId e = first; e < last; ++e) {
+      const HalfEdgeId h = topology.half_edge[e];
       largest.add(made[e], mesh.positions[topology.origin[h]], mesh.positions[topology.tip(h)],
                   [&] { return deviation(mesh, e, made[e]); });
     }
@@ -89,7 +84,7 @@ double largest_deviation(const Mesh& mesh, const Vec3f* made, int threads) {
 double largest_deviation_below(const Topology& parents, const Buffer<Vec3f>& positions, const Vec3f* made,
                                int threads) {
   const auto add = [&](uint32_t first, uint32_t last, Largest& largest) {
-    for (uint32_t f = first; f < last; ++f) add_family(parents, f, positions.data(), made, largest);
+    for (FaceId f = first; f < last; ++f) add_family(parents, f, positions.data(), made, largest);
   };
   return find_largest(positions, parents.face_count(), threads, add);
 }

@@ -2,17 +2,17 @@
 
 #include "papilio/mesh.h"
 
-// How far the surface moves at most where a uniform level splits it. Most edges are seen to matter less than another by
-// how far their new vertex is from the midpoint, which is on the surface.
+// Largest deviation of a uniform level. Most edges are skipped by the distance from new vertex to midpoint, an upper
+// bound of the deviation.
 
 namespace papilio {
 
-/// The largest deviation (deviation.h) of the mesh's edges, whose new vertices `made` [E] are an `Buffer`'s. In the
-/// mesh's unit. Up to so many threads work on it. O(F).
+/// Returns the largest deviation (deviation.h) of the mesh's edges, in the mesh's unit. The new vertices `made` [E]
+/// must be in a `Buffer`. Uses at most `threads` threads. O(F).
 [[nodiscard]] double largest_deviation(const Mesh& mesh, const Vec3f* made, int threads);
 
-/// The same of the level below `parents`, by families (child_stencil.h): that level itself is not needed. `positions`
-/// of its vertices. All of its edges must be smooth.
+/// Returns the largest deviation of the level below `parents`, without its connectivity (child_stencil.h). `positions`
+/// and `made` are of that level, whose edges must all be smooth.
 [[nodiscard]] double largest_deviation_below(const Topology& parents, const Buffer<Vec3f>& positions, const Vec3f* made,
                                              int threads);
 

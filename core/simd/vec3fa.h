@@ -8,9 +8,9 @@
 
 namespace papilio {
 
-/// Three floats in a register of four, as Embree's type of this name, for the loops that cost most. Each lane is
-/// rounded as a float is, so results are those of Vec3f to the bit. The fourth lane is never used. Compilers have such
-/// types for every processor.
+/// Three floats in a register of four, like Embree's type of this name, for hot loops. Each lane is rounded as a float,
+/// so results are bit-identical to Vec3f. The fourth lane is never used. Compilers provide the vector type for every
+/// processor.
 struct Vec3fa {
   using Register = float __attribute__((vector_size(16)));
   Register v;
@@ -21,13 +21,24 @@ struct Vec3fa {
   Vec3fa& operator+=(Vec3fa b) { return *this = *this + b; }
 };
 
-/// Lane by lane.
+/// Returns the maximum or minimum of each lane.
 inline Vec3fa larger(Vec3fa a, Vec3fa b) { return {a.v > b.v ? a.v : b.v}; }
 inline Vec3fa lesser(Vec3fa a, Vec3fa b) { return {a.v < b.v ? a.v : b.v}; }
-/// Of the first three lanes.
+/// Returns the sum of squares of the first three lanes.
 inline float squared_length(Vec3fa a) { return a.v[0] * a.v[0] + a.v[1] * a.v[1] + a.v[2] * a.v[2]; }
 
-/// What rules compute with: `Vec3fa` in the product, plain vectors where a test checks the arithmetic in double.
+/// Returns the dot products of a vector with three others in the first three lanes, each bit-identical to dot().
+inline Vec3fa dots(Vec3fa a, Vec3fa b, Vec3fa c, Vec3fa d) {
+  const Vec3fa::Register ab = a.v * b.v;
+  const Vec3fa::Register ac = a.v * c.v;
+  const Vec3fa::Register ad = a.v * d.v;
+  const auto front = __builtin_shufflevector(ab, ac, 0, 4, 1, 5);
+  const auto back = __builtin_shufflevector(ab, ac, 2, 6, 3, 7);
+  return {__builtin_shufflevector(front, ad, 0, 1, 4, 4) + __builtin_shufflevector(front, ad, 2, 3, 5, 5) +
+          __builtin_shufflevector(back, ad, 0, 1, 6, 6)};
+}
+
+/// Vector type of the rules' arithmetic: `Vec3fa` for float, `Vec3d` where a test checks the arithmetic in double.
 template <class Real>
 struct WideOf {
   using Type = Vec3T<Real>;
@@ -39,9 +50,9 @@ struct WideOf<float> {
 template <class Real>
 using Wide = typename WideOf<Real>::Type;
 
-/// Reads four floats: the array must be a `Buffer` (papilio/buffer.h), whose memory goes on behind its end. The fourth
-/// is not of this point, and another thread may be writing it: whatever it is, nothing is made of it. (The thread
-/// sanitizer cannot know; for it three are read.)
+/// Reads four floats: the array must be a `Buffer` (papilio/buffer.h), whose memory extends behind its end. The fourth
+/// belongs to the next point and may be written by another thread; its value is never used. Under the thread sanitizer,
+/// which would report it, only three are read.
 inline Vec3fa widen(const Vec3f& p) {
 #if defined(__SANITIZE_THREAD__)
   return {Vec3fa::Register{p.x, p.y, p.z, 0}};
@@ -56,13 +67,13 @@ inline Vec3d widen(const Vec3d& p) { return p; }
 inline void store(Vec3fa lanes, Vec3f& p) { p = {lanes.v[0], lanes.v[1], lanes.v[2]}; }
 inline void store(const Vec3d& q, Vec3d& p) { p = q; }
 
-/// Stores q, or the sum of p and q: without a branch, for who comes first to an edge is not foreseen.
-inline void add_share(bool to_what_is_there, Vec3fa q, Vec3f& p) {
+/// Adds q to p if `accumulate`, else stores q in p. Branch-free: which face is first at an edge is unpredictable.
+inline void add_share(bool accumulate, Vec3fa q, Vec3f& p) {
   using Bits = int32_t __attribute__((vector_size(16)));
-  const int32_t mask = to_what_is_there ? -1 : 0;
+  const int32_t mask = accumulate ? -1 : 0;
   const Bits there = std::bit_cast<Bits>(widen(p).v) & Bits{mask, mask, mask, mask};
   store(Vec3fa{std::bit_cast<Vec3fa::Register>(there)} + q, p);
 }
-inline void add_share(bool to_what_is_there, const Vec3d& q, Vec3d& p) { p = to_what_is_there ? p + q : q; }
+inline void add_share(bool accumulate, const Vec3d& q, Vec3d& p) { p = accumulate ? p + q : q; }
 
 }  // namespace papilio

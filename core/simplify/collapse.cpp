@@ -13,12 +13,12 @@
 namespace papilio {
 namespace {
 
-/// The points [H] at the corners, or the vertices when there are no attributes: what meshoptimizer calls vertices.
+/// Returns [H] the point at each corner, or the vertex without attributes: a vertex of meshoptimizer.
 const Buffer<uint32_t>& corner_points(const Mesh& mesh) {
   return mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point;
 }
 
-/// [points] the vertex of each.
+/// Returns [points] the vertex of each point.
 std::vector<uint32_t> vertices_of_points(const Mesh& mesh) {
   const uint32_t count = mesh.attributes.empty() ? mesh.topology.vertex_count : mesh.attributes.point_count;
   std::vector<uint32_t> vertex(count, 0);
@@ -27,7 +27,7 @@ std::vector<uint32_t> vertices_of_points(const Mesh& mesh) {
   return vertex;
 }
 
-/// Numbers what is used anew, without gaps, in the same order. Returns the old numbers.
+/// Replaces numbers by compact indices in their order. Returns the old numbers.
 std::vector<uint32_t> renumber(Buffer<uint32_t>& numbers, size_t count) {
   std::vector<uint32_t> next(count, none);
   for (uint32_t n : numbers) next[n] = 0;
@@ -41,7 +41,7 @@ std::vector<uint32_t> renumber(Buffer<uint32_t>& numbers, size_t count) {
   return kept;
 }
 
-/// The values of some points.
+/// Returns an attribute with the values of some points.
 Attribute select(const Attribute& from, const std::vector<uint32_t>& points) {
   Attribute to{from.components, from.unit_length, {}, from.is_smoothing_group, from.is_displacement};
   to.values.reserve(from.components * points.size());
@@ -78,7 +78,7 @@ void append(std::vector<uint32_t>& corners, const Mesh& mesh, uint32_t face) {
 
 void Collapser::set_aside(const std::vector<bool>& chosen, std::vector<bool>& to_collapse) {
   const Buffer<uint32_t>& origin = mesh_.topology.origin;
-  std::vector<uint32_t> faces(mesh_.topology.vertex_count, 0);  // of the chosen ones
+  std::vector<uint32_t> faces(mesh_.topology.vertex_count, 0);  // number of chosen faces
   for (uint32_t h = 0; h < origin.size(); ++h) faces[origin[h]] += chosen[Topology::face(h)] ? 1 : 0;
   for (uint32_t h = 0; h < origin.size(); ++h)
     if (faces[origin[h]] > most_faces_at_vertex) to_collapse[Topology::face(h)] = false;
@@ -88,7 +88,7 @@ void Collapser::set_aside(const std::vector<bool>& chosen, std::vector<bool>& to
   for (uint32_t point : fixed_) is_locked_[vertex_of_point_[point]] = true;
 }
 
-/// Each is what lies nearest to a first face, across edges.
+// Grows each part from a first face across edges.
 void Collapser::split_into_parts(std::vector<bool> to_collapse) {
   const auto count = static_cast<size_t>(std::ranges::count(to_collapse, true));
   const auto take = [&](uint32_t f) {
@@ -104,11 +104,11 @@ void Collapser::split_into_parts(std::vector<bool> to_collapse) {
     for (uint32_t f : faces) append(part, mesh_, f);
     faces.clear();
   };
-  size_t next = 0;  // of `faces`, whose neighbours are to be taken
+  size_t next = 0;  // first of `faces` whose neighbours are not yet taken
   for (uint32_t f = 0; f < mesh_.topology.face_count(); ++f) {
     if (!take(f)) continue;
     faces.push_back(f);
-    if (count <= most_faces) continue;  // all of them, whether they touch or not
+    if (count <= most_faces) continue;  // one part of all faces, connected or not
     for (; next < faces.size() && faces.size() < most_faces; ++next)
       for (uint32_t h = 3 * faces[next]; h < 3 * faces[next] + 3 && faces.size() < most_faces; ++h) {
         const uint32_t t = mesh_.topology.twin[h];
@@ -122,10 +122,10 @@ void Collapser::split_into_parts(std::vector<bool> to_collapse) {
   end_part();
 }
 
-/// Locks the vertices between parts, and, in all parts but the last at each, those of the faces there: two parts might
-/// join the same two vertices.
+// Locks the vertices between parts. In all parts but the last at such a vertex, locks also the vertices of its faces:
+// two parts might join one pair of vertices.
 void Collapser::lock_borders() {
-  std::vector<uint32_t> last(mesh_.topology.vertex_count, 0);  // part at the vertex
+  std::vector<uint32_t> last(mesh_.topology.vertex_count, 0);  // last part at the vertex
   for (uint32_t part = 0; part < parts_.size(); ++part)
     for (uint32_t point : parts_[part]) last[vertex_of_point_[point]] = part;
   for (uint32_t part = 0; part < parts_.size(); ++part)
@@ -147,10 +147,10 @@ Collapsed Collapser::run(const std::vector<bool>& locked, double error) const {
   return result;
 }
 
-/// Appends what is left of the part to `out`.
+// Appends the simplified part to `out`.
 void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, double error,
                          Buffer<uint32_t>& out) const {
-  Corners points = part;  // its own, in ascending order
+  Corners points = part;  // points of the part, in ascending order
   sort_range(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   Corners own(part.size());
@@ -165,11 +165,13 @@ void Collapser::collapse(const Corners& part, const std::vector<bool>& locked, d
   for (uint32_t p : left) out.push_back(points[p]);
 }
 
-/// The points' positions for meshoptimizer, followed by those of locked vertices once more: in version 0.18 nothing but
-/// a point that no face uses, at the same position, makes it leave a vertex alone. (Debian's has asserts that abort, at
-/// seams; with three points at each none is one to it.) It scales by the longest side of the box: squares of what a
-/// mesh may have need not be numbers, so that is done here, by a power of two, and the last points make that side
-/// exactly 1. So nothing is rounded, and what lies in a line stays there, which lets it avoid faces without area.
+// Returns positions for meshoptimizer: of the points, then of locked vertices again. In version 0.18 only an unused
+// point at the same position locks a vertex. (With three points at each position, Debian's asserts at seams do not
+// abort.)
+//
+// meshoptimizer scales by the longest side of the box, and squares of coordinates may overflow. So positions are scaled
+// here by a power of two, and the last three points make the longest side exactly 1. Nothing is rounded, and collinear
+// points stay collinear, so that meshoptimizer can avoid faces without area.
 Buffer<Vec3f> Collapser::place(const std::vector<uint32_t>& points, const std::vector<bool>& locked) const {
   const Vec3d origin = to_double(box_.min);
   Buffer<Vec3f> positions;
@@ -186,7 +188,7 @@ Buffer<Vec3f> Collapser::place(const std::vector<uint32_t>& points, const std::v
   return positions;
 }
 
-/// The mesh of these corners, given as points. Vertices and points that none uses are left out.
+// Builds the mesh of these corners, given as points. Drops unused vertices and points.
 Collapsed Collapser::assemble(Buffer<uint32_t> points) const {
   Collapsed out;
   auto origin = Buffer<uint32_t>::for_overwrite(points.size());

@@ -10,14 +10,14 @@
 namespace papilio {
 namespace {
 
-/// Height of a sliver, as a share of its longest edge.
+/// Upper bound of a sliver's height, a share of its longest edge.
 constexpr double sliver_height = 1e-6;
-/// Slivers beside slivers take several rounds.
+/// Upper bound of the rounds: slivers beside slivers take several.
 constexpr int max_rounds = 16;
-/// Most faces at a sliver's apex: each sliver there looks at all.
+/// Upper bound of the faces at a sliver's apex, all of which are visited for each sliver.
 constexpr uint32_t most_faces = 1000;
 
-/// The longest half-edge of the face if it is a sliver, else `none`.
+/// Returns the longest half-edge of the face if it is a sliver, else `none`.
 uint32_t longest_of_sliver(const Mesh& mesh, uint32_t face) {
   uint32_t longest = none;
   double longest_squared = -1;
@@ -40,7 +40,7 @@ class Flipper {
     for (uint32_t v : mesh.topology.origin) ++faces_[v];
   }
 
-  /// Flips what it can, no face twice. Returns whether that was anything.
+  /// Flips the longest edges of slivers, no face twice. Returns whether any edge was flipped.
   bool run() {
     bool any = false;
     for (uint32_t f = first_; f < mesh_.topology.face_count(); ++f) {
@@ -66,7 +66,7 @@ class Flipper {
     return topology.apex(h) != topology.apex(t) && std::ranges::find(fan_.ring, topology.apex(t)) == fan_.ring.end();
   }
 
-  /// The edge now runs between what were the apexes.
+  /// Replaces the edge by one between the apexes of its faces.
   void flip(uint32_t h) {
     const uint32_t t = mesh_.topology.twin[h];
     const auto turn = [&](Buffer<uint32_t>& corners) {
@@ -82,8 +82,8 @@ class Flipper {
   Mesh& mesh_;
   uint32_t first_;
   std::vector<bool> touched_;
-  std::vector<uint32_t> faces_;  ///< [V] at each vertex
-  Buffer<uint32_t> origin_;      ///< [H] after the flips, once there are any
+  std::vector<uint32_t> faces_;  ///< [V] number of faces
+  Buffer<uint32_t> origin_;      ///< [H] origins after the flips; empty before the first one
   Fan fan_;
 };
 

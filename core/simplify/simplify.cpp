@@ -16,14 +16,15 @@
 namespace papilio {
 namespace {
 
-/// Attempts with one error; then it is a quarter, so many times. At the default error four were the most seen.
+/// Upper bounds of the attempts with one error, and of the errors, each a quarter of the one before. At the default
+/// error, no more than four attempts were observed.
 constexpr int max_attempts = 10;
 constexpr int max_errors = 3;
-/// How far round a fault vertices are locked for the next attempt. (2 leaves up to half as many faces again.)
+/// Rings of vertices round a fault that are locked for the next attempt. (2 leave up to half as many faces again.)
 constexpr uint32_t first_lock_rings = 1;
 constexpr uint32_t last_lock_rings = 64;
 
-/// The vertices [V] that must stay, where they are and in use: also all at which meshoptimizer would see a border.
+/// Returns [V] the vertices to keep, including those at which meshoptimizer would see a border.
 std::vector<bool> find_locked(const Mesh& mesh, const std::vector<bool>& hidden) {
   const Topology& topology = mesh.topology;
   std::vector<bool> locked(topology.vertex_count);
@@ -34,17 +35,17 @@ std::vector<bool> find_locked(const Mesh& mesh, const std::vector<bool>& hidden)
   return locked;
 }
 
-/// Where something went wrong, and how often.
+/// Faults of the attempts so far, and how far round each vertices were locked.
 class Trouble {
  public:
   Trouble(const Topology& mesh, const std::function<void()>& poll)
       : mesh_(mesh), poll_(poll), reach_(mesh.vertex_count, 0) {}
 
-  /// Locks the faults and what is within a few edges of each: twice as many each time that a vertex turns up again.
+  /// Locks the faults and their neighbourhoods. The radius doubles each time that a vertex is a fault again.
   void lock(std::vector<uint32_t> faults, std::vector<bool>& locked) {
     sort_range(faults);
     faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
-    std::vector<uint32_t> rings(mesh_.vertex_count, 0);  // how far the lock still goes from here, and one
+    std::vector<uint32_t> rings(mesh_.vertex_count, 0);  // 1 + remaining rings to lock from here
     uint32_t most = 0;
     for (uint32_t v : faults) {
       reach_[v] = reach_[v] == 0 ? first_lock_rings : std::min<uint32_t>(2 * reach_[v], last_lock_rings);
@@ -67,10 +68,10 @@ class Trouble {
  private:
   const Topology& mesh_;
   const std::function<void()>& poll_;
-  std::vector<uint32_t> reach_;  ///< [V] rings locked round it the last time
+  std::vector<uint32_t> reach_;  ///< [V] rings locked round the vertex last time
 };
 
-/// Attempts until one does no damage: round each fault everything is locked the next time. Nothing when all fail.
+/// Repeats the collapse until it makes no fault, with vertices round each fault locked. Returns nothing if all fail.
 std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hidden, const std::vector<bool>& to_lock,
                                   double error, const std::function<void()>& poll) {
   const Collapser collapser(mesh, hidden, poll);
@@ -83,7 +84,7 @@ std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hid
       std::vector<uint32_t> faults = find_faults(mesh, result, poll);
       poll();
       if (faults.empty()) {
-        // Without any fault to be seen, a handle may have gone: a smaller error keeps it.
+        // Without a fault, a handle may have collapsed: a smaller error keeps it.
         if (result.mesh.topology.euler_characteristic() != mesh.topology.euler_characteristic()) break;
         return result;
       }
@@ -93,7 +94,7 @@ std::optional<Collapsed> simplify(const Mesh& mesh, const std::vector<bool>& hid
   return std::nullopt;
 }
 
-/// Makes creases smooth and returns them.
+/// Makes creases smooth, and returns their numbers.
 std::vector<uint32_t> unmark_creases(Topology& mesh) {
   std::vector<uint32_t> creases;
   for (uint32_t e = 0; e < mesh.edge_count(); ++e) {
@@ -104,7 +105,7 @@ std::vector<uint32_t> unmark_creases(Topology& mesh) {
   return creases;
 }
 
-/// Makes the creases of the mesh before creases again, and its darts darts. False when one is not there.
+/// Restores the creases and darts of the mesh before. Returns false if a crease is missing.
 bool restore_creases(const Topology& before, const std::vector<uint32_t>& creases, Collapsed& after) {
   Topology& mesh = after.mesh.topology;
   using Ends = std::array<uint32_t, 2>;
@@ -112,20 +113,20 @@ bool restore_creases(const Topology& before, const std::vector<uint32_t>& crease
     const uint32_t h = in.half_edge[e];
     return Ends{std::min(in.origin[h], in.tip(h)), std::max(in.origin[h], in.tip(h))};
   };
-  std::vector<Ends> wanted;
-  wanted.reserve(creases.size());
-  for (uint32_t e : creases) wanted.push_back(ends(before, e));
-  sort_range(wanted);
+  std::vector<Ends> expected;
+  expected.reserve(creases.size());
+  for (uint32_t e : creases) expected.push_back(ends(before, e));
+  sort_range(expected);
   size_t found = 0;
-  for (uint32_t e = 0; e < mesh.edge_count() && !wanted.empty(); ++e) {
+  for (uint32_t e = 0; e < mesh.edge_count() && !expected.empty(); ++e) {
     const auto [a, b] = ends(mesh, e);
-    if (!std::ranges::binary_search(wanted, Ends{after.vertex[a], after.vertex[b]})) continue;
+    if (!std::ranges::binary_search(expected, Ends{after.vertex[a], after.vertex[b]})) continue;
     mesh.kind[e] = EdgeKind::crease;
     ++found;
   }
   for (uint32_t v = 0; v < mesh.vertex_count; ++v)
     if (std::ranges::binary_search(before.darts, after.vertex[v])) mesh.darts.push_back(v);
-  return found == wanted.size();
+  return found == expected.size();
 }
 
 }  // namespace
@@ -135,7 +136,7 @@ Mesh simplify_hidden(Mesh mesh, const Camera& camera, double error, const std::f
   if (std::ranges::find(hidden, true) == hidden.end() || bounding_box(mesh.positions).diagonal() == 0) return mesh;
   const std::vector<bool> to_lock = find_locked(mesh, hidden);
 
-  // What `connect_faces` would make of the faces at hand, so that before and after compare.
+  // As after connect_faces(), so that the mesh before compares with the result.
   const std::vector<uint32_t> creases = unmark_creases(mesh.topology);
   const std::vector<uint32_t> pinched = std::exchange(mesh.topology.pinched, find_pinched(mesh.topology));
   std::optional<Collapsed> result = simplify(mesh, hidden, to_lock, error, poll ? poll : std::function<void()>([] {}));

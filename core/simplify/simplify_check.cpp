@@ -13,7 +13,7 @@ namespace {
 
 using Edge = std::array<uint32_t, 2>;
 
-/// Half-edges without twin as (origin, tip), sorted, in the numbering that `number` gives.
+/// Returns the half-edges without a twin as sorted pairs (origin, tip), with vertices mapped by `number`.
 template <class Number>
 std::vector<Edge> open_half_edges(const Topology& mesh, const Number& number) {
   std::vector<Edge> open;
@@ -30,15 +30,15 @@ std::vector<uint32_t> pinched_vertices(const Topology& mesh, const Number& numbe
   return pinched;
 }
 
-/// Whether the face has two edges in common with a neighbour, and so lies on it.
+/// Returns whether the face shares two edges with a neighbour, and so lies on it.
 bool is_folded(const Topology& mesh, uint32_t face) {
   const auto neighbour = [&](uint32_t h) { return mesh.twin[h] == none ? none : Topology::face(mesh.twin[h]); };
   const Triangle n{neighbour(3 * face), neighbour(3 * face + 1), neighbour(3 * face + 2)};
   return (n[0] != none && (n[0] == n[1] || n[0] == n[2])) || (n[1] != none && n[1] == n[2]);
 }
 
-/// Faces, from their lowest vertex on and sorted, that have no normal, are folded, or are flipped: turned against the
-/// surface before at each corner.
+/// Returns, sorted, the faces that have no normal, are folded, or are flipped: turned against the vertex normals of the
+/// mesh before at each corner. Each starts at its lowest vertex.
 template <class Number>
 std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Buffer<Vec3f>& vertex_normals) {
   const Topology& topology = mesh.topology;
@@ -56,7 +56,7 @@ std::vector<Triangle> bad_faces(const Mesh& mesh, const Number& number, const Bu
   return bad;
 }
 
-/// One vertex of each component of which nothing is left.
+/// Returns one vertex of each component that has no vertex left.
 std::vector<uint32_t> lost_components(const Topology& before, const std::vector<uint32_t>& kept) {
   DisjointSets components(before.vertex_count);
   for (uint32_t h = 0; h < before.half_edge_count(); ++h) components.join(before.origin[h], before.tip(h));
@@ -75,7 +75,7 @@ void append(std::vector<uint32_t>& faults, const std::array<uint32_t, N>& vertic
   faults.insert(faults.end(), vertices.begin(), vertices.end());
 }
 
-/// Appends what is in one of two sorted lists only.
+/// Appends the elements that are in only one of two sorted lists.
 template <class Item>
 void append_difference(const std::vector<Item>& before, const std::vector<Item>& after, std::vector<uint32_t>& faults) {
   std::vector<Item> difference;

@@ -1,7 +1,6 @@
 #include "split/split.h"
 
 #include "mesh/attributes.h"
-#include "mesh/region.h"
 #include "split/split_pattern.h"
 
 namespace papilio {
@@ -9,13 +8,15 @@ namespace {
 
 class Splitter {
  public:
-  Splitter(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions)
-      : mesh_(mesh), plan_(plan), positions_(positions) {}
+  Splitter(const Topology& mesh, const Marks& targets, const Buffer<Vec3f>& positions)
+      : mesh_(mesh), targets_(targets), positions_(positions), before_(targets.size() + 1) {
+    for (size_t e = 0; e < targets.size(); ++e) before_[e + 1] = before_[e] + targets[e];
+  }
 
   Topology run(PointAttributes& attributes, const Displacements& displaced) {
     choose_patterns();
     const uint32_t faces = first_child_.back();
-    child_.vertex_count = mesh_.vertex_count + plan_.count();
+    child_.vertex_count = mesh_.vertex_count + before_.back();
     child_.pinched = mesh_.pinched;
     child_.darts = mesh_.darts;
     child_.shape = mesh_.shape;
@@ -25,12 +26,12 @@ class Splitter {
     const uint32_t edges = inner_edge_base() + (faces - mesh_.face_count());
     child_.half_edge.resize_for_overwrite(edges);
     child_.kind.assign(edges, EdgeKind::smooth);
-    for (uint32_t e = 0; e < mesh_.edge_count(); ++e) {
-      const uint32_t base = e + plan_.before[e];
+    for (EdgeId e = 0; e < mesh_.edge_count(); ++e) {
+      const uint32_t base = e + before_[e];
       child_.kind[base] = mesh_.kind[e];
-      if (plan_.is_split(e)) child_.kind[base + 1] = mesh_.kind[e];
+      if (targets_[e] != 0) child_.kind[base + 1] = mesh_.kind[e];
     }
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f) split_face(f);
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) split_face(f);
     if (!attributes.empty()) split_corners(attributes, displaced);
     return std::move(child_);
   }
@@ -41,10 +42,11 @@ class Splitter {
     pattern_.resize(faces);
     first_child_.resize(faces + 1);
     uint32_t child = 0;
-    for (uint32_t f = 0; f < faces; ++f) {
-      const unsigned mask = split_mask(mesh_, plan_, f);
+    for (FaceId f = 0; f < faces; ++f) {
+      const uint32_t* edge = &mesh_.edge[size_t{3} * f];
+      const unsigned mask = targets_[edge[0]] | targets_[edge[1]] << 1U | targets_[edge[2]] << 2U;
       const auto corner = [&](uint32_t i) {
-        const uint32_t v = mesh_.origin[3 * f + i];
+        const VertexId v = mesh_.origin[3 * f + i];
         return CornerPoint{v, positions_[v]};
       };
       const auto middle = [&](uint32_t i) { return positions_[new_vertex(3 * f + i)]; };
@@ -55,34 +57,34 @@ class Splitter {
     first_child_[faces] = child;
   }
 
-  [[nodiscard]] uint32_t new_vertex(uint32_t h) const { return mesh_.vertex_count + plan_.before[mesh_.edge[h]]; }
+  [[nodiscard]] uint32_t new_vertex(HalfEdgeId h) const { return mesh_.vertex_count + before_[mesh_.edge[h]]; }
 
-  [[nodiscard]] uint32_t inner_edge_base() const { return mesh_.edge_count() + plan_.count(); }
+  [[nodiscard]] uint32_t inner_edge_base() const { return mesh_.edge_count() + before_.back(); }
 
-  /// Edge of the next level that is the first (0) or second (1) half of parent half-edge h, or the whole of
-  /// it. The half at the lower vertex comes first, whichever way h runs.
-  [[nodiscard]] uint32_t outer_edge(uint32_t h, uint32_t half) const {
-    const uint32_t e = mesh_.edge[h];
-    const uint32_t base = e + plan_.before[e];
-    if (!plan_.is_split(e)) return base;
+  /// Returns the edge of the next level that is the first (0) or second (1) half of parent half-edge h, or all of it.
+  /// The half at the lower vertex comes first, in either direction of h.
+  [[nodiscard]] uint32_t outer_edge(HalfEdgeId h, uint32_t half) const {
+    const EdgeId e = mesh_.edge[h];
+    const uint32_t base = e + before_[e];
+    if (targets_[e] == 0) return base;
     return base + (mesh_.origin[h] < mesh_.tip(h) ? half : 1 - half);
   }
 
-  /// Half-edge of the next level that runs against the first or second half of parent half-edge h, or the
-  /// whole of it.
-  [[nodiscard]] uint32_t outer_twin(uint32_t h, uint32_t half) const {
-    const uint32_t t = mesh_.twin[h];
+  /// Returns the half-edge of the next level opposite to the first or second half of parent half-edge
+  /// h, or to all of it.
+  [[nodiscard]] uint32_t outer_twin(HalfEdgeId h, uint32_t half) const {
+    const HalfEdgeId t = mesh_.twin[h];
     if (t == none) return none;
-    const uint32_t half_of_twin = plan_.is_split(mesh_.edge[h]) ? 1 - half : 0;
-    return 3 * first_child_[Topology::face(t)] + pattern_[Topology::face(t)]->outer[2 * (t % 3) + half_of_twin];
+    const uint32_t half_of_twin = targets_[mesh_.edge[h]] != 0 ? 1 - half : 0;
+    return 3 * first_child_[t.face()] + pattern_[t.face()]->outer[2 * (t % 3) + half_of_twin];
   }
 
-  void split_face(uint32_t f) {
+  void split_face(FaceId f) {
     const SplitPattern& pattern = *pattern_[f];
     const uint32_t base = 3 * first_child_[f];
     const uint32_t inner_edges = inner_edge_base() + (first_child_[f] - f);
     for (uint32_t c = 0; c < 3U * pattern.children; ++c) {
-      const uint32_t h = base + c;
+      const HalfEdgeId h = base + c;
       const uint8_t corner = pattern.corner[c / 3][c % 3];
       child_.origin[h] = corner < 3 ? mesh_.origin[3 * f + corner] : new_vertex(3 * f + corner - 3);
       if (pattern.inner_twin[c] != SplitPattern::outside) {
@@ -98,12 +100,9 @@ class Splitter {
   }
 
   void split_corners(PointAttributes& attributes, const Displacements& displaced) const {
-    const Region all = whole_region(mesh_);
-    EdgeMarks targets(mesh_.edge_count());
-    for (uint32_t e = 0; e < targets.size(); ++e) targets[e] = plan_.is_split(e) ? 1 : 0;
-    const Buffer<uint32_t> made = split_points(mesh_, targets, all.faces, attributes, displaced);
+    const Buffer<uint32_t> made = split_points(mesh_, targets_, IndexRange(mesh_.face_count()), attributes, displaced);
     auto point = Buffer<uint32_t>::for_overwrite(child_.half_edge_count());
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f)
+    for (FaceId f = 0; f < mesh_.face_count(); ++f)
       for (uint32_t c = 0; c < 3U * pattern_[f]->children; ++c) {
         const uint8_t corner = pattern_[f]->corner[c / 3][c % 3];
         point[3 * first_child_[f] + c] = corner < 3 ? attributes.point[3 * f + corner] : made[3 * f + corner - 3];
@@ -112,24 +111,25 @@ class Splitter {
   }
 
   const Topology& mesh_;
-  const SplitPlan& plan_;
+  const Marks& targets_;
   const Buffer<Vec3f>& positions_;
   std::vector<const SplitPattern*> pattern_;  ///< [F]
+  Buffer<uint32_t> before_;                   ///< [E + 1] number of targets before each edge
   Buffer<uint32_t> first_child_;              ///< [F + 1]
   Topology child_;
 };
 
 }  // namespace
 
-uint64_t count_children(const Topology& mesh, const SplitPlan& plan) {
+uint64_t count_children(const Topology& mesh, const Marks& targets) {
   uint64_t children = mesh.face_count();
-  for (uint32_t e : mesh.edge) children += plan.is_split(e) ? 1 : 0;
+  for (EdgeId e : mesh.edge) children += targets[e];
   return children;
 }
 
-Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions, PointAttributes& attributes,
+Topology split(const Topology& mesh, const Marks& targets, const Buffer<Vec3f>& positions, PointAttributes& attributes,
                const Displacements& displaced) {
-  return Splitter(mesh, plan, positions).run(attributes, displaced);
+  return Splitter(mesh, targets, positions).run(attributes, displaced);
 }
 
 }  // namespace papilio

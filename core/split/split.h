@@ -3,24 +3,23 @@
 #include <vector>
 
 #include "mesh/displacement.h"
-#include "mesh/split_plan.h"
+#include "mesh/marks.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
 
-/// Faces of the next level: each parent is followed by as many children as it has target edges plus one.
-/// Sum over all faces, before anything is made.
-[[nodiscard]] uint64_t count_children(const Topology& mesh, const SplitPlan& plan);
+/// Returns the number of faces of the next level before it is made: each parent has one child more than target edges.
+[[nodiscard]] uint64_t count_children(const Topology& mesh, const Marks& targets);
 
-/// Splits every face by its target edges: none, it stays; one, two triangles; two, three, cut along the
-/// shorter diagonal (equal ones: the one from the lower old vertex); three, four. Orientation is kept and no
-/// T-junction arises.
+/// Splits every face by its target edges: with none, it stays; with one, it becomes two triangles; with three, four.
+/// With two, it becomes three, cut along the shorter diagonal (if equal: from the lower old vertex). Orientation is
+/// kept and no T-junction arises.
 ///
-/// `positions` [V + plan.count()] has the new vertices at its end; `attributes` are split along unless they are empty,
-/// with `displaced` at the new vertices (split_points). The result's faces lie in their parents' order; its arrays
-/// follow from the parents' by formula, in O(F + E), without a search. Edge kinds are inherited; edges inside a parent
-/// are smooth.
-[[nodiscard]] Topology split(const Topology& mesh, const SplitPlan& plan, const Buffer<Vec3f>& positions,
+/// `targets` [E]. `positions` has the new vertices after the old ones, in the order of their edges. `attributes` are
+/// split along unless they are empty, with `displaced` at the new vertices (split_points). Faces of the result are in
+/// the order of their parents. Its arrays are computed from those of the parents in O(F + E), without a search. Edge
+/// kinds are inherited; edges inside a parent are smooth.
+[[nodiscard]] Topology split(const Topology& mesh, const Marks& targets, const Buffer<Vec3f>& positions,
                              PointAttributes& attributes, const Displacements& displaced = {});
 
 }  // namespace papilio

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/ids.h"
 #include "base/index_range.h"
 #include "base/parallel.h"
 #include "mesh/four_children.h"
@@ -10,14 +11,14 @@
 namespace papilio {
 namespace {
 
-/// The rule: one face and its four children.
+/// Rule for one face and its four children.
 class FourRule {
  public:
-  /// Of a mesh with so many vertices and edges.
+  /// For a mesh with `vertices` vertices and `edges` edges.
   FourRule(uint32_t vertices, uint32_t edges) : vertices_(vertices), inner_edges_(2 * edges) {}
 
-  /// Corners and twins of the children of face f.
-  void split(uint32_t f, const uint32_t* corner, const uint32_t* twin, const uint32_t* edge, uint32_t* child_origin,
+  /// Writes corners and twins of the children of face f.
+  void split(FaceId f, const uint32_t* corner, const uint32_t* twin, const uint32_t* edge, uint32_t* child_origin,
              uint32_t* child_twin) const {
     put_corners_of_four({corner[0], corner[1], corner[2]},
                         {vertices_ + edge[0], vertices_ + edge[1], vertices_ + edge[2]}, child_origin);
@@ -25,20 +26,20 @@ class FourRule {
                       {against_second(twin[0]), against_second(twin[1]), against_second(twin[2])}, child_twin);
   }
 
-  /// Edges of the children of face f.
-  void number_edges(uint32_t f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
-    // Whether the half at the half-edge's tip comes first.
+  /// Writes edges of the children of face f.
+  void number_edges(FaceId f, const uint32_t* corner, const uint32_t* edge, uint32_t* child_edge) const {
+    // 1 if the half at the half-edge's tip comes first.
     const uint32_t down[3] = {corner[0] > corner[1] ? 1U : 0U, corner[1] > corner[2] ? 1U : 0U,
                               corner[2] > corner[0] ? 1U : 0U};
     const OfSides first{2 * edge[0] + down[0], 2 * edge[1] + down[1], 2 * edge[2] + down[2]};
     put_edges_of_four(first, {first[0] ^ 1, first[1] ^ 1, first[2] ^ 1}, inner_edge(f), child_edge);
   }
 
-  /// The first of the three edges inside face f.
-  [[nodiscard]] uint32_t inner_edge(uint32_t f) const { return inner_edges_ + 3 * f; }
+  /// Returns the first of the three edges inside face f.
+  [[nodiscard]] uint32_t inner_edge(FaceId f) const { return inner_edges_ + 3 * f; }
 
  private:
-  /// The child half-edges that run against the halves of a half-edge with this twin.
+  /// Returns the child half-edge opposite to a half of a half-edge with this twin.
   static uint32_t against_first(uint32_t twin) { return twin == none ? none : second_half(twin); }
   static uint32_t against_second(uint32_t twin) { return twin == none ? none : first_half(twin); }
 
@@ -46,7 +47,7 @@ class FourRule {
   uint32_t inner_edges_;
 };
 
-/// An empty level below one with so many vertices and edges, with room for so many half-edges.
+/// Returns an empty level below one with these numbers of vertices and edges, with room for `half_edges` half-edges.
 Topology level_below(const Topology& mesh, uint32_t vertices, uint32_t edges, size_t half_edges) {
   Topology below;
   below.vertex_count = vertices + edges;
@@ -64,7 +65,7 @@ class FourSplitter {
   FourSplitter(const Topology& mesh, const IndexRange& faces, const Numbers& numbers)
       : mesh_(mesh), faces_(faces), numbers_(numbers), rule_(mesh.vertex_count, numbers.edge_count()) {}
 
-  /// `room`: for so many faces' children.
+  /// Splits the faces; reserves memory for the children of `room` faces.
   Topology run(uint32_t room, int threads) {
     child_ = level_below(mesh_, mesh_.vertex_count, mesh_.edge_count(), size_t{12} * room);
     if (numbers_edges) {
@@ -78,8 +79,8 @@ class FourSplitter {
   }
 
  private:
-  void split_face(uint32_t number, uint32_t f) {
-    const uint32_t h = 3 * f;
+  void split_face(uint32_t number, FaceId f) {
+    const HalfEdgeId h = 3 * f;
     const uint32_t base = 12 * number;
     const OfSides twin{numbers_.half_edge(mesh_.twin[h]), numbers_.half_edge(mesh_.twin[h + 1]),
                        numbers_.half_edge(mesh_.twin[h + 2])};
@@ -98,8 +99,8 @@ class FourSplitter {
     put(&child_.half_edge[rule_.inner_edge(number)], base + 11, base + 9, base + 10);
   }
 
-  /// Whether an edge names this half-edge, and not another: the lower one, as its number and that of its twin are;
-  /// where there is no twin, that which the edge of the mesh names.
+  /// Returns whether the edge's `half_edge` is this one: the lower of both, by its number and that of its twin. Without
+  /// a twin, it is the one stored in the mesh.
   [[nodiscard]] bool is_named_after(uint32_t number, uint32_t twin, uint32_t half_edge) const {
     if (twin == none) [[unlikely]]
       return mesh_.half_edge[mesh_.edge[half_edge]] == half_edge;
@@ -119,10 +120,10 @@ Topology split_all(const Topology& mesh, int threads) {
       .run(mesh.face_count(), threads);
 }
 
-/// The children of what stands for all faces that are not in the part.
+/// Writes the children of the sentinel face, which stands for all faces outside the part.
 void write_others(const Part& part, Topology& children) {
   const uint32_t base = 12 * part.other_face();
-  const uint32_t edge = 2 * part.other_edge();
+  const EdgeId edge = 2 * part.other_edge();
   const uint32_t inner = children.edge_count() - 3;
   std::fill_n(&children.origin[base], 12, 0U);
   put_twins_of_four(base, {base, base + 4, base + 8}, {base + 3, base + 7, base + 2}, &children.twin[base]);
@@ -137,7 +138,7 @@ Topology split_in_four(const Topology& mesh, int threads) {
   Topology children = split_all<true>(mesh, threads);
   const uint32_t edges = mesh.edge_count();
   children.kind.resize_for_overwrite(children.edge_count());
-  for (uint32_t e = 0; e < edges; ++e) children.kind[2 * e] = children.kind[2 * e + 1] = mesh.kind[e];
+  for (EdgeId e = 0; e < edges; ++e) children.kind[2 * e] = children.kind[2 * e + 1] = mesh.kind[e];
   std::fill(children.kind.begin() + 2 * edges, children.kind.end(), EdgeKind::smooth);
   return children;
 }
@@ -159,11 +160,11 @@ Topology split_last_in_sixteen(const Topology& mesh, int threads) {
   const FourRule rule_below(vertices, edges);
   Topology below = level_below(mesh, vertices, edges, size_t{16} * mesh.half_edge_count());
   for_each_part(parts_of(mesh.face_count(), threads), mesh.face_count(), [&](uint32_t, uint32_t first, uint32_t last) {
-    uint32_t origin[12];  // of the four children
+    uint32_t origin[12];  // values of the four children
     uint32_t twin[12];
     uint32_t edge[12];
-    for (uint32_t f = first; f < last; ++f) {
-      const uint32_t h = 3 * f;
+    for (FaceId f = first; f < last; ++f) {
+      const HalfEdgeId h = 3 * f;
       rule.split(f, &mesh.origin[h], &mesh.twin[h], &mesh.edge[h], origin, twin);
       rule.number_edges(f, &mesh.origin[h], &mesh.edge[h], edge);
       for (uint32_t c = 0; c < 4; ++c) {

@@ -7,15 +7,15 @@
 
 namespace papilio {
 
-/// How one face is cut. Local vertices: 0, 1, 2 are the face's corners, 3 + i the new vertex of its edge i,
-/// from corner i to corner (i + 1) % 3. Child half-edges are numbered 3c + s: side s of child c.
+/// Division of one face into children. Local vertices: 0, 1, 2 are the face's corners, 3 + i the new vertex of its edge
+/// i, from corner i to corner (i + 1) % 3. Child half-edges are numbered 3c + s: side s of child c.
 struct SplitPattern {
   uint8_t children = 0;
-  std::array<std::array<uint8_t, 3>, 4> corner{};  ///< [child][side] local vertex the side leaves
-  /// [child half-edge] the child half-edge on the other side, where that is inside the face; else `outside`.
+  std::array<std::array<uint8_t, 3>, 4> corner{};  ///< [child][side] local vertex at which the side starts
+  /// [child half-edge] the child half-edge on the other side if that is inside the face; else `outside`.
   std::array<uint8_t, 12> inner_twin{};
-  /// [child half-edge] number of its edge among those inside the face; where outside, 2i + 0 for the first
-  /// half (or the whole) of edge i, 2i + 1 for the second half.
+  /// [child half-edge] number of its edge among those inside the face. If outside: 2i for the first half (or the whole)
+  /// of edge i, 2i + 1 for the second half.
   std::array<uint8_t, 12> edge{};
   /// [2i + half] the child half-edge that is the first half (or the whole) or the second half of edge i.
   std::array<uint8_t, 6> outer{};
@@ -24,13 +24,12 @@ struct SplitPattern {
   [[nodiscard]] bool is_outside(uint32_t half_edge) const { return inner_twin[half_edge] == outside; }
 };
 
-/// The pattern of a face: `mask` has bit i set where edge i is a target; `second_diagonal` chooses the cut of
-/// the quadrangle that two target edges leave. There edges i and j = (i + 1) % 3 are targets, and the first
-/// diagonal runs from corner i to the vertex of edge j, the second from the vertex of edge i to corner (j +
-/// 1) % 3.
+/// Returns the pattern of a face: `mask` has bit i set if edge i is a target; `second_diagonal` chooses the cut of the
+/// quadrangle that two target edges leave. There, edges i and j = (i + 1) % 3 are targets. The first diagonal runs from
+/// corner i to the vertex of edge j, the second from the vertex of edge i to corner (j + 1) % 3.
 [[nodiscard]] inline const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
 
-/// All of them: [2 * mask + (second diagonal ? 1 : 0)].
+/// All patterns: [2 * mask + (second diagonal ? 1 : 0)].
 extern const std::array<SplitPattern, 16> split_patterns;
 
 const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
@@ -38,19 +37,20 @@ const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
 }
 
 [[nodiscard]] constexpr bool has_two_targets(unsigned mask) { return (0b01101000U >> mask & 1U) != 0; }
-/// [mask] the edge that is the only target; of two, edge i as above.
+/// [mask] the only target edge; of two targets, edge i of split_pattern().
 inline constexpr std::array<uint8_t, 8> first_target{0, 0, 1, 0, 2, 2, 1, 0};
-/// Corners and edges in their order from any of them on: from turned[i].
+/// Corners and edges in cyclic order, starting from turned[i].
 inline constexpr std::array<uint8_t, 5> turned{0, 1, 2, 0, 1};
 
-/// A corner of a face: its number, which breaks ties, and where it is.
+/// Corner of a face: its number, which breaks ties, and its position.
 struct CornerPoint {
   uint32_t number;
   Vec3f position;
 };
 
-/// Which diagonal cuts the quadrangle that two targets leave: the shorter; of equal ones, that from the lower corner.
-/// `corner(i)` gives corner i, `middle(i)` the position of edge i's new vertex. False for other masks.
+/// Returns whether the second diagonal cuts the quadrangle that two targets leave: the shorter one; if equal, the
+/// one from the lower corner. False for other masks. `corner(i)` returns corner i, `middle(i)` the position of
+/// edge i's new vertex.
 template <class Corner, class Middle>
 [[nodiscard]] bool prefers_second_diagonal(unsigned mask, const Corner& corner, const Middle& middle) {
   if (!has_two_targets(mask)) return false;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "papilio/error.h"
 #include "proto/problem.h"
@@ -26,7 +28,7 @@ double shortest_edge(const Mesh& mesh) {
   return shortest;
 }
 
-/// Whether a decoded base has the vertices and faces of the original one, no two in one place.
+/// Returns whether a decoded base has all vertices and faces of the original base, with distinct positions.
 bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
   if (decoded.triangles.size() != base.topology.face_count()) return false;
   BuildReport found;
@@ -36,7 +38,7 @@ bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
     if (error.fault() != Fault::no_faces) throw;
     return false;
   }
-  const uint32_t welded = decoded.attributes.empty() ? found.welded_points : 0;  // at seams points are
+  const uint32_t welded = decoded.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
   return welded + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
 }
 
@@ -60,13 +62,17 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
   int bits = fewest_position_bits;
   while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
   for (;; ++bits) {
-    PartStreams coded = write_parts(mesh, {.position_bits = bits, .speed = 0});
-    const bool is_sound = keeps_surface(mesh, coded.decoded);
-    if (!is_sound && bits < most_position_bits) continue;
-    if (!is_sound)
+    std::optional<PartStreams> smallest;
+    for (const int speed : {0, 3}) {
+      PartStreams coded = write_parts(mesh, {.position_bits = bits, .speed = speed});
+      if (keeps_surface(mesh, coded.decoded) && (!smallest || coded.bytes() < smallest->bytes()))
+        smallest = std::move(coded);
+    }
+    if (!smallest && bits < most_position_bits) continue;
+    if (!smallest)
       throw Error(Fault::bad_surface, "Vertices of the base are too close to each other for a grid of " +
                                           std::to_string(most_position_bits) + " bits. Remove slivers.");
-    coded_.push_back(std::move(coded));
+    coded_.push_back(std::move(*smallest));
     return {coded_.back().decoded, coded_.back().bytes()};
   }
 }

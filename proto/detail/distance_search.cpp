@@ -7,14 +7,14 @@
 namespace papilio::proto::detail {
 namespace {
 
-constexpr double near_enough = 0.01;    // of the goal, below it
-constexpr double narrow_enough = 0.01;  // ratio of the distances round the goal, less 1
-/// Ratio of the two distances of a round to the one where the goal is expected.
+constexpr double near_enough = 0.01;    // upper bound of the gap below the goal, a share of the goal
+constexpr double narrow_enough = 0.01;  // upper bound of the ratio of the bracket's distances, less 1
+/// Ratio of the two distances of a round to the distance at which the goal is expected.
 constexpr double spread_without_bracket = 1.3, spread_in_bracket = 1.03;
-/// Least share of a bracket, in logarithms, between a new distance and its ends.
+/// Lower bound of the gap between a new distance and the bracket's ends, a share of the bracket in logarithms.
 constexpr double margin = 0.1;
 
-/// Distance by its coordinate: the logarithm, signed so that values grow along it.
+/// Axis of distances: the logarithm, with the sign that makes values grow along it.
 class Axis {
  public:
   explicit Axis(const DistanceGoal& goal) : goal_(goal), sign_(goal.power > 0 ? 1 : -1) {}
@@ -28,7 +28,7 @@ class Axis {
   [[nodiscard]] double slope() const { return std::abs(goal_.power); }
   [[nodiscard]] double least() const { return std::min(of(goal_.least), of(goal_.most)); }
   [[nodiscard]] double most() const { return std::max(of(goal_.least), of(goal_.most)); }
-  /// Logarithm of the value as a multiple of the goal.
+  /// Returns the logarithm of the value over the goal.
   [[nodiscard]] double excess(const Probe& probe) const { return std::log(probe.value / goal_.value); }
 
  private:
@@ -55,7 +55,7 @@ class Search {
       const double excess = axis_.excess(probes_.back());
       is_found_ |= excess <= 0 && excess >= std::log(1 - near_enough);
     }
-    // Values are not quite monotone: the goal lies beyond the last that is below it.
+    // Values are not quite monotonic: the goal lies beyond the last value below it.
     below_.reset(), above_.reset();
     for (const Probe& probe : probes_)
       if (axis_.excess(probe) <= 0 && (!below_ || axis_.of(probe.rms) > axis_.of(below_->rms))) below_ = probe;
@@ -90,7 +90,7 @@ class Search {
     return {inside(root - half), inside(root + half)};
   }
 
-  /// Returns coordinates round the goal where all probes lie on one side of it, the outer one farther away each time.
+  /// Returns coordinates round the goal while all probes lie on one side of it; the outer one moves farther each time.
   [[nodiscard]] std::vector<double> beyond() const {
     const Probe& nearest = below_ ? *below_ : *above_;
     const double away = -axis_.excess(nearest) / slope_at(nearest);
@@ -102,7 +102,7 @@ class Search {
     return {inside(std::abs(half) < std::abs(away) ? root - half : root), inside(root + half)};
   }
 
-  /// Returns the slope of the line through a probe and its neighbour, within twice and half of what is expected.
+  /// Returns the slope of the line through a probe and its neighbour, clamped to half to twice the expected slope.
   [[nodiscard]] double slope_at(const Probe& probe) const {
     const double at = axis_.of(probe.rms);
     const Probe* neighbour = nullptr;
@@ -120,7 +120,7 @@ class Search {
   Axis axis_;
   const MeasureRound& measure_;
   std::vector<Probe> probes_;
-  std::optional<Probe> below_, above_;  ///< nearest to the goal
+  std::optional<Probe> below_, above_;  ///< probes nearest to the goal
   bool is_found_ = false;
 };
 

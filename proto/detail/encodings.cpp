@@ -12,9 +12,8 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Largest move of a base vertex by its grid, in wanted RMS distances. On five pairs of model and distance the files
-/// were 2 to 15 % smaller than with a quarter, and never more than 1.3 % larger than with the best of 0.25, 0.5, 1, 2
-/// and 4.
+/// Upper bound of a base vertex's move by its grid, in target RMS distances. On five pairs of model and distance, files
+/// were 2 to 15 % smaller than with 0.25, and at most 1.3 % larger than with the best of 0.25, 0.5, 1, 2 and 4.
 constexpr double base_move = 1;
 
 }  // namespace

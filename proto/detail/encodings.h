@@ -14,20 +14,20 @@ namespace papilio::proto::detail {
 struct Encoding {
   double wanted_rms = 0;
   std::string glb{};
-  PackedModel model{};             ///< as read back
-  uint32_t folds = 0, parted = 0;  ///< faces and vertices, as of `EncodedDetail`
+  PackedModel model{};             ///< model read back from the file
+  uint32_t folds = 0, parted = 0;  ///< `EncodedDetail::folds` and `parted`
 };
 
-/// Encoder of one surface at several distances. Encodings do not depend on each other, nor on the threads.
+/// Encoder of one surface at several distances. Encodings do not depend on each other or on the threads.
 class Encodings {
  public:
-  /// All must outlive this. `materials`: as of write_packed(). `most`: how many encodings there may be, for the
-  /// progress.
+  /// Refers to all arguments, which must outlive this. `materials`: argument of write_packed(). `most`: upper bound of
+  /// the encodings, for the progress.
   Encodings(const TriangleMesh& surface, const gltf::Materials& materials, const PackOptions& options, size_t most);
 
-  /// Encodes at these distances, up to `PackOptions::jobs` at once. Throws `Error` as encode_detail().
+  /// Encodes at each distance, up to `PackOptions::jobs` at once. Throws `Error` as encode_detail().
   [[nodiscard]] std::vector<Encoding> encode(std::span<const double> distances);
-  /// Encodings made so far.
+  /// Returns the number of encodings made so far.
   [[nodiscard]] size_t count() const { return count_; }
 
  private:
@@ -40,7 +40,7 @@ class Encodings {
   double diagonal_;
   size_t count_ = 0;
   std::mutex access_;           ///< guards `shares_` and calls of `PackOptions::on_progress`
-  std::vector<double> shares_;  ///< done of each encoding
+  std::vector<double> shares_;  ///< share done of each encoding
 };
 
 }  // namespace papilio::proto::detail

@@ -24,7 +24,7 @@ std::shared_ptr<const Detail> detail_of(PackedModel model) {
 std::optional<PackedModel> find_packed(std::string_view bytes, const Limits& limits) {
   if (!gltf::is_glb(bytes) || !is_packed(bytes)) return std::nullopt;
   ReadOptions options{.limits = limits};
-  options.limits.max_output_faces = face_count_limit;  // each refinement has its own
+  options.limits.max_output_faces = face_count_limit;  // each refinement has its own limit
   const uint64_t faces = gltf::declared_faces(bytes);
   while (options.levels > 0 && faces > face_count_limit >> (2 * options.levels)) --options.levels;
   try {

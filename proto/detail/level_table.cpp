@@ -19,7 +19,7 @@ constexpr uint64_t piece_bytes = 40;
 constexpr uint64_t texcoord_piece_bytes = 4;
 constexpr unsigned texcoord_flag = 1, piece_flag = 2;
 
-/// What rows have besides.
+/// Optional columns of the rows.
 struct Flags {
   bool has_texcoords = false;
   bool has_pieces = false;
@@ -53,7 +53,7 @@ bool are_bounds(const PieceBounds& bounds) {
          is_within(bounds.radius, 0, most) && are_within(bounds.axis, 1) && is_within(bounds.least_cosine, -1, 1);
 }
 
-/// Appends numbers, little-endian.
+/// Writer of little-endian numbers.
 class TableWriter {
  public:
   void put_byte(uint8_t byte) { bytes_ += static_cast<char>(byte); }
@@ -88,7 +88,7 @@ class TableWriter {
   std::string bytes_;
 };
 
-/// Takes numbers from the begin of bytes, of which there are enough.
+/// Reader of little-endian numbers from the begin of bytes, which must suffice.
 class TableReader {
  public:
   explicit TableReader(std::string_view bytes) : bytes_(bytes) {}

@@ -8,7 +8,7 @@ namespace {
 
 bool are_numbers(const Attribute& attribute) { return attribute.components == 1; }
 
-/// Copies faces of a mesh and their points, in the order of both.
+/// Copier of faces of a mesh and their points, in the mesh's order.
 class PartTaker {
  public:
   explicit PartTaker(const TriangleMesh& mesh) : mesh_(mesh), number_(mesh.positions.size(), none) {}
@@ -43,7 +43,7 @@ class PartTaker {
 
  private:
   const TriangleMesh& mesh_;
-  std::vector<uint32_t> number_;  // of each point, in the part that has it
+  std::vector<uint32_t> number_;  // [points] number in the part
 };
 
 }  // namespace
@@ -57,7 +57,7 @@ std::vector<MeshPart> split_parts(const TriangleMesh& mesh) {
     parts.push_back({.triangles = mesh});
     return parts;
   }
-  std::map<double, std::vector<uint32_t>> faces;  // by number
+  std::map<double, std::vector<uint32_t>> faces;  // by part number
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f) faces[numbers->values.at(mesh.triangles[f][0])].push_back(f);
   PartTaker taker(mesh);
   for (const auto& [number, of] : faces) parts.push_back({number, taker.take(of)});

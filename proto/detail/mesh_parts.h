@@ -4,23 +4,22 @@
 
 #include "papilio/mesh.h"
 
-// Parts of packed models and plain files: the faces of one material, a primitive each with a Draco stream of its own.
-// In one mesh an attribute of one component has their numbers (DetailBase::triangles).
+// Parts of packed models and plain files: the faces of one material, as a primitive with its own Draco stream. In a
+// mesh of several parts, an attribute of one component holds their numbers (DetailBase::triangles).
 
 namespace papilio::proto::detail {
 
-/// Some faces of a mesh, with their points.
+/// Faces of one part of a mesh, with their points.
 struct MeshPart {
-  double number = 0;  ///< 1 and that of the material among those of all parts; 0 for none
+  double number = 0;  ///< 1 + index of the material among the parts' materials; 0 without a material
   TriangleMesh triangles{};
 };
 
-/// Whether one of the attributes has the numbers of parts.
+/// Returns whether one of the attributes holds part numbers.
 [[nodiscard]] bool has_parts(const std::vector<Attribute>& attributes);
-/// Returns the parts of a mesh by their numbers, without that attribute; one where it has none.
+/// Returns the parts of a mesh by their numbers, without the attribute of part numbers; one part if it has none.
 [[nodiscard]] std::vector<MeshPart> split_parts(const TriangleMesh& mesh);
-/// Joins parts of the same attributes, one behind the other; if there are several, with their numbers as the last
-/// attribute.
+/// Joins parts with equal attributes in their order. Several parts get their numbers as the last attribute.
 [[nodiscard]] TriangleMesh join_parts(std::vector<MeshPart> parts);
 
 }  // namespace papilio::proto::detail

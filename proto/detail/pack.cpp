@@ -20,12 +20,13 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Largest distance, in RMS distances, of about the models that were tried: where a search for it begins, and what a
-/// simplified mesh is held to.
+/// Typical largest distance of the measured models, in RMS distances: start of a search for it, and bound of a
+/// simplified mesh.
 constexpr double largest_of_rms = 8;
-/// An original of fewer faces is not a fine one: each may be a feature, and few bytes are saved.
+/// Lower bound of the faces of an original to be simplified: with fewer, each may be a feature, and few bytes are
+/// saved.
 constexpr size_t fewest_to_simplify = 5000;
-/// RMS distance where a search for a number of bytes begins, and the power of it that they follow about.
+/// Start of a search for a number of bytes, an RMS distance, and the power of it that the bytes approximately follow.
 constexpr double first_for_bytes = 1e-3, power_of_bytes = -0.8;
 
 class Packer {
@@ -83,15 +84,14 @@ class Packer {
       (void)encode_round(std::span(&options_.rms, 1));
   }
 
-  /// Returns what is held against the goal of a search.
+  /// Returns the value that is compared with the goal of a search.
   [[nodiscard]] double value_of(const Encoding& made) const {
     return options_.bytes > 0 ? static_cast<double>(made.glb.size()) : reach_of(made.model).largest;
   }
   [[nodiscard]] bool fits(const Encoding& made) const {
     return value_of(made) <= (options_.bytes > 0 ? static_cast<double>(options_.bytes) : options_.largest);
   }
-  /// Whether one encoding is better than another: of those within the goal the finest or the smallest, else the
-  /// nearest.
+  /// Returns whether one encoding is better than another: the finest or smallest within the goal, else the nearest.
   [[nodiscard]] bool is_better(const Encoding& made, const Encoding& other) const {
     if (fits(made) != fits(other)) return fits(made);
     if (!fits(made)) return value_of(made) < value_of(other);
@@ -117,14 +117,15 @@ class Packer {
     take_plain(reached > options_.rms || plain_.compared ? plain_at(options_.rms, plain_.mesh) : std::move(plain));
   }
 
-  /// Largest distance of a simplified mesh: what is small and far is not lost, unless the packed model loses it too.
+  /// Returns the bound of a simplified mesh's largest distance: it loses small distant parts only if the packed model
+  /// does.
   [[nodiscard]] double most_of_simplified() const {
     const double usual = largest_of_rms * options_.rms;
     const bool reaches = best_ && reach_of(best_->model).rms <= options_.rms;
     return reaches ? std::max(usual, reach_of(best_->model).largest) : usual;
   }
 
-  /// Whether a simplified mesh is the smallest file.
+  /// Returns whether a simplified mesh is the smallest file.
   [[nodiscard]] bool is_smallest(const SimplifiedDraco& simplified, const PlainDraco& plain) const {
     const uint64_t bytes = simplified.bytes;
     const bool is_packed_farther = best_ && reach_of(best_->model).rms > options_.rms;
@@ -198,7 +199,7 @@ class Packer {
     packed_.plain_has_normals = plain_.has_normals;
   }
 
-  /// Returns what packed models are compared with: with normals only where those have the same.
+  /// Returns the mesh that packed models are compared with; it has normals only if packed models reproduce them.
   [[nodiscard]] const Mesh& compared() const { return plain_.compared ? *plain_.compared : plain_.mesh; }
   [[nodiscard]] PlainOptions plain_options(const Mesh& mesh) const {
     const bool has_normals = plain_.has_normals && &mesh == &plain_.mesh;
@@ -212,14 +213,14 @@ class Packer {
   [[nodiscard]] PlainDraco plain_of(int bits, const Mesh& mesh) const {
     return write_plain_grid(mesh, bits, plain_options(mesh));
   }
-  /// Returns the file with the fewest bits that move no position by more than this share of the diagonal.
+  /// Returns the file with the fewest bits that moves no position by more than `largest`, a share of the diagonal.
   [[nodiscard]] PlainDraco plain_within(double largest, const Mesh& mesh) const {
     const Box box = bounding_box(mesh.positions);
     int bits = fewest_position_bits;
     while (bits < most_position_bits && tight_grid_distance(box, bits) > largest * box.diagonal()) ++bits;
     return plain_of(bits, mesh);
   }
-  /// Returns the file with the most bits that has no more bytes than are allowed.
+  /// Returns the file with the most bits within the allowed bytes.
   [[nodiscard]] std::optional<PlainDraco> finest_plain() const {
     std::optional<PlainDraco> finest;
     for (int low = fewest_position_bits, high = most_position_bits; low <= high;) {

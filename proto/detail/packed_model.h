@@ -10,23 +10,23 @@ namespace papilio::proto::detail {
 /// Version of the extension PAPILIO_detail.
 inline constexpr uint64_t detail_version = 2;
 
-/// A level of a packed model.
+/// Level of a packed model.
 struct PackedLevel {
   DetailStream stream;
-  DetailReach reach;          ///< of all levels up to this one; where pieces are missing, up to the one before
-  size_t missing_pieces = 0;  ///< behind the end of a file that is cut
+  DetailReach reach;          ///< distances with all levels up to this one; up to the one before if pieces are missing
+  size_t missing_pieces = 0;  ///< pieces beyond the end of a cut file
   uint64_t vertices = 0;      ///< new vertices: edges of the level below
   uint64_t faces = 0;         ///< faces of the model at this level
 };
 
-/// A packed model as its reader has it.
+/// Packed model in memory.
 struct PackedModel {
   DetailBase base;
-  uint64_t base_bytes = 0;  ///< of its Draco stream
+  uint64_t base_bytes = 0;  ///< length of the base's Draco streams
   DetailReach base_reach;
-  NormalStyle normals{};            ///< of the original
-  std::vector<PackedLevel> levels;  ///< those that were read, coarse first
-  size_t declared_levels = 0;       ///< those that the file declares
+  NormalStyle normals{};            ///< style of the original's normals
+  std::vector<PackedLevel> levels;  ///< levels that were read, coarse first
+  size_t declared_levels = 0;       ///< number of levels that the file declares
 
   [[nodiscard]] std::vector<DetailStream> streams() const;
   [[nodiscard]] bool has_texcoords() const;

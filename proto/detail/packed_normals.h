@@ -6,7 +6,8 @@
 #include "papilio/detail.h"
 #include "proto/mesh_format.h"
 
-// Normals of packed models: the file names how the original's are split, and a reader computes them on what it decodes.
+// Normals of packed models: the file names the style of the original's normals, and readers compute normals of the
+// decoded surface.
 
 namespace papilio::proto::detail {
 
@@ -15,7 +16,7 @@ namespace papilio::proto::detail {
 /// Returns the style of a name; nothing for other text.
 [[nodiscard]] std::optional<NormalStyle> normal_style_named(std::string_view name);
 
-/// Returns the first normals of three components; nothing where there are none.
+/// Returns the first normals of 3 components; nothing if there are none.
 [[nodiscard]] std::optional<Attribute> normals_to_pack(const FormattedMesh& mesh);
 
 }  // namespace papilio::proto::detail

@@ -31,7 +31,7 @@ const std::string detail_place = primitive_place(0) + ".extensions." + gltf::det
                 "The scene has " + what + ", so it is no packed model. Make one with papilio pack.");
 }
 
-/// Returns the only element of an array.
+/// Returns the element of an array that must have one.
 const Json& only(const Json& array, const char* what) {
   if (!array.is_array() || array.size() != 1) refuse_scene("other than one " + std::string(what));
   return array[0];
@@ -53,7 +53,7 @@ NormalStyle normals_member(const Json& extension) {
 /// Numbers materials in the order of their first use.
 class MaterialNumbers {
  public:
-  /// Returns the number of the part (mesh_parts.h) that a primitive is.
+  /// Returns the part number (mesh_parts.h) of a primitive.
   [[nodiscard]] double part_of(const Json& primitive, const std::string& place) {
     const auto material = gltf::index_member(primitive, "material", place);
     if (!material) return 0;
@@ -155,14 +155,14 @@ class PackedReader {
                                                 std::to_string(levels) + ", the limit. Request fewer levels.");
   }
 
-  /// A view, of whose bytes a file that is cut has the first ones.
+  /// View with its bytes, which may be fewer in a cut file.
   struct View {
     std::string place;
     uint64_t length = 0;
     std::string_view bytes;
   };
 
-  /// Returns a view, which begins at or after the end of the view before.
+  /// Returns a view, which must begin at or after the end of the view before.
   View view_at(std::optional<uint32_t> number, const std::string& where) {
     if (!number) refuse_document(where, "has no bufferView");
     const gltf::ViewRange range = gltf::view_range(document_, *number, where);
@@ -234,7 +234,7 @@ class PackedReader {
     return part;
   }
 
-  /// Returns the attributes of a primitive besides its positions, in the order of a base's. Refuses others.
+  /// Returns the attributes of a primitive besides its positions, in the order of a base's attributes. Refuses others.
   static std::vector<std::string> values_of(const Json& primitive, const std::string& place) {
     const Json* attributes = gltf::find_member(primitive, "attributes", place);
     if (attributes == nullptr || !attributes->is_object()) refuse_document(place, "has no attributes");
@@ -245,7 +245,7 @@ class PackedReader {
     return values;
   }
 
-  /// Refuses a part of the base unless its attributes are these, in formats that packed models have.
+  /// Refuses a part of the base unless its attributes are `values`, in the formats of packed models.
   static void require_values(const FormattedMesh& part, const std::vector<std::string>& values) {
     bool is_sound = part.attributes.size() == values.size();
     for (size_t a = 0; is_sound && a < values.size(); ++a)
@@ -261,14 +261,14 @@ class PackedReader {
   static uint64_t edges_of(const TriangleMesh& base) {
     BuildReport found;
     const Mesh mesh = translate_errors([&] { return build_mesh(base, &found); });
-    const uint32_t welded = base.attributes.empty() ? found.welded_points : 0;  // at seams points are
+    const uint32_t welded = base.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
     const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
     if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
       throw Problem(Code::mesh_unusable, "The base is not a manifold surface. Pack the original again.");
     return mesh.topology.edge_count();
   }
 
-  /// Reads the curves and the levels of streams that may be cut: then whole pieces of the last one.
+  /// Reads the curves and the levels of streams, and of a cut level its whole pieces.
   void read_streams(const LevelTable& table, std::string_view streams, PackedModel& model) const {
     if (streams.size() < table.curve_bytes) refuse_cut("the curves of its base");
     model.base.curves.assign(streams.begin(), streams.begin() + table.curve_bytes);
@@ -289,7 +289,7 @@ class PackedReader {
     }
   }
 
-  /// Takes the pieces that are whole from the begin of the streams.
+  /// Consumes the whole pieces at the begin of the streams.
   static PackedLevel read_level(const LevelRow& row, std::string_view& streams) {
     PackedLevel level;
     level.stream.step = row.step;
@@ -317,7 +317,7 @@ class PackedReader {
   const ReadOptions& options_;
   gltf::Document document_;
   const Json* primitives_ = nullptr;
-  uint64_t end_ = 0;  ///< of the last view, in the binary chunk
+  uint64_t end_ = 0;  ///< end of the last view in the binary chunk
 };
 
 }  // namespace

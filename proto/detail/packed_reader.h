@@ -9,9 +9,9 @@ namespace papilio::proto::detail {
 
 struct ReadOptions {
   Limits limits{};
-  size_t levels = most_detail_levels;  ///< levels to read at most
-  /// Whether the file may end inside the bytes of a level, as a prefix of a file does. Its whole levels are read, and
-  /// the whole pieces of the one that is cut.
+  size_t levels = most_detail_levels;  ///< upper bound of the levels to read
+  /// Whether the file may be a prefix that ends inside the bytes of a level. Its whole levels are read, and the whole
+  /// pieces of the cut level.
   bool may_be_cut = false;
 };
 
@@ -19,11 +19,11 @@ struct ReadOptions {
 /// Bytes that are no .glb file are not packed.
 [[nodiscard]] bool is_packed(std::string_view glb);
 
-/// Reads a packed model (proto/detail.md). The base is decoded, and is closed and manifold; residuals are not decoded.
+/// Reads a packed model (proto/detail.md). Decodes the base, which must be manifold, but not the residuals.
 /// `limits.max_output_faces` bounds the faces of the last level that is read, before any stream is decoded. Throws
 /// `Problem`: mesh_not_gltf (damaged, truncated, a member out of range), mesh_unsupported (no packed model, another
-/// version, a scene that the format does not allow), mesh_too_large, mesh_unusable (the base is not closed),
-/// result_too_large; and as `read_draco`.
+/// version, a scene that the format does not allow), mesh_too_large, mesh_unusable (a base that is not manifold),
+/// result_too_large; and errors of read_draco().
 [[nodiscard]] PackedModel read_packed(std::string_view glb, const ReadOptions& options = {});
 
 }  // namespace papilio::proto::detail

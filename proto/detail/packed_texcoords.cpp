@@ -8,14 +8,14 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Draco's unique ids of texture coordinates and colours in a base, and of parts in a mesh; that of the positions is 0.
+/// Draco's unique ids of attributes in a base. The id of positions is 0.
 constexpr uint32_t texcoord_id = 1, part_id = 2, colour_id = 3;
 constexpr double most_of_byte = 255;
 
-/// Whether an attribute of a base is its colours.
+/// Returns whether an attribute of a base holds colours.
 bool are_colours(const Attribute& attribute) { return attribute.components == 3 && !attribute.unit_length; }
 
-/// Returns the number of the first colours of a mesh, or that of its attributes.
+/// Returns the index of the first colours of a mesh, or the number of its attributes.
 size_t find_colours(const FormattedMesh& mesh) {
   size_t a = 0;
   while (a < mesh.attributes.size() &&

@@ -26,7 +26,7 @@ using gltf::Json;
 /// Smallest index that restarts primitives where indices have 16 bits.
 constexpr size_t restart_index_16 = 65535;
 
-/// Returns the number with the fewest digits whose nearest float is this one.
+/// Returns the number with the fewest digits whose nearest float is `value`.
 double shortest(float value) {
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
@@ -36,7 +36,7 @@ double shortest(float value) {
 
 Json box_corner(Vec3f p) { return {shortest(p.x), shortest(p.y), shortest(p.z)}; }
 
-/// A scene of one mesh, and its binary chunk.
+/// Scene of one mesh, and its binary chunk.
 struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   Json json;
   std::string binary;
@@ -85,7 +85,7 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
                             {"indices", indices},
                             {"extensions", {{gltf::draco_extension, std::move(extension)}}}});
   }
-  /// Adds the materials that the primitives of these parts have, behind all other views.
+  /// Adds the materials of these parts' primitives. Their views come last.
   void add_materials(const gltf::Materials& materials, const std::vector<MeshPart>& parts) {
     if (materials.empty()) return;
     gltf::add_materials(json, materials, primitives()[0]["attributes"].contains("TEXCOORD_0"),
@@ -102,7 +102,7 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   }
 };
 
-/// A scene of the parts of a mesh, a primitive each.
+/// Returns a scene with a primitive for each part of a mesh.
 Scene scene_of(const std::vector<MeshPart>& parts, const std::vector<std::string>& streams) {
   if (parts.size() != streams.size()) throw std::invalid_argument("scene_of: parts and streams disagree");
   Scene scene;
@@ -152,7 +152,7 @@ std::string streams_of(const EncodedDetail& detail) {
       residuals += piece.bytes;
       texcoords += piece.texcoord_bytes;
     }
-    out.append(residuals, stream.bytes.end());  // all, where the level is one piece
+    out.append(residuals, stream.bytes.end());  // rest, or all of a level without pieces
     out.append(texcoords, stream.texcoords.bytes.end());
   }
   return out;

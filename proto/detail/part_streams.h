@@ -9,17 +9,16 @@
 
 namespace papilio::proto::detail {
 
-/// A mesh as Draco streams, one for each of its parts (mesh_parts.h).
+/// Mesh as Draco streams, one for each of its parts (mesh_parts.h).
 struct PartStreams {
-  std::vector<std::string> streams;  ///< by the numbers of the parts
-  TriangleMesh decoded;              ///< of all, joined
+  std::vector<std::string> streams;  ///< streams in the order of part numbers
+  TriangleMesh decoded;              ///< decoded parts, joined
 
   [[nodiscard]] uint64_t bytes() const;
 };
 
-/// Codes a mesh whose other attributes are texture coordinates or normals (packed_texcoords.h), all parts on one grid
-/// of positions, so that their borders fit, and decodes it. `poll` is called now and then; it may throw to stop. Throws
-/// `Problem`.
+/// Codes and decodes a mesh with attributes of base_format(). All parts share one grid of positions, so that their
+/// borders fit. `poll` is called regularly; it may throw to stop. Throws `Problem`.
 [[nodiscard]] PartStreams write_parts(const Mesh& mesh, const OutputOptions& options,
                                       const std::function<void()>& poll = {});
 

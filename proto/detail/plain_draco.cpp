@@ -17,7 +17,7 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Rounding of positions to a grid, as Draco's but in double precision.
+/// Rounding of positions to Draco's grid, in double precision.
 class GridMoves {
  public:
   GridMoves(const QuantizationBox& box, int bits)
@@ -33,7 +33,7 @@ class GridMoves {
   double step_;
 };
 
-/// Returns the style of normals that the extras of a primitive name.
+/// Returns the style of normals in the extras of a primitive.
 NormalStyle style_of(const gltf::Json& primitive) {
   const auto extras = primitive.find("extras");
   if (extras == primitive.end() || !extras->is_object()) return {};
@@ -42,7 +42,7 @@ NormalStyle style_of(const gltf::Json& primitive) {
   return normal_style_named(name->get<std::string>()).value_or(NormalStyle::absent);
 }
 
-/// Whether a primitive is one that a file without levels may have.
+/// Returns whether a file without levels may have the primitive.
 bool is_plain(const gltf::Json& primitive) {
   if (gltf::find_extension(primitive, gltf::draco_extension, "a primitive") == nullptr ||
       gltf::find_extension(primitive, gltf::detail_extension, "a primitive") != nullptr)
@@ -113,7 +113,7 @@ void take_normals(FormattedMesh& mesh) {
   }
 }
 
-/// Adds normals in a style, apart at the creases that the built mesh has, to the mesh of which it was built.
+/// Returns a mesh with normals in a style, split at the creases of `built`, which was built from it.
 FormattedMesh add_normals(FormattedMesh mesh, Mesh built, NormalStyle style) {
   add_detail_normals(built, style);
   append_normals(mesh.format);
@@ -133,7 +133,7 @@ FormattedMesh with_normals(FormattedMesh mesh, NormalStyle style) {
 
 FormattedMesh with_normals_of_shape(FormattedMesh mesh) {
   take_normals(mesh);
-  Mesh built = refine(build_mesh(mesh), {.levels = 0}).mesh;  // with the creases of its shape
+  Mesh built = refine(build_mesh(mesh), {.levels = 0}).mesh;  // marks the creases of the shape
   (void)mark_detail_curves(built);
   return add_normals(std::move(mesh), std::move(built), NormalStyle::creased);
 }

@@ -8,14 +8,14 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Normals are found if they are off by at most this in the mean, in degrees,
+/// Upper bound of the mean error of derived normals, in degrees.
 constexpr double most_degrees = 20;
-/// and if the creases that are not found, or found in vain, are at most this share of the length of all.
+/// Upper bound of the missing and surplus creases of derived normals, a share of the length of all creases.
 constexpr double most_wrong_creases = 0.02;
 
 double degrees_between(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 
-/// Mean angle between the last attributes of two meshes of the same faces.
+/// Returns the mean angle between the last attributes of two meshes with equal faces.
 double mean_angle(const Mesh& a, const Mesh& b) {
   const auto normal_of = [](const Mesh& mesh, uint32_t h) {
     const double* value = &mesh.attributes.attributes.back().values[size_t{3} * mesh.attributes.point[h]];
@@ -26,7 +26,7 @@ double mean_angle(const Mesh& a, const Mesh& b) {
   return sum / a.topology.half_edge_count();
 }
 
-/// Share of the length of the creases of two meshes that only one of them has.
+/// Returns the length of the creases that only one of two meshes has, a share of the length of all.
 double difference_of_creases(const Mesh& a, const Mesh& b) {
   const Topology& t = a.topology;
   double all = 0, different = 0;
@@ -51,12 +51,12 @@ void unmark_curves(Topology& topology) {
 PlainOriginal plain_original(Mesh original) {
   const auto& attributes = original.attributes.attributes;
   if (attributes.empty() || !attributes.back().unit_length) return {.mesh = std::move(original)};
-  Mesh packed = original;  // with the creases that a packed model has
+  Mesh packed = original;  // gets the creases of a packed model
   const NormalStyle style = mark_detail_curves(packed);
   PlainOriginal made{.mesh = packed, .normals = style};
   unmark_curves(made.mesh.topology);
   if (style == NormalStyle::absent || style == NormalStyle::faceted) return made;
-  Mesh plain = made.mesh;  // with those that readers find
+  Mesh plain = made.mesh;  // gets the creases that readers derive
   (void)mark_detail_curves(plain);
   const bool has_same_creases =
       style == NormalStyle::smooth || difference_of_creases(packed, plain) <= most_wrong_creases;

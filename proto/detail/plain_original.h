@@ -6,18 +6,18 @@
 
 namespace papilio::proto::detail {
 
-/// Original as files without levels hold it.
+/// Original in the form of files without levels.
 struct PlainOriginal {
-  /// Without normals, or with them where readers would not find the same by themselves (with_normals()).
+  /// Mesh without normals; with normals if readers could not derive them (with_normals()).
   Mesh mesh;
-  NormalStyle normals{};     ///< of the original
-  bool has_normals = false;  ///< whether `mesh` has them
-  /// Without normals, where they cannot be found on a packed model either: what that is compared with.
+  NormalStyle normals{};     ///< style of the original's normals
+  bool has_normals = false;  ///< whether `mesh` has normals
+  /// Mesh without normals to compare with packed models, if these cannot reproduce them either.
   std::optional<Mesh> compared{};
 };
 
-/// Takes an original with its edges, and normals if it has any. Readers find normals that are smooth, or split at edges
-/// that are sharp by their angle, if they are off by few degrees in the mean. Those of faces need not be found.
+/// Converts an original with edges, and perhaps normals. Readers can derive smooth normals, and normals split at edges
+/// of a sharp angle, if these are off by few degrees on average. Faceted normals are never stored.
 [[nodiscard]] PlainOriginal plain_original(Mesh original);
 
 }  // namespace papilio::proto::detail

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
 
-/// Coder of one mesh after another that remembers the smallest stream of each.
+/// Coder of several meshes, which keeps the smallest stream of each.
 class SmallestDraco {
  public:
   CodedBase code(const TriangleMesh& triangles, int bits) {

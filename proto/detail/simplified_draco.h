@@ -7,17 +7,17 @@
 
 namespace papilio::proto::detail {
 
-/// A simplified mesh without levels, for comparison and where it is smaller.
+/// File of a simplified mesh without levels.
 struct SimplifiedDraco {
   std::string glb{};
-  uint64_t bytes = 0;  ///< of `glb`
+  uint64_t bytes = 0;  ///< length of `glb`
   size_t faces = 0;
   int position_bits = 0;
-  DetailReach reach{};  ///< from samples, the largest from vertices, too
+  DetailReach reach{};  ///< distances from samples; the largest also from vertices
 };
 
-/// Simplifies a surface to the wanted distances, and writes it as Draco in a .glb file. Nothing where no file was found
-/// that reaches them. `normals`: style of those that readers are to find. Throws `Problem` and `Error`.
+/// Simplifies a surface within the given distances, and writes it as Draco in a .glb file. Returns nothing if no file
+/// within them is found. `normals`: style of the normals that readers derive. Throws `Problem` and `Error`.
 [[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original,
                                                                     const SimplifyOptions& options,
                                                                     NormalStyle normals = {});

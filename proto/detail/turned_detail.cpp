@@ -40,7 +40,7 @@ class TurnedDetail final : public Detail {
 
  private:
   std::shared_ptr<const Detail> detail_;
-  mutable std::mutex access_;  ///< guards `turned_`, whose buffers stay once they are made
+  mutable std::mutex access_;  ///< guards `turned_`, whose buffers stay valid once made
   mutable std::array<Buffer<Texcoord>, most_detail_levels> turned_;
   mutable std::atomic<uint64_t> bytes_ = 0;
 };

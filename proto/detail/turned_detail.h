@@ -6,7 +6,7 @@
 
 namespace papilio::proto::detail {
 
-/// Returns the same detail with texture coordinates that count upwards where its own count downwards.
+/// Returns a detail with its texture coordinates turned over, to count upwards (packed_texcoords.h).
 [[nodiscard]] std::shared_ptr<const Detail> turned_over(std::shared_ptr<const Detail> detail);
 
 }  // namespace papilio::proto::detail

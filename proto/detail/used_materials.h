@@ -4,8 +4,7 @@
 
 namespace papilio::proto::detail {
 
-/// Returns the materials that triangles have, in the order of their numbers, with their images; none where no triangle
-/// has one.
+/// Returns the materials that triangles use, in the order of their numbers, with their images.
 [[nodiscard]] gltf::Materials used_materials(const gltf::Materials& materials);
 
 }  // namespace papilio::proto::detail

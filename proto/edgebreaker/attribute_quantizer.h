@@ -10,7 +10,7 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// Quantizer of one attribute that is not coded as it is: bit-identical to libdraco's.
+/// Quantizer of one attribute that is not coded raw: bit-identical to libdraco's.
 class AttributeQuantizer {
  public:
   explicit AttributeQuantizer(const OutputAttribute& attribute);

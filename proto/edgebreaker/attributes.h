@@ -13,7 +13,7 @@ namespace papilio::proto::edgebreaker {
 /// Writes the declaration of an attribute: kind, type, components and id.
 void write_declaration(const OutputAttribute& attribute, draco::EncoderBuffer& out);
 
-/// A surface with its walk and its positions as they were written.
+/// Surface with its walk, and its positions as written.
 struct WrittenSurface {
   const CornerMesh& mesh;
   const Buffer<uint32_t>& corner_point;  ///< [corners] point of the mesh at each corner

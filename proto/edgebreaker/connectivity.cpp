@@ -12,7 +12,7 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// The boundary loops: the loop of each vertex, and whether the walk has reached each loop.
+/// Boundary loops: the loop of each vertex, and whether the walk has reached each loop.
 class BoundaryLoops {
  public:
   explicit BoundaryLoops(const CornerMesh& mesh) : mesh_(mesh) {
@@ -58,7 +58,7 @@ class BoundaryLoops {
   std::vector<uint8_t> visited_;  ///< [loops]
 };
 
-/// The walk over all faces of a mesh.
+/// Walk over all faces of a mesh.
 template <class Symbols>
 class Walk {
  public:
@@ -180,14 +180,14 @@ class Walk {
     return none;
   }
 
-  /// Whether the vertex is not yet visited. Vertices added by splits (ValenceSymbols) count as visited.
+  /// Returns whether the vertex is not yet visited. Vertices added by splits (ValenceSymbols) count as visited.
   [[nodiscard]] bool is_new(uint32_t vertex) const {
     return vertex < vertex_visited_.size() && vertex_visited_[vertex] == 0;
   }
 
   void put(draco::EdgebreakerTopologyBitPattern symbol, uint32_t corner) { symbols_.put(symbol, corner, face_state_); }
 
-  /// Whether the face of the corner is visited; `none` counts as visited.
+  /// Returns whether the face of the corner is visited; `none` counts as visited.
   [[nodiscard]] bool is_visited(uint32_t corner) const {
     return corner == none || face_state_[CornerMesh::face(corner)] != unvisited;
   }

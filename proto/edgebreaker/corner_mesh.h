@@ -6,9 +6,9 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// A mesh in the terms of Draco's bitstream. Corner c of a face is at the origin of half-edge c. The edge opposite to a
-/// corner is the edge of its face that it does not touch. The corner opposite to it is the corner of the other face at
-/// that edge. Faces are counter-clockwise: right of a corner is across the edge before it, left across its own edge.
+/// Mesh in the terms of Draco's bitstream. Corner c of a face is at the origin of half-edge c. The edge opposite to a
+/// corner is the edge of its face that it does not touch. Its opposite corner is the corner of the other face at that
+/// edge. Faces are counter-clockwise: right of a corner is across the edge before it, left across its own edge.
 ///
 /// The vertex and the opposite of a corner share a cache line, as walks are bound by memory latency.
 class CornerMesh {

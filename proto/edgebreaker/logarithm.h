@@ -4,8 +4,8 @@
 
 namespace papilio::proto::edgebreaker {
 
-/// The logarithm to base 2 of a positive number. Of + - x / alone, rounded alike everywhere: the error is below 3 units
-/// in the last place.
+/// Returns the logarithm to base 2 of a positive number. Bit-identical on every processor, by + - x / alone. The error
+/// is below 3 units in the last place.
 [[nodiscard]] inline double logarithm_to_base_2(double x) {
   constexpr double root_of_half = 0.70710678118654752;
   constexpr double twice_per_e = 2.8853900817779268;  // 2 / log(2)

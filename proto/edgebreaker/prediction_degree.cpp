@@ -7,7 +7,7 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// The walk by prediction degree. Pending corners are in three stacks by priority; the lowest stack comes first.
+/// Walk by prediction degree. Pending corners are in three stacks by priority; the lowest stack comes first.
 class PredictionDegreeWalk {
  public:
   PredictionDegreeWalk(const CornerMesh& mesh, Poller& poller)

@@ -54,7 +54,7 @@ using Octahedron = draco::PredictionSchemeNormalOctahedronCanonicalizedEncodingT
 template <class Transform>
 using Predictor = draco::PredictionSchemeEncoder<int32_t, Transform>;
 
-/// A surface with the corners [values] of its values, in writing order.
+/// Surface with the corners [values] of its values, in writing order.
 class OrderedSurface {
  public:
   OrderedSurface(const CornerMesh& mesh, const Buffer<uint32_t>& corners, Poller& poller);

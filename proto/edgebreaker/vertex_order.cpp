@@ -5,7 +5,7 @@
 namespace papilio::proto::edgebreaker {
 namespace {
 
-/// The depth-first walk.
+/// Depth-first walk.
 class DepthFirst {
  public:
   DepthFirst(const CornerMesh& mesh, Poller& poller)

@@ -36,7 +36,7 @@ class StreamWriter {
         surface_(manifold_surface(mesh.topology)),
         single_connectivity_(is_single_connectivity()) {}
 
-  /// Lets the writer free the arrays of the mesh, whose positions are quantized, and the attributes.
+  /// Allows the writer to free arrays of the attributes and of the mesh, whose positions must be quantized.
   void consume(Mesh& mesh, std::span<OutputAttribute> attributes) {
     constexpr uint32_t large = 1 << 15;  // faces
     consumed_ = &mesh;
@@ -54,7 +54,7 @@ class StreamWriter {
     return {out_.data(), out_.size()};
   }
 
-  /// Returns the stream and what a reader decodes, of a mesh with quantized positions.
+  /// Returns the stream of a mesh with quantized positions, and a description of the decoded mesh.
   WrittenStream run_and_describe() {
     write();
     return {{out_.data(), out_.size()}, decoded_points_, surface_.mesh.face_count(), decoded_box_};
@@ -93,7 +93,7 @@ class StreamWriter {
     return !attributes_.empty() ? mesh_.attributes.point_count : mesh_.topology.vertex_count;
   }
 
-  /// Gives back what is freed of a large mesh.
+  /// Returns freed memory of a large mesh to the system.
   void give_back() const {
     if (gives_back_) give_back_freed();
   }

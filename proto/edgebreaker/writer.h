@@ -18,14 +18,14 @@ namespace papilio::proto::edgebreaker {
                                 uint32_t position_id, std::span<const OutputAttribute> attributes = {},
                                 const std::function<void()>& poll = {});
 
-/// A stream, and what a reader decodes from it.
+/// Stream, and a description of the mesh that a reader decodes from it.
 struct WrittenStream {
   std::string bytes;
   uint32_t points = 0, faces = 0;
-  Box box{};  ///< of the positions
+  Box box{};  ///< bounding box of the decoded positions
 };
 
-/// Writes the mesh as write() does. Its arrays and those of the attributes are freed once they are read.
+/// Writes the mesh as write() does, and frees arrays of the mesh and its attributes once they are read.
 [[nodiscard]] WrittenStream write_and_free(Mesh mesh, const QuantizationBox& box, const OutputOptions& options,
                                            uint32_t position_id, std::vector<OutputAttribute> attributes,
                                            const std::function<void()>& poll);

@@ -99,7 +99,7 @@ uint32_t view_member(const Json& of, const std::string& where) {
   return *view;
 }
 
-/// Replaces the elements that a sparse accessor names.
+/// Replaces the elements of a sparse accessor's indices.
 void apply_sparse(Views& views, const Json& sparse, Elements& out, const std::string& where) {
   const uint64_t count = whole_number(sparse, "count", where);
   if (count > out.count)

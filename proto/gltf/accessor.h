@@ -28,7 +28,7 @@ enum class ComponentType : uint32_t {
 /// Format of an accessor's elements.
 struct ElementFormat {
   ComponentType type = ComponentType::float32;
-  uint32_t components = 1;  ///< of a matrix with the padding of its columns
+  uint32_t components = 1;  ///< components, including the padding of a matrix's columns
   bool normalized = false;  ///< integers represent the range from 0 (or -1) to 1
 
   [[nodiscard]] uint32_t bytes() const { return components * bytes_of(type); }
@@ -56,8 +56,8 @@ struct Elements {
 /// Returns the declared format of an accessor. Throws `Problem` mesh_not_gltf.
 [[nodiscard]] ElementFormat element_format(const Json& accessor, const std::string& where);
 
-/// Decodes an accessor of any type, strided, sparse, or without a view (zeros). `where` names what refers to it. At
-/// most `limit` elements, which is checked before anything is allocated. Throws `Problem`: mesh_not_gltf,
+/// Decodes an accessor of any type: strided, sparse, or without a view (zeros). `where` names the referring object.
+/// Checks `limit`, the upper bound of its elements, before any allocation. Throws `Problem`: mesh_not_gltf,
 /// mesh_too_large.
 [[nodiscard]] Elements read_accessor(Views& views, uint64_t accessor, uint64_t limit, const std::string& where);
 

@@ -26,7 +26,7 @@ void erase_extension(Json& object, const char* name) {
   if (extensions->empty()) object.erase("extensions");
 }
 
-/// Where bytes of a view are: its own, or those that it is decompressed from.
+/// Range of a view's bytes, or of its compressed bytes.
 struct Stored {
   uint32_t buffer = 0;
   ByteRange range;
@@ -102,7 +102,8 @@ class BufferWriter {
     cursor_[buffer] = to;
   }
 
-  /// Appends bytes to a buffer; returns their offset. `left_out`: bytes that a buffer of fallback sizes counts.
+  /// Appends bytes to a buffer, and returns their offset. `left_out`: bytes that a buffer of fallback sizes only
+  /// counts.
   uint64_t append_bytes(uint32_t buffer, std::string bytes, uint64_t left_out = 0) {
     pad(buffer, (cursor_[buffer] + content_alignment - 1) / content_alignment * content_alignment);
     const uint64_t at = cursor_[buffer];
@@ -119,7 +120,7 @@ class BufferWriter {
     return static_cast<uint32_t>(cursor_.size() - 1);
   }
 
-  /// Returns the buffer with bytes that `view` names, or the first that has any.
+  /// Returns the buffer of `view` if it stores bytes, else the first that does.
   uint32_t data_buffer(const Json& view) {
     const uint32_t own = view.value("buffer", UINT32_MAX);
     if (own < document_.buffers.size() && !is_fallback(own)) return own;
@@ -174,7 +175,7 @@ class BufferWriter {
     place_view(view, buffer, std::move(content));
   }
 
-  /// Lets a view that has lost its content name the bytes of the first new content; without any, of the first view.
+  /// Refers a view without content to the bytes of the first new content, or if there is none, of the first view.
   void alias(uint32_t number, const std::vector<ViewContent>& contents) {
     Json& view = json_["bufferViews"][number];
     erase_extension(view, meshopt_extension);
@@ -191,7 +192,7 @@ class BufferWriter {
     return found == is_replaced_.end() ? 0 : static_cast<size_t>(found - is_replaced_.begin());
   }
 
-  /// Removes buffers of fallback sizes at the end that no view names any more.
+  /// Removes unused buffers of fallback sizes at the end.
   void drop_unused_fallbacks() {
     while (!document_.buffers.empty() && is_fallback(static_cast<uint32_t>(document_.buffers.size() - 1))) {
       const auto last = static_cast<uint32_t>(document_.buffers.size() - 1);
@@ -206,8 +207,8 @@ class BufferWriter {
 
   Document& document_;
   Json& json_;
-  std::vector<bool> is_replaced_;  ///< views
-  std::vector<uint64_t> cursor_;   ///< bytes of each buffer so far
+  std::vector<bool> is_replaced_;  ///< [views] whether the content is replaced
+  std::vector<uint64_t> cursor_;   ///< [buffers] bytes so far
   BufferPieces pieces_;
 };
 

@@ -13,13 +13,13 @@ namespace papilio::proto::gltf {
 /// New content of a view.
 struct ViewContent {
   uint32_t view = 0;
-  std::string bytes;        ///< uncompressed; empty where only their number is given
-  uint64_t left_out = 0;    ///< their number, where no buffer needs them as the view is compressed
+  std::string bytes;        ///< uncompressed bytes; empty if only `left_out` is known
+  uint64_t left_out = 0;    ///< number of uncompressed bytes of a compressed view, which no buffer stores
   uint32_t stride = 0;      ///< bytes from element to element
-  bool strided = false;     ///< whether the view declares its stride, as those of vertices do
-  bool compressed = false;  ///< by EXT_meshopt_compression
+  bool strided = false;     ///< whether the view declares its stride, as views of vertices do
+  bool compressed = false;  ///< whether EXT_meshopt_compression compresses the view
   MeshoptMode mode = MeshoptMode::attributes;
-  std::string encoded{};  ///< compressed; empty: to be compressed when it is written
+  std::string encoded{};  ///< compressed bytes; empty until the view is written
 
   [[nodiscard]] uint64_t length() const { return bytes.size() + left_out; }
 };
@@ -27,13 +27,13 @@ struct ViewContent {
 /// Returns the bytes of a compressed view.
 [[nodiscard]] std::string encode_meshopt(const ViewContent& content);
 
-/// Bytes of each buffer of a rewritten document, in order. Those of `fallback` buffers have none.
+/// Bytes of each buffer of a rewritten document, in order; none for `fallback` buffers.
 using BufferPieces = std::vector<std::vector<Piece>>;
 
-/// Puts new contents in place of those of their views. Old contents that no other view holds are removed from their
-/// buffers; all else stays, to the byte. Updates the views and buffers of the document's JSON. A view that compression
-/// needs is given a buffer of fallback sizes. Views in `aliased` have lost their content, and take the place of that of
-/// another view. The pieces borrow from `document`, whose buffers must outlive them.
+/// Replaces the contents of views, and updates views and buffers in the document's JSON. Old contents that no other
+/// view shares are removed from their buffers; all other bytes are kept. Compressed views get a buffer of fallback
+/// sizes. Views in `aliased` have lost their content, and refer to the bytes of another view. The pieces borrow from
+/// `document`, whose buffers must outlive them.
 [[nodiscard]] BufferPieces replace_contents(Document& document, std::vector<ViewContent> contents,
                                             const std::vector<uint32_t>& aliased);
 

@@ -6,11 +6,11 @@
 
 namespace papilio::proto::gltf {
 
-/// How the geometry of a scene is compressed when it is written.
+/// Compression of the geometry of a written scene.
 enum class Compression : uint8_t {
-  same,     ///< each primitive as it was
-  draco,    ///< by KHR_draco_mesh_compression
-  meshopt,  ///< by EXT_meshopt_compression
+  same,     ///< compression of each primitive in the input
+  draco,    ///< KHR_draco_mesh_compression
+  meshopt,  ///< EXT_meshopt_compression
   none
 };
 

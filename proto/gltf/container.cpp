@@ -18,7 +18,7 @@ constexpr size_t chunk_header_bytes = 8;
 constexpr uint32_t glb_version = 2;
 constexpr uint32_t json_chunk = 0x4E4F534A;
 constexpr uint32_t binary_chunk = 0x004E4942;
-constexpr uint64_t freed_at_once = 4 * worth_giving_back;  ///< bytes of pieces
+constexpr uint64_t freed_at_once = 4 * worth_giving_back;  ///< bytes of pieces freed before memory is returned
 
 uint32_t little_endian(std::string_view bytes, size_t at) {
   uint32_t number = 0;
@@ -115,7 +115,7 @@ std::string write_glb(std::string_view json, std::optional<std::vector<Piece>> b
     for (Piece& piece : *binary) {
       out += piece.bytes();
       freed += std::exchange(piece.owned, std::string()).size();
-      if (freed < freed_at_once || spare_bytes() >= freed_at_once) continue;  // or spare blocks have made room
+      if (freed < freed_at_once || spare_bytes() >= freed_at_once) continue;  // skipped while as many bytes are spare
       give_back_freed();
       freed = 0;
     }

@@ -8,13 +8,13 @@
 
 namespace papilio::proto::gltf {
 
-/// Chunk of a .glb file of a type that the specification does not define. It survives as it is.
+/// Chunk of a .glb file of a type that the specification does not define. It is kept unchanged.
 struct ExtraChunk {
   uint32_t type = 0;
   std::string_view bytes;
 };
 
-/// Bytes that are copied to the output, owned or not.
+/// Bytes to be copied to the output, owned or borrowed.
 struct Piece {
   std::string_view borrowed;
   std::string owned{};
@@ -28,15 +28,15 @@ struct Container {
   std::vector<ExtraChunk> extra;
 };
 
-/// Whether a reader takes a .glb file of which the end is missing.
+/// Acceptance of a .glb file without its end.
 enum class Cut { refused, in_binary_chunk };
 
 /// Returns whether the bytes begin like a .glb file.
 [[nodiscard]] bool is_glb(std::string_view bytes);
 
-/// Splits a .glb file of version 2 into its chunks. Every length must agree with the bytes that are there. Source: glTF
-/// 2.0, section 4.4. With `Cut::in_binary_chunk` the file may end inside its binary chunk, whose view is then shorter.
-/// Throws `Problem`: mesh_not_gltf (damaged, truncated), mesh_unsupported (another version).
+/// Splits a .glb file of version 2 into its chunks. Every length must match the bytes. Source: glTF 2.0, section 4.4.
+/// With `Cut::in_binary_chunk` the file may end inside its binary chunk, whose view is then shorter. Throws `Problem`:
+/// mesh_not_gltf (damaged, truncated), mesh_unsupported (another version).
 [[nodiscard]] Container read_glb(std::string_view bytes, Cut cut = Cut::refused);
 
 /// Writes a .glb file: its JSON padded with spaces, the binary chunk padded with zeros. `binary`: pieces of the chunk,

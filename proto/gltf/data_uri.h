@@ -6,7 +6,7 @@
 
 namespace papilio::proto::gltf {
 
-/// Returns whether a URI holds its data.
+/// Returns whether a URI contains its data.
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
 /// Decodes the base64 data of a data URI (RFC 2397, RFC 4648); returns nothing for other encodings and damaged data.

@@ -11,7 +11,7 @@
 
 namespace papilio::proto::gltf {
 
-/// A scene that was read and checked.
+/// Decoded and checked scene.
 struct DecodedScene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   Document document;
   SceneMeshes scene;
@@ -22,19 +22,19 @@ struct DecodedScene {  // NOLINT(bugprone-exception-escape): moving JSON cannot 
   [[nodiscard]] BuildReport found() const;
 };
 
-/// Reads a .glb file, the levels of a packed model included (proto/detail.md), or a .gltf file with its buffers inside;
-/// external buffers are refused. `bytes` must outlive it. `splits_instances`: gives each node a mesh of its own
-/// (split_instances.h). Throws `Problem`.
+/// Reads a .glb file, including the levels of a packed model (proto/detail.md), or a .gltf file with embedded buffers;
+/// refuses external buffers. `bytes` must outlive the result. `splits_instances`: whether each node gets a mesh of its
+/// own (split_instances.h). Throws `Problem`.
 [[nodiscard]] DecodedScene decode_scene(std::string_view bytes, const Limits& limits, bool splits_instances = false);
 
-/// A decoded scene, shared by refinements, and a cache of prepared meshes. Thread-safe.
+/// Decoded scene, shared by refinements, and a cache of prepared meshes. Thread-safe.
 class SharedScene {
  public:
   /// `byte_budget`: limit of cached bytes, divided among the meshes by their faces. Throws `Problem`.
   SharedScene(std::shared_ptr<const std::string> bytes, const Limits& limits, uint64_t byte_budget);
 
   [[nodiscard]] const DecodedScene& decoded() const { return decoded_; }
-  /// As `PreparedMeshes::for_rules_of`, of the mesh of this number in `SceneMeshes::meshes`.
+  /// Returns mesh `mesh` of `SceneMeshes::meshes` prepared for the options' rules, as PreparedMeshes::for_rules_of().
   [[nodiscard]] std::shared_ptr<const PreparedMesh> for_rules_of(size_t mesh, const Options& options) const;
   /// Returns the bytes in memory.
   [[nodiscard]] uint64_t bytes() const;

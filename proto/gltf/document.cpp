@@ -35,7 +35,7 @@ void require_version(const Json& document) {
 void require_extensions(const Json& document) {
   for (const Json& name : array_of(document, "extensionsRequired"))
     if (is_text(name, newer_meshopt_extension)) refuse_newer_meshopt("The scene requires");
-  // A view that is readable without would keep the compressed bytes of what it held before.
+  // A view that is readable without the extension would keep the compressed bytes of its old content.
   const Json& views = array_of(document, "bufferViews");
   for (size_t v = 0; v < views.size(); ++v)
     if (find_extension(views[v], newer_meshopt_extension, place("bufferViews", v)) != nullptr)
@@ -134,7 +134,7 @@ bool looks_like_gltf(std::string_view bytes) {
 Document read_document(std::string_view bytes, const Resolver& resolve) { return read(bytes, resolve, Cut::refused); }
 
 Document read_cut_document(std::string_view glb) {
-  if (!is_glb(glb)) throw Problem(Code::mesh_not_gltf, "The bytes are no .glb file. Provide one.");
+  if (!is_glb(glb)) throw Problem(Code::mesh_not_gltf, "The bytes are not a .glb file. Provide one.");
   return read(glb, {}, Cut::in_binary_chunk);
 }
 

@@ -10,12 +10,12 @@
 
 namespace papilio::proto::gltf {
 
-/// Where the bytes of a buffer are.
+/// Place of a buffer's bytes.
 enum class BufferPlace {
-  binary_chunk,  ///< the chunk of the .glb file
+  binary_chunk,  ///< chunk of the .glb file
   data_uri,
-  external,  ///< a file beside the document
-  fallback,  ///< nowhere: it only gives uncompressed sizes to views that EXT_meshopt_compression compresses
+  external,  ///< file beside the document
+  fallback,  ///< none: the buffer only defines uncompressed sizes of views that EXT_meshopt_compression compresses
 };
 
 /// Bytes of one buffer of a document.
@@ -33,29 +33,29 @@ class SceneBuffer {
   std::string owned_;
 };
 
-/// Returns the bytes of the file that a document names by a relative URI. May throw what its caller understands.
+/// Function that returns the bytes of a file by a document's relative URI. May throw exceptions of the caller.
 using Resolver = std::function<std::string(const std::string& uri)>;
 
-/// A glTF document with its buffers.
+/// glTF document with its buffers.
 struct Document {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   Json json;
   std::vector<SceneBuffer> buffers;
-  std::vector<ExtraChunk> extra;  ///< of a .glb file
+  std::vector<ExtraChunk> extra;  ///< further chunks of a .glb file
   bool is_glb = false;
-  /// Whether a buffer has the uncompressed bytes of a view that EXT_meshopt_compression compresses. None has as a rule.
+  /// Whether a buffer stores the uncompressed bytes of a view that EXT_meshopt_compression compresses. This is unusual.
   bool has_uncompressed_views = false;
 };
 
 /// Returns whether the bytes are a .glb file, or JSON that may be a glTF document.
 [[nodiscard]] bool looks_like_gltf(std::string_view bytes);
 
-/// Reads a .glb file or the JSON of a .gltf file, whose bytes must outlive the document. Without `resolve` no file is
-/// fetched: external buffers are refused. Throws `Problem`: mesh_not_gltf, mesh_unsupported (another version, a
-/// required extension whose geometry cannot be read, external buffers).
+/// Reads a .glb file or the JSON of a .gltf file, whose bytes must outlive the document. Without `resolve`, external
+/// buffers are refused. Throws `Problem`: mesh_not_gltf, mesh_unsupported (another version, a required extension whose
+/// geometry cannot be read, external buffers).
 [[nodiscard]] Document read_document(std::string_view bytes, const Resolver& resolve = {});
 
-/// Reads a .glb file that may end inside its binary chunk: the first buffer then has fewer bytes than the document
-/// declares. Throws `Problem` as `read_document`.
+/// Reads a .glb file that may end inside its binary chunk; the first buffer then has fewer bytes than declared. Throws
+/// `Problem` as read_document().
 [[nodiscard]] Document read_cut_document(std::string_view glb);
 
 }  // namespace papilio::proto::gltf

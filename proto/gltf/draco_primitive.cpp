@@ -49,7 +49,7 @@ Elements position_elements(const Buffer<Vec3f>& positions) {
   return out;
 }
 
-/// Returns the attribute of Draco's unique id as elements of `format`; nothing if there is none that fits.
+/// Returns the attribute with a unique id of Draco as elements of `format`; nothing if there is none of that format.
 std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, const ElementFormat& format) {
   if (id == mesh.format.position_id) {
     if (format.components != 3 || format.type != ComponentType::float32) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<Elements> find_elements(const FormattedMesh& mesh, uint64_t id, co
   return elements_of(format, attribute.values);
 }
 
-/// An attribute without values, and its format.
+/// Returns an attribute without values, and its format.
 std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, uint32_t id) {
   const ElementFormat& format = stream.elements.format;
   const auto* type = std::ranges::find(stored_types, format.type, &std::pair<ComponentType, ValueType>::first);
@@ -72,29 +72,29 @@ std::pair<Attribute, AttributeFormat> attribute_of(const VertexStream& stream, u
   return made;
 }
 
-/// Returns whether a grid would spoil an attribute: weights would not add up to 1, and IDs would be others.
+/// Returns whether quantization would damage an attribute: the sum of weights, or IDs.
 bool needs_exact_numbers(const std::string& semantic) {
   return semantic.starts_with("WEIGHTS_") || semantic.starts_with("_FEATURE_ID_");
 }
 
-/// Returns whether the arrays of a primitive are so large that memory matters more than the time to get it again.
+/// Returns whether the arrays of a primitive are large enough to return memory to the system.
 bool is_worth_giving_back(const VertexSet& set, const Buffer<Triangle>& triangles) {
   return set.count * bytes_of_vertex(set) + triangles.size() * sizeof(Triangle) >= worth_giving_back;
 }
 
-/// Returns the bounds of an attribute's decoded numbers as an accessor of `type` declares them.
+/// Returns the bounds of an attribute's decoded numbers in the form of an accessor of `type`.
 std::pair<Json, Json> declared_bounds(const OutputAttribute& attribute, ComponentType type) {
   const edgebreaker::NumberBounds bounds = edgebreaker::decoded_bounds(attribute);
   return {declared_bound(type, bounds.low), declared_bound(type, bounds.high)};
 }
 
-/// Compresses a primitive. Names and describes its attributes in `made`, except for the numbers of points and the
-/// bounds of the positions, which the stream tells. Takes the bytes of the set's elements.
+/// Compresses a primitive. Describes its attributes in `made`, except for the number of points and the bounds of
+/// positions, which follow from the stream. Consumes the bytes of the set's elements.
 edgebreaker::WrittenStream compress(const Json& document, VertexSet& set, Buffer<Triangle> triangles,
                                     const QuantizationBox& box, const OutputOptions& options,
                                     const std::function<void()>& poll, DracoContent& made) {
   const bool is_large = is_worth_giving_back(set, triangles);
-  if (is_large) give_back_freed();  // what the core keeps: the mesh takes its place
+  if (is_large) give_back_freed();  // the mesh takes the place of spare blocks
   PointedMesh pointed = translate_errors([&] { return build_pointed_mesh(set, std::move(triangles)); });
   if (is_large) give_back_freed();
   std::vector<OutputAttribute> attributes;
@@ -130,7 +130,7 @@ Json json_of(Vec3f v) {
   return Json::array({static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
 }
 
-/// Completes the description by what a reader decodes from the stream.
+/// Completes the description from the written stream.
 void describe(const Json& document, std::optional<uint32_t> indices, const edgebreaker::WrittenStream& written,
               DracoContent& made) {
   for (auto& [semantic, summary] : made.attributes) summary.count = written.points;
@@ -193,12 +193,12 @@ OutputBytes draco_bytes(const VertexSet& set) {
   for (const VertexStream& stream : set.attributes) {
     if (stream.semantic == "POSITION") continue;
     auto [attribute, described] = attribute_of(stream, 0);
-    described.kind = AttributeKind::generic;  // normals are not made here
+    described.kind = AttributeKind::generic;  // no normals are added here
     attributes.push_back(std::move(attribute));
     format.attributes.push_back(std::move(described));
   }
   OutputBytes bytes = encoding_bytes(attributes, false, format);
-  // The refined mesh is freed by then: half-edges, and where each point is and comes from.
+  // Bytes of the refined mesh, which is freed by then: half-edges, and the place and origin of each point.
   constexpr uint64_t freed_face_bytes = 3 * 3 * sizeof(uint32_t);
   constexpr uint64_t freed_point_bytes = sizeof(Vec3f) + 3 * sizeof(double);
   bytes.face += sizeof(Triangle) - freed_face_bytes;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t vertex_alignment = 4;
 
-/// Returns elements at a stride of a multiple of four bytes.
+/// Returns elements at `stride`, a multiple of four bytes.
 std::string strided(Elements elements, uint32_t stride) {
   const uint32_t size = elements.format.bytes();
   if (stride == size) return std::move(elements.bytes);
@@ -19,7 +19,7 @@ std::string strided(Elements elements, uint32_t stride) {
   return out;
 }
 
-/// Returns the extension of a view that is compressed; null for others.
+/// Returns the extension of a compressed view; null for others.
 const Json* find_meshopt(const Json& view) { return find_extension(view, meshopt_extension, "a view"); }
 
 class GeometryEncoder {
@@ -40,11 +40,11 @@ class GeometryEncoder {
     return json_["meshes"][mesh.mesh]["primitives"][primitive.number];
   }
 
-  /// Encodes the primitives of a set, those of Draco first, as they need its elements. Returns its vertices for the
+  /// Encodes the primitives of a set, Draco primitives first, as they need its elements. Returns its vertices for the
   /// others.
   EncodedSet encode_set(NewGeometry& mesh, uint32_t number, std::vector<EncodedPrimitive>& out) {
     VertexSet set = std::move(mesh.geometry.sets[number]);
-    std::vector<size_t> draco, plain;  // primitives
+    std::vector<size_t> draco, plain;  // indices of primitives
     for (size_t p = 0; p < mesh.geometry.primitives.size(); ++p)
       if (const TrianglePrimitive& primitive = mesh.geometry.primitives[p]; primitive.set == number)
         (becomes_draco(json_of(mesh, primitive), set, encoding_.compression) ? draco : plain).push_back(p);

@@ -4,14 +4,14 @@
 
 namespace papilio::proto::gltf {
 
-/// Makes extensionsUsed and extensionsRequired name the extensions of geometry that the document uses, and no other of
-/// them: Draco, meshopt. The residuals of packed models are not named any more where there are none. Other names stay.
+/// Updates extensionsUsed and extensionsRequired for Draco, meshopt, and the residuals of packed models: they list
+/// exactly the ones in use. Other names are kept.
 void list_extensions(Json& document);
 
-/// Returns whether the extension is used anywhere in a value, extras left out.
+/// Returns whether the extension is used anywhere in a value, except in extras.
 [[nodiscard]] bool uses_extension(const Json& value, const char* name);
 
-/// Returns whether a document says that Draco or meshopt compresses some of it.
+/// Returns whether a document declares compression by Draco or meshopt.
 [[nodiscard]] bool uses_compression(const Json& document);
 
 }  // namespace papilio::proto::gltf

@@ -1,6 +1,6 @@
 #pragma once
 
-// Names of the extensions that are read: how geometry is stored, and what materials are.
+// Names of supported extensions of geometry and materials.
 
 namespace papilio::proto::gltf {
 

@@ -16,7 +16,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Attributes that a flat mesh keeps.
+/// Attribute that a flat mesh keeps.
 struct FlatAttribute {
   const char* semantic;
   AttributeKind kind;
@@ -28,13 +28,13 @@ constexpr std::array flat_attributes{FlatAttribute{"NORMAL", AttributeKind::norm
 
 bool is_mirrored(const Affine& map) { return dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0; }
 
-/// Returns a triangle as it faces once it is moved: mirrored maps turn it over.
+/// Returns a triangle with the orientation that it has after `map`: mirroring maps reverse it.
 Triangle wound(Triangle triangle, const Affine& map) {
   if (is_mirrored(map)) std::swap(triangle[1], triangle[2]);
   return triangle;
 }
 
-/// Returns the direction of a normal on a surface that is moved.
+/// Returns the direction of a normal on the moved surface.
 Vec3d moved_normal(const Affine& map, Vec3d normal) {
   const auto& [x, y, z] = map.axes;
   Vec3d moved = normal.x * cross(y, z) + normal.y * cross(z, x) + normal.z * cross(x, y);
@@ -43,13 +43,13 @@ Vec3d moved_normal(const Affine& map, Vec3d normal) {
   return size > 0 ? 1 / size * moved : normal;
 }
 
-/// Returns where a set has an attribute; null if it has none.
+/// Returns an attribute of a set; null if it has none.
 const VertexStream* find_stream(const VertexSet& set, const FlatAttribute& attribute, const TextureMap& map) {
   if (attribute.kind != AttributeKind::tex_coord || map.set == 0) return set.find(attribute.semantic);
   return set.find("TEXCOORD_" + std::to_string(map.set));
 }
 
-/// A set of vertices, and where a node shows it.
+/// Set of vertices, and its placement by a node.
 struct PlacedSet {
   const VertexSet& set;
   Buffer<Vec3f> positions;
@@ -61,14 +61,14 @@ struct PlacedSet {
 /// Vertices of a set in the result, with the texture coordinates of one map.
 struct PlacedVertices {
   TextureMap map;
-  bool is_whole = false;  ///< all vertices of the set, from `first`
+  bool is_whole = false;  ///< whether all vertices of the set are consecutive from `first`
   uint32_t first = 0;
-  std::unordered_map<uint32_t, uint32_t> numbers{};  ///< of the vertices in the result, unless it is whole
+  std::unordered_map<uint32_t, uint32_t> numbers{};  ///< numbers in the result, unless `is_whole`
 };
 
 class Flattener {
  public:
-  /// `reader`: reads the materials; null for none.
+  /// Prepares the attributes. `reader` reads materials; null for none.
   Flattener(const SceneMeshes& scene, MaterialReader* reader) : reader_(reader) {
     for (const FlatAttribute& attribute : flat_attributes)
       for (const SceneMesh& mesh : scene.meshes)
@@ -111,13 +111,13 @@ class Flattener {
     return reader_ == nullptr ? TextureMap{} : reader_->map_of(material_of(mesh, primitive));
   }
 
-  /// Returns whether the result has normals and the set has none.
+  /// Returns whether the result has normals, but the set has none.
   [[nodiscard]] bool lacks_normals(const VertexSet& set) const {
     return set.find("NORMAL") == nullptr &&
            std::ranges::find(used_, AttributeKind::normal, &FlatAttribute::kind) != used_.end();
   }
 
-  /// Adds the vertices that the triangles have and `placed` has not yet. Returns where they are.
+  /// Adds the vertices of triangles that are not yet placed. Returns their places.
   const PlacedVertices& place_vertices(const PlacedSet& from, const Buffer<Triangle>& triangles, const TextureMap& map,
                                        std::vector<PlacedVertices>& placed) {
     auto found = std::ranges::find(placed, map, &PlacedVertices::map);
@@ -133,8 +133,7 @@ class Flattener {
     return *found;
   }
 
-  /// Adds triangles with vertices of their own and the normals of their planes, as glTF shows triangles without
-  /// normals.
+  /// Adds triangles with their own vertices and the normals of their planes, as glTF prescribes without normals.
   void add_facets(const PlacedSet& from, const Buffer<Triangle>& triangles, const TextureMap& map) {
     for (const Triangle& t : triangles) {
       const auto [a, b, c] = std::array{from.point(t[0]), from.point(t[1]), from.point(t[2])};
@@ -147,7 +146,7 @@ class Flattener {
     }
   }
 
-  /// Adds a vertex. `normal`: its normal in the result where the set has none.
+  /// Adds a vertex. `normal`: its normal in the result if the set has none.
   void add_vertex(const PlacedSet& from, uint32_t vertex, const TextureMap& texture, Vec3d normal = {}) {
     out_.positions.push_back(to_float(from.point(vertex)));
     for (size_t a = 0; a < used_.size(); ++a) append(a, from, vertex, texture, normal);
@@ -169,7 +168,7 @@ class Flattener {
     const FlatAttribute& attribute = used_[number];
     const VertexStream* stream = find_stream(from.set, attribute, texture);
     std::array<double, 4> value{};
-    if (attribute.kind == AttributeKind::color) value = {1, 1, 1, 1};  // changes nothing of the material's
+    if (attribute.kind == AttributeKind::color) value = {1, 1, 1, 1};  // keeps the material's colour
     if (attribute.kind == AttributeKind::normal) value = {normal.x, normal.y, normal.z, 0};
     const uint32_t given = stream == nullptr ? 0 : std::min(stream->elements.format.components, attribute.components);
     for (uint32_t c = 0; c < given; ++c) value[c] = stream->elements.number(vertex, c) * stream->elements.format.unit();
@@ -197,10 +196,10 @@ class Flattener {
   MaterialReader* reader_;
   std::vector<FlatAttribute> used_;
   FormattedMesh out_;
-  std::vector<uint32_t> materials_;  ///< of the triangles, with a reader
+  std::vector<uint32_t> materials_;  ///< [triangles] material, with a reader
 };
 
-/// Semantic of an attribute in glTF; `numbers` counts those of each kind.
+/// Returns the semantic of an attribute in glTF. `numbers` counts attributes of each kind.
 std::string semantic_of(const AttributeFormat& format, uint32_t components, std::array<int, 4>& numbers) {
   int& number = numbers.at(static_cast<size_t>(format.kind));
   const bool is_float = format.type == ValueType::float32;
@@ -212,7 +211,7 @@ std::string semantic_of(const AttributeFormat& format, uint32_t components, std:
   return "_ATTRIBUTE_" + std::to_string(others++);
 }
 
-/// Appends accessors, views and bytes of new elements.
+/// Builder of a scene, which appends accessors, views and bytes of new elements.
 class SceneBuilder {
  public:
   uint32_t add(const Elements& elements, int target, bool has_bounds) {
@@ -267,7 +266,7 @@ class SceneBuilder {
   std::string bytes_;
 };
 
-/// Returns an attribute in a format that glTF allows for it.
+/// Returns an attribute in a format that glTF permits for it.
 Elements attribute_elements(const Attribute& attribute, const AttributeFormat& format, bool flips) {
   const bool is_color = format.kind == AttributeKind::color && attribute.components >= 3;
   const double unit = format.normalized || is_color ? unit_value(format) : 1;
@@ -281,9 +280,9 @@ Elements attribute_elements(const Attribute& attribute, const AttributeFormat& f
   return out;
 }
 
-/// Returns the triangles of a mesh by material, first of those without.
+/// Returns the triangles of a mesh by material; key 0 is without a material.
 std::map<uint32_t, Buffer<Triangle>> triangles_by_material(const FormattedMesh& mesh, const Materials& materials) {
-  std::map<uint32_t, Buffer<Triangle>> groups;  // by the number of the material and one
+  std::map<uint32_t, Buffer<Triangle>> groups;  // by 1 + number of the material
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     const uint32_t material = materials.of_triangle.empty() ? none : materials.of_triangle.at(t);
     groups[material + 1].push_back(mesh.triangles[t]);

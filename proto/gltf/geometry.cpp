@@ -12,7 +12,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-constexpr size_t most_streams = 1024;  // of a primitive
+constexpr size_t most_streams = 1024;  // upper bound of the attributes of a primitive
 
 void spend(uint64_t& left, uint64_t count, const char* what) {
   require_within(count, left, what, "The limit holds for the whole scene. Use a coarser scene.");
@@ -87,7 +87,7 @@ std::vector<uint32_t> read_indices(Views& views, const Json& primitive, uint64_t
   return indices;
 }
 
-/// Winding of strips and fans: glTF 2.0, section 3.7.2.1.
+/// Returns the triangles of a list, strip or fan: glTF 2.0, section 3.7.2.1.
 Buffer<Triangle> triangles_of_indices(const std::vector<uint32_t>& indices, PrimitiveMode mode) {
   Buffer<Triangle> triangles;
   if (mode == PrimitiveMode::triangles) {
@@ -104,7 +104,7 @@ Buffer<Triangle> triangles_of_indices(const std::vector<uint32_t>& indices, Prim
   return triangles;
 }
 
-/// Primitives with equal text share their vertices.
+/// Returns a key: primitives with equal keys share their vertices.
 std::string key_of(const Json& primitive) {
   Json key{primitive["attributes"], primitive.value("targets", Json())};
   if (primitive.contains("extensions")) key.push_back(primitive["extensions"].value(draco_extension, Json()));

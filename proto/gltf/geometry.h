@@ -10,14 +10,14 @@
 #include "proto/gltf/accessor.h"
 #include "proto/limits.h"
 
-// Triangles of a glTF mesh, however they are stored.
+// Triangles of a glTF mesh in any storage.
 
 namespace papilio::proto::gltf {
 
 /// One attribute of vertices.
 struct VertexStream {
   std::string semantic;                ///< "POSITION", "TEXCOORD_0", ...
-  std::optional<uint32_t> accessor{};  ///< nothing: a new one
+  std::optional<uint32_t> accessor{};  ///< accessor in the document; nothing for a new one
   Elements elements{};
 };
 
@@ -31,26 +31,26 @@ struct VertexSet {
   [[nodiscard]] const VertexStream* find(const std::string& semantic) const;
 };
 
-/// Returns the elements of this name; null if there are none of three numbers each.
+/// Returns the elements of a semantic; null if there are none with 3 components.
 [[nodiscard]] const Elements* find_vectors(const std::vector<VertexStream>& streams, std::string_view semantic);
 
 /// Returns the bytes of a vertex's attributes and morph targets.
 [[nodiscard]] uint64_t bytes_of_vertex(const VertexSet& set);
 
-/// A primitive of triangles.
+/// Primitive of triangles.
 struct TrianglePrimitive {
-  uint32_t number = 0;  ///< in its mesh
-  uint32_t set = 0;     ///< its vertices in MeshGeometry::sets
+  uint32_t number = 0;  ///< index in its mesh
+  uint32_t set = 0;     ///< index of its vertices in MeshGeometry::sets
   Buffer<Triangle> triangles;
 };
 
-/// What a mesh has of triangles. Primitives of points and lines are left out.
+/// Triangles of a mesh. Primitives of points and lines are skipped.
 struct MeshGeometry {
   std::vector<VertexSet> sets;
   std::vector<TrianglePrimitive> primitives;
 };
 
-/// What the meshes of a scene may still have.
+/// Remaining faces and vertices that meshes of a scene may have.
 struct Allowance {
   explicit Allowance(const Limits& limits)
       : faces(limits.max_input_faces), points(limits.max_input_vertices + 3 * limits.max_input_faces) {}
@@ -64,7 +64,7 @@ enum class PrimitiveMode : uint32_t { triangles = 4, strip = 5, fan = 6 };
 [[nodiscard]] std::optional<PrimitiveMode> triangle_mode(const Json& primitive, const std::string& where);
 
 /// Reads the triangles of a mesh: lists, strips and fans, indexed or not, compressed by KHR_draco_mesh_compression or
-/// not. Indices are in range. Counts are subtracted from `allowance`, and checked before anything is allocated. Throws
+/// not. Returned indices are in range. Subtracts counts from `allowance`, and checks them before any allocation. Throws
 /// `Problem`: mesh_not_gltf, mesh_unsupported, mesh_too_large, mesh_unusable (an index out of range).
 [[nodiscard]] MeshGeometry read_geometry(Views& views, uint32_t mesh, Allowance& allowance);
 

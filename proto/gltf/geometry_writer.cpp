@@ -46,7 +46,7 @@ class GeometryWriter {
         erase_extension(json, draco_extension);
       }
       json.erase("mode");
-      erase_extension(json, detail_extension);  // residuals of the old triangles
+      erase_extension(json, detail_extension);  // its residuals belong to the old triangles
     }
   }
 

@@ -61,7 +61,7 @@ auto displacement_of(const RefinedTarget& target) {
   return [&target](const RefinedVertex& vertex) { return target.displacement[vertex.point]; };
 }
 
-/// Returns whether the vectors that `elements_of` finds in the sets have one format, which can store the new ones.
+/// Returns whether the vectors of elements_of(set) have one format in all sets, which can store the new vectors.
 template <class ElementsOf, class VectorOf>
 bool keep_format(const std::vector<Vertices>& vertices, const ElementsOf& elements_of, const VectorOf& vector_of) {
   const Elements* first = nullptr;
@@ -74,7 +74,7 @@ bool keep_format(const std::vector<Vertices>& vertices, const ElementsOf& elemen
   return true;
 }
 
-/// Returns positions or displacements; vertices of the input keep their bytes where the format is kept.
+/// Returns positions or displacements. Vertices of the input keep their bytes if the format is kept.
 template <class VectorOf>
 Elements vector_elements(const Elements& input, const Vertices& vertices, bool keeps_format,
                          const VectorOf& vector_of) {
@@ -100,7 +100,7 @@ Elements normal_elements(const ElementFormat& format, const Vertices& vertices) 
   return out;
 }
 
-/// Returns the direction of `tangent` in the plane perpendicular to `normal`; `tangent` where there is none.
+/// Returns the direction of `tangent` in the plane perpendicular to `normal`; `tangent` itself if there is none.
 Vec3d perpendicular(Vec3d tangent, Vec3d normal) {
   const Vec3d flat = tangent - dot(tangent, normal) * normal;
   const double size = length(flat);

@@ -8,11 +8,11 @@
 namespace papilio::proto::gltf {
 namespace {
 
-constexpr uint32_t influences = 4;  // of one pair
+constexpr uint32_t influences = 4;  // places of one pair
 constexpr const char* joints_prefix = "JOINTS_";
 constexpr const char* weights_prefix = "WEIGHTS_";
 
-using Weight = std::pair<double, uint32_t>;  // and its joint
+using Weight = std::pair<double, uint32_t>;  // weight and joint
 
 /// Returns the names of both attributes of the pair that `semantic` may belong to; empty ones for other attributes.
 std::pair<std::string, std::string> pair_names(const std::string& semantic) {
@@ -40,7 +40,7 @@ std::vector<Pair> pairs_of(const VertexSet& set) {
   return pairs;
 }
 
-/// Adds weights up joint by joint; returns the `most` largest.
+/// Adds weights by joint, and returns the `most` largest.
 std::vector<Weight> blend(const std::vector<Pair>& pairs, const Combination& of, size_t most) {
   std::vector<Weight> blended;
   for (size_t i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ std::vector<Weight> blend(const std::vector<Pair>& pairs, const Combination& of,
   return blended;
 }
 
-/// Divides weights by their sum, in units of the type's 1. Integers are rounded so that they add up to it.
+/// Divides weights by their sum, in units of the type's 1. Rounds integers so that their sum is exact.
 void normalize(std::vector<Weight>& weights, const ElementFormat& format) {
   double sum = 0;
   for (const auto& [weight, joint] : weights) sum += weight;
@@ -74,7 +74,7 @@ void normalize(std::vector<Weight>& weights, const ElementFormat& format) {
   if (!format.normalized) return;
   double left = whole;
   for (auto& [weight, joint] : weights) left -= weight = std::floor(weight + 0.5);
-  if (!weights.empty()) weights[0].first += left;  // the largest
+  if (!weights.empty()) weights[0].first += left;  // largest weight
 }
 
 }  // namespace

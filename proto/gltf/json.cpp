@@ -14,8 +14,8 @@ constexpr size_t most_values = 4'000'000;
 constexpr size_t most_members = 4096;
 constexpr uint64_t largest_whole_number = uint64_t{1} << 53;
 
-/// Reader that builds nothing: checks depth, counts and names before the document is built. The library searches the
-/// members of an ordered object linearly, and copies nested values recursively.
+/// Check of depth, counts and names before the document is built: the library searches the members of an ordered object
+/// linearly, and copies nested values recursively.
 class DocumentCheck {
  public:
   using number_integer_t = Json::number_integer_t;
@@ -61,7 +61,7 @@ class DocumentCheck {
     return true;
   }
 
-  std::vector<std::unordered_set<std::string>> names_;  ///< of the open objects
+  std::vector<std::unordered_set<std::string>> names_;  ///< member names of the open objects
   size_t values_ = 0;
   std::string fault_;
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-// JSON of glTF: members keep their order, and what is not understood is kept.
+// JSON of glTF: members keep their order, and unknown ones are kept.
 
 namespace papilio::proto::gltf {
 
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 /// Throws `Problem` mesh_not_gltf: "WHERE WHAT. Export the scene again."
 [[noreturn]] void refuse_document(const std::string& where, const std::string& what);
 
-/// Whether a value is this text. (GCC 12 takes the comparison of JSON with text for one beyond an array.)
+/// Returns whether a value is this text. (GCC 12 reports the comparison of JSON with text as out of bounds.)
 [[nodiscard]] inline bool is_text(const Json& value, std::string_view text) {
   return value.is_string() && value.get_ref<const std::string&>() == text;
 }
@@ -40,8 +40,8 @@ using Json = nlohmann::ordered_json;
 
 /// Returns a top-level array of the document; an empty one if it is absent.
 [[nodiscard]] const Json& array_of(const Json& document, const char* name);
-/// Returns an element of a top-level array. Throws `Problem` if it does not exist; `where` names what refers to it. A
-/// view, as compilers take a reference that is returned for one to a string made for the call.
+/// Returns an element of a top-level array. Throws `Problem` if it does not exist; `where` names the referring object.
+/// `where` is a view, as compilers would report the returned reference as dangling with a string.
 [[nodiscard]] const Json& element_of(const Json& document, const char* name, uint64_t index, std::string_view where);
 
 /// Returns the extension `name` of an object; null if it has none.

@@ -6,11 +6,11 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Gives each material points of its own. Returns the material of each point.
+/// Splits points between materials. Returns the material of each point.
 std::vector<uint32_t> divide_points(FormattedMesh& mesh, const std::vector<uint32_t>& of_triangle) {
   std::vector<uint32_t> owner(mesh.positions.size(), none);
   std::vector<bool> is_owned(mesh.positions.size());
-  std::unordered_map<uint64_t, uint32_t> copies;  // of points that another material owns, by point and material
+  std::unordered_map<uint64_t, uint32_t> copies;  // by point and material, for points of another material
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     for (uint32_t& point : mesh.triangles[t]) {
       if (!is_owned[point]) {

@@ -23,7 +23,7 @@ double number_member(const Json& object, const char* key, double fallback, const
   return value == nullptr ? fallback : number_of(*value, where + "." + key);
 }
 
-/// Replaces the numbers by those of a member, if it is there.
+/// Replaces the numbers by those of a member, if it exists.
 template <size_t count>
 void read_numbers(const Json& object, const char* key, std::array<double, count>& numbers, const std::string& where) {
   const Json* value = find_member(object, key, where);
@@ -34,17 +34,16 @@ void read_numbers(const Json& object, const char* key, std::array<double, count>
   for (size_t i = 0; i < count; ++i) numbers[i] = number_of((*value)[i], name);
 }
 
-/// Returns sine and cosine of an angle in radians, the same bits on every processor.
+/// Returns sine and cosine of an angle in radians, bit-identical on every processor.
 SineCosine sine_and_cosine(double angle) {
-  constexpr double steps = 1ULL << 40;  // of a turn
+  constexpr double steps = 1ULL << 40;  // steps per turn
   const double turns = angle / (2 * std::numbers::pi);
   const double part = turns - std::floor(turns);
-  if (!(part >= 0 && part < 1)) return {0, 1};  // of an angle beyond all numbers
+  if (!(part >= 0 && part < 1)) return {0, 1};  // not a number
   return sine_and_cosine_of_turn(static_cast<uint64_t>(part * steps), static_cast<uint64_t>(steps));
 }
 
-/// Reads the map of a texture: scaled, rotated counter-clockwise, moved. Source: KHR_texture_transform, as three.js has
-/// it.
+/// Reads the map of a texture: scaled, rotated counter-clockwise, moved. Source: KHR_texture_transform, as in three.js.
 TextureMap read_map(const Json& texture, const std::string& where) {
   TextureMap map;
   map.set = static_cast<uint32_t>(whole_number(texture, "texCoord", where, 0));
@@ -61,7 +60,7 @@ TextureMap read_map(const Json& texture, const std::string& where) {
   return map;
 }
 
-/// Returns the image that a texture names itself, or by an extension for another kind of image.
+/// Returns the image of a texture, or of its extension for another kind of image.
 std::optional<uint32_t> image_source_of(const Json& texture, const std::string& where) {
   if (const auto source = index_member(texture, "source", where)) return source;
   for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"})

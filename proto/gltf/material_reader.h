@@ -15,7 +15,7 @@ namespace papilio::proto::gltf {
 
 /// Texture coordinates of a material: the set, and the affine map of KHR_texture_transform.
 struct TextureMap {
-  uint32_t set = 0;  ///< of TEXCOORD_n
+  uint32_t set = 0;  ///< number n of TEXCOORD_n
   std::array<double, 2> u_axis{1, 0}, v_axis{0, 1}, offset{};
 
   /// Returns the coordinates at which the image is read.
@@ -25,8 +25,8 @@ struct TextureMap {
   friend bool operator==(const TextureMap&, const TextureMap&) = default;
 };
 
-/// Reads the materials that primitives use, each once, with their images. Left out are textures of occlusion and of
-/// extensions, samplers, and the maps of all but a material's first texture. `views` must outlive it.
+/// Reader of the materials that primitives use, each once, with their images. Skips textures of occlusion and of
+/// extensions, samplers, and the maps of all but a material's first texture. `views` must outlive this.
 class MaterialReader {
  public:
   explicit MaterialReader(Views& views) : views_(views) {}
@@ -49,9 +49,9 @@ class MaterialReader {
 
   Views& views_;
   Materials out_;
-  std::vector<TextureMap> maps_;                     ///< by material
-  bool has_map_ = false;                             ///< whether the latest material has one
-  std::map<uint32_t, uint32_t> materials_, images_;  ///< by their numbers in the document
+  std::vector<TextureMap> maps_;                     ///< [materials]
+  bool has_map_ = false;                             ///< whether the latest material has a map
+  std::map<uint32_t, uint32_t> materials_, images_;  ///< new numbers by numbers in the document
   uint64_t image_bytes_ = 0;
 };
 

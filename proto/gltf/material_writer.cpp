@@ -9,7 +9,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Returns text that JSON can hold: bytes that are no UTF-8 are taken for Latin-1.
+/// Returns text in UTF-8; other text is read as Latin-1.
 std::string as_utf8(const std::string& text) {
   try {
     (void)Json(text).dump();

@@ -12,12 +12,12 @@
 
 namespace papilio::proto::gltf {
 
-/// Image of a material: its bytes or, where it is a file of its own, its URI.
+/// Image of a material: its bytes, or the URI of an external file.
 struct Image {
   std::string name{};
-  std::string media_type{};  ///< "image/png"; "" if the scene does not say
+  std::string media_type{};  ///< "image/png"; "" if unknown
   std::string bytes{};
-  std::string uri{};  ///< relative; "" for an image with bytes
+  std::string uri{};  ///< relative URI; "" for an image with bytes
 
   friend bool operator==(const Image&, const Image&) = default;
 };
@@ -26,14 +26,14 @@ struct Image {
 enum class ImageUse : uint8_t { base_color, metallic_roughness, normal, emissive };
 inline constexpr size_t image_use_count = 4;
 
-/// Material of the metallic-roughness model. Numbers are in 0..1 unless they say otherwise.
+/// Material of the metallic-roughness model. Numbers are in 0..1 unless noted.
 struct Material {
   std::string name{};
   std::array<double, 4> base_color{1, 1, 1, 1};
-  bool is_blended = false;             ///< alpha counts; else the surface is opaque whatever its alpha
-  std::array<double, 3> emissive{};    ///< at least 0, beyond 1 for stronger lights
-  double metallic = 1, roughness = 1;  ///< glTF's defaults
-  std::array<std::optional<uint32_t>, image_use_count> images{};  ///< in Materials::images, by `ImageUse`
+  bool is_blended = false;             ///< whether alpha has an effect; else the surface is opaque
+  std::array<double, 3> emissive{};    ///< light of the surface, at least 0, and above 1 for stronger lights
+  double metallic = 1, roughness = 1;  ///< factors, with glTF's defaults
+  std::array<std::optional<uint32_t>, image_use_count> images{};  ///< [ImageUse] index in Materials::images
 
   [[nodiscard]] std::optional<uint32_t>& image(ImageUse use) { return images.at(static_cast<size_t>(use)); }
   [[nodiscard]] const std::optional<uint32_t>& image(ImageUse use) const { return images.at(static_cast<size_t>(use)); }
@@ -44,12 +44,12 @@ struct Material {
 struct Materials {
   std::vector<Material> materials{};
   std::vector<Image> images{};
-  std::vector<uint32_t> of_triangle{};  ///< in `materials`, `none` for none; empty without materials
+  std::vector<uint32_t> of_triangle{};  ///< [triangles] index in `materials`, or `none`; empty without materials
 
   [[nodiscard]] bool empty() const { return materials.empty(); }
 };
 
-/// A mesh whose triangles have materials.
+/// Mesh whose triangles have materials.
 struct MaterialMesh {
   FormattedMesh mesh;
   Materials materials{};

@@ -7,7 +7,7 @@
 
 namespace papilio::proto::gltf {
 
-/// An affine map of space: the images of the axes, and of the origin.
+/// Affine map of space: the images of the axes, and of the origin.
 struct Affine {
   std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3d origin{};
@@ -24,11 +24,11 @@ struct Affine {
 
 /// Returns an upper bound of the factor by which a map lengthens a vector; exact for similarities.
 [[nodiscard]] double largest_scale(const Affine& map);
-/// Returns whether a map scales all directions alike, to a part in a thousand.
+/// Returns whether a map scales all directions equally, within 0.1 %.
 [[nodiscard]] bool is_similarity(const Affine& map);
-/// Returns the inverse of a similarity that does not map all to one point.
+/// Returns the inverse of a similarity, whose scale must not be 0.
 [[nodiscard]] Affine inverse_of_similarity(const Affine& map);
-/// Returns whether two maps are equal to a part in a thousand of their scale.
+/// Returns whether two maps are equal within 0.1 % of their scale.
 [[nodiscard]] bool are_alike(const Affine& a, const Affine& b);
 
 }  // namespace papilio::proto::gltf

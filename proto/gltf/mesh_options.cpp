@@ -9,14 +9,14 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// What a view sees of a sphere.
-struct Sight {
+/// Visibility of a sphere in a view.
+struct Visibility {
   bool is_visible = false;
   double pixel = 0;  ///< length of a pixel at its nearest point, in the scene
 };
 
 double tangent_of_half(double degrees) {
-  constexpr double steps = 1e6;  // of a degree
+  constexpr double steps = 1e6;  // steps per degree
   const SineCosine at =
       sine_and_cosine_of_turn(static_cast<uint64_t>(degrees / 2 * steps), static_cast<uint64_t>(360 * steps));
   return at.sine / at.cosine;
@@ -27,7 +27,7 @@ Vec3d unit(Vec3d v) {
   return size > 0 ? 1 / size * v : Vec3d{0, 0, 0};
 }
 
-Sight sight_of_sphere(const View& view, Vec3d centre, double radius) {
+Visibility visibility_of_sphere(const View& view, Vec3d centre, double radius) {
   const Vec3d forward = unit(view.target - view.eye);
   const Vec3d side = unit(cross(forward, view.up));
   const Vec3d above = cross(side, forward);
@@ -41,14 +41,14 @@ Sight sight_of_sphere(const View& view, Vec3d centre, double radius) {
     if (is_flat) return std::abs(across) - radius <= slope * to_target;
     return (std::abs(across) - slope * depth) / std::sqrt(1 + slope * slope) <= radius;
   };
-  Sight sight;
-  sight.is_visible = depth + radius > near && is_inside(dot(from_eye, above), half) &&
-                     is_inside(dot(from_eye, side), half * view.viewport[0] / view.viewport[1]);
-  sight.pixel = 2 * half * (is_flat ? to_target : std::max(depth - radius, near)) / view.viewport[1];
-  return sight;
+  Visibility visibility;
+  visibility.is_visible = depth + radius > near && is_inside(dot(from_eye, above), half) &&
+                          is_inside(dot(from_eye, side), half * view.viewport[0] / view.viewport[1]);
+  visibility.pixel = 2 * half * (is_flat ? to_target : std::max(depth - radius, near)) / view.viewport[1];
+  return visibility;
 }
 
-/// Returns the view as it is in a mesh that `map` moves into the scene.
+/// Returns the view in the coordinates of a mesh that `map` moves into the scene.
 View view_in_mesh(const View& view, const Affine& map, bool is_two_sided) {
   const Affine inverse = inverse_of_similarity(map);
   View inner = view;
@@ -61,7 +61,7 @@ View view_in_mesh(const View& view, const Affine& map, bool is_two_sided) {
   return inner;
 }
 
-/// Returns the largest edge of a mesh.
+/// Returns the length of the longest edge of a mesh.
 double longest_edge(const Mesh& mesh) {
   double longest = 0;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
@@ -70,11 +70,11 @@ double longest_edge(const Mesh& mesh) {
   return longest;
 }
 
-/// What the showings of a mesh need, as lengths in the mesh.
+/// Bounds for the instances of a mesh, as lengths in the mesh.
 struct Needs {
   bool is_visible = false;
-  double tolerance = 0;    ///< 0: none
-  double edge_length = 0;  ///< shorter edges need no split; 0: none
+  double tolerance = 0;    ///< smallest tolerance; 0: no bound
+  double edge_length = 0;  ///< lower bound of split edges; 0: no bound
 };
 
 Needs needs_of(const Options& options, double scene_tolerance, const PlacedMesh& placed) {
@@ -85,12 +85,13 @@ Needs needs_of(const Options& options, double scene_tolerance, const PlacedMesh&
     for (const Affine& map : maps) {
       const double scale = largest_scale(map);
       if (!(scale > 0)) continue;
-      Sight sight{.is_visible = true, .pixel = 0};
-      if (options.view) sight = sight_of_sphere(*options.view, map.point(box.centre()), scale * box.diagonal() / 2);
-      if (!sight.is_visible) continue;
+      Visibility visibility{.is_visible = true, .pixel = 0};
+      if (options.view)
+        visibility = visibility_of_sphere(*options.view, map.point(box.centre()), scale * box.diagonal() / 2);
+      if (!visibility.is_visible) continue;
       const double pixels = options.view ? options.view->error_pixels : 0;
-      take(needs.tolerance, std::max(scene_tolerance, pixels * sight.pixel) / scale);
-      take(needs.edge_length, (options.view ? options.view->edge_pixels : 0) * sight.pixel / scale);
+      take(needs.tolerance, std::max(scene_tolerance, pixels * visibility.pixel) / scale);
+      take(needs.edge_length, (options.view ? options.view->edge_pixels : 0) * visibility.pixel / scale);
       needs.is_visible = true;
     }
   return needs;
@@ -101,7 +102,7 @@ Options without_view(Options options) {
   return options;
 }
 
-/// Returns how many halvings take the longest edge below `length`, one more for those that grow.
+/// Returns the number of halvings that take the longest edge below `length`, plus one for edges that grow.
 int halvings(double longest, double length, int most) {
   int count = 1;
   for (; count < most && longest > length; longest /= 2) ++count;

@@ -9,18 +9,18 @@
 
 namespace papilio::proto::gltf {
 
-/// A mesh as the options of a scene see it.
+/// Mesh with its placement in a scene.
 struct PlacedMesh {
   const Mesh& mesh;
-  double diagonal = 0;                           ///< of its box
-  const std::vector<std::vector<Affine>>& maps;  ///< by showing and joint (scene.h)
-  bool is_two_sided = false;                     ///< whether backs are shown too
+  double diagonal = 0;                           ///< diagonal of its bounding box
+  const std::vector<std::vector<Affine>>& maps;  ///< [instance][joint] maps to the scene (scene.h)
+  bool is_two_sided = false;                     ///< whether faces are visible from behind
 };
 
-/// Returns the options that refine one mesh as `options` say it for its scene, whose box has the diagonal
-/// `scene_diagonal`; nothing if no showing is in the picture. Lengths are divided by the largest scale of the maps. A
-/// view is moved into the mesh where the mesh is shown once, by a similarity. Else it becomes the tolerance of the
-/// nearest point of the nearest showing: the mesh is as fine as any of them needs.
+/// Converts options of a scene, whose box has the diagonal `scene_diagonal`, to options of one mesh; nothing if no
+/// instance is visible. Lengths are divided by the largest scale of the maps. If the mesh has one instance, placed by a
+/// similarity, the view is moved into the mesh. Otherwise the view becomes a tolerance, at the nearest point of the
+/// nearest instance, so that the mesh is fine enough for all.
 [[nodiscard]] std::optional<Options> options_of_mesh(const Options& options, double scene_diagonal,
                                                      const PlacedMesh& placed);
 

@@ -18,7 +18,8 @@ constexpr std::array<std::pair<std::string_view, MeshoptMode>, 3> modes{{{"ATTRI
                                                                          {"TRIANGLES", MeshoptMode::triangles},
                                                                          {"INDICES", MeshoptMode::indices}}};
 constexpr uint64_t largest_stride = 256;
-/// The vertex codec spends at least 4 bytes on 256 bytes of a column; the index codecs a byte on 3 indices of 4.
+/// Upper bound of the compression ratio: the vertex codec takes at least 4 bytes for 256 bytes of a column, and the
+/// index codecs one byte for 3 indices of 4 bytes.
 constexpr uint64_t largest_ratio = 64;
 constexpr uint64_t block_vertices = 256;
 constexpr unsigned vertex_header = 0xA0, triangle_header = 0xE0, sequence_header = 0xD0;
@@ -30,7 +31,7 @@ unsigned known_header(MeshoptMode mode) {
   return mode == MeshoptMode::triangles ? triangle_header : sequence_header;
 }
 
-/// Newest version of the codec that the library reads.
+/// Returns the newest version of the codec that the library reads.
 unsigned newest_version(MeshoptMode mode) { return mode == MeshoptMode::attributes ? 0 : 1; }
 
 void require_codec(const MeshoptView& view, std::string_view compressed, const std::string& where) {

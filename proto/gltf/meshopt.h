@@ -12,12 +12,12 @@ namespace papilio::proto::gltf {
 /// Codec of a compressed view.
 enum class MeshoptMode { attributes, triangles, indices };
 
-/// How EXT_meshopt_compression stores a view.
+/// Storage of a view by EXT_meshopt_compression.
 struct MeshoptView {
   uint32_t buffer = 0;
   uint64_t offset = 0, length = 0;  ///< compressed bytes in the buffer
   uint32_t stride = 0;              ///< bytes of a decoded element
-  uint64_t count = 0;               ///< decoded elements
+  uint64_t count = 0;               ///< number of decoded elements
   MeshoptMode mode = MeshoptMode::attributes;
   std::string filter = "NONE";
 };
@@ -26,8 +26,8 @@ struct MeshoptView {
 /// values outside of the extension's ranges, mesh_unsupported for its successor.
 [[nodiscard]] std::optional<MeshoptView> read_meshopt_view(const Json& view, const std::string& where);
 
-/// Decodes a view: `count` elements of `stride` bytes. The size is held to what the compressed bytes can stand for
-/// before it is allocated. Throws `Problem`: mesh_not_gltf for damaged bytes, mesh_unsupported for a newer codec.
+/// Decodes a view: `count` elements of `stride` bytes. Checks the size against the largest compression ratio before it
+/// is allocated. Throws `Problem`: mesh_not_gltf for damaged bytes, mesh_unsupported for a newer codec.
 [[nodiscard]] std::string decode_meshopt(const MeshoptView& view, std::string_view compressed,
                                          const std::string& where);
 

@@ -12,7 +12,7 @@ std::vector<Vec3d> vectors_of(const Attribute& attribute) {
   return vectors;
 }
 
-/// Returns what the normals of the moved mesh have more than its own.
+/// Returns the differences between the normals of the moved mesh and those of the mesh.
 std::vector<Vec3d> turn_of(const Mesh& mesh, const std::vector<Vec3d>& displacement, size_t normals) {
   Mesh moved{mesh.topology, mesh.positions, {}};
   moved.attributes.point = mesh.attributes.point;

@@ -12,7 +12,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Ends of the names of images that a view may hold, and their media types.
+/// File name extensions of images that a view may contain, and their media types.
 constexpr std::array<std::pair<std::string_view, const char*>, 5> image_types{{{".png", "image/png"},
                                                                                {".jpg", "image/jpeg"},
                                                                                {".jpeg", "image/jpeg"},
@@ -26,8 +26,8 @@ const char* find_image_type(std::string uri) {
   return nullptr;
 }
 
-/// Returns the media type and the bytes of an image that is a file or in the document; nothing for unknown types and
-/// where there is no file.
+/// Returns the media type and the bytes of an external or embedded image; nothing for an unknown type or a missing
+/// file.
 std::optional<std::pair<std::string, std::string>> image_of(const std::string& uri, const ImageFinder& find_image) {
   if (is_data_uri(uri)) {
     auto bytes = decode_data_uri(uri);
@@ -42,7 +42,7 @@ std::optional<std::pair<std::string, std::string>> image_of(const std::string& u
   return std::pair(type, std::move(*bytes));
 }
 
-/// Returns the contents of new views for the images that are none yet.
+/// Returns the contents of new views for the images without a view.
 std::vector<ViewContent> pack_images(Document& document, const ImageFinder& find_image) {
   std::vector<ViewContent> contents;
   const size_t count = array_of(document.json, "images").size();
@@ -64,24 +64,24 @@ std::vector<ViewContent> pack_images(Document& document, const ImageFinder& find
   return contents;
 }
 
-/// Moves a view, or what it is decompressed from, from its old buffer to the new one.
+/// Moves a view, or its compressed range, from its old buffer to the new one.
 void move_to_buffer(Json& holder, const std::vector<std::pair<uint32_t, uint64_t>>& moved) {
   const auto& [buffer, offset] = moved[holder["buffer"].get<size_t>()];
   holder["buffer"] = buffer;
   if (offset > 0) holder["byteOffset"] = holder.value("byteOffset", uint64_t{0}) + offset;
 }
 
-/// Whether a buffer says something of its own that another one says, too, so that one of both cannot hold it.
-bool has_own_words(const Json& buffer, const Json& other) {
+/// Returns whether both buffers have extras, or both have extensions, so that they cannot be joined.
+bool have_conflicting_members(const Json& buffer, const Json& other) {
   return std::ranges::any_of(std::array{"extras", "extensions"},
                              [&](const char* key) { return buffer.contains(key) && other.contains(key); });
 }
 
-/// Joins the buffers with bytes into the first, which becomes the binary chunk; those with words of their own stay, in
-/// the document. `owners`: those that the pieces borrow from.
+/// Joins the buffers with bytes into the first, which becomes the binary chunk. Buffers with conflicting members are
+/// embedded in the document. `owners` receives the buffers that the pieces borrow from.
 BufferPieces join_buffers(Document& document, BufferPieces pieces, std::vector<SceneBuffer>& owners) {
   constexpr uint64_t alignment = 8;
-  std::vector<std::pair<uint32_t, uint64_t>> moved;  // new buffer, and where the old one begins in it
+  std::vector<std::pair<uint32_t, uint64_t>> moved;  // new buffer, and offset of the old one in it
   BufferPieces joined(1);
   Json buffers = Json::array({Json::object()});
   std::vector<SceneBuffer> places{{BufferPlace::binary_chunk, std::string_view()}};
@@ -96,7 +96,7 @@ BufferPieces join_buffers(Document& document, BufferPieces pieces, std::vector<S
       continue;
     }
     buffer.erase("uri");
-    if (has_own_words(buffer, buffers[0])) {
+    if (have_conflicting_members(buffer, buffers[0])) {
       moved.emplace_back(static_cast<uint32_t>(buffers.size()), 0);
       buffers.push_back(std::move(buffer));
       places.emplace_back(BufferPlace::data_uri, std::string_view());
@@ -108,7 +108,8 @@ BufferPieces join_buffers(Document& document, BufferPieces pieces, std::vector<S
     size = begin + buffer["byteLength"].get<uint64_t>();
     moved.emplace_back(0, begin);
     for (Piece& piece : pieces[b]) joined[0].push_back(std::move(piece));
-    for (auto& [key, value] : buffer.items()) buffers[0].emplace(key, std::move(value));  // the first one's stay
+    for (auto& [key, value] : buffer.items())
+      buffers[0].emplace(key, std::move(value));  // members of earlier buffers are kept
   }
   buffers[0]["byteLength"] = size;
   if (document.json.contains("bufferViews"))
@@ -132,7 +133,7 @@ bool has_bytes(const Document& document) {
 std::string pack_scene(std::string_view gltf, const FileResolver& resolve, const ImageFinder& find_image) {
   if (is_glb(gltf)) return std::string(gltf);
   Document document = read_document(gltf, resolve);
-  document.is_glb = true;  // what it becomes
+  document.is_glb = true;  // the kind of the result
   require_sound_views(document);
   BufferPieces pieces = replace_contents(document, pack_images(document, find_image), {});
   if (!has_bytes(document)) return write_document(document, std::move(pieces), FileKind::glb).document;

@@ -34,7 +34,7 @@ void require_finite(const Streams& streams) {
   }
 }
 
-/// Returns -1, 0 or 1: the attributes of two vertices in order.
+/// Compares the attributes of two vertices in lexicographic order; returns -1, 0 or 1.
 int compare(const Streams& streams, uint32_t one, uint32_t other) {
   for (const Elements* elements : streams)
     for (uint32_t c = 0; c < elements->format.components; ++c) {
@@ -45,7 +45,8 @@ int compare(const Streams& streams, uint32_t one, uint32_t other) {
   return 0;
 }
 
-/// Returns for each point the lowest one of its mesh vertex with equal attributes. `vertex` [points]: of the set.
+/// Returns, for each point, the lowest point of its mesh vertex with equal attributes. `vertex` [points]: vertex of the
+/// set.
 Buffer<uint32_t> find_equal_points(const Mesh& mesh, const Streams& streams, const std::vector<uint32_t>& vertex) {
   const uint32_t count = mesh.attributes.point_count;
   auto equal = Buffer<uint32_t>::for_overwrite(count);
@@ -76,7 +77,7 @@ Buffer<uint32_t> find_equal_points(const Mesh& mesh, const Streams& streams, con
   return equal;
 }
 
-/// Makes points of equal attributes one. Points are numbered in the order in which the corners name them.
+/// Merges points with equal attributes. Numbers points in the order in which the corners first use them.
 void merge_points(PointedMesh& pointed, const Streams& streams) {
   PointAttributes& points = pointed.mesh.attributes;
   Buffer<uint32_t> number = find_equal_points(pointed.mesh, streams, pointed.vertex);
@@ -100,15 +101,15 @@ bool is_degenerate(const Triangle& triangle, const Buffer<Vec3f>& positions) {
   return a == b || b == c || c == a;
 }
 
-/// Forgets the edges, which streams do not need.
+/// Removes the edges, which streams do not need.
 void forget_edges(Mesh& mesh) {
   mesh.topology.edge = {};
   mesh.topology.half_edge = {};
   mesh.topology.kind = {};
 }
 
-/// Sets the points of a mesh built of `triangles`, all of which it has: vertices of the set in the order in which the
-/// corners name them.
+/// Sets the points of a mesh that has all `triangles`: vertices of the set, in the order in which the corners first use
+/// them.
 void set_points(PointedMesh& pointed, const Buffer<Triangle>& triangles, uint64_t vertices) {
   PointAttributes& points = pointed.mesh.attributes;
   Buffer<uint32_t> number(vertices, none);
@@ -123,7 +124,7 @@ void set_points(PointedMesh& pointed, const Buffer<Triangle>& triangles, uint64_
   }
 }
 
-/// Builds a mesh of which the core drops faces that repeat others: it carries the numbers of the vertices.
+/// Builds a mesh of which the core drops repeated faces. An attribute carries the numbers of the vertices.
 PointedMesh build_without_repeated(TriangleMesh input) {
   std::vector<double>& numbers = input.attributes.emplace_back().values;
   for (size_t v = 0; v < input.positions.size(); ++v) numbers.push_back(static_cast<double>(v));

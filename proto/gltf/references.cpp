@@ -12,7 +12,7 @@ using Counts = std::vector<uint32_t>;
 
 void count(Counts& counts, const Json& index) {
   if (!index.is_number()) return;
-  const double number = index.get<double>();  // 4.0 is an index, too
+  const double number = index.get<double>();  // 4.0 is a valid index
   if (number >= 0 && number < static_cast<double>(counts.size())) ++counts[static_cast<size_t>(number)];
 }
 

@@ -14,7 +14,7 @@ namespace papilio::proto::gltf {
 
 namespace {
 
-/// Gives vertices the values of levels of detail, in place of the interpolated ones.
+/// Replaces interpolated values of vertices by the values of detail levels.
 void put_values(const RefinedVertices& vertices, const Attribute& given, std::string_view semantic, VertexSet& set) {
   const auto stream = std::ranges::find(set.attributes, semantic, &VertexStream::semantic);
   if (stream == set.attributes.end()) return;
@@ -42,7 +42,7 @@ NewGeometry refined_geometry(const SceneMesh& mesh, Result result, bool adds_nor
       refine_targets(mesh.geometry, mesh.surface, refined, renews_normals ? normals : std::nullopt);
   poll();
   const RefinedPoints points(mesh.geometry, mesh.surface, refined, normals);
-  refined.topology = {};  // not needed any more, and large
+  refined.topology = {};  // large, and no longer needed
   RefinedPrimitives parts = part_primitives(mesh.geometry, points, refined);
   poll();
   const KeptFormats kept = find_kept_formats(mesh.geometry, parts.sets, targets);
@@ -68,8 +68,8 @@ NewGeometry unrefined_geometry(const SceneMesh& mesh) {
 }
 
 uint64_t parting_bytes(const SceneMesh& mesh, const Mesh& refined, bool is_compressed) {
-  constexpr uint64_t numbers = 16;  // of a point: where it is and where it goes
-  constexpr uint64_t copies = 2;    // before and while they are compressed
+  constexpr uint64_t numbers = 16;  // bytes for the place and the new number of a point
+  constexpr uint64_t copies = 2;    // copies of values, before and during compression
   uint64_t vertex = 0;
   for (const VertexSet& set : mesh.geometry.sets) vertex = std::max(vertex, bytes_of_vertex(set));
   const uint64_t points = refined.attributes.point_count;
@@ -78,7 +78,7 @@ uint64_t parting_bytes(const SceneMesh& mesh, const Mesh& refined, bool is_compr
 }
 
 OutputBytes output_bytes(const SceneMesh& mesh, const Json& primitives, Compression requested) {
-  constexpr uint64_t bytes_of_parting = 40;  // of a point: its numbers, and its place in their order
+  constexpr uint64_t bytes_of_parting = 40;  // bytes for the numbers of a point, and its place in their order
   OutputBytes bytes{.face = 36, .point = bytes_of_parting};
   for (const VertexSet& set : mesh.geometry.sets)
     bytes.point = std::max(bytes.point, 2 * bytes_of_vertex(set) + bytes_of_parting);

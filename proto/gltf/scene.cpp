@@ -40,7 +40,7 @@ Affine local_map(const Json& node, const std::string& where) {
   return affine_of({t[0], t[1], t[2]}, r, {s[0], s[1], s[2]});
 }
 
-/// Maps of all nodes to the scene.
+/// Returns the maps of all nodes to the scene.
 std::vector<Affine> world_maps(const Json& document) {
   const Json& nodes = array_of(document, "nodes");
   std::vector<uint32_t> parent(nodes.size(), none);
@@ -58,7 +58,7 @@ std::vector<Affine> world_maps(const Json& document) {
   std::vector<Affine> maps(nodes.size());
   std::vector<uint8_t> is_done(nodes.size());
   for (uint32_t n = 0; n < nodes.size(); ++n) {
-    std::vector<uint32_t> path;  // upwards, to the first whose map is known
+    std::vector<uint32_t> path;  // nodes upwards, to the first with a known map
     for (uint32_t at = n; at != none && is_done[at] == 0; at = parent[at]) {
       path.push_back(at);
       if (path.size() > nodes.size()) refuse_document(place("nodes", n), "is in its own subtree");
@@ -97,7 +97,7 @@ std::vector<Affine> skin_maps(Views& views, const Json& skin, const std::vector<
   return maps;
 }
 
-/// Maps of the instances of a node relative to the node; one that changes nothing for other nodes.
+/// Returns the maps of a node's instances relative to the node; the identity for a node without the extension.
 std::vector<Affine> instance_maps(Views& views, const Json& node, const std::string& where) {
   const Json* instancing = find_extension(node, instancing_extension, where);
   if (instancing == nullptr) return {Affine{}};
@@ -173,7 +173,7 @@ void extend_by_skin(Box& box, const std::vector<Affine>& joints, const MeshGeome
   }
 }
 
-/// Vertices up to which each is moved; beyond, the corners of the mesh's box are.
+/// Upper bound of the vertices moved one by one; beyond it, the corners of the mesh's box are moved.
 constexpr uint64_t most_moved_vertices = 10'000'000;
 
 }  // namespace

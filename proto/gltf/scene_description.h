@@ -12,7 +12,7 @@ namespace papilio::proto::gltf {
 /// compression, and each mesh with its faces, vertices, primitives and attributes. Throws `Problem`.
 [[nodiscard]] std::string describe_scene(std::string_view glb, const Limits& limits);
 
-/// Returns how many triangles the primitives of a .glb scene declare. Reads its JSON alone. Throws `Problem`.
+/// Returns the number of triangles that the primitives of a .glb scene declare. Reads only its JSON. Throws `Problem`.
 [[nodiscard]] uint64_t declared_faces(std::string_view glb);
 
 }  // namespace papilio::proto::gltf

@@ -8,7 +8,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Returns a mesh's surface; nothing where no triangle has an area.
+/// Returns a mesh's surface; nothing if no triangle has an area.
 std::optional<Surface> surface_of(const MeshGeometry& geometry, uint32_t number) {
   try {
     return join_primitives(geometry);
@@ -18,12 +18,12 @@ std::optional<Surface> surface_of(const MeshGeometry& geometry, uint32_t number)
   }
 }
 
-/// Whether there are places from which its backs may be seen.
+/// Returns whether faces may be visible from behind: the mesh is not closed.
 bool is_open(const Mesh& mesh) {
   return std::ranges::any_of(mesh.topology.twin, [](uint32_t twin) { return twin == none; });
 }
 
-/// Whether any of a mesh's materials is shown from both sides.
+/// Returns whether any of a mesh's materials is two-sided.
 bool is_two_sided(const Json& document, uint32_t number) {
   const std::string where = place("meshes", number);
   const Json& primitives = array_of(element_of(document, "meshes", number, where), "primitives");
@@ -77,7 +77,7 @@ double tolerance_within_budget(uint64_t max_faces, double scene_diagonal,
   if (faces_at(0) <= max_faces) return 0;
   constexpr int halvings_of_range = 20;  // down to a millionth of the scene
   constexpr int refinements = 3;
-  double low = 0;  // too many faces
+  double low = 0;  // tolerance with too many faces
   double high = scene_diagonal;
   for (int i = 0; i < halvings_of_range; ++i) {
     if (faces_at(high / 2) > max_faces) {

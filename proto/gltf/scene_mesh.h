@@ -11,16 +11,16 @@
 
 namespace papilio::proto::gltf {
 
-/// A mesh of a scene, ready to be refined.
+/// Mesh of a scene, prepared for refinement.
 struct SceneMesh {
   uint32_t number = 0;
   MeshGeometry geometry;
   Surface surface;
-  double diagonal = 0;                    ///< of its box
-  std::vector<std::vector<Affine>> maps;  ///< by showing and joint
-  bool is_two_sided = false;              ///< whether it is open, and any of its materials shows backs too
+  double diagonal = 0;                    ///< diagonal of its bounding box
+  std::vector<std::vector<Affine>> maps;  ///< [instance][joint] maps to the scene
+  bool is_two_sided = false;              ///< whether it is open, and any of its materials is two-sided
 
-  /// Returns the largest scale at which the mesh is shown.
+  /// Returns the largest scale of its instances.
   [[nodiscard]] double scale() const;
   [[nodiscard]] PlacedMesh placed() const { return {surface.mesh, diagonal, maps, is_two_sided}; }
   [[nodiscard]] uint64_t coarse_faces() const { return surface.mesh.topology.face_count(); }
@@ -30,14 +30,14 @@ struct SceneMesh {
 struct SceneMeshes {
   std::vector<SceneMesh> meshes;
   Box box{{1, 1, 1}, {-1, -1, -1}};
-  uint64_t unchanged_faces = 0;  ///< of meshes that stay as they are
+  uint64_t unchanged_faces = 0;  ///< faces of meshes that are not refined
 };
 
-/// Reads all meshes of triangles that a node shows. Throws `Problem`: mesh_unusable where no mesh has a surface.
+/// Reads all meshes of triangles with an instance. Throws `Problem`: mesh_unusable if no mesh has a surface.
 [[nodiscard]] SceneMeshes read_meshes(Views& views, const Limits& limits);
 
-/// Returns the scene's tolerance, a length, at which all meshes together have at most `max_faces` faces, as nearly as
-/// that can be had by halving; 0 where no tolerance is needed. `faces_at` counts the faces at a tolerance.
+/// Returns the scene's tolerance, a length, at which all meshes together have at most `max_faces` faces, found by
+/// bisection; 0 if no tolerance is needed. `faces_at` counts the faces at a tolerance.
 [[nodiscard]] double tolerance_within_budget(uint64_t max_faces, double scene_diagonal,
                                              const std::function<uint64_t(double)>& faces_at);
 

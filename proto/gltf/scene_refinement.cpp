@@ -22,34 +22,19 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Bytes that the prepared meshes of one request may hold.
+/// Upper bound of the bytes of one request's prepared meshes.
 constexpr uint64_t prepared_bytes = uint64_t{256} << 20;
 
 /// Bytes of encoded meshes after which the heap is trimmed.
 constexpr uint64_t held_between_trims = 8 * worth_giving_back;
 
-/// Order in which a reason to stop tells more than another.
-int rank_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::converged:
-      return 0;
-    case StopReason::levels:
-      return 1;
-    case StopReason::budget:
-      return 2;
-    case StopReason::limits:
-      break;
-  }
-  return 3;
-}
-
-/// How one mesh of the scene is refined.
+/// Refinement of one mesh of the scene.
 struct MeshRun {
-  std::optional<Options> options{};                ///< nothing: it stays as it is
-  std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement, where the scene is not shared
+  std::optional<Options> options{};                ///< options; nothing if the mesh is not refined
+  std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement; null if the scene is shared
 };
 
-/// Returns how many faces a mesh will have at least: all of the last level, where the refinement is uniform.
+/// Returns a lower bound of the faces of a refined mesh: all of the last level if refinement is uniform.
 uint64_t least_faces(const SceneMesh& mesh, const std::optional<Options>& options) {
   const bool is_uniform = options && options->scheme == Scheme::red_green && options->levels > 0 &&
                           options->max_faces == 0 && !uses_hierarchy(*options);
@@ -129,7 +114,7 @@ class SceneRefinement::State {
     require_room();
   }
 
-  /// Throws if the faces of all meshes are bound to exceed a limit.
+  /// Throws `Problem` if the faces of all meshes are bound to exceed a limit.
   void require_room() {
     if (options_.max_faces > 0 && coarse_faces_ > options_.max_faces)
       throw Problem(Code::result_too_large, "The scene has " + std::to_string(coarse_faces_) +
@@ -174,7 +159,7 @@ class SceneRefinement::State {
             .threads = hooks_->threads};
   }
 
-  /// Refines a mesh, with what earlier refinements of it have prepared where it is refined several times.
+  /// Refines a mesh, from its prepared mesh if it is refined several times.
   Result refine_mesh(size_t m, const Options& options) {
     const Mesh& coarse = meshes()[m].surface.mesh;
     const bool is_repeated = shared_ || hooks_->on_level || options_.max_faces > 0;
@@ -196,7 +181,7 @@ class SceneRefinement::State {
     return options;
   }
 
-  /// Faces of all meshes at a tolerance of the scene; of a mesh beyond the budget, a number above it.
+  /// Returns the faces of all meshes at a tolerance of the scene; beyond the budget, any number above it.
   uint64_t faces_at(double tolerance, std::vector<uint64_t>& faces) {
     uint64_t sum = decoded().scene.unchanged_faces;
     for (size_t m = 0; m < runs_.size(); ++m) {
@@ -214,8 +199,8 @@ class SceneRefinement::State {
     return sum;
   }
 
-  /// Gives each mesh its part of `max_faces`: what it takes at one tolerance for all, and of what is left as much as it
-  /// can use, in their order.
+  /// Divides `max_faces` among the meshes: each gets the faces that it has at a common tolerance. The rest is left in
+  /// `budget_left_` for the meshes in their order.
   void divide_budget() {
     if (options_.max_faces == 0) return;
     std::vector<uint64_t> faces(runs_.size());
@@ -233,18 +218,18 @@ class SceneRefinement::State {
       if (runs_[m].options) runs_[m].options->max_faces = best[m];
   }
 
-  /// A scene in the making.
+  /// Scene under construction.
   struct Making {
     Statistics statistics{};
     std::vector<EncodedGeometry> replaced{};
-    uint64_t budget_left = 0;       ///< faces of `max_faces` that no mesh has yet
+    uint64_t budget_left = 0;       ///< unused faces of `max_faces`
     uint64_t remaining_coarse = 0;  ///< faces of meshes that are not refined yet
-    uint64_t held_bytes = 0;        ///< of encoded meshes
-    uint64_t held_at_trim = 0;      ///< of them when the heap was last trimmed
+    uint64_t held_bytes = 0;        ///< bytes of encoded meshes
+    uint64_t held_at_trim = 0;      ///< `held_bytes` when the heap was last trimmed
     ShapeReport shape{};
   };
 
-  /// Refines each mesh to at most so many levels, and writes the scene.
+  /// Refines each mesh to at most `levels` levels, and writes the scene.
   EncodedLevel make(int levels) {
     Making making{.budget_left = budget_left_, .remaining_coarse = coarse_faces_ - decoded().scene.unchanged_faces};
     making.statistics.faces = decoded().scene.unchanged_faces;
@@ -262,7 +247,7 @@ class SceneRefinement::State {
     return made;
   }
 
-  /// Returns a level without what holds of the last one alone.
+  /// Returns a level without the statistics of the last level.
   static EncodedLevel as_intermediate(EncodedLevel level) {
     level.statistics.stop_reason = std::nullopt;
     level.statistics.error_pixels = std::nullopt;
@@ -300,7 +285,7 @@ class SceneRefinement::State {
     making.replaced.push_back(encode_geometry(decoded().document, std::move(mesh), encoding()));
     making.held_bytes += making.replaced.back().bytes();
     if (making.held_bytes - making.held_at_trim >= held_between_trims) {
-      trim_heap();  // of what lay between the bytes that are held
+      trim_heap();  // frees the gaps between held bytes
       making.held_at_trim = making.held_bytes;
     }
     times_.encode += lap();
@@ -310,10 +295,10 @@ class SceneRefinement::State {
     return {parameters_.compression, parameters_.output, [this] { poll(); }};
   }
 
-  /// Returns whether nothing of the scene is needed once it is written.
+  /// Returns whether the scene is written only once, and not needed afterwards.
   [[nodiscard]] bool is_made_once() const { return !shared_ && !hooks_->on_level; }
 
-  /// Returns the options of a mesh within what the meshes before it have left.
+  /// Returns the options of a mesh within the budget that earlier meshes have left.
   [[nodiscard]] Options options_within(size_t m, int levels, Making& making) const {
     Options options = *runs_[m].options;
     options.levels = std::min(options.levels, levels);
@@ -332,7 +317,7 @@ class SceneRefinement::State {
     statistics.level = std::max(statistics.level, result.levels);
     statistics.vertices += result.mesh.topology.vertex_count;
     statistics.faces += result.mesh.topology.face_count();
-    if (rank_of(result.stop_reason) > rank_of(*statistics.stop_reason)) statistics.stop_reason = result.stop_reason;
+    statistics.stop_reason = std::max(*statistics.stop_reason, result.stop_reason);
     if (scene_diagonal_ > 0)
       statistics.error = std::max(statistics.error, result.error * mesh.diagonal * mesh.scale() / scene_diagonal_);
     if (statistics.error_pixels) statistics.error_pixels = std::max(*statistics.error_pixels, result.error_pixels);
@@ -341,7 +326,7 @@ class SceneRefinement::State {
     making.shape.creases += result.shape.creases;
   }
 
-  /// Frees a mesh that is not asked for again.
+  /// Frees a mesh that is no longer needed.
   void release(size_t m) {
     runs_[m].prepared.reset();
     own_.scene.meshes[m].geometry = {};
@@ -354,7 +339,7 @@ class SceneRefinement::State {
     if (!replaced.empty() || parameters_.compression != Compression::same)
       pieces = write_geometry(document, std::move(replaced), parameters_.compression);
     else if (decoded().is_packed)
-      pieces = remove_detail(document);  // the answer at level 0 is the base
+      pieces = remove_detail(document);  // level 0 is the base
     else
       pieces = unchanged_pieces(document);
     poll();
@@ -365,15 +350,15 @@ class SceneRefinement::State {
   Clock::duration waited_{};  ///< time in `RefinementHooks::cancelled`
   Parameters parameters_;
   Limits limits_;
-  std::shared_ptr<const SharedScene> shared_;  ///< null: `own_` is used
+  std::shared_ptr<const SharedScene> shared_;  ///< shared scene; null if `own_` is used
   DecodedScene own_;
-  std::vector<MeshRun> runs_;  ///< as SceneMeshes::meshes
-  Options options_;            ///< for the scene
+  std::vector<MeshRun> runs_;  ///< in the order of SceneMeshes::meshes
+  Options options_;            ///< options of the scene
   double scene_diagonal_ = 0;
   uint64_t coarse_faces_ = 0;
   bool adds_normals_ = false;   ///< whether meshes without normals get them
-  bool is_compressed_ = false;  ///< whether any of the new geometry may be
-  uint64_t budget_left_ = 0;    ///< faces of `max_faces` that no mesh takes at the tolerance of all
+  bool is_compressed_ = false;  ///< whether any new geometry may be compressed
+  uint64_t budget_left_ = 0;    ///< faces of `max_faces` left at the common tolerance
   StageTimes times_;
   const RefinementHooks* hooks_ = nullptr;
 };

@@ -14,19 +14,20 @@
 
 namespace papilio::proto::gltf {
 
-/// One refinement of a scene. The constructor reads and checks, `run` refines. Statistics count vertices and faces of
+/// One refinement of a scene. The constructor reads and checks, run() refines. Statistics count vertices and faces of
 /// all meshes, each once.
 ///
-/// Parameters hold for the scene: `tolerance` is a share of its box's diagonal, `max_faces` bounds the faces of all
-/// meshes together, a view sees the meshes where the nodes show them. A mesh is refined once, as finely as any of its
-/// nodes needs, unless `split_instances` gives each node its own. External buffers are refused. Meshes without
-/// triangles, and those that no node shows, stay as they are. `simplify_hidden` is refused.
+/// Parameters apply to the scene: `tolerance` is a share of its box's diagonal, `max_faces` bounds the faces of all
+/// meshes together, and a view sees the instances in the scene. A mesh is refined once, fine enough for all of its
+/// nodes, unless `split_instances` gives each node its own. Meshes without triangles or instances stay unchanged.
+/// External buffers and `simplify_hidden` are refused.
 class SceneRefinement {
  public:
-  /// Throws `Problem`, also if the result is certain to exceed a limit. `bytes` must outlive it.
+  /// Reads and checks a scene; `bytes` must outlive this. Throws `Problem`, also if the result is certain to exceed a
+  /// limit.
   SceneRefinement(std::string_view bytes, const Parameters& parameters, const Limits& limits);
   SceneRefinement(std::shared_ptr<const std::string> bytes, const Parameters& parameters, const Limits& limits);
-  /// Refines a cached scene, whose instances are not split. Results are byte-identical to those from the bytes.
+  /// Refines a cached scene, whose instances are not split. Results are byte-identical to those from its bytes.
   SceneRefinement(std::shared_ptr<const SharedScene> shared, const Parameters& parameters, const Limits& limits);
   SceneRefinement(const SceneRefinement&) = delete;
   SceneRefinement& operator=(const SceneRefinement&) = delete;
@@ -36,13 +37,13 @@ class SceneRefinement {
   [[nodiscard]] uint64_t coarse_vertices() const;
   [[nodiscard]] BuildReport found() const;
 
-  /// Refines and writes; call once. Returns the scene as a .glb file. `on_level` of the hooks receives scenes whose
-  /// meshes have at most so many levels, coarse first; each is refined and written anew. Throws `Problem`.
+  /// Refines and writes the scene; call once. Returns a .glb file. `on_level` of the hooks receives scenes whose meshes
+  /// have at most 0, 1, 2, .. levels; each is refined and written separately. Throws `Problem`.
   [[nodiscard]] EncodedLevel run(const RefinementHooks& hooks = {});
 
  private:
   class State;
-  std::shared_ptr<const std::string> bytes_;  ///< null: they are the caller's
+  std::shared_ptr<const std::string> bytes_;  ///< owned bytes; null if the caller owns them
   std::unique_ptr<State> state_;
 };
 

@@ -13,7 +13,7 @@ constexpr uint32_t array_buffer = 34962, element_array_buffer = 34963;  // targe
 
 constexpr const char* type_names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
 
-/// Bytes of a view that an accessor names.
+/// Returns the bytes of an accessor in its view.
 ByteRange range_in_view(const Json& accessor, const Json& view, uint32_t number) {
   const std::string where = place("accessors", number);
   const uint32_t size = element_format(accessor, where).bytes();
@@ -22,11 +22,11 @@ ByteRange range_in_view(const Json& accessor, const Json& view, uint32_t number)
   const uint64_t stride = whole_number(view, "byteStride", "a view", size);
   const uint64_t length = whole_number(view, "byteLength", "a view");
   if (count == 0) return {begin, begin};
-  if (stride == 0 || count > length / stride + 1) return {0, length};  // not what its view holds
+  if (stride == 0 || count > length / stride + 1) return {0, length};  // the accessor exceeds its view
   return {begin, begin + (count - 1) * stride + size};
 }
 
-/// Adds the lists that new contents go to, where they are missing: added later, they would move what callers refer to.
+/// Adds missing lists for new contents. Added later, they would invalidate references of callers.
 std::vector<std::string> add_lists(Json& document) {
   std::vector<std::string> added;
   for (const char* list : {"accessors", "bufferViews"}) {
@@ -80,7 +80,7 @@ uint32_t Slots::take_view(std::optional<uint32_t> preferred, Use use) {
     return *preferred;
   }
   Json view = Json::object();
-  view["buffer"] = UINT32_MAX;  // chosen with its content
+  view["buffer"] = UINT32_MAX;  // set with its content
   view["byteLength"] = 0;
   if (preferred && *preferred < released_.views.size()) {
     const Json& like = json_["bufferViews"][*preferred];

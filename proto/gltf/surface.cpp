@@ -9,19 +9,19 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Number of the attribute that has the coarse face and two of the barycentric coordinates in it.
+/// Index of the attribute with the coarse face and two of the barycentric coordinates in it.
 constexpr size_t provenance = 0;
 constexpr size_t provenance_numbers = 3;
 
-/// What a surface needs of a set's vertices.
+/// Elements of a set's vertices that a surface uses.
 struct SetVertices {
   Buffer<Vec3f> positions;
   std::vector<uint32_t> equal;
   const Elements* normals = nullptr;
-  std::vector<const Elements*> displacements{};  ///< by morph target
+  std::vector<const Elements*> displacements{};  ///< [morph target]
 };
 
-/// Returns the vector at a vertex; zero where there are no elements.
+/// Returns the vector at a vertex; zero without elements.
 Vec3d vector_at(const Elements* elements, uint32_t vertex) {
   if (elements == nullptr) return {};
   const double unit = elements->format.unit();
@@ -70,10 +70,10 @@ uint32_t Combination::nearest() const {
 
 namespace {
 
-/// Adds an attribute of all sets to the mesh; returns its number, or nothing where a set has not that of this format.
+/// Adds an attribute of all sets to the mesh, and returns its index; nothing if a set lacks it in this format.
 std::optional<size_t> add_values(const MeshGeometry& geometry, Surface& surface, const std::string& semantic,
                                  const ElementFormat& format) {
-  std::vector<const VertexStream*> streams;  // by set
+  std::vector<const VertexStream*> streams;  // [set]
   for (const VertexSet& set : geometry.sets) {
     const VertexStream* stream = streams.emplace_back(set.find(semantic));
     if (stream == nullptr || stream->elements.format != format) return std::nullopt;
@@ -176,7 +176,7 @@ RefinedVertex RefinedPoints::refined_vertex(uint32_t point) const {
 
 RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoints& points, const Mesh& refined) {
   RefinedPrimitives out{.sets = std::vector<RefinedVertices>(geometry.sets.size())};
-  std::vector<uint32_t> order;  // by set and vertex; those of a vertex by what they are made of
+  std::vector<uint32_t> order;  // points by set, vertex and combination
   order.reserve(points.count());
   for (uint32_t p = 0; p < points.count(); ++p)
     if (points.is_used(p)) order.push_back(p);
@@ -190,7 +190,7 @@ RefinedPrimitives part_primitives(const MeshGeometry& geometry, const RefinedPoi
     return of_a != of_b ? of_a < of_b : a < b;
   });
 
-  std::vector<uint32_t> number(points.count());  // of each point in its set
+  std::vector<uint32_t> number(points.count());  // [points] number in the set
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t p = order[i];
     RefinedVertices& set = out.sets[points.set(p)];

@@ -8,7 +8,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Calls `visit` with each attribute of the vertices, those of morph targets included.
+/// Calls `visit` with each attribute of the vertices, including morph targets.
 template <class Visit>
 void for_each_stream(const VertexSet& set, const Visit& visit) {
   for (const VertexStream& stream : set.attributes) visit(stream.elements);

@@ -7,10 +7,10 @@
 
 namespace papilio::proto::gltf {
 
-/// Returns the positions of vertices, quantized ones as what they stand for.
+/// Returns the positions of vertices, dequantized.
 [[nodiscard]] Buffer<Vec3f> vertex_positions(const VertexSet& set);
 
-/// Returns for each vertex the lowest one that equals it in all attributes and morph targets, to the bit.
+/// Returns, for each vertex, the lowest one with bit-identical attributes and morph targets.
 [[nodiscard]] std::vector<uint32_t> equal_vertices(const VertexSet& set);
 
 }  // namespace papilio::proto::gltf

@@ -4,8 +4,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// Adaptive refinement, red-green, three levels, a result of a fifth to two fifths of the uniform one: a triangle of
-// it beside one of our own uniform refinement in two levels, which has as many. One thread, without tension.
+// Adaptive red-green refinement in three levels to a fifth to two fifths of the uniform result, per output triangle,
+// compared with our uniform refinement in two levels of about as many triangles. One thread, without tension.
 
 namespace papilio::bench {
 namespace {
@@ -48,7 +48,7 @@ void add_adaptive() {
   options = adaptive_options();
   options.tolerance = 2e-5;
   add_row("tolerance", triangles, options);
-  // What a viewer close to the model sees, and nothing else: one piece of the surface, where the others are scattered.
+  // Only the part visible from nearby: one piece of the surface, in contrast to the scattered pieces of the others.
   options = adaptive_options();
   const Box box = bounding_box(triangles.positions);
   View view;

@@ -18,8 +18,8 @@
 #include "tests/support/detail_baseline.h"
 #include "tests/support/real_mesh.h"
 
-// Bytes at equal distance: what it costs to send a fine original so that what arrives is within an RMS distance of it.
-// Every model of libcgal-demo above 20,000 faces is measured, whatever it is like.
+// Bytes at equal distance: size of a fine original encoded within an RMS distance. All models of libcgal-demo above
+// 20,000 faces are measured.
 
 namespace papilio::bench {
 namespace {
@@ -31,8 +31,8 @@ using test::RatePoint;
 constexpr size_t fewest_faces = 20'000;
 constexpr double distances[] = {0.05, 0.02, 0.01, 0.005};  // RMS, % of the diagonal
 
-/// Packs the model for each distance. Counted are the Draco stream of the base and the streams of the levels, as the
-/// other methods have no container either. Nothing where pack() writes plain Draco.
+/// Packs the model for each distance. Counts the Draco stream of the base and the streams of the levels without the
+/// container, which other methods lack too. Returns nothing if pack() writes plain Draco.
 std::vector<RatePoint> packed_points(const DetailSubject& subject) {
   std::vector<RatePoint> points;
   for (const double rms : distances) {
@@ -49,7 +49,7 @@ std::vector<RatePoint> packed_points(const DetailSubject& subject) {
   return points;
 }
 
-/// The last is compared with the best of those before it.
+/// The last method is compared with the best of the methods before it.
 std::vector<DetailMethod> methods() {
   std::vector<DetailMethod> all = test::detail_baselines();
   all.push_back({"papilio pack", packed_points});
@@ -61,7 +61,7 @@ struct Model {
   TriangleMesh mesh;
 };
 
-/// "open, 2 of 3 parts mechanical" and the like.
+/// Returns a description such as "open, 2 of 3 parts mechanical".
 std::string kind_of(const Mesh& mesh, const BuildReport& found) {
   const ShapeReport shape = shape_of(mesh);
   std::string kind = found.boundary_edges > 0 ? "open" : "closed";
@@ -72,7 +72,7 @@ std::string kind_of(const Mesh& mesh, const BuildReport& found) {
          " parts mechanical";
 }
 
-/// Nothing where the file has too few faces or is not a mesh of triangles.
+/// Returns nothing if the file has too few faces or is no triangle mesh.
 std::optional<Model> load(const std::filesystem::path& file) {
   try {
     const TriangleMesh read = client::read_triangles(file, client::format_of(file));
@@ -94,7 +94,7 @@ double bytes_of(const std::optional<RatePoint>& point) {
   return point ? point->bytes : std::numeric_limits<double>::infinity();
 }
 
-/// The table, the rows of --json and the picture.
+/// Table, picture and rows of --json.
 class Detail {
  public:
   explicit Detail(std::vector<DetailMethod> methods) : methods_(std::move(methods)), table_(header()) {}

@@ -20,7 +20,7 @@ constexpr std::array<double, 5> rms_ticks = {0.05, 0.02, 0.01, 0.005, 0.003};
 
 struct Range {
   double low, high;
-  /// Share of the way from low to high, in logarithms.
+  /// Returns the position between low and high, 0..1, in logarithms.
   [[nodiscard]] double share(double value) const { return std::log(value / low) / std::log(high / low); }
 };
 constexpr Range rms_range{test::finest_rms, test::coarsest_rms};
@@ -29,7 +29,7 @@ const char* colour(size_t method) { return colours[method % colours.size()]; }
 
 std::string number(double value) { return fixed(value, 1); }
 
-/// Without zeros at the end.
+/// Formats a number without trailing zeros.
 std::string short_number(double value) {
   std::string text = fixed(value, 3);
   while (text.back() == '0') text.pop_back();
@@ -46,7 +46,7 @@ std::string line(double x1, double y1, double x2, double y2) {
          "\" stroke=\"#dddddd\"/>\n";
 }
 
-/// The part of an envelope that the axes show, with its ends on the border.
+/// Returns the part of an envelope inside the axes, with its ends on the border.
 std::vector<RatePoint> shown(const std::vector<RatePoint>& envelope) {
   std::vector<RatePoint> points;
   std::ranges::copy_if(envelope, std::back_inserter(points),
@@ -66,7 +66,7 @@ Range byte_range(const std::vector<DetailPanel>& panels) {
   return {0.9 * range.low, 1.1 * range.high};
 }
 
-/// Draws one panel, its corner at the origin.
+/// Draws one panel with its corner at the origin.
 class Panel {
  public:
   explicit Panel(const Range& bytes) : bytes_(bytes) {}

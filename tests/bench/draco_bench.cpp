@@ -10,9 +10,9 @@
 #include "tests/support/libdraco_writer.h"
 #include "tests/support/real_mesh.h"
 
-// Draco streams written from the half-edges, against libdraco at the same settings; both write the same bytes. And all
-// that a request does, from a stream of 10,000 faces to one of 160,000, against libdraco, OpenMesh's ModifiedButterflyT
-// and libdraco.
+// Draco streams written from half-edges compared with libdraco at equal settings; both write equal bytes. And a
+// complete request, from a stream of 10,000 faces to one of 160,000, compared with libdraco, OpenMesh's
+// ModifiedButterflyT and libdraco.
 
 namespace papilio::bench {
 namespace {
@@ -34,7 +34,7 @@ void add_row(const std::string& name, const Mesh& made, int speed, const proto::
        .peer = [=] { return seconds([&] { (void)by_libdraco(); }); }});
 }
 
-/// The mesh with normals and with texture coordinates that have a chart for each of six sides.
+/// Returns the mesh with normals and texture coordinates of six charts, one per side.
 TriangleMesh with_attributes(const TriangleMesh& triangles) {
   const Mesh mesh = build_mesh(triangles);
   const Buffer<Vec3f> normals = vertex_normals(mesh);

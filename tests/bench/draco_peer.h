@@ -5,7 +5,7 @@
 #include "proto/draco_writer.h"
 #include "tests/bench/openmesh_peer.h"
 
-// What a program does that puts libdraco and OpenMesh together.
+// A program that combines libdraco and OpenMesh.
 
 namespace papilio::bench {
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int steps = 18;
 
-/// Bisects a parameter of which more means fewer faces. `is_better(a, b)` compares numbers of faces; of the results met
-/// on the way the best is returned.
+/// Bisects a parameter that decreases the number of faces. Returns the best result of all steps by `is_better(a, b)`,
+/// which compares numbers of faces.
 TriangleMesh bisect(double finest, double coarsest, size_t faces, const std::function<TriangleMesh(double)>& result_of,
                     const std::function<bool(size_t, size_t)>& is_better) {
   TriangleMesh best;

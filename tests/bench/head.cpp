@@ -11,7 +11,7 @@
 namespace papilio::bench {
 namespace {
 
-/// Closes the only hole of a mesh by a fan round the mean of its rim.
+/// Closes the only hole of a mesh by a fan about the mean of its boundary.
 TriangleMesh close_hole(const Mesh& open) {
   TriangleMesh mesh = open.triangles();
   const auto centre = static_cast<uint32_t>(mesh.positions.size());
@@ -43,7 +43,7 @@ View front_view(const TriangleMesh& head) {
   const Vec3d size = to_double(box.max) - to_double(box.min);
   View view;
   view.viewport = {640, 480};
-  view.up = {0, 0, 1};  // the head looks along -y
+  view.up = {0, 0, 1};  // the head faces -y
   view.target = centre;
   const double half_angle = view.fov_y / 2 * std::numbers::pi / 180;
   view.eye = centre - Vec3d{0, size.y / 2 + size.z / 2 / std::tan(half_angle), 0};

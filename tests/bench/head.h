@@ -5,13 +5,12 @@
 
 namespace papilio::bench {
 
-/// In place of the paper's Spock, with its counts: 1048 vertices, 2092 faces, Euler characteristic 2. A real one, the
-/// mannequin's head with horns from CGAL's example data (mannequin-devil.off, 25,888 faces), simplified. There is no
-/// closed head among the real meshes; of this one the open neck, its one hole, is closed by a fan.
+/// Substitute for the paper's Spock, with its counts: 1048 vertices, 2092 faces, Euler characteristic 2. It is the
+/// mannequin's head with horns from CGAL's example data (mannequin-devil.off, 25,888 faces), simplified; its only hole,
+/// the neck, is closed by a fan.
 [[nodiscard]] TriangleMesh head();
 
-/// The head from the front, in a picture of 640 by 480, which was usual at the paper's time; all of the head is in the
-/// picture and fills its height.
+/// View of the whole head from the front that fills the height of a picture of 640 by 480, usual at the paper's time.
 [[nodiscard]] View front_view(const TriangleMesh& head);
 
 }  // namespace papilio::bench

@@ -14,17 +14,17 @@
 #include "tests/bench/server_process.h"
 #include "tests/support/real_mesh.h"
 
-// What HTTP costs: a request to the real server over a connection that is kept, against the same work in this process.
+// Cost of HTTP: a request to the server over a persistent connection, compared with the same work in this process.
 
 namespace papilio::bench {
 namespace {
 
-/// A server with a client; begun with the first request, so that other rows go without.
+/// A server with a client, started on the first request: other rows run without a server.
 class Service {
  public:
   std::string_view ask(std::string_view request) {
     if (!connection_) {
-      server::set_up_heap(1);  // so that this process, too, keeps what is freed for the next request
+      server::set_up_heap(1);  // so that this process also keeps freed memory for the next request
       connection_.emplace(server_.emplace().port());
     }
     return connection_->ask(request);
@@ -40,9 +40,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// One refinement, some times through the server, then as often without it: so both sides meet the same moments of the
-/// machine. Each side's time is the median of its turn. A row asks for its two sides separately; what the other one
-/// took is kept for when it asks.
+/// One refinement, repeated through the server and then without it, so that both sides see the same machine load. The
+/// time of each side is its median. Rows request their sides separately: the other side's time is stored until then.
 class Turns {
  public:
   Turns(std::shared_ptr<Service> service, std::string mesh, const std::string& levels, int times)
@@ -84,7 +83,7 @@ class Turns {
   const int times_;
   const proto::Parameters parameters_;
   const std::string request_;
-  std::vector<double> with_, without_;  ///< seconds taken, not asked for yet
+  std::vector<double> with_, without_;  ///< measured seconds, not yet returned
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ std::string_view KeptConnection::ask(std::string_view request) {
   return std::string_view(bytes_).substr(head_bytes, body_bytes);
 }
 
-/// As a server does when nothing came for long: all rows take their turns, and there are many.
+/// Returns whether the server has closed the connection as idle: other rows run in between.
 bool KeptConnection::is_closed_by_peer() const {
   char byte = 0;
   return fd_ >= 0 && ::recv(fd_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;

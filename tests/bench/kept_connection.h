@@ -5,8 +5,8 @@
 
 namespace papilio::bench {
 
-/// A connection to a server on loopback that is kept from request to request, and costs as little as one can: a request
-/// is one system call, an answer's body is read where it stays.
+/// A persistent connection to a server on loopback at minimal cost: a request is one system call, and an answer's body
+/// is not copied.
 class KeptConnection {
  public:
   explicit KeptConnection(int port) : port_(port) {}
@@ -14,8 +14,8 @@ class KeptConnection {
   KeptConnection(const KeptConnection&) = delete;
   KeptConnection& operator=(const KeptConnection&) = delete;
 
-  /// Sends the whole of a request and returns the body of its answer, valid until the next one; connects first where
-  /// the server has closed. Throws std::runtime_error unless the answer is 200 with a Content-Length.
+  /// Sends a complete request and returns the body of its answer, valid until the next request. Reconnects if the
+  /// server has closed the connection. Throws std::runtime_error unless the answer is 200 with a Content-Length.
   std::string_view ask(std::string_view request);
 
  private:

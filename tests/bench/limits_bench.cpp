@@ -7,8 +7,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// What the machine can do at best: the bytes of the uniform result copied, beside making them. And large results beside
-// small ones: an output triangle of 5.7 million and of 22.8 million, beside one of 1.4 million.
+// Limit of the machine: time to copy the bytes of the uniform result, compared with computing them. And large results:
+// time per output triangle for 5.7 and 22.8 million triangles, compared with 1.4 million.
 
 namespace papilio::bench {
 namespace {
@@ -63,7 +63,7 @@ void add_growth(const char* name, int levels, int few_levels) {
 void add_limits() {
   add_copy("elephant20k.drc", 3);
   add_copy("elephant89k.drc", 3);
-  add_growth("elephant62.5k.drc", 4, 2);  // 16 million triangles of one
+  add_growth("elephant62.5k.drc", 4, 2);  // 16 million triangles, compared with 1 million
   add_growth("elephant62.5k.drc", 4, 3);
   add_growth("elephant89k.drc", 3, 2);
   add_growth("elephant89k.drc", 4, 2);

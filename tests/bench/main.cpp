@@ -14,7 +14,7 @@
 #include "tests/bench/report.h"
 
 // papilio-bench [NAME] [--json FILE] [--only MODEL]...: the report NAME, or the rows whose names contain NAME; Google
-// Benchmark does the timing, in random turns. --only chooses models of the report detail.
+// Benchmark measures the times in random order. --only chooses models of the report detail.
 
 namespace papilio::bench {
 namespace {
@@ -40,7 +40,7 @@ Spread spread_of(std::vector<double> values) {
   return {values[values.size() / 2], values.front(), values.back()};
 }
 
-/// Collects each repetition's time under its benchmark's name.
+/// Collects the time of each repetition by benchmark name.
 class Collector : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
@@ -50,7 +50,7 @@ class Collector : public benchmark::BenchmarkReporter {
         times_[run.run_name.function_name].push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
     std::cerr << '.' << std::flush;
   }
-  /// Nanoseconds over the divisor.
+  /// Returns the nanoseconds divided by the divisor.
   [[nodiscard]] Spread of(const Pair& pair, const std::string& side) const {
     std::vector<double> values = times_.at(pair.name + side);
     for (double& value : values) value *= 1e9 / pair.divisor;
@@ -153,6 +153,7 @@ int run(const Arguments& arguments) {
   const auto& [name, json_file, only] = arguments;
   add_table1();
   add_quality();
+  add_picture();
   add_memory();
   add_wasm();
   add_detail(only);
@@ -185,7 +186,7 @@ double seconds(const std::function<void()>& work) {
 }  // namespace papilio::bench
 
 int main(int argc, char** argv) {
-  papilio::server::set_up_heap(1);  // both sides on the heap that the server has
+  papilio::server::set_up_heap(1);  // both sides use the server's heap
   std::vector<std::string> library_arguments{argv[0], "--benchmark_enable_random_interleaving=true"};
   std::vector<char*> pointers;
   for (std::string& argument : library_arguments) pointers.push_back(argument.data());

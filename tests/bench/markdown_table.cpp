@@ -6,7 +6,7 @@
 namespace papilio::bench {
 namespace {
 
-/// In characters of UTF-8.
+/// Returns the width in UTF-8 characters.
 size_t width_of(const std::string& text) {
   return static_cast<size_t>(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

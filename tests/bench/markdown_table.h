@@ -5,21 +5,21 @@
 
 namespace papilio::bench {
 
-/// A table as README has them: padded, so that it reads well unrendered too.
+/// A Markdown table, padded to be readable unrendered.
 class MarkdownTable {
  public:
   explicit MarkdownTable(std::vector<std::string> header) : rows_{std::move(header)} {}
 
-  /// As many cells as the header has.
+  /// Adds a row with as many cells as the header.
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  /// To standard output: the first column on the left, the others on the right.
+  /// Prints to standard output: the first column left-aligned, the others right-aligned.
   void print() const;
 
  private:
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// With so many digits behind the point.
+/// Formats a number with this many decimals.
 [[nodiscard]] std::string fixed(double value, int digits);
 
 }  // namespace papilio::bench

@@ -8,9 +8,9 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/scene_memory.h"
 
-// The most memory that a uniform refinement in three levels takes at once, beside OpenMesh's; and that a scene takes,
-// beside the scene that comes, the one that goes and the refinement of its mesh. Each in a process of its own, less
-// what the process has before it.
+// Peak memory of a uniform refinement in three levels compared with OpenMesh's, and of a scene's refinement compared
+// with the sum of input scene, output scene and refinement of its mesh. Each runs in a process of its own; the memory
+// before it is subtracted.
 
 namespace papilio::bench {
 namespace {

@@ -15,7 +15,7 @@ TriangleCorners corners_of(const TriangleMesh& mesh, const Triangle& t) {
   return {to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])};
 }
 
-/// Between the edges from `apex` to the two others, in radians.
+/// Returns the angle between the edges from `apex` to the two others, in radians.
 double angle_at(Vec3d apex, Vec3d a, Vec3d b) {
   const Vec3d u = a - apex;
   const Vec3d v = b - apex;

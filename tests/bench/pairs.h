@@ -5,24 +5,23 @@
 
 namespace papilio::bench {
 
-/// One row of the table: the same work done by us and by a peer, timed in turns in one process.
+/// One row of the table: equal work by us and by a peer, timed alternately in one process.
 ///
-/// `ours` and `peer` do the work once and return the seconds that count, so that each can leave out its own
-/// preparation.
+/// `ours` and `peer` do the work once and return its seconds without their preparation.
 struct Pair {
   std::string name;
-  double divisor = 1;  ///< what the time is divided by: the number of output triangles, say
+  double divisor = 1;  ///< of the time, for example the number of output triangles
   std::string unit;    ///< of the quotient, starting from nanoseconds: "ns/triangle"
   std::function<double()> ours, peer;
 };
 
-/// Adds a row. Called at start, before the benchmarks run.
+/// Adds a row. Must be called before the benchmarks run.
 void add(Pair pair);
 
-/// Seconds that the work takes.
+/// Returns the seconds of the work.
 double seconds(const std::function<void()>& work);
 
-/// Each file of cases adds its own.
+/// Each adds the rows of its file.
 void add_uniform();
 void add_adaptive();
 void add_limits();

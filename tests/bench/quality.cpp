@@ -14,9 +14,9 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/simplify.h"
 
-// Quality at equal size: how far results of the same number of faces are from the uniform result of the last level.
-// The paper's method, in-place by flatness, sets the sizes. The baseline is Garland and Heckbert's simplification of
-// the uniform result with optimal placement: it needs the whole uniform result first and may move every vertex.
+// Quality at equal size: distance of results of equal face count from the uniform result of the last level. The paper's
+// method, in-place by flatness, sets the sizes. The baseline is Garland and Heckbert's simplification of the uniform
+// result with optimal placement: it requires the whole uniform result and may move every vertex.
 
 namespace papilio::bench {
 namespace {
@@ -25,13 +25,13 @@ struct Case {
   std::string name;
   TriangleMesh coarse;
   int levels;
-  std::vector<double> thresholds;  ///< of the middle size
+  std::vector<double> thresholds;  ///< flatness of the middle size
 };
 
-/// The three sizes: the thresholds' angles times these.
+/// Factors of the thresholds' angles for the three sizes.
 constexpr double size_factors[] = {1.5, 1, 1 / 1.5};
 
-/// Counts further off than this are marked.
+/// Largest relative difference of face counts without a mark.
 constexpr double count_tolerance = 0.02;
 
 TriangleMesh simplified(const std::string& name, size_t faces) {
@@ -51,13 +51,13 @@ std::vector<Case> cases() {
           {"fandisk, 2000 faces, 2 levels", simplified("fandisk", 2000), 2, {0.8, 0.9}}};
 }
 
-/// One method's result; distances in percent of the coarse mesh's diagonal.
+/// Result of one method; distances in percent of the coarse mesh's diagonal.
 struct Measured {
   size_t faces;
   SurfaceError error;
 };
 
-/// The methods at one size.
+/// Results of the methods at one size.
 struct Comparison {
   Measured paper, flatness, tolerance, quadrics;
 };
@@ -66,12 +66,13 @@ bool is_far_off(size_t faces, size_t wanted) {
   return std::abs(static_cast<double>(faces) / static_cast<double>(wanted) - 1) > count_tolerance;
 }
 
-/// With more faces than the others a method wins for that alone: no ratio then. With fewer it does not.
+/// Returns whether the ratio is valid: a method with more faces than the others has an advantage, one with fewer has
+/// none.
 bool is_fair(const Comparison& c) {
   return c.tolerance.faces <= c.paper.faces || !is_far_off(c.tolerance.faces, c.paper.faces);
 }
 
-/// A case with its uniform result. The plain Modified Butterfly scheme throughout.
+/// A case with its uniform result. All use the plain Modified Butterfly scheme.
 class Subject {
  public:
   explicit Subject(const Case& the_case) : case_(the_case), coarse_(build_mesh(the_case.coarse)) {
@@ -112,7 +113,7 @@ class Subject {
   TriangleMesh uniform_;
 };
 
-/// The ratios of RMS met.
+/// Measured ratios of RMS.
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = 0;
 
@@ -135,7 +136,7 @@ struct Summary {
   }
 };
 
-/// "RMS / largest", preceded by the number of faces where it is not the wanted one, and by a star where it is far off.
+/// Returns "RMS / largest", preceded by the number of faces if it differs from the target and by a star if by much.
 std::string text_of(const Measured& method, size_t faces) {
   std::string text = fixed(method.error.rms, 4) + " / " + fixed(method.error.largest, 3);
   if (method.faces != faces) text = std::to_string(method.faces) + ": " + text;
@@ -146,7 +147,7 @@ std::string ratio_text(const Comparison& c, const Measured& other) {
   return is_fair(c) ? fixed(c.tolerance.error.rms / other.error.rms, 2) : "-";
 }
 
-/// The table and the rows of --json.
+/// Table and rows of --json.
 class Quality {
  public:
   void add(const std::string& name, size_t uniform_faces, const Comparison& c) {

@@ -6,28 +6,29 @@
 
 namespace papilio::bench {
 
-/// One figure beside the one it is compared to, for --json.
+/// A figure and its baseline, for --json.
 struct ReportRow {
   std::string name;
   double ours = 0, peer = 0;
   std::string unit;
 };
 
-/// What is computed, not timed. Runs when asked for by its whole name, and only then.
+/// A report of computed, not timed, figures. Runs only if requested by its full name.
 struct Report {
   std::string name;
   std::function<std::vector<ReportRow>()> print;  ///< tables to standard output, progress to standard error
 };
 
-/// Adds a report. Called at start.
+/// Adds a report. Must be called before reports run.
 void add(Report report);
 
-/// Each report adds itself.
+/// Each adds its report.
 void add_table1();
 void add_quality();
+void add_picture();
 void add_memory();
 void add_wasm();
-/// `only`: names of models; all if empty.
+/// Adds the report of detail. `only`: names of models; all if empty.
 void add_detail(const std::vector<std::string>& only);
 
 }  // namespace papilio::bench

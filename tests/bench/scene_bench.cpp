@@ -4,8 +4,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/bench/textured_scene.h"
 
-// What the images of a scene cost: 4 MB of them are refined with the scene, against the same scene without them and
-// twice the copying of as many bytes, as they are read and written.
+// Cost of the images of a scene: a scene with 4 MB of images compared with the scene without images plus two copies of
+// as many bytes, for reading and writing.
 
 namespace papilio::bench {
 namespace {

@@ -4,11 +4,10 @@
 
 namespace papilio::bench {
 
-/// The papilio-server that was built beside this program, as a process of its own on a free port of loopback. Its
-/// log goes to /dev/null.
+/// Process of the papilio-server built with this program, on a free port of loopback. Its log is discarded.
 class ServerProcess {
  public:
-  /// Throws std::runtime_error when it does not start.
+  /// Throws std::runtime_error if the server does not start.
   ServerProcess();
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;

@@ -5,8 +5,7 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// The whole way, Draco in to Draco out: an adaptive answer against the uniform one of the same mesh and
-// levels.
+// A complete request, Draco to Draco: an adaptive answer compared with the uniform answer of the same mesh and levels.
 
 namespace papilio::bench {
 

@@ -9,7 +9,7 @@
 #include "tests/bench/mesh_figures.h"
 #include "tests/bench/report.h"
 
-// The paper's Table 1, measured on stand-ins for its models, beside its own figures.
+// The paper's Table 1, measured on substitutes for its models, with the paper's figures.
 
 namespace papilio::bench {
 namespace {
@@ -68,7 +68,7 @@ std::vector<Model> models() {
            .paper_view = {2519, 5034}}};
 }
 
-/// The plain Modified Butterfly scheme: the paper's tension factors are not known.
+/// Options of the plain Modified Butterfly scheme: the paper's tension factors are unknown.
 Options options_of(const Model& model, Scheme scheme) {
   Options options;
   options.levels = model.levels;
@@ -91,7 +91,7 @@ double saving(Counts adaptive, Counts uniform) {
   return 100 * (1 - static_cast<double>(adaptive.faces) / static_cast<double>(uniform.faces));
 }
 
-/// Both tables and the rows of --json, model by model.
+/// Both tables and rows of --json, model by model.
 class Table1 {
  public:
   void add(const Model& model) {
@@ -148,7 +148,7 @@ class Table1 {
     return {percent * error.rms, percent * error.largest, smallest_angle(adaptive)};
   }
 
-  /// The paper has no such figures: its scheme is what ours is compared to.
+  /// The paper has no such figures: its scheme is the baseline.
   void add_rows(const std::string& name, const Shape& ours, const Shape& paper) {
     rows_.push_back({name + "/rms", ours.rms, paper.rms, "% of the diagonal"});
     rows_.push_back({name + "/largest", ours.largest, paper.largest, "% of the diagonal"});

@@ -7,8 +7,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// Two threads in one refinement, beside one thread; and what two threads of plain arithmetic, which share nothing, gain
-// on this machine at the same time.
+// One refinement with two threads compared with one thread, and the gain of two independent threads of arithmetic on
+// this machine at the same time.
 
 namespace papilio::bench {
 namespace {

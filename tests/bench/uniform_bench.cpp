@@ -5,8 +5,8 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// Uniform subdivision in float, one thread, closed meshes in Draco's order: against OpenMesh's ModifiedButterflyT, the
-// fastest other butterfly.
+// Uniform subdivision in float of closed meshes in Draco's order with one thread, compared with OpenMesh's
+// ModifiedButterflyT, the fastest other butterfly.
 
 namespace papilio::bench {
 namespace {
@@ -16,7 +16,7 @@ Options uniform_options(int levels) {
   options.levels = levels;
   options.tension = Tension::off;
   options.edges = false;
-  options.measure_error = false;  // OpenMesh knows of none
+  options.measure_error = false;  // OpenMesh measures none
   return options;
 }
 
@@ -24,7 +24,7 @@ double triangles_out(const TriangleMesh& coarse, int levels) {
   return static_cast<double>(coarse.triangles.size() << (2U * static_cast<unsigned>(levels)));
 }
 
-/// Subdividing alone, from a mesh that is built; `with_error`: and measuring the error that is left.
+/// Subdivision of a built mesh; `with_error`: including the measurement of the remaining error.
 void add_subdivision(const std::string& name, const TriangleMesh& triangles, int levels, bool with_error = false) {
   const auto ours = std::make_shared<Mesh>(build_mesh(triangles));
   const auto peer = std::make_shared<PeerMesh>(to_peer(ours->triangles()));
@@ -45,7 +45,7 @@ void add_subdivision(const std::string& name, const TriangleMesh& triangles, int
            }});
 }
 
-/// From triangles to triangles: building, subdividing, taking out.
+/// From triangles to triangles: building, subdividing, extracting.
 void add_whole(const std::string& name, const TriangleMesh& triangles, int levels) {
   const auto coarse = std::make_shared<TriangleMesh>(triangles);
   add({.name = "triangles/" + name + "/" + std::to_string(levels),

@@ -7,9 +7,9 @@
 #include "tests/bench/pairs.h"
 #include "tests/support/real_mesh.h"
 
-// A camera goes round a mesh of 10,000 vertices in steps of ten degrees: each view refined of the stored mesh, against
-// the same request of its own. The stored mesh has served one round of views five degrees off, or, "first round", just
-// the views before in the same round.
+// A camera orbits a mesh of 10,000 vertices in steps of ten degrees: each view refined from the stored mesh, compared
+// with a cold request. The stored mesh has served one orbit of views offset by five degrees, or, for "first round",
+// only the earlier views of the same orbit.
 
 namespace papilio::bench {
 namespace {
@@ -29,7 +29,7 @@ class Orbit {
     distance_ = 1.2 * box.diagonal();
   }
 
-  /// Seconds of the next view's request, or of the refinement in it: of its own, or of the stored mesh.
+  /// Return the seconds of the next view's request or of its refinement: cold, or from the stored mesh.
   double turn_cold() {
     cold_step_ = cold_step_ % steps + 1;
     return time_of([&] { return proto::Refinement(draco_, at(cold_step_), {}).run(); });
@@ -56,7 +56,7 @@ class Orbit {
   [[nodiscard]] proto::EncodedLevel ask_stored(double step) const {
     return proto::Refinement(stored_, at(step), {}).run();
   }
-  /// And serves what was served before the time is taken.
+  /// Creates the stored mesh and serves its earlier views, untimed.
   void store() {
     stored_ = std::make_shared<const proto::SharedMesh>(draco_, proto::Limits{}, byte_budget);
     if (first_round_)

@@ -8,7 +8,7 @@
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/report.h"
 
-// The WebAssembly module beside the native library, as tests/npm/times.mjs measures them.
+// The WebAssembly module compared with the native library, measured by tests/npm/times.mjs.
 
 namespace papilio::bench {
 namespace {
@@ -24,7 +24,7 @@ std::string output_of(const char* command) {
 
 std::vector<ReportRow> print() {
   std::vector<ReportRow> rows;
-  MarkdownTable table({"medians of pairs, ms", "WebAssembly", "native", "WebAssembly / native"});
+  MarkdownTable table({"processor time, ms", "WebAssembly", "native", "WebAssembly / native"});
   std::istringstream lines(output_of("node tests/npm/times.mjs"));
   std::string name;
   double ours = 0, peer = 0, ratio = 0;

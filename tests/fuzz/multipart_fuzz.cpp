@@ -9,10 +9,10 @@ using namespace papilio;
 
 namespace {
 
-std::vector<proto::Part> read(std::string_view type, std::string_view body, size_t piece, bool& refused) {
-  std::vector<proto::Part> parts;
+std::vector<proto::BodyPart> read(std::string_view type, std::string_view body, size_t piece, bool& refused) {
+  std::vector<proto::BodyPart> parts;
   refused = !fuzz::unless_refused([&] {
-    proto::MultipartReader reader(type, 1 << 16, [&](proto::Part part) { parts.push_back(std::move(part)); });
+    proto::MultipartReader reader(type, 1 << 16, [&](proto::BodyPart part) { parts.push_back(std::move(part)); });
     for (; !body.empty(); body.remove_prefix(std::min(piece, body.size()))) reader.feed(body.substr(0, piece));
     reader.finish();
   });
@@ -26,9 +26,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto [type, body] = fuzz::cut(fuzz::text_of(data + 1, size - 1), '\n');
   bool refused_whole = false;
   bool refused_in_pieces = false;
-  const std::vector<proto::Part> whole = read(type, body, size, refused_whole);
-  const std::vector<proto::Part> pieces = read(type, body, 1 + data[0], refused_in_pieces);
-  const auto same = [](const proto::Part& a, const proto::Part& b) {
+  const std::vector<proto::BodyPart> whole = read(type, body, size, refused_whole);
+  const std::vector<proto::BodyPart> pieces = read(type, body, 1 + data[0], refused_in_pieces);
+  const auto same = [](const proto::BodyPart& a, const proto::BodyPart& b) {
     return a.headers == b.headers && a.body == b.body;
   };
   fuzz::require(refused_whole == refused_in_pieces, "it is refused whole or in pieces");

@@ -39,9 +39,9 @@ void refine_levels(Client& client) {
                                             {{"Content-Type", draco_type}, {"Accept", "multipart/mixed"}}, *order.mesh);
   if (!client.expect(answer, {200, 429}) || answer->status != 200) return;
   try {
-    std::vector<proto::Part> parts;
+    std::vector<proto::BodyPart> parts;
     proto::MultipartReader reader(answer->get_header_value("Content-Type"), 1U << 30,
-                                  [&](proto::Part part) { parts.push_back(std::move(part)); });
+                                  [&](proto::BodyPart part) { parts.push_back(std::move(part)); });
     reader.feed(answer->body);
     reader.finish();
     if (parts.size() < 2 || parts.back().header("Content-Type") != "application/json")

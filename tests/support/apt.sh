@@ -1,4 +1,4 @@
-# Debian packages, for the set-up scripts, which source this file.
+# Functions for Debian packages, sourced by the set-up scripts.
 # shellcheck shell=bash
 
 deps=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/deps
@@ -9,8 +9,8 @@ die() {
   exit 1
 }
 
-# apt_get ARGUMENT...: quiet apt-get; shows what it said when it fails. Root's downloads land in the project's own
-# folders, which apt's sandbox user may not write to: the sandbox stays off, or apt warns.
+# apt_get ARGUMENT...: runs apt-get quietly; prints its output if it fails. Root downloads into the project's folders,
+# which apt's sandbox user cannot write to: the sandbox is off to avoid warnings.
 apt_get() {
   local log="$deps/apt.log"
   apt-get -qq -o APT::Sandbox::User=root -o DPkg::Lock::Timeout=600 "$@" >"$log" 2>&1 </dev/null || {
@@ -19,7 +19,7 @@ apt_get() {
   }
 }
 
-# as_root NAME ARGUMENT...: apt-get with root's rights, or a message with the command to run.
+# as_root NAME ARGUMENT...: runs apt-get as root, or prints the command to run.
 as_root() {
   if ((EUID == 0)); then
     DEBIAN_FRONTEND=noninteractive apt_get "$@"
@@ -30,8 +30,8 @@ as_root() {
   fi
 }
 
-# Once per set-up, and only when something is to be fetched; once more when a list could not be had, as networks do fail.
-# A list that cannot be refreshed then, too, need not be one we use.
+# Runs once per set-up, only if something is fetched. Retries once after a failed download. A list that fails again may
+# be unused.
 apt_update() {
   [[ -z ${PAPILIO_APT_UPDATED:-} ]] || return 0
   export PAPILIO_APT_UPDATED=yes
@@ -54,7 +54,7 @@ apt_install() {
   say "installed in $((SECONDS - began)) s"
 }
 
-# unpack_package PACKAGE FOLDER: the package's files under FOLDER, without installing it or what it depends on.
+# unpack_package PACKAGE FOLDER: unpacks the package's files into FOLDER without installing it or its dependencies.
 unpack_package() {
   say "unpacking $1"
   if ! (cd "$2" && apt_get download "$1" 2>/dev/null); then
@@ -65,8 +65,8 @@ unpack_package() {
   rm "$2/$1"_*.deb
 }
 
-# unfinished_folder NAME: a new empty folder in build/deps, to be filled and then renamed, so that what an interrupted
-# set-up leaves is never taken for finished.
+# unfinished_folder NAME: makes an empty folder in build/deps, to be filled and then renamed: an interrupted set-up never
+# leaves a folder that looks complete.
 unfinished_folder() {
   rm -rf "$deps/$1.unfinished"
   mkdir -p "$deps/$1.unfinished"

@@ -7,7 +7,7 @@
 
 namespace papilio::test {
 
-/// A sphere with bumps of a tenth of its radius, 20 * 4^levels faces.
+/// A sphere of 20 * 4^levels faces with bumps of a tenth of its radius.
 [[nodiscard]] inline TriangleMesh bumpy_sphere(int levels) {
   Options options;
   options.levels = levels;

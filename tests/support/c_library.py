@@ -63,7 +63,7 @@ attribute = Attribute(1, 0, heights)
 mesh = library.papilio_mesh_create(Triangles(4, 4, 1, positions, triangles, ctypes.pointer(attribute)))
 assert mesh
 
-# The attribute is the y of the corners: of a point on a straight edge it is the mean, as y would be.
+# The attribute is the y coordinate of the corners. At a midpoint it is the mean, like y.
 result = library.papilio_refine(mesh, b"levels=2&shape=plain", None)
 fine = library.papilio_result_mesh(result).contents
 assert (fine.face_count, fine.point_count, fine.attribute_count) == (64, 34, 1)

@@ -1,15 +1,14 @@
 #!/usr/bin/env bash
-# check.sh: what is judged without running the programs: formatting (clang-format, prettier), static analysis (clang-tidy,
-# with the compile commands of build/check, where nothing is built; tsc) and the shell scripts (shellcheck). All of them
-# run, whatever comes of the others. clang-format and clang-tidy differ from version to version; without version 14,
-# Debian 12's, nothing runs.
+# check.sh: checks without running programs: formatting (clang-format, prettier), static analysis (clang-tidy with the
+# compile commands of build/check, where nothing is built; tsc) and the shell scripts (shellcheck). All checks run even
+# after failures. clang-format and clang-tidy differ between versions: version 14, Debian 12's, is required.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
 failed=()
 version=14
 
-# clang_tool NAME: the program of the required version.
+# clang_tool NAME: prints the program of the required version.
 clang_tool() {
   local program
   for program in "$1-$version" "$1"; do
@@ -25,7 +24,7 @@ clang_tool() {
 clang_format=$(clang_tool clang-format)
 clang_tidy=$(clang_tool clang-tidy)
 
-# files PATTERN...: tracked files and new ones, less those deleted from disk.
+# files PATTERN...: prints tracked and new files, without files deleted from disk.
 files() {
   git ls-files --cached --others --exclude-standard --deduplicate -- "$@" | while read -r file; do
     [[ ! -f $file ]] || echo "$file"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What makes clients out of the OpenAPI document, as tests/openapi/package-lock.json has it.
+# Installs the generators of clients from the OpenAPI document, as locked by tests/openapi/package-lock.json.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh

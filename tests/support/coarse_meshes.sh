@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# coarse_meshes.sh PRESET: makes, in build/deps/meshes and unless they are there, with the programs of build/PRESET:
+# coarse_meshes.sh PRESET: makes missing meshes in build/deps/meshes with the programs of build/PRESET:
 #   bunny600.obj, bunny600.drc   the bunny in 600 faces
 #   elephant2000.obj             the elephant in 2000
 #   elephant2k.drc, elephant10k.drc, elephant20k.drc, elephant62.5k.drc, elephant89k.drc

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# compile.sh FOLDER TARGET...: builds the targets in a build folder, which is configured. Says beforehand how many steps
-# there are and about how long they take when the compiler's cache is empty: 4 s of one core each.
+# compile.sh FOLDER TARGET...: builds the targets in a configured build folder. First prints the number of steps and their
+# estimated time with an empty compiler cache: 4 s of one core each.
 set -euo pipefail
 folder=$1
 shift
 cores=$(nproc)
-# A copy, since a dry run of CMake's own file ends at its rule to make that file again.
+# A copy: a dry run of CMake's file ends at the rule that regenerates it.
 cp "$folder/build.ninja" "$folder/steps.ninja"
 steps=$(ninja -C "$folder" -f steps.ninja -n "$@" | sed -nE 's#^\[[0-9]+/([0-9]+)\].*#\1#p' | tail -n 1)
 if ((${steps:-0} > 20)); then

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # container.sh [programs|suite|throughput|images]: builds the images of docker/ and tests them in containers, by themselves,
 # in the composition and as kubernetes would run them; programs: runs the integration tests on the images' Debian; suite: all
-# tests there; throughput: measures the composition with one server and two; images: only builds. All without a Docker engine, by buildah and podman, in a
-# storage of its own under build/containers; what it starts is gone when it ends, and what its compilers keep lies in the
-# user's cache. As root: it makes networks.
+# tests there; throughput: measures the composition with one server and two; images: only builds. Uses buildah and podman
+# instead of a Docker engine, with a separate storage in build/containers. Removes all containers at the end; the compiler's
+# cache is in the user's cache. Requires root, to make networks.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -44,7 +44,7 @@ network_backend = "netavark"
 network_config_dir = "$containers/networks"
 END
 
-# base NAME: the images' Debian, made from this machine's own sources of packages: nothing else need be reachable.
+# base NAME: builds the images' Debian from this machine's sources of packages; no other network access is required.
 base() {
   local keyring=/usr/share/keyrings/debian-archive-keyring.gpg site security sources
   podman image exists "$1" && return 0
@@ -53,7 +53,7 @@ base() {
   security=$(site_of security)
   sources=("deb [signed-by=$keyring] $site trixie main" "deb [signed-by=$keyring] $site trixie-updates main")
   [[ -z $security ]] || sources+=("deb [signed-by=$keyring] $security trixie-security main")
-  # As small as Debian's own slim image: no manuals, documents or translations.
+  # Like Debian's slim image: no manuals, documents or translations.
   mmdebstrap --quiet --variant=minbase --include=ca-certificates \
     --dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/info/*' \
     --dpkgopt='path-exclude=/usr/share/locale/*' --dpkgopt='path-exclude=/usr/share/doc/*' \
@@ -62,14 +62,15 @@ base() {
   rm "$containers/base.tar"
 }
 
-# site_of main|security: where this machine has Debian, or its security updates, from.
+# site_of main|security: prints this machine's source of Debian or of its security updates.
 site_of() {
   # shellcheck disable=SC2016 # apt's own variables
   apt-get indextargets --format '$(SITE) $(RELEASE)' 'Created-By: Packages' 'Origin: Debian' |
     awk -v security="$1" '($2 ~ /-security$/) == (security == "security") && !found++ { print $1 }'
 }
 
-# image NAME DOCKERFILE [UNITS]: builds it, UNITS (yes) being whether unit tests are. What fails before a test ran is tried once more: networks do fail.
+# image NAME DOCKERFILE [UNITS]: builds the image, with unit tests if UNITS is yes. Retries once after a failure before the
+# first test: downloads may fail.
 image() {
   local log=$containers/$1.log began=$SECONDS
   echo "container: building $1"
@@ -82,10 +83,10 @@ image() {
 }
 no_test_ran() { ! grep -qE '^(not )?ok |tests passed' "$1"; }
 
-# The same once, with this machine's certificates and npm settings, should it have any of its own; says why it failed.
+# Builds once, with this machine's certificates and npm settings if any. Prints the reason of a failure.
 build_image() {
   local log=$containers/$1.log
-  # Warnings are errors as in the suite's build: with equal flags the compiler's cache of one serves the other.
+  # Warnings are errors, as in the suite's build: equal flags share the compiler's cache.
   local options=(--isolation chroot --layers --pull-never --format docker --build-arg PAPILIO_WERROR=ON
     --build-arg "PAPILIO_TEST_UNITS=${3:-yes}"
     -v /etc/ssl/certs:/etc/ssl/certs:ro -v "$containers/npmrc:/root/.npmrc:ro")
@@ -96,7 +97,7 @@ build_image() {
   return 1
 }
 
-# The engine that docker-compose talks to; nothing of it is left behind.
+# The engine of docker-compose, removed at the end.
 service_pid=
 chains_before=
 forwarding=/proc/sys/net/ipv4/ip_forward
@@ -126,7 +127,7 @@ clean_up() {
   podman network prune --force >/dev/null 2>&1 || true
   [[ -z $service_pid ]] || kill "$service_pid" 2>/dev/null || true
   rm -f "$containers/podman.sock"
-  # netavark leaves its chains, empty, and packets forwarded.
+  # netavark leaves empty chains and packet forwarding enabled.
   [[ -n $service_pid && -z $chains_before ]] || return 0
   [[ $(cat "$forwarding") == "$forwarding_before" ]] || echo "$forwarding_before" >"$forwarding"
   local table chain

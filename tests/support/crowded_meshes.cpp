@@ -14,7 +14,7 @@
 namespace papilio::test {
 namespace {
 
-/// The i-th of n points round the z axis.
+/// Returns the i-th of n points on a circle about the z axis.
 Vec3f on_circle(double i, uint32_t n) {
   const double angle = 2 * std::numbers::pi * i / n;
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0};
@@ -74,7 +74,7 @@ std::string merging_stream(uint32_t triangles) {
   starts.StartEncoding();
   starts.EncodeBit(false);
   starts.EndEncoding(&out);
-  for (const uint8_t byte : {1, 255, 0, 0, 1, 0, 9, 3, 0, 0, 0}) out.Encode(byte);  // positions, as they are
+  for (const uint8_t byte : {1, 255, 0, 0, 1, 0, 9, 3, 0, 0, 0}) out.Encode(byte);  // positions, raw
   for (uint32_t v = 0; v < vertices; ++v) {
     const auto x = static_cast<float>(v);
     for (const float c : {x, x * x, 0.0F}) out.Encode(c);

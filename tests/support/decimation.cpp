@@ -36,7 +36,7 @@ void check_faces(const DecimationMesh& mesh, const std::vector<DecimationTriangl
   }
 }
 
-/// Throws where the faces around a vertex are more than one fan.
+/// Throws if a vertex has more than one fan of faces.
 void check_vertices(const DecimationMesh& mesh) {
   for (const auto vertex : mesh.vertices()) {
     if (!mesh.is_manifold(vertex)) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-// Quadric edge collapse (Garland and Heckbert 1997) as OpenMesh has it, with checks before and after.
+// OpenMesh's quadric edge collapse (Garland and Heckbert 1997), with checks before and after.
 
 namespace papilio::test {
 
@@ -26,8 +26,8 @@ void add_faces(DecimationMesh& mesh, const std::vector<DecimationTriangle>& tria
 
 [[nodiscard]] std::vector<DecimationTriangle> triangles_of(const DecimationMesh& mesh);
 
-/// Collapses edges until at most `faces` are left: a closed mesh has an even number of them. The result is manifold,
-/// and closed when the mesh is; throws `std::runtime_error` when that cannot be had.
+/// Collapses edges until at most `faces` remain; a closed mesh has an even number of faces. The result is manifold, and
+/// closed if the mesh is. Throws `std::runtime_error` if that is not possible.
 void decimate(DecimationMesh& mesh, size_t faces);
 
 }  // namespace papilio::test

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # demo.sh [--exit]: starts the release server on loopback, refines a coarse bunny uniformly, adaptively and for a view,
-# and shows what each cost. The server stays up with the viewer until Ctrl-C; with --exit it has no viewer and is stopped
-# at once. What is refined and what comes back is in build/demo.
+# and prints the cost of each. The server runs with the viewer until Ctrl-C; with --exit it has no viewer and is stopped
+# at once. Inputs and results are in build/demo.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cd "$root"
 server_pid=
 
-# Ends the server as an operator would, with SIGTERM; returns its exit status, or 1 when it had to be killed.
+# Ends the server with SIGTERM. Returns its exit status, or 1 if it had to be killed.
 stop_server() {
   [[ -n $server_pid ]] || return 0
   local pid=$server_pid
@@ -39,7 +39,7 @@ info=$("$programs/papilio" info --json "$coarse")
 viewer=()
 [[ ${1:-} != --exit ]] || viewer=(--web '')
 
-# Port 8080, or a free one where something else answers there.
+# Port 8080, or a free port if 8080 is in use.
 port=8080
 if (exec 3<>/dev/tcp/127.0.0.1/8080) 2>/dev/null; then port=0; fi
 "$programs/papilio-server" --host 127.0.0.1 --port "$port" --samples build/demo/samples "${viewer[@]}" \
@@ -58,7 +58,7 @@ fi
 row() { printf '%-26s %9s %9s %9s %10s %9s\n' "$@"; }
 header() { tr -d '\r' <build/demo/headers.txt | sed -n "s/^$1: *//Ip" | tail -1; }
 
-# refine WHAT NAME QUERY: one request, its row of the table, and its command line for the list below the table.
+# refine TITLE NAME QUERY: sends one request; prints its row of the table and stores its command line for the list below.
 commands=
 refine() {
   local command milliseconds result=build/demo/$2.drc
@@ -76,7 +76,7 @@ refine() {
   commands+="  $command"$'\n'
 }
 
-# The bunny's front, from as far away as shows all of its height in 40 degrees.
+# The bunny's front at the distance at which its height fills 40 degrees.
 view=$(jq -r '
   def round4: . * 10000 | round / 10000;
   def triple: map(round4 | tostring) | join(",");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# demo_samples.sh FOLDER: real coarse meshes as samples for the viewer, from build/deps/meshes.
+# demo_samples.sh FOLDER: copies coarse real meshes from build/deps/meshes as samples of the viewer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 mkdir -p "$1"

@@ -15,14 +15,14 @@ namespace {
 
 constexpr int fewest_bits = 8, most_bits = 16;
 
-/// Bounding cube: Draco's own choice where it is given none.
+/// Returns the bounding cube, which is Draco's default grid.
 proto::QuantizationBox bounding_cube(const TriangleMesh& mesh) {
   const Box box = bounding_box(mesh.positions);
   const Vec3f size = box.max - box.min;
   return {box.min, std::max({size.x, size.y, size.z})};
 }
 
-/// The mesh on the grid, without the faces that lose a corner there.
+/// Returns the mesh on the grid, without faces of which two corners are equal there.
 Mesh on_grid(TriangleMesh mesh, const proto::QuantizationBox& cube, int bits) {
   const double step = cube.range / (std::exp2(bits) - 1);
   const auto snapped = [&](float value, float origin) {
@@ -33,15 +33,15 @@ Mesh on_grid(TriangleMesh mesh, const proto::QuantizationBox& cube, int bits) {
   return build_mesh(mesh);
 }
 
-/// Share of a grid's step that the surface moves, as RMS: a twelfth is the variance of one coordinate of a vertex, and
-/// inside a face three vertices average out to half of that.
+/// RMS move of the surface, as a share of the grid's step: the variance is a twelfth per coordinate of a vertex, and
+/// half of that inside a face, as the mean of three vertices.
 constexpr double rms_of_step = 0.2;
 
 double grid_rms(const TriangleMesh& mesh, double diagonal, int bits) {
   return 100 / diagonal * rms_of_step * bounding_cube(mesh).range / std::exp2(bits);
 }
 
-/// Bits at which neither the grid nor the collapses make nearly all of the error.
+/// Returns the bits at which both the grid and the collapses contribute to the error.
 std::vector<int> fitting_bits(const DetailSubject& subject, const TriangleMesh& mesh, double rms) {
   std::vector<int> bits;
   for (int b = fewest_bits; b <= most_bits; ++b) {
@@ -53,7 +53,7 @@ std::vector<int> fitting_bits(const DetailSubject& subject, const TriangleMesh& 
   return bits;
 }
 
-/// Draco points of one simplified mesh.
+/// Returns the Draco points of one simplified mesh.
 void add_points(const DetailSubject& subject, const TriangleMesh& mesh, std::vector<RatePoint>& points) {
   const double rms =
       mesh.triangles.size() == subject.original.triangles.size() ? 0 : subject.surface.distance_to(mesh).rms;

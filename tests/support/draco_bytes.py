@@ -81,7 +81,7 @@ STREAMS = {
         flags=METADATA_FLAG, before=metadata(b"\1k" + varint(0xFFFFFFFF), 1)),
     "bomb_edgebreaker": lambda: edgebreaker_counts(50_000_000, 100_000_000),
     "bomb_sequential": lambda: sequential_counts(100_000_000, 100_000_000),
-    # As much as the default limits allow.
+    # The largest size within the default limits.
     "limit_edgebreaker": lambda: edgebreaker_counts(1_000_000, 2_000_000),
     "limit_sequential": lambda: sequential_counts(2_000_000, 2_000_000),
 } | {

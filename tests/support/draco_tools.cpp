@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own, removed at the end.
+/// Temporary folder, removed by its destructor.
 class Folder {
  public:
   Folder() {

@@ -7,20 +7,19 @@
 
 namespace papilio::test {
 
-/// Runs Debian's `draco_decoder`, an independent program, on a stream and reads what it writes. Throws when
-/// it refuses.
+/// Decodes a stream with Debian's `draco_decoder`, an independent program. Throws if it fails.
 [[nodiscard]] TriangleMesh decode_with_draco_decoder(std::string_view draco);
 
-/// The same by way of OBJ, which keeps vertices apart from texture coordinates and normals.
+/// Decodes with `draco_decoder` to OBJ, which stores vertices separately from texture coordinates and normals.
 [[nodiscard]] proto::FormattedMesh decode_to_obj(std::string_view draco, size_t* positions = nullptr);
-/// Debian's `draco_encoder` on the mesh as OBJ; 0 is fastest and sequential, 10 smallest.
+/// Encodes the mesh, as OBJ, with Debian's `draco_encoder`; 0 is fastest and sequential, 10 smallest.
 [[nodiscard]] std::string encode_with_draco_encoder(const proto::FormattedMesh& mesh, int compression);
 
-/// Draco's own encoder with its defaults (11 bits) or sequentially, as other programs would make a stream.
 enum class Method { edgebreaker, sequential };
+/// Encodes with libdraco's encoder and its defaults (11 bits), or sequentially.
 [[nodiscard]] std::string encode_with_draco(const TriangleMesh& mesh, Method method, bool with_metadata = false);
 
-/// Draco's own decoder on a point cloud made from the mesh's positions.
+/// Encodes the mesh's positions as a point cloud with libdraco.
 [[nodiscard]] std::string encode_point_cloud(const TriangleMesh& mesh);
 
 }  // namespace papilio::test

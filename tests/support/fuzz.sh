@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# fuzz.sh SECONDS: runs every target of build/fuzz in turn, two at a time where there are two cores, for SECONDS in all.
-#   build/fuzz-seeds     what they start from, made anew each time; the cases of tests/fuzz/cases besides
-#   build/fuzz-corpus    what they have found to lead to new places; kept, so that the next run goes on from there
-#   build/fuzz-findings  inputs that broke something, and each target's log
-# Exit status 1 when there is a finding.
+# fuzz.sh SECONDS: runs every target of build/fuzz in turn, two at a time with two cores, for SECONDS in total.
+#   build/fuzz-seeds     initial inputs, regenerated each time, in addition to tests/fuzz/cases
+#   build/fuzz-corpus    inputs that increased coverage; kept for the next run
+#   build/fuzz-findings  failing inputs, and each target's log
+# Exit status 1 if there is a finding.
 set -euo pipefail
 seconds=$1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
 # shellcheck source=tests/support/sanitizers.sh
 source "$here/sanitizers.sh"
-# The default is to keep each freed frame for a while, which takes half of the speed.
+# By default freed stack frames are quarantined, which halves the speed.
 export ASAN_OPTIONS=$ASAN_OPTIONS:detect_stack_use_after_return=0
 
 rm -rf build/fuzz-seeds build/fuzz-findings
@@ -27,7 +27,7 @@ export each=$((seconds * at_once / ${#targets[@]}))
 ((each > 0)) || each=1
 
 # shellcheck disable=SC2317 # xargs runs it
-# run TARGET: its log is in build/fuzz-findings/TARGET.log, and ends with its exit status.
+# run TARGET: runs a target; its log build/fuzz-findings/TARGET.log ends with its exit status.
 run() {
   local status=0 findings=build/fuzz-findings/$1 folders=("build/fuzz-corpus/$1" "build/fuzz-seeds/$1" "tests/fuzz/cases/$1")
   mkdir -p "$findings" "${folders[@]}"
@@ -39,7 +39,7 @@ export -f run
 # shellcheck disable=SC2016 # the inner shell expands it
 printf '%s\0' "${targets[@]}" | xargs -0 -n1 -P"$at_once" bash -c 'set -euo pipefail; run "$1"' run
 
-# figure TARGET PATTERN: the last number that the pattern, a sed expression with one group, finds in the target's log.
+# figure TARGET PATTERN: prints the last match of the pattern, a sed expression with one group, in the target's log.
 figure() { sed -nE "s/$2/\1/p" "build/fuzz-findings/$1.log" | tail -1; }
 
 broken=()

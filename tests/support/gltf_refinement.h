@@ -7,7 +7,7 @@
 
 namespace papilio::test {
 
-/// The scene refined with these parameters.
+/// Refines the scene with these parameters.
 inline proto::EncodedLevel refined(const std::string& glb, const proto::QueryFields& fields,
                                    const proto::Limits& limits = {}) {
   return proto::gltf::SceneRefinement(glb, proto::parse_query(fields), limits).run();

@@ -12,7 +12,7 @@
 
 namespace papilio::test {
 
-/// A glTF scene in the making, with one buffer.
+/// Builder of a glTF scene with one buffer.
 class GltfScene {
  public:
   using Json = nlohmann::ordered_json;
@@ -34,7 +34,7 @@ class GltfScene {
   /// Appends the positions of a mesh, with their bounds.
   size_t add_positions(const Buffer<Vec3f>& positions);
   size_t add_indices(const Buffer<Triangle>& triangles);
-  /// Appends a mesh of one primitive with positions and indices alone, and a node of the scene that shows it.
+  /// Appends a mesh of one primitive with only positions and indices, and a node with this mesh.
   size_t add_mesh(const TriangleMesh& mesh);
   /// Appends a node of the scene.
   size_t add_node(Json node);

@@ -15,8 +15,7 @@
 
 #include "server/http/http.h"
 
-// A real server on a free loopback port and clients that speak to it over raw sockets, good ones and bad ones. Times
-// are upper bounds against hangs only.
+// A server on a free loopback port and clients on raw sockets. Time limits are only upper bounds against hangs.
 
 namespace papilio::server {
 
@@ -36,7 +35,7 @@ inline bool eventually(const std::function<bool()>& condition) {
 }
 
 struct Reply {
-  int status = 0;  ///< 0: no answer came
+  int status = 0;  ///< 0: no answer
   std::string head;
   std::string body;
 
@@ -99,15 +98,15 @@ class Client {
     return receive(without_body);
   }
 
-  /// Up to `most` bytes of what has come, thrown away.
+  /// Receives and discards up to `most` bytes.
   bool skip(size_t most) const { return skip_some(most) > 0; }
-  /// The number of bytes; 0 at the end.
+  /// Returns the number of bytes; 0 at the end.
   size_t skip_some(size_t most) const {
     std::string bytes(most, 0);
     return static_cast<size_t>(std::max<ssize_t>(0, ::recv(fd_, bytes.data(), bytes.size(), 0)));
   }
 
-  /// True when the server ends the connection properly, without a reset and without sending anything more.
+  /// Returns true if the server closes the connection without a reset and without further bytes.
   bool at_end() { return held_.empty() && !fill() && ended_; }
 
   [[nodiscard]] int local_port() const {
@@ -180,7 +179,7 @@ inline std::string form(const std::string& body, const std::string& boundary = "
 
 inline const std::string smuggled = get("/count");
 inline constexpr uint64_t body_limit = 4096;
-inline constexpr size_t large_size = 130'000;  ///< of the answer of /large; more than fits into a client's small buffer
+inline constexpr size_t large_size = 130'000;  ///< bytes of the answer of /large; exceeds a client's small buffer
 
 class HttpServerTest : public ::testing::Test {
  protected:
@@ -217,7 +216,7 @@ class HttpServerTest : public ::testing::Test {
 
   Reply ask(const std::string& bytes) { return Client(port_).ask(bytes); }
 
-  /// The answer is this refusal, complete in every respect, and the connection is closed behind it.
+  /// Expects a complete refusal with this status and code, after which the connection is closed.
   void expect_refused(const std::string& bytes, int status, const std::string& code) {
     SCOPED_TRACE(bytes.substr(0, 300));
     Client client(port_);
@@ -250,9 +249,9 @@ class HttpServerTest : public ::testing::Test {
   std::thread thread_;
   int port_ = 0;
   std::atomic<int> counted_ = 0;        ///< calls of /count
-  std::atomic<int> inside_ = 0;         ///< handlers of /hold and /watch that run (a request counts before it has one)
+  std::atomic<int> inside_ = 0;         ///< running handlers of /hold and /watch (a request counts earlier)
   std::atomic<bool> released_ = false;  ///< lets /hold end
-  std::atomic<bool> saw_gone_ = false;  ///< /watch or /pour has seen its client go
+  std::atomic<bool> saw_gone_ = false;  ///< /watch or /pour has detected the disconnect
 
  private:
   static Response text(std::string body) {

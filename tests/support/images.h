@@ -2,7 +2,7 @@
 
 #include <string>
 
-// Bytes that begin like images; nothing here decodes them.
+// Bytes with the signatures of images. They are never decoded.
 
 namespace papilio::test {
 

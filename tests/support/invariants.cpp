@@ -6,13 +6,13 @@
 namespace papilio::test {
 namespace {
 
-/// An edge by its two vertices, and how many faces run from the lower to the higher, and back.
+/// An edge by its two vertices, with the number of faces in each direction.
 struct Uses {
   std::pair<uint32_t, uint32_t> ends;
   uint32_t forward = 0, backward = 0;
 };
 
-/// Sorted by ends.
+/// Returns the edges sorted by ends.
 std::vector<Uses> uses_of_edges(const TriangleMesh& mesh) {
   std::vector<Uses> all;
   all.reserve(3 * mesh.triangles.size());

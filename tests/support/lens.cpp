@@ -38,7 +38,7 @@ void add_cap(TriangleMesh& mesh, uint32_t n, uint32_t m, double degrees, bool is
     }
 }
 
-/// Gives each face points of its own.
+/// Gives each face separate points.
 void part_faces(TriangleMesh& mesh) {
   TriangleMesh parted;
   for (Triangle& triangle : mesh.triangles)

@@ -57,8 +57,8 @@ std::string exact_text(float value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// What ExpertEncoder::SetAttributeExplicitQuantization sets, but to the bit: that writes numbers with six decimals, in
-/// which the box of a small mesh is lost.
+/// Sets the options of ExpertEncoder::SetAttributeExplicitQuantization exactly: that function writes numbers with six
+/// decimals, too few for the box of a small mesh.
 draco::Options explicit_quantization(const std::vector<float>& origin, float range, int bits) {
   std::string text;
   for (float component : origin) text += (text.empty() ? "" : " ") + exact_text(component);
@@ -69,10 +69,10 @@ draco::Options explicit_quantization(const std::vector<float>& origin, float ran
   return options;
 }
 
-/// A mesh on its way to Draco.
+/// Conversion of a mesh for libdraco's encoder.
 class Encoding {
  public:
-  /// With `attributes` points are what the faces name, else vertices.
+  /// Points are the corners' points with `attributes`, and vertices without.
   Encoding(const Mesh& mesh, bool attributes, uint32_t position_id) : encoder_(out_) {
     if (attributes) points_.emplace(mesh);
     const Buffer<uint32_t>& corner = attributes ? mesh.attributes.point : mesh.topology.origin;
@@ -96,10 +96,9 @@ class Encoding {
                                     explicit_quantization(attribute.grid.origin, attribute.grid.range, attribute.bits));
     if (attribute.is_too_large) {
       options().SetAttributeInt(number, "prediction_scheme", draco::PREDICTION_NONE);
-      encoder_.SetUseBuiltInAttributeCompression(false);  // of all attributes, there is no other way
+      encoder_.SetUseBuiltInAttributeCompression(false);  // an option of all attributes
     } else if (attribute.format.kind == AttributeKind::normal && attribute.coding != Coding::octahedral) {
-      // Below speed 4 Draco predicts normals as if they were octahedral: integers that are not change, or it writes
-      // past the end of its memory.
+      // Below speed 4 libdraco predicts all normals as octahedral: other integers change, or it writes out of bounds.
       options().SetAttributeInt(number, "prediction_scheme", draco::PREDICTION_DIFFERENCE);
     }
   }
@@ -107,9 +106,9 @@ class Encoding {
   [[nodiscard]] draco::EncoderOptions& options() { return encoder_.options(); }
 
   std::string run() {
-    // Named, since the automatic choice is sequential at speed 10: eleven times the bytes.
+    // Set explicitly: the default at speed 10 is sequential, with eleven times the bytes.
     encoder_.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    // Above speed 5 Draco would cut the surface open at seams, and write their positions twice.
+    // Above speed 5 libdraco would split vertices at seams and write their positions twice.
     if (points_) options().SetGlobalBool("split_mesh_on_seams", false);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder_.EncodeToBuffer(&buffer);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What checks docker/kubernetes: kubectl, which renders it (Debian's kubernetes-client, unpacked, not installed, into
-# build/deps/kubectl), and Kubernetes' schemas and types by npm, as tests/container/package-lock.json has them.
+# Installs the tools that check docker/kubernetes: kubectl, which renders it (Debian's kubernetes-client, unpacked, not
+# installed, into build/deps/kubectl), and Kubernetes' schemas and types by npm, as locked by
+# tests/container/package-lock.json.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh

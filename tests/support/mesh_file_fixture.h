@@ -16,7 +16,7 @@
 
 #include "client/mesh_file/mesh_file.h"
 
-// Mesh files in a folder of their own, and meshes that are hard to write.
+// Mesh files in a temporary folder, and meshes with extreme contents.
 
 namespace papilio::client {
 
@@ -45,19 +45,19 @@ inline std::string extension_of(Format format) {
   return ".drc";
 }
 
-/// A folder of its own for each test.
-class mesh_file : public testing::Test {
+/// Temporary folder per test.
+class MeshFileTest : public testing::Test {
  protected:
-  mesh_file() {
+  MeshFileTest() {
     std::string pattern = (fs::temp_directory_path() / "papilio-mesh-file-XXXXXX").string();
     folder_ = ::mkdtemp(pattern.data());
   }
-  ~mesh_file() override { fs::remove_all(folder_); }
+  ~MeshFileTest() override { fs::remove_all(folder_); }
 
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_ / name; }
 
   fs::path put(const std::string& name, std::string_view bytes) const {
-    fs::remove(path(name));  // some file systems flush when a file is emptied and written anew
+    fs::remove(path(name));  // some file systems flush a file that is truncated and rewritten
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
   }
@@ -66,7 +66,7 @@ class mesh_file : public testing::Test {
     return read_triangles(put("in" + extension_of(format), bytes), format);
   }
 
-  /// What reading says against these bytes; empty if it takes them.
+  /// Returns the error of reading these bytes; empty if they are read.
   [[nodiscard]] std::string complaint(Format format, std::string_view bytes) const {
     try {
       (void)read(format, bytes);
@@ -99,7 +99,7 @@ inline TriangleMesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-/// Everything that OpenMesh would refuse: repeated, degenerate and non-manifold faces, an unused vertex.
+/// Contents that OpenMesh refuses: repeated, degenerate and non-manifold faces, an unused vertex.
 inline TriangleMesh untidy() {
   TriangleMesh mesh = tetrahedron();
   mesh.positions.push_back({7, 7, 7});
@@ -135,7 +135,7 @@ inline std::vector<uint32_t> bits(const TriangleMesh& mesh) {
   return all;
 }
 
-/// Three positions of its own for each triangle, as STL has it.
+/// Returns the mesh with three separate positions per triangle, as in STL.
 inline TriangleMesh soup(const TriangleMesh& mesh) {
   TriangleMesh apart;
   for (const Triangle& triangle : mesh.triangles) {
@@ -155,7 +155,7 @@ inline std::vector<fs::path> real_meshes() {
   return found;
 }
 
-// Pieces of sound files.
+// Parts of valid files.
 
 inline constexpr std::string_view kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 inline constexpr std::string_view kOffBody = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";

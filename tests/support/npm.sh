@@ -1,8 +1,8 @@
-# Packages by npm, for set-up scripts, which source this file after apt.sh.
+# Functions for npm packages, sourced by set-up scripts after apt.sh.
 # shellcheck shell=bash disable=SC2154
 
-# npm_packages FOLDER WHAT: those of FOLDER/package-lock.json, into FOLDER/node_modules, unless they are there; never
-# committed. What is there is whole only once the copy of the lock is.
+# npm_packages FOLDER NAME: installs missing packages of FOLDER/package-lock.json into FOLDER/node_modules, which is not
+# committed. The copy of the lock is written last and marks a complete installation.
 npm_packages() {
   local copy=$1/node_modules/.papilio-lock.json log=$deps/npm.log
   ! cmp -s "$1/package-lock.json" "$copy" || return 0

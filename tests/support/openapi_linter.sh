@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The linter of the OpenAPI document, fetched by package name into build/deps/redocly; never committed. Version 1 is the
-# last that runs on Debian 12's node.
+# Installs the linter of the OpenAPI document by package name into build/deps/redocly, which is not committed. Version 1
+# is the last that runs on Debian 12's node.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh

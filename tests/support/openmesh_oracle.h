@@ -6,9 +6,8 @@
 
 namespace papilio::test {
 
-/// A closed manifold subdivided `levels` times by OpenMesh's `ModifiedButterflyT` in double precision: an
-/// implementation that shares nothing with ours. (On open meshes it is no oracle: it uses ghost points at
-/// boundaries.)
+/// Subdivides a closed manifold `levels` times by OpenMesh's `ModifiedButterflyT` in double precision, an
+/// independent implementation. Not valid for open meshes: OpenMesh uses ghost points at boundaries.
 struct OracleResult {
   Buffer<Vec3d> positions;
   size_t faces = 0;

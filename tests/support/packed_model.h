@@ -16,15 +16,15 @@
 
 namespace papilio::test {
 
-/// A packed model of random residuals, as it was written.
+/// A packed model of random residuals, and its file.
 struct PackedFixture {
   EncodedDetail detail;
   std::string base_stream;
   std::string glb;
 };
 
-/// Packs a base with so many levels of `bytes_per_level` random bytes each, and as many of its texture coordinates if
-/// it has any.
+/// Packs a base with levels of `bytes_per_level` random bytes each, and as many bytes of texture coordinates if the
+/// base has any.
 inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, size_t bytes_per_level = 40) {
   std::mt19937 random(7);
   PackedFixture made;
@@ -49,14 +49,14 @@ inline PackedFixture packed_fixture(const TriangleMesh& base, size_t levels, siz
   return made;
 }
 
-/// A packed model of two parts, as it was written.
+/// A packed model of two parts, and its file.
 struct PartedFixture {
   EncodedDetail detail;
   std::vector<std::string> base_streams{};
   std::string glb{};
 };
 
-/// Packs the octahedron, each half of another material, with two levels of random bytes.
+/// Packs an octahedron, with a material for each half, and two levels of random bytes.
 inline PartedFixture parted_fixture() {
   proto::gltf::MaterialMesh shape{.mesh = {}};
   static_cast<TriangleMesh&>(shape.mesh) = octahedron();
@@ -74,7 +74,7 @@ inline PartedFixture parted_fixture() {
   return made;
 }
 
-/// The model with its JSON changed.
+/// Returns the file with its JSON changed.
 inline std::string with_json(const std::string& glb, const std::function<void(GltfScene::Json&)>& change) {
   GltfScene::Json json = json_of_glb(glb);
   change(json);
@@ -83,7 +83,7 @@ inline std::string with_json(const std::string& glb, const std::function<void(Gl
   return proto::gltf::write_glb(json.dump(), std::move(pieces), {});
 }
 
-/// Returns the code with which the model is refused whose JSON is changed so; "read" where it is not.
+/// Returns the code with which the file with changed JSON is refused; "read" if it is read.
 inline std::string refusal_of(const std::string& glb, const std::function<void(GltfScene::Json&)>& change) {
   try {
     (void)proto::detail::read_packed(with_json(glb, change));
@@ -93,7 +93,7 @@ inline std::string refusal_of(const std::string& glb, const std::function<void(G
   }
 }
 
-/// The model again, its levels in so many pieces, with some bounds.
+/// Returns the model with its levels in this many pieces, with some bounds.
 inline PackedFixture in_pieces(PackedFixture made, const std::vector<uint32_t>& counts) {
   for (size_t l = 0; l < counts.size(); ++l) {
     DetailStream& level = made.detail.levels[l];

@@ -14,7 +14,7 @@
 namespace papilio::test {
 namespace {
 
-/// Returns the most resident MiB of this process so far.
+/// Returns the peak resident memory of this process, in MiB.
 double most_resident() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -26,7 +26,7 @@ double most_resident() {
   try {
     const double found = work();
     sent = ::write(end, &found, sizeof(found)) == static_cast<ssize_t>(sizeof(found));
-  } catch (const std::exception&) {  // nothing is sent, which the parent reports
+  } catch (const std::exception&) {  // the parent reports the missing result
   }
   std::_Exit(sent ? 0 : 1);
 }

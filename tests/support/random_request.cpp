@@ -16,13 +16,13 @@ class Dice {
  public:
   explicit Dice(std::mt19937& random) : random_(random) {}
 
-  /// True once in so many times.
+  /// Returns true with probability 1 / `times`.
   [[nodiscard]] bool one_in(uint32_t times) { return below(times) == 0; }
   [[nodiscard]] uint32_t below(uint32_t bound) { return static_cast<uint32_t>(random_() % bound); }
   [[nodiscard]] double between(double low, double high) {
     return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
   }
-  /// Each power of ten between the two is as likely.
+  /// Returns a number between the two, uniform in its logarithm.
   [[nodiscard]] double of_any_size(double low, double high) { return low * std::pow(high / low, between(0, 1)); }
   [[nodiscard]] Vec3d vector(double most = 1) {
     const double x = between(-most, most);
@@ -75,7 +75,7 @@ View choose_view(Dice& dice, const Mesh& mesh) {
   if (dice.one_in(3)) view.target += dice.vector(size);
   const double distance = dice.one_in(3) ? dice.of_any_size(1e-9, 1e3) : dice.between(0.1, 2);
   Vec3d direction = dice.vector();
-  if (dice.one_in(4)) direction = {0, 0, 1};  // along an axis many edges look alike
+  if (dice.one_in(4)) direction = {0, 0, 1};  // along an axis many edges have equal lengths in pixels
   view.eye = view.target + (distance * size / std::max(length(direction), 1e-3)) * direction;
   view.up = dice.one_in(2) ? Vec3d{0, 1, 0} : dice.vector();
   view.fov_y = dice.one_in(4) ? dice.of_any_size(0.01, 179) : dice.between(10, 90);
@@ -83,7 +83,7 @@ View choose_view(Dice& dice, const Mesh& mesh) {
   if (dice.one_in(3)) view.near = dice.of_any_size(1e-6, 2) * size;
   view.edge_pixels = dice.one_in(3) ? dice.of_any_size(1e-2, 1e6) : 0;
   if (dice.one_in(2)) {
-    // Down to deviations that are nothing but rounding errors.
+    // Down to deviations that are only rounding errors.
     const double pixels_per_unit = view.viewport[1] / (2 * tangent_of_degrees(view.fov_y / 2) * distance * size);
     view.error_pixels = dice.of_any_size(1e-18, 1e-1) * size * pixels_per_unit;
   }

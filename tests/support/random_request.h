@@ -7,12 +7,12 @@
 
 namespace papilio::test {
 
-/// A mesh of 2 to a few hundred faces: torus, sphere, box, open patch, fan, several edges at one vertex or three faces
-/// at one edge. Its size is between 1e-3 and 1e3, its place up to 1e3 away from the origin. Half are exact, so that
-/// many of their edges are alike; the others are jittered.
+/// Returns a mesh of 2 to a few hundred faces: torus, sphere, box, open patch, fan, pinched vertices or three faces at
+/// an edge. Its size is between 1e-3 and 1e3, its distance from the origin up to 1e3. Half of the meshes are exact,
+/// with many equal edges; the others are jittered.
 [[nodiscard]] TriangleMesh random_small_mesh(std::mt19937& random);
 
-/// Sets the rules that a prepared mesh is made for: tension, w and crease angle.
+/// Sets the rules of a prepared mesh: tension, w and crease angle.
 void choose_rules(std::mt19937& random, Options& options);
 
 /// Sets all other options, with every combination of criteria, projections, lights, near planes and scales, among them

@@ -13,14 +13,14 @@ namespace {
 
 Vec3d unit(Vec3d v) { return (1 / length(v)) * v; }
 
-/// A vertex on the raster: samples right and down, and a nearness that is linear on the raster.
+/// A vertex on the raster: x right and y down in samples, and a nearness that is linear on the raster.
 struct Corner {
   double x, y;
   double nearness;  ///< 1 / depth in perspective, else -depth
   bool visible;     ///< not nearer than the near plane
 };
 
-/// A raster of samples. The projection is worked out here, not taken from Camera, so that each checks the other.
+/// A raster of samples. Its projection is independent of Camera, so that each checks the other.
 class Raster {
  public:
   Raster(const View& view, uint32_t samples)
@@ -82,12 +82,12 @@ class Raster {
  private:
   [[nodiscard]] bool perspective() const { return view_.projection == Projection::perspective; }
 
-  /// Twice the area of the triangle a, b, (x, y): positive when it runs counter-clockwise as it is seen.
+  /// Returns twice the signed area of the triangle a, b, (x, y): positive if counter-clockwise in the picture.
   static double side(const Corner& a, const Corner& b, double x, double y) {
     return (b.y - a.y) * (x - a.x) - (b.x - a.x) * (y - a.y);
   }
 
-  /// The samples, which lie at halves, of a range, cut off at the raster's border.
+  /// Returns the samples in a range, clipped to the raster. Samples are at half-integers.
   static std::pair<uint32_t, uint32_t> samples_between(std::pair<double, double> range, uint32_t size) {
     const auto sample = [&](double x) {
       return static_cast<uint32_t>(std::clamp<double>(std::ceil(x - 0.5), 0, size));
@@ -111,6 +111,16 @@ class Raster {
 };
 
 }  // namespace
+
+View overview(const Mesh& mesh, double width, double height) {
+  const Box box = bounding_box(mesh.positions);
+  View view;
+  view.target = box.centre();
+  view.eye = view.target + box.diagonal() * Vec3d{0.9, 0.65, 1.2};
+  view.fov_y = 38;
+  view.viewport = {width, height};
+  return view;
+}
 
 Image render(const Mesh& mesh, const View& view, uint32_t samples) {
   Raster raster(view, samples);

@@ -6,7 +6,7 @@
 #include "core/criteria/view_culling.h"
 #include "papilio/mesh.h"
 
-// A small software rasteriser: what a viewer would draw of a mesh, so that tests can compare pictures.
+// A small software rasteriser for the comparison of pictures.
 
 namespace papilio::test {
 
@@ -18,12 +18,16 @@ struct Image {
   [[nodiscard]] float at(uint32_t x, uint32_t y) const { return grey[size_t{y} * width + x]; }
 };
 
-/// Draws the mesh as the view sees it, the viewport's size, on black: z-buffer, Lambert's law per sample from the
-/// vertices' normals interpolated in perspective, summed over the view's lights and cut off at 1. Faces that are turned
-/// away are not drawn, nor any that reach through the near plane. `samples` squared samples a pixel.
+/// Returns a view of the whole mesh from above and to the right of its front, without lights. `width`, `height`: in
+/// pixels.
+[[nodiscard]] View overview(const Mesh& mesh, double width, double height);
+
+/// Draws the mesh in the view at the viewport's size on black, with a z-buffer. Shading per sample: Lambert's law with
+/// perspective-correct vertex normals, summed over the view's lights and clamped to 1. Back faces and faces that cross
+/// the near plane are not drawn. `samples` squared samples per pixel.
 [[nodiscard]] Image render(const Mesh& mesh, const View& view, uint32_t samples = 2);
 
-/// Peak signal-to-noise ratio in decibels, of images of one size; infinite where they are equal.
+/// Returns the peak signal-to-noise ratio of images of one size, in decibels; infinity if they are equal.
 [[nodiscard]] double psnr(const Image& a, const Image& b);
 
 }  // namespace papilio::test

@@ -6,22 +6,22 @@
 namespace papilio::test {
 namespace {
 
-/// Stands for a distance of 0, which has no logarithm.
+/// Replacement for a distance of 0, which has no logarithm.
 constexpr double least_distance = 1e-12;
 
 double logarithm(double value) { return std::log(std::max(value, least_distance)); }
 
-/// Share of the way from `a` to `b`, in logarithms of the RMS distance.
+/// Returns the position of an RMS distance between `a` and `b`, 0..1, in logarithms.
 double share_at(const RatePoint& a, const RatePoint& b, double rms) {
   return (logarithm(rms) - logarithm(a.rms)) / (logarithm(b.rms) - logarithm(a.rms));
 }
 
 double between(double a, double b, double share) { return std::exp((1 - share) * logarithm(a) + share * logarithm(b)); }
 
-/// Most that the RMS distances of two points may differ for encodings on the line between them to be expected.
+/// Largest ratio of the RMS distances of two points joined by a line.
 constexpr double line_ratio = 1.6;
 
-/// Whether the points are near each other and `middle` is not below the line from `a` to `b`.
+/// Returns whether `a` and `b` may be joined and `middle` is not below their line.
 bool is_above(const RatePoint& middle, const RatePoint& a, const RatePoint& b) {
   return a.rms < line_ratio * b.rms && middle.bytes >= between(a.bytes, b.bytes, share_at(a, b, middle.rms));
 }

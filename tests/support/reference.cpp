@@ -94,6 +94,12 @@ class Refiner {
       if (level == k) faces.push_back(f);
     return faces;
   }
+  [[nodiscard]] std::set<uint32_t> edges_of(size_t k) const {
+    std::set<uint32_t> edges;
+    for (const auto& [level, e] : edges_)
+      if (level == k) edges.insert(e);
+    return edges;
+  }
   void divide(size_t k, uint32_t f) {
     for (uint32_t e : surface(k).sides[f]) split_.insert({k, e});
   }
@@ -107,23 +113,20 @@ class Refiner {
     for (uint32_t e = 0; e < s.edges.size(); ++e) edges_.insert({0, e});
   }
 
-  /// Finds the errors of the deepest level's edges that are wanted and reach the threshold.
+  /// Computes the errors of the deepest level's candidate edges that reach the threshold.
   void weigh(int number) {
     const Level& level = levels_.back();
-    std::set<uint32_t> edges;
-    for (const auto& [k, e] : edges_)
-      if (k == deepest()) edges.insert(e);
     if (is_in_place_) error_.clear();
     const double least = criteria_.threshold();
-    for (uint32_t e : criteria_.wanted(level.s, number, faces_of(deepest()), edges)) {
+    for (uint32_t e : criteria_.candidates(level.s, number, faces_of(deepest()), edges_of(deepest()))) {
       const EdgeError error = criteria_.is_by_error() ? criteria_.error(level.s, e, level.made(e)) : EdgeError{};
       if (least == 0 || !margin_.is_less(error.value, least, error.slope)) error_[{deepest(), e}] = error;
     }
   }
 
-  /// Decides what is split. Returns whether the budget kept something out.
+  /// Chooses the edges to split. Returns whether the budget excluded any.
   bool choose() {
-    if (!criteria_.is_by_error()) {  // parents are divided already, but for those at an outline
+    if (!criteria_.is_by_error()) {  // parents are divided already, except at an outline
       for (const auto& [key, error] : error_)
         if (key.first == deepest()) split_.insert(key);
       avoid_slivers(deepest());
@@ -225,23 +228,23 @@ class Refiner {
           touched.insert(s.faces[f].begin(), s.faces[f].end());
     return touched;
   }
-  /// Returns the vertices at which an edge is wanted, as its halves may be, and an edge of a face that is not divided
-  /// is not shown.
+  /// Returns the vertices with both a candidate edge and a hidden edge of an undivided face: halves of the candidate
+  /// edge may be candidates.
   [[nodiscard]] std::set<uint32_t> on_outline(size_t k) const {
-    std::set<uint32_t> wanted, outline;
+    std::set<uint32_t> at_candidates, outline;
     const Surface& s = surface(k);
     for (const auto& [key, error] : error_)
       if (key.first == k && criteria_.is_long(s, key.second, 1.5))
-        wanted.insert({s.edges[key.second].a, s.edges[key.second].b});
+        at_candidates.insert({s.edges[key.second].a, s.edges[key.second].b});
     for (uint32_t f : faces_of(k))
       for (uint32_t e : s.sides[f])
         if (mask(k, f) != 7 && !criteria_.is_shown(s, e))
           for (uint32_t v : {s.edges[e].a, s.edges[e].b})
-            if (wanted.contains(v)) outline.insert(v);
+            if (at_candidates.contains(v)) outline.insert(v);
     return outline;
   }
 
-  /// Goes on to the next level. In place it is the surface as it is now; else children of faces that may be divided.
+  /// Adds the next level: the current surface in place, otherwise the children of faces that may be divided.
   bool go_on() {
     const size_t k = deepest();
     const Surface& s = surface(k);
@@ -251,17 +254,17 @@ class Refiner {
       return true;
     }
     std::vector<uint32_t> faces = faces_of(k);
-    const bool follows_outline = options_.view && options_.flatness.empty();
-    const std::set<uint32_t> touched = criteria_.is_by_error() ? touched_by_error(k)
-                                       : follows_outline       ? on_outline(k)
-                                                               : std::set<uint32_t>();
+    const std::set<uint32_t> touched = criteria_.is_by_error() ? touched_by_error(k) : on_outline(k);
+    const std::set<uint32_t> curved = criteria_.curved_edges(s, static_cast<int>(k) + 1, faces, edges_of(k));
+    const auto is_curved = [&](uint32_t e) { return curved.contains(e); };
     std::erase_if(faces, [&](uint32_t f) {
       const bool is_near = std::ranges::any_of(s.faces[f], [&](uint32_t v) { return touched.contains(v); });
       if (criteria_.is_by_error()) return !is_near || !may_be_divided(k, f);
       if (mask(k, f) == 7) return false;
-      return !is_near || !may_be_divided(k, f) || std::ranges::none_of(s.sides[f], [&](uint32_t e) {
-        return !split_.contains({k, e}) && (!criteria_.is_shown(s, e) || !criteria_.is_long(s, e));
-      });
+      return !is_near || !std::ranges::all_of(s.sides[f], is_curved) ||
+             std::ranges::none_of(s.sides[f], [&](uint32_t e) {
+               return !split_.contains({k, e}) && (!criteria_.is_shown(s, e) || !criteria_.is_long(s, e));
+             });
     });
     if (!faces.empty()) deepen(faces);
     return !faces.empty();
@@ -346,7 +349,7 @@ class Refiner {
   Outcome outcome_{};
   std::vector<Level> levels_{};       ///< of the uniform subdivision; in place, the surface as it is
   std::set<Key> faces_{}, edges_{};   ///< that may be refined; all faces at these edges are among them
-  std::map<Key, EdgeError> error_{};  ///< of edges that are wanted: their own, or that of what lies below
+  std::map<Key, EdgeError> error_{};  ///< of candidate edges: their own error or that of descendants
   std::set<Key> split_{}, kept_{};    ///< edges split now, and when a level last changed something
   double most_cosine_ = 1;            ///< of the smallest angle of transition faces
   double threshold_ = 0;

@@ -9,7 +9,7 @@ namespace papilio::reference {
 struct EdgeError {
   double value = 0, slope = 0;
   uint64_t faces = 0;  ///< that splitting the edge adds
-  int edges = 1;       ///< whose own error it is, not one carried up
+  int edges = 1;       ///< number of edges with this error of their own, not of a descendant
 };
 
 /// Criteria by which edges of a surface are split: flatness, view and errors.
@@ -38,9 +38,9 @@ class Criteria {
     return options_.tolerance > 0 && pixels > 0 ? 1 : std::max(options_.tolerance, pixels);
   }
 
-  /// Returns the edges, among those of some faces, that flatness with growth and the view select.
-  [[nodiscard]] std::set<uint32_t> wanted(const Surface& s, int level, const std::vector<uint32_t>& faces,
-                                          const std::set<uint32_t>& among) const {
+  /// Returns the edges, among those of some faces, that flatness with growth selects.
+  [[nodiscard]] std::set<uint32_t> curved_edges(const Surface& s, int level, const std::vector<uint32_t>& faces,
+                                                const std::set<uint32_t>& among) const {
     std::set<uint32_t> curved = among;
     if (has_flatness()) std::erase_if(curved, [&](uint32_t e) { return !is_curved(s, e, flatness(level)); });
     std::set<uint32_t> edges = curved;
@@ -51,7 +51,14 @@ class Criteria {
     if (options_.growth == Growth::vertices)
       for (uint32_t e : curved)
         for (uint32_t end : {s.edges[e].a, s.edges[e].b}) edges.insert(s.edges_at[end].begin(), s.edges_at[end].end());
-    std::erase_if(edges, [&](uint32_t e) { return !among.contains(e) || !is_shown(s, e) || !is_long(s, e); });
+    std::erase_if(edges, [&](uint32_t e) { return !among.contains(e); });
+    return edges;
+  }
+  /// Returns the candidate edges: those that flatness and the view select.
+  [[nodiscard]] std::set<uint32_t> candidates(const Surface& s, int level, const std::vector<uint32_t>& faces,
+                                              const std::set<uint32_t>& among) const {
+    std::set<uint32_t> edges = curved_edges(s, level, faces, among);
+    std::erase_if(edges, [&](uint32_t e) { return !is_shown(s, e) || !is_long(s, e); });
     return edges;
   }
 
@@ -126,7 +133,7 @@ class Criteria {
   [[nodiscard]] double tan_y() const { return std::tan(view_.fov_y / 360 * std::numbers::pi); }
 
   [[nodiscard]] bool is_curved(const Surface& s, uint32_t e, double flat) const {
-    constexpr double rounding = 4e-7;  // so that what is flat stays whole at a threshold of 1
+    constexpr double rounding = 4e-7;  // so that flat faces are not split at a threshold of 1
     if (s.edges[e].kind == Kind::smooth) return margin_.is_less(s.cosine(e), flat - rounding, s.slope);
     double least = 1;
     for (const uint32_t end : {s.edges[e].a, s.edges[e].b})
@@ -135,7 +142,7 @@ class Criteria {
     return margin_.is_less(least, flat - rounding, s.slope);
   }
 
-  /// Returns how far a ball round a vertex reaches inside of all five planes. Its radius is the vertex's longest edge.
+  /// Returns the signed depth of a vertex's ball inside of all five planes. Its radius is the vertex's longest edge.
   [[nodiscard]] double clearance(const Surface& s, uint32_t v) const {
     double radius = 0;
     for (uint32_t e : s.edges_at[v]) radius = std::max(radius, s.length(e));

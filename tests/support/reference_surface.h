@@ -175,10 +175,10 @@ struct Surface {
   }
 };
 
-/// Returns what a face is cut into where the sides of `mask` (bit i: side i) have the new vertices `middle`.
+/// Returns the pieces of a face if the sides in `mask` (bit i: side i) are split at the new vertices `middle`.
 inline std::vector<Triangle> pieces(Triangle corner, Triangle middle, unsigned mask, bool second_diagonal = false) {
   if (mask == 0) return {corner};
-  if (mask != 1 && mask != 3 && mask != 7) {  // turn it until the split sides come first
+  if (mask != 1 && mask != 3 && mask != 7) {  // rotate the split sides to the front
     std::ranges::rotate(corner, corner.begin() + 1);
     std::ranges::rotate(middle, middle.begin() + 1);
     return pieces(corner, middle, mask >> 1U | (mask & 1U) << 2U, second_diagonal);

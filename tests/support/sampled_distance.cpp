@@ -18,7 +18,7 @@ double area(const TriangleCorners& t) { return 0.5 * length(cross(t.b - t.a, t.c
 
 double fraction(double value) { return value - std::floor(value); }
 
-/// Point number `index` of a sequence that fills the triangle evenly.
+/// Returns point `index` of a low-discrepancy sequence in the triangle.
 Vec3d point_in(const TriangleCorners& t, size_t index) {
   constexpr double step = 0.7548776662466927;  // 1/g with g^3 = g + 1
   double u = fraction(0.5 + static_cast<double>(index) * step);

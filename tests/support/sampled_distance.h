@@ -9,17 +9,18 @@
 
 namespace papilio::test {
 
-/// Two-sided distance of two surfaces: of each figure the larger direction, in percent of the original's diagonal.
+/// Two-sided distance of two surfaces: the larger of both directions, in percent of the original's diagonal.
 struct SampledDistance {
   double rms = 0;
   double largest = 0;
 };
 
-/// Points spread over the triangles, each for an equal share of the area. Deterministic: strata along the order of the
-/// triangles, Martin Roberts' R2 sequence (2018) inside them. None where there is no area.
+/// Returns points on the triangles, each for an equal share of the area; none without area. Deterministic: strata in
+/// the order of the triangles, Martin Roberts' R2 sequence (2018) inside of them.
 [[nodiscard]] std::vector<Vec3d> sample_by_area(std::span<const TriangleCorners> triangles, size_t count);
 
-/// Surface with its samples, from which others are measured. It shares only the distance to one triangle with the core.
+/// Surface with its samples, for distances to other surfaces. It shares only the distance to one triangle with the
+/// core.
 class SampledSurface {
  public:
   static constexpr size_t default_samples = 60'000;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# scene_files.sh: real glTF scenes and what reads them, for tests/scenes; never committed.
-#   tests/scenes/node_modules   as its package-lock.json has them: readers, a validator, hands and controllers (MIT)
+# scene_files.sh: installs real glTF scenes and their readers for tests/scenes; not committed.
+#   tests/scenes/node_modules   as locked by its package-lock.json: readers, a validator, hands and controllers (MIT)
 #   build/deps/scenes           Debian's assimp-testmodels and gltfpack, unpacked, not installed
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -111,13 +111,13 @@ SceneMemory measure_scene(const std::string& glb, const QueryFields& fields, con
   };
   const auto before = [&] {
     prepare();
-    refine_scene(dressed_scene(tetrahedron(), true));  // pages of the code
+    refine_scene(dressed_scene(tetrahedron(), true));  // loads pages of the code
   };
   SceneMemory found;
   found.taken = peak_memory_of([&] { refine_scene(glb); }, before);
   const double of_core = peak_memory_of(
       [&] {
-        std::vector<Mesh> meshes;  // with what their points carry: face and place, normals
+        std::vector<Mesh> meshes;  // with the origin (face and position) and normals of their points
         for (auto& mesh : proto::gltf::decode_scene(glb, {}).scene.meshes)
           meshes.push_back(std::move(mesh.surface.mesh));
         for (const Mesh& mesh : meshes)

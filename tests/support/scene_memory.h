@@ -8,7 +8,7 @@
 #include "proto/parameters.h"
 #include "tests/support/gltf_scene.h"
 
-// What refining a scene takes in memory, beside the sum of what it cannot do without.
+// Memory of the refinement of a scene, and the sum of its necessary parts.
 
 namespace papilio::test {
 
@@ -18,10 +18,10 @@ void dress(GltfScene& scene, const TriangleMesh& mesh, bool is_skinned, size_t n
 /// Declares the lowest and highest numbers of an accessor with a view of its own.
 void declare_bounds(GltfScene& scene, size_t accessor);
 
-/// MiB at their most.
+/// Peak memory in MiB.
 struct SceneMemory {
-  double taken = 0;    ///< by the refinement, with the scene that comes
-  double allowed = 0;  ///< of the scene that comes, the one that goes and the core's refinement of each mesh in turn
+  double taken = 0;    ///< by the refinement, with the input scene
+  double allowed = 0;  ///< input scene, output scene and the core's refinement of each mesh in turn
 };
 
 /// Measures the refinement of a scene in child processes, which are prepared by `prepare`.
@@ -35,7 +35,7 @@ struct MeasuredScene {
   proto::QueryFields fields;
 };
 
-/// Returns scenes of each kind that is refined in a way of its own: of `mesh`, of `small`, and of 20 times `small`.
+/// Returns a scene for each code path of refinement: of `mesh`, of `small`, and of 20 times `small`.
 [[nodiscard]] std::vector<MeasuredScene> measured_scenes(const TriangleMesh& mesh, const TriangleMesh& small);
 
 /// Returns a packed model with two levels of residuals.

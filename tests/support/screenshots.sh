@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# screenshots.sh: makes the pictures that README shows, and the recording, in client/web/screenshots.
+# screenshots.sh: makes the pictures and the recording of README in client/web/screenshots.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 rm -rf build/screenshots/frames

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# setup.sh [--list] [build|page|wasm|test|demo|bench|screenshots|check|fuzz|soak|container]...: installs what these need and is not there
-# yet; without arguments, everything. Says what it does; when there is nothing to do it does nothing, quickly and
-# silently. --list: only prints the names of the packages and programs.
+# setup.sh [--list] [build|page|wasm|test|demo|bench|screenshots|check|fuzz|soak|container]...: installs the missing
+# dependencies of these commands; without arguments, of all. Prints each step; prints nothing if nothing is missing.
+# --list: only prints the names of the packages and programs.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh
@@ -79,8 +79,8 @@ flock 9 # two set-ups at once: the second finds nothing left to do
 
 ((${#missing[@]} == 0)) || apt_install "${missing[@]}"
 
-# OpenMesh: its library's package, whose name carries a version; and the headers alone of its development package, which
-# would pull in a whole viewer.
+# OpenMesh: the package of its library, whose name has a version, and only the headers of its development package, which
+# depends on a viewer.
 openmesh() {
   local library unfinished
   if ! compgen -G '/usr/lib/*/libOpenMeshCore.so.*' >/dev/null; then

@@ -20,7 +20,7 @@ uint32_t below(std::mt19937& random, uint32_t bound) {
   return std::uniform_int_distribution<uint32_t>(0, bound - 1)(random);
 }
 
-/// Cuts random faces in three at their centre: valences of 3 and large ones.
+/// Splits random faces in three at their centre: valences of 3 and large valences.
 void pierce(TriangleMesh& mesh, std::mt19937& random, uint32_t times) {
   for (uint32_t i = 0; i < times; ++i) {
     const uint32_t f = below(random, static_cast<uint32_t>(mesh.triangles.size()));
@@ -34,7 +34,7 @@ void pierce(TriangleMesh& mesh, std::mt19937& random, uint32_t times) {
   }
 }
 
-/// Takes out faces no two of which share a vertex: each leaves a hole with a simple rim.
+/// Removes faces of which no two share a vertex: each leaves a hole with a simple boundary.
 void punch_holes(TriangleMesh& mesh, std::mt19937& random, uint32_t times) {
   std::vector<bool> taken(mesh.positions.size());
   for (uint32_t i = 0; i < times && mesh.triangles.size() > 4; ++i) {

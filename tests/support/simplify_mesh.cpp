@@ -25,8 +25,8 @@ namespace test = papilio::test;
 using Mesh = test::DecimationMesh;
 using Triangle = test::DecimationTriangle;
 
-/// Vertices go into the mesh, faces into a list: OpenMesh's own importer mends complex edges by copying
-/// vertices, without saying so, and its library aborts on the faces it cannot take.
+/// Importer of vertices into the mesh and of faces into a list: OpenMesh's importer silently repairs complex
+/// edges by duplicating vertices, and its library aborts on faces that it cannot add.
 class FaceListImporter : public OpenMesh::IO::ImporterT<Mesh> {
  public:
   explicit FaceListImporter(Mesh& mesh) : ImporterT(mesh) {}
@@ -56,7 +56,7 @@ Mesh read(const std::string& file) {
   return mesh;
 }
 
-/// Writes beside `file` and renames, so that nobody meets half a mesh.
+/// Writes a temporary file and renames it to `file`, so that readers never see a partial mesh.
 void write(const Mesh& mesh, const std::filesystem::path& file) {
   const bool off = file.extension() == ".off";
   const std::filesystem::path unfinished = file.string() + ".unfinished";

@@ -11,7 +11,7 @@ namespace {
 
 using Faces = std::vector<Triangle>;
 
-/// The face at the left of each directed edge, and its corner there.
+/// Returns the face to the left of each directed edge, with its corner.
 using Sides = std::map<std::array<uint32_t, 2>, std::array<size_t, 2>>;
 
 Sides sides_of(const Faces& faces) {
@@ -21,7 +21,7 @@ Sides sides_of(const Faces& faces) {
   return sides;
 }
 
-/// The faces as a walk from a corner meets and numbers them.
+/// Returns the faces in the order and numbering of a traversal from a corner.
 Faces numbered_from(const Faces& faces, const Sides& sides, size_t face, size_t corner) {
   std::map<uint32_t, uint32_t> number;
   std::vector<bool> met(faces.size(), false);
@@ -43,7 +43,7 @@ Faces numbered_from(const Faces& faces, const Sides& sides, size_t face, size_t 
   return out;
 }
 
-/// The same for surfaces that differ by their numbers only.
+/// Returns a canonical form, equal for surfaces that differ only by numbering.
 Faces canonical(const Faces& faces) {
   const Sides sides = sides_of(faces);
   Faces least;
@@ -61,7 +61,7 @@ uint32_t vertex_count(const Faces& faces) {
   return most + 1;
 }
 
-/// Those with one triangle more.
+/// Returns the surfaces with one more triangle.
 void grow(const Faces& faces, std::set<Faces>& grown) {
   const Sides sides = sides_of(faces);
   const uint32_t vertices = vertex_count(faces);

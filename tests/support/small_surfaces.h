@@ -6,9 +6,9 @@
 
 namespace papilio::test {
 
-/// Every way to put so many triangles together, each at an edge of one before, wound alike, no more than two at an
-/// edge: each connected surface once, whatever its genus and its holes, and those that touch themselves at vertices.
-/// Two that differ only by their numbers are one; mirror images are two. Positions are random.
+/// Returns every connected oriented surface of this many triangles, with at most two at an edge, of any genus and
+/// with any holes and pinched vertices. Surfaces that differ only by numbering are returned once; mirror images are
+/// distinct. Positions are random.
 [[nodiscard]] std::vector<TriangleMesh> small_surfaces(uint32_t triangles);
 
 }  // namespace papilio::test

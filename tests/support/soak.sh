@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # soak.sh MINUTES PRESET: the server of build/PRESET under load: papilio-soak's mixed clients, and wrk with small requests
-# beside them. Ends with figures; what the server said is in build/soak-PRESET/server.log. Exit status 1 when anything was
-# wrong: an answer that is not allowed, a server that does not end well (under asan: a leak), memory that grows by more
-# than 2 % (release, from 5 minutes up).
+# in parallel. Prints figures at the end; the server's log is build/soak-PRESET/server.log. Exit status 1 on any fault: an
+# unexpected answer, a failed end of the server (under asan: a leak), or memory that grows by more than 2 % (release, from
+# 5 minutes up).
 set -euo pipefail
 minutes=$1 preset=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -23,7 +23,7 @@ folder=build/soak-$preset
 mkdir -p "$folder"
 rm -f "$folder"/*
 
-# The store and the caches are small enough to be full when the warm-up is over.
+# The store and the caches are full after the warm-up.
 "$programs/papilio-server" --port 0 --log-level warning --read-seconds 3 --max-body-bytes "$max_body_bytes" \
   --store-bytes $((1 << 17)) --result-cache-bytes $((1 << 20)) --mesh-cache-bytes $((1 << 20)) \
   >"$folder/server.out" 2>"$folder/server.log" &
@@ -54,7 +54,7 @@ kill -TERM "$server" || status=1
 wait "$server" || status=$?
 echo "server: exit status $status after SIGTERM"
 ((status == 0)) || failed+=("the server's end")
-# A bug of the server's is answered with 500 and logged as internal; sanitizers write there too.
+# Bugs of the server are answered with 500 and logged as internal. Sanitizers write to the log, too.
 if grep -E -m5 'code=internal|ERROR: |runtime error|WARNING: ThreadSanitizer' "$folder/server.log"; then
   failed+=("the server's log")
 fi

@@ -6,7 +6,7 @@
 
 #include "papilio/mesh.h"
 
-// Meshes whose texture coordinates have a closed form, their only attribute. Points are as many as the seams need.
+// Meshes with texture coordinates of closed form as their only attribute. Points are split only at seams.
 
 namespace papilio::test {
 

@@ -9,15 +9,15 @@
 
 namespace papilio::test {
 
-/// Writes a fresh P-256 key and a certificate for it, signed by itself, as PEM files.
+/// Writes a new P-256 key and its self-signed certificate as PEM files.
 void write_certificate(const std::filesystem::path& certificate, const std::filesystem::path& key,
                        const std::string& common_name);
 
-/// A TLS client on a loopback port, in control of what a library would hide. It trusts whatever certificate it sees.
-/// SIGPIPE is blocked in the thread that makes it.
+/// A TLS client on a loopback port with control of records and shutdown. It trusts any certificate. SIGPIPE is blocked
+/// in the thread that creates it.
 class TlsClient {
  public:
-  /// Connects without a handshake; the first `send` or `receive` makes it.
+  /// Connects without a handshake, which the first `send` or `receive` does.
   explicit TlsClient(int port, int receive_buffer = 0);
   ~TlsClient();
   TlsClient(const TlsClient&) = delete;
@@ -25,17 +25,17 @@ class TlsClient {
 
   bool handshake() { return SSL_connect(ssl_.get()) == 1; }
   bool send(std::string_view bytes);
-  /// Past the encryption, as they are.
+  /// Sends raw bytes without encryption.
   bool send_raw(std::string_view bytes) const;
-  /// At least one byte and at most `most`; "" at the end.
+  /// Receives at least one byte and at most `most`; "" at the end.
   std::string receive(size_t most = 65536);
-  /// Everything until the bytes end with `end`, or the connection does.
+  /// Receives until the bytes end with `end` or the connection ends.
   std::string receive_until(std::string_view end);
-  /// True when the server ends the connection with a close_notify, as against a bare end or a reset.
+  /// Returns true if the server ends the connection with a close_notify, not with a bare end or a reset.
   bool at_proper_end();
   /// Sends close_notify and leaves the socket open.
   void say_goodbye() { SSL_shutdown(ssl_.get()); }
-  /// A record without data. False once the server is gone.
+  /// Sends a record without data. Returns false once the connection is closed.
   bool send_key_update();
 
   [[nodiscard]] std::string common_name() const;          ///< of the server's certificate

@@ -34,7 +34,7 @@ UniformHierarchy::UniformHierarchy(const Mesh& coarse, const Options& options) {
 }
 
 void UniformHierarchy::add_level(const Topology& mesh, int level, bool may_be_cut) {
-  // The next level's vertices lie on this one's edges, in order.
+  // Vertices of the next level are in the order of this level's edges.
   const auto middle = [&](uint32_t h) { return mesh.vertex_count + mesh.edge[h]; };
   for (uint32_t f = 0; f < mesh.face_count(); ++f) {
     const auto add = [&](uint32_t a, uint32_t b, uint32_t c) { pieces_.push_back({sorted({a, b, c}), level}); };

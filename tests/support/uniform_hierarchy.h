@@ -9,17 +9,17 @@
 
 namespace papilio::test {
 
-/// All levels of a uniform refinement, to hold red-green results against. Knows every face that a red-green result may
-/// have: the faces of each level, and the pieces into which one or two split edges cut them.
+/// All levels of a uniform refinement, for comparison with red-green results: the faces of each level, and the pieces
+/// into which one or two split edges cut them.
 class UniformHierarchy {
  public:
-  /// Of the options, what chooses where to refine is left out.
+  /// Ignores the options' criteria.
   UniformHierarchy(const Mesh& coarse, const Options& options);
 
   [[nodiscard]] const Mesh& finest() const { return finest_; }
 
-  /// Whether each vertex of the mesh is, to the bit, a vertex of the finest level; each face is a face of a level or a
-  /// piece of one; and faces that share an edge are at most one level apart.
+  /// Returns whether each vertex of the mesh is bit-identical to a vertex of the finest level, each face is a face of a
+  /// level or a piece of one, and faces that share an edge are at most one level apart.
   [[nodiscard]] ::testing::AssertionResult contains(const Mesh& mesh) const;
 
  private:
@@ -35,7 +35,7 @@ class UniformHierarchy {
   std::unordered_map<uint64_t, uint32_t> at_position_;  ///< hash of a position: the first vertex there
 };
 
-/// The smallest angle of all faces, in radians.
+/// Returns the smallest angle of all faces, in radians.
 [[nodiscard]] double smallest_angle(const Mesh& mesh);
 
 }  // namespace papilio::test

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# wasm.sh: builds the WebAssembly modules (build/wasm) and the npm package that carries them (build/npm), of what is set up.
+# wasm.sh: builds the WebAssembly modules (build/wasm) and the npm package with them (build/npm). Requires the set-up.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$here/../.."
 mkdir -p build
-# Each time: sources may have come or gone.
+# Configured each time: source files may have been added or removed.
 cmake -S client/wasm -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/client/wasm/toolchain.cmake" >build/configure.log 2>&1 || {
   cat build/configure.log >&2
   exit 1
 }
 "$here/compile.sh" build/wasm wasm
 
-# What has not changed keeps its date: the viewer is built of it.
+# Unchanged files keep their dates: the viewer is built from them.
 rm -rf build/npm.new
 mkdir -p build/npm.new build/npm
 cp client/npm/package.json client/npm/README.md LICENSE build/npm.new/

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The packages of the viewer, of its build and of its tests, as client/web/package-lock.json has them.
+# Installs the packages of the viewer, its build and its tests, as locked by client/web/package-lock.json.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/support/apt.sh

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <vector>
-
-#include "core/mesh/split_plan.h"
+#include "core/rules/butterfly.h"
+#include "core/rules/features.h"
 #include "papilio/mesh.h"
 
-// What tests of the butterfly's rules ask of a whole mesh.
+// Helpers for tests of the butterfly's rules on a whole mesh.
 
 namespace papilio::test {
 
@@ -16,9 +15,13 @@ namespace papilio::test {
   return positions;
 }
 
-/// The plan that splits every edge.
-[[nodiscard]] inline SplitPlan everything(const Mesh& mesh) {
-  return SplitPlan(EdgeMarks(mesh.topology.edge_count(), 1));
+/// Returns the new vertices of all edges. [E]
+template <class Real>
+[[nodiscard]] Buffer<Vec3T<Real>> new_vertices(const Topology& topology, const Buffer<Vec3T<Real>>& positions,
+                                               const ButterflyOptions<Real>& options = {}) {
+  Buffer<Vec3T<Real>> made(topology.edge_count());
+  butterfly(topology, find_features(topology), positions.data(), made.data(), options);
+  return made;
 }
 
 }  // namespace papilio::test

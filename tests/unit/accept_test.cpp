@@ -7,7 +7,7 @@ namespace {
 
 const std::vector<std::string> offered{"application/x-draco", "application/octet-stream", "multipart/mixed"};
 
-TEST(Accept, TakesWhatTheClientLikesBest) {
+TEST(Accept, TypeOfHighestQualityIsChosen) {
   const auto chosen = [](const char* accept) { return negotiate(accept, offered).value_or("none"); };
   EXPECT_EQ(chosen(""), "application/x-draco");
   EXPECT_EQ(chosen("*/*"), "application/x-draco");
@@ -24,7 +24,7 @@ TEST(Accept, TakesWhatTheClientLikesBest) {
   EXPECT_EQ(chosen("model/vnd;q=x, ;;, ,"), "none");
 }
 
-TEST(Accept, TakesGzipOnlyWhereItIsNamedOrAnythingIs) {
+TEST(Accept, GzipRequiresItsNameOrAWildcard) {
   for (const char* yes : {"gzip", "br, gzip", "deflate;q=0.5, GZIP;q=0.1", "*", "x-gzip", "*;q=0, gzip"})
     EXPECT_TRUE(accepts_gzip(yes)) << yes;
   for (const char* no : {"", "identity", "br", "gzip;q=0", "gzip;q=0, *", "*;q=0", "gzipped"})

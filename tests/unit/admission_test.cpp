@@ -10,7 +10,7 @@
 
 #include "proto/problem.h"
 
-// Work here is counted, not done: a request holds its slot until the test takes it away, so that times play no part.
+// Requests hold their slots until the test releases them: results do not depend on timing.
 
 namespace papilio::server {
 namespace {
@@ -33,12 +33,12 @@ std::optional<proto::Code> refusal_of(Admission& admission, Work work = small, c
   return std::nullopt;
 }
 
-/// Requests that wait on threads of their own, and say in which order they were let in.
+/// Requests that wait on their own threads and record the order of admission.
 class Crowd {
  public:
   explicit Crowd(Admission& admission) : admission_(admission) {}
 
-  /// Returns once the request waits, or is answered.
+  /// Returns once the request waits or is answered.
   void add(const std::string& name, Work work, const std::string& client = "a") {
     const int waiting = admission_.waiting();
     const size_t answered = answers().size();
@@ -52,7 +52,7 @@ class Crowd {
     });
     while (admission_.waiting() == waiting && answers().size() == answered) std::this_thread::yield();
   }
-  /// In the order in which they came, once all have.
+  /// Returns the order of admission once all requests are admitted.
   std::vector<std::string> finish() {
     threads_.clear();
     return answers();
@@ -77,7 +77,7 @@ class Crowd {
 using Names = std::vector<std::string>;
 using Slots = std::vector<std::shared_ptr<Admission::Slot>>;
 
-/// Takes all slots, the express one included, for clients whose account does not matter.
+/// Takes all slots including the express slot, for clients outside of the test.
 Slots take_all(Admission& admission, int slots) {
   Slots held;
   for (int i = 0; i < slots; ++i) held.push_back(admission.enter("held " + std::to_string(i), large, stays));
@@ -85,7 +85,7 @@ Slots take_all(Admission& admission, int slots) {
   return held;
 }
 
-TEST(Admission, RefusesWhenSlotsAndQueueAreFull) {
+TEST(Admission, FullSlotsAndQueueRefuseRequests) {
   Admission admission(2, 0);
   Slots held = take_all(admission, 2);
   EXPECT_EQ(admission.computing(), 3);
@@ -110,7 +110,7 @@ TEST(Admission, SmallWorkDoesNotWaitForLargeWork) {
   EXPECT_EQ(crowd.finish(), Names{"large"});
 }
 
-TEST(Admission, EqualRequestsOfAClientComeInTheirOrder) {
+TEST(Admission, EqualRequestsOfAClientKeepTheirOrder) {
   Admission admission(1, 8);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -119,7 +119,7 @@ TEST(Admission, EqualRequestsOfAClientComeInTheirOrder) {
   EXPECT_EQ(crowd.finish(), (Names{"0", "1", "2", "3", "4"}));
 }
 
-TEST(Admission, LessWorkGoesFirst) {
+TEST(Admission, LessWorkHasPriority) {
   Admission admission(1, 8);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -130,7 +130,7 @@ TEST(Admission, LessWorkGoesFirst) {
   EXPECT_EQ(crowd.finish(), (Names{"100", "200", "300"}));
 }
 
-TEST(Admission, LargeWorkIsPassedOverOnlyUntilOthersWereGivenAsMuch) {
+TEST(Admission, LargeWorkIsOvertakenOnlyByAsMuchWork) {
   Admission admission(1, 8);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -146,10 +146,10 @@ TEST(Admission, LargeWorkIsPassedOverOnlyUntilOthersWereGivenAsMuch) {
     if (crowd.answers().empty()) ++passed;
   }
   EXPECT_GE(passed, 5);
-  EXPECT_LE(passed, 10) << "ten small ones are as much work";
+  EXPECT_LE(passed, 10) << "ten small requests are as much work";
 }
 
-TEST(Admission, AClientThatHadLessGoesBeforeOneThatHadMore) {
+TEST(Admission, ClientWithLessWorkHasPriority) {
   Admission admission(1, 16);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -160,7 +160,7 @@ TEST(Admission, AClientThatHadLessGoesBeforeOneThatHadMore) {
   EXPECT_EQ(crowd.finish(), (Names{"a1", "b1", "a2", "b2", "a3", "a4"}));
 }
 
-TEST(Admission, LargeRequestsLeaveHalfOfThePlaces) {
+TEST(Admission, LargeRequestsTakeAtMostHalfOfThePlaces) {
   Admission admission(1, 4);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -176,7 +176,7 @@ TEST(Admission, LargeRequestsLeaveHalfOfThePlaces) {
   (void)crowd.finish();
 }
 
-TEST(Admission, TheClientWithTheMostWaitingRequestsGivesUpAPlace) {
+TEST(Admission, ClientWithTheMostWaitingRequestsIsRefused) {
   Admission admission(1, 4);
   Slots held = take_all(admission, 1);
   Crowd crowd(admission);
@@ -190,13 +190,13 @@ TEST(Admission, TheClientWithTheMostWaitingRequestsGivesUpAPlace) {
   crowd.add("b2", small, "b");
   while (crowd.answers().size() < 2) std::this_thread::yield();
   EXPECT_EQ(crowd.answers()[1], "a3 refused");
-  EXPECT_THROW(admission.refuse_when_full("b"), proto::Problem) << "both have two";
+  EXPECT_THROW(admission.refuse_when_full("b"), proto::Problem) << "both clients have two requests";
   EXPECT_EQ(refusal_of(admission, small, "b"), proto::Code::busy);
   held.clear();
   EXPECT_EQ(crowd.finish().size(), 6U);
 }
 
-TEST(Admission, WorkThatTurnsOutLargeGivesTheExpressSlotBack) {
+TEST(Admission, UnexpectedlyLargeWorkReturnsTheExpressSlot) {
   Admission admission(1, 4, 0ms);
   auto ordinary = admission.enter("a", large, stays);
   std::atomic<bool> resumed = false;
@@ -204,7 +204,7 @@ TEST(Admission, WorkThatTurnsOutLargeGivesTheExpressSlotBack) {
     const auto slot = admission.enter("b", unknown, stays);
     slot->take_turn(stays);
     resumed = true;
-    slot->take_turn(stays);  // on an ordinary slot it computes on
+    slot->take_turn(stays);  // holds an ordinary slot: continues
   });
   while (admission.waiting() == 0) std::this_thread::yield();
   EXPECT_EQ(admission.computing(), 1);
@@ -216,7 +216,7 @@ TEST(Admission, WorkThatTurnsOutLargeGivesTheExpressSlotBack) {
   EXPECT_EQ(admission.computing(), 0);
 }
 
-TEST(Admission, WorkThatIsCertainToBeSmallKeepsTheExpressSlot) {
+TEST(Admission, CertainlySmallWorkKeepsTheExpressSlot) {
   Admission admission(1, 4, 0ms);
   const auto ordinary = admission.enter("a", large, stays);
   const auto express = admission.enter("a", small, stays);
@@ -224,7 +224,7 @@ TEST(Admission, WorkThatIsCertainToBeSmallKeepsTheExpressSlot) {
   EXPECT_EQ(admission.computing(), 2);
 }
 
-TEST(Admission, WorkThatTurnsOutLargeIsRefusedWithoutAPlaceToWait) {
+TEST(Admission, UnexpectedlyLargeWorkIsRefusedWithoutAPlace) {
   Admission admission(1, 0, 0ms);
   const auto ordinary = admission.enter("a", large, stays);
   const auto express = admission.enter("b", unknown, stays);
@@ -237,11 +237,11 @@ TEST(Admission, PausedWorkTakesAPlaceOfLargeWork) {
   std::jthread paused([&] { admission.enter("b", unknown, stays)->take_turn(stays); });
   while (admission.waiting() == 0) std::this_thread::yield();
   EXPECT_EQ(refusal_of(admission, large), proto::Code::busy);
-  EXPECT_EQ(admission.waiting(), 1) << "what has been begun is not refused for a newcomer";
+  EXPECT_EQ(admission.waiting(), 1) << "a paused request is not refused for a new one";
   ordinary.reset();
 }
 
-TEST(Admission, APausedRequestWhoseClientLeavesGivesUpItsPlace) {
+TEST(Admission, PausedRequestOfALeavingClientFreesItsPlace) {
   Admission admission(1, 2, 0ms);
   const auto ordinary = admission.enter("a", large, stays);
   {
@@ -252,12 +252,12 @@ TEST(Admission, APausedRequestWhoseClientLeavesGivesUpItsPlace) {
   EXPECT_EQ(admission.computing(), 1);
 }
 
-TEST(Admission, AClientThatLeavesGivesUpItsPlace) {
+TEST(Admission, LeavingClientFreesItsPlace) {
   Admission admission(1, 1);
   const Slots held = take_all(admission, 1);
   EXPECT_EQ(refusal_of(admission, small, "a", [] { return true; }), proto::Code::cancelled);
   EXPECT_EQ(admission.waiting(), 0);
-  Admission idle(1, 0);  // asked even when a slot is free
+  Admission idle(1, 0);  // checked even if a slot is free
   EXPECT_EQ(refusal_of(idle, small, "a", [] { return true; }), proto::Code::cancelled);
   EXPECT_EQ(idle.computing(), 0);
 }

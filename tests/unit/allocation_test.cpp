@@ -11,23 +11,23 @@
 #include "server/cache/lru.h"
 #include "tests/support/shapes.h"
 
-// Every allocation is made to fail in turn: of a refinement, and of what all requests of a server share.
+// Each allocation of a refinement and of the server's shared state fails in turn.
 
 namespace {
 
-thread_local int64_t allocations_left = -1;  // negative: as many as wanted
+thread_local int64_t allocations_left = -1;  // negative: unlimited
 thread_local int64_t blocks_made = 0;        // for arrays
-thread_local bool blocks_fail = false;       // those of arrays, which try twice: once one has failed, all do
+thread_local bool blocks_fail = false;       // arrays try twice: after one failure all blocks fail
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool keeps_blocks = false;  // of arrays, for the next run: nothing is kept under this sanitizer
+constexpr bool keeps_blocks = false;  // no blocks are reused under this sanitizer
 #else
 constexpr bool keeps_blocks = true;
 #endif
 
 }  // namespace
 
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC 12 looks through both and sees new meet free
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC 12 inlines both and sees new paired with free
 
 void* operator new(std::size_t size) {
   if (allocations_left >= 0 && allocations_left-- == 0) throw std::bad_alloc();
@@ -57,7 +57,7 @@ namespace {
 
 using namespace test;
 
-/// Runs with ever more allocations until one run passes; each before that must end in an `Error`.
+/// Runs with 0, 1, 2, ... allocations until a run succeeds; each earlier run must throw `Error`.
 void fail_each_allocation(const Options& options) {
   const Mesh coarse = build_mesh(join(icosahedron(), cube(), 5));
   const Result expected = refine(coarse, options);
@@ -78,19 +78,19 @@ void fail_each_allocation(const Options& options) {
     } catch (const std::bad_alloc&) {
       blocks_fail = false;
       allocations_left = -1;
-      ASSERT_LT(allowed, 3) << "only the words of the error themselves may be too much";
+      ASSERT_LT(allowed, 3) << "only the error's text may exceed the limit";
     }
   }
 }
 
-TEST(Allocation, FailureIsAnErrorWhereverItHappens) {
+TEST(Allocation, EveryFailedAllocationIsAnError) {
   fail_each_allocation({.levels = 2});
   fail_each_allocation({.levels = 2, .scheme = Scheme::in_place, .flatness = {0.9}, .tension = Tension::sharp});
   fail_each_allocation({.levels = 3, .crease_angle = 60, .tolerance = 1e-3});
   fail_each_allocation({.levels = 3, .view = View{.error_pixels = 0.1}, .max_faces = 200});
 }
 
-TEST(Allocation, TheSecondRunMakesNoArrayAnew) {
+TEST(Allocation, SecondRunAllocatesNoArray) {
   const Mesh coarse = build_mesh(torus(40, 30));
   const View view{.eye = {4, 1, 1}, .error_pixels = 0.5};
   for (const Tension tension : {Tension::off, Tension::soft})
@@ -113,7 +113,7 @@ TEST(Allocation, TheSecondRunMakesNoArrayAnew) {
   release_spare_blocks();
 }
 
-TEST(Allocation, MemoryLimitIsHeldBeforeTheWork) {
+TEST(Allocation, MemoryLimitRefusesBeforeRefinement) {
   for (const Options& options :
        {Options{.levels = 6, .memory_limit = 1 << 20}, Options{.levels = 6, .tolerance = 1e-7, .memory_limit = 1 << 20},
         Options{.levels = 6, .scheme = Scheme::in_place, .flatness = {1}, .memory_limit = 1 << 20}}) {
@@ -127,7 +127,7 @@ TEST(Allocation, MemoryLimitIsHeldBeforeTheWork) {
   }
 }
 
-/// Calls `work` with ever more allocations until it passes.
+/// Calls `work` with 0, 1, 2, ... allocations until it succeeds.
 template <class Work>
 void fail_each_allocation_of(const Work& work) {
   for (int64_t allowed = 0;; ++allowed) {
@@ -143,7 +143,7 @@ void fail_each_allocation_of(const Work& work) {
   }
 }
 
-TEST(Allocation, AnLruThatCouldNotTakeAnEntryIsWhole) {
+TEST(Allocation, FailedAllocationLeavesTheLruConsistent) {
   using server::Lru;
   Lru<int> lru(2 * (100 + Lru<int>::entry_bytes));
   const auto value = std::make_shared<int>(1);
@@ -156,7 +156,7 @@ TEST(Allocation, AnLruThatCouldNotTakeAnEntryIsWhole) {
   EXPECT_EQ(lru.size(), 2U);
 }
 
-TEST(Allocation, ASlotThatCouldNotBeMadeIsFree) {
+TEST(Allocation, FailedAllocationFreesTheSlot) {
   server::Admission admission(1, 0);
   const std::function<bool()> stays = [] { return false; };
   const std::string client = "a name too long for the string itself";

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// Uniform, and each way of being adaptive, in both schemes.
+/// Uniform options and adaptive options of each criterion, in both schemes.
 std::vector<Options> ways() {
   std::vector<Options> all;
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
@@ -43,7 +43,7 @@ uint32_t count_seams(const Mesh& mesh) {
   return seams;
 }
 
-/// Same mesh as without attributes; points lie at their vertices, none is unused; charts are tiled.
+/// Expects the mesh refined without attributes; points at their vertices, all used; and tiled charts.
 void expect_sound(const Mesh& refined, const Mesh& plain, double area) {
   ASSERT_TRUE(is_consistent(without_attributes(refined)));
   ASSERT_EQ(without_attributes(refined).triangles(), plain.triangles());
@@ -58,12 +58,12 @@ void expect_sound(const Mesh& refined, const Mesh& plain, double area) {
   ASSERT_TRUE(tiles_its_charts(refined.triangles(), area));
 }
 
-TEST(Attributes, ChartsOfACubeAreTiledAndPositionsStayClosed) {
+TEST(Attributes, ChartsOfACubeStayTiledAndClosed) {
   const Mesh coarse = build_mesh(charted_cube());
   EXPECT_EQ(coarse.topology.vertex_count, 8U);
   EXPECT_EQ(coarse.attributes.point_count, 24U);
   for (Options options : ways()) {
-    options.shape = Shape::plain;  // else a cube is done at once
+    options.shape = Shape::plain;  // otherwise a cube converges at once
     const Mesh refined = refine(coarse, options).mesh;
     expect_sound(refined, refine(without_attributes(coarse), options).mesh, 1);
     EXPECT_EQ(refined.topology.euler_characteristic(), 2);
@@ -71,7 +71,7 @@ TEST(Attributes, ChartsOfACubeAreTiledAndPositionsStayClosed) {
   }
 }
 
-TEST(Attributes, EachFaceAChartIsTiledOnMeshesOfEveryKind) {
+TEST(Attributes, MeshesWithAChartPerFaceStayTiled) {
   TriangleMesh misoriented = icosahedron();
   std::swap(misoriented.triangles[3][0], misoriented.triangles[3][1]);
   TriangleMesh non_manifold = join(cube(), fan(5, false), 4);
@@ -89,7 +89,7 @@ TEST(Attributes, EachFaceAChartIsTiledOnMeshesOfEveryKind) {
   }
 }
 
-TEST(Attributes, SeamsStaySeamsAndNoneArise) {
+TEST(Attributes, RefinementNeitherRemovesNorAddsSeams) {
   const Mesh coarse = build_mesh(charted_cube());
   for (int levels : {0, 1, 2, 3})
     for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
@@ -101,7 +101,7 @@ TEST(Attributes, SeamsStaySeamsAndNoneArise) {
     }
 }
 
-TEST(Attributes, AdaptiveValuesAreTheUniformOnesToTheBit) {
+TEST(Attributes, AdaptiveValuesAreBitIdenticalToUniform) {
   for (const TriangleMesh& shape : {TriangleMesh(charted_cube()), TriangleMesh(charted_faces(torus(7, 5)))}) {
     const Mesh coarse = build_mesh(shape);
     std::map<std::tuple<double, double, double>, Vec3f> uniform;

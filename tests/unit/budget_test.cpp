@@ -13,20 +13,20 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-TEST(ThresholdWithin, TakesTheLargestErrorsThatFit) {
+TEST(ThresholdWithin, LargestErrorsThatFitAreTaken) {
   const Buffer<WeighedEdge> edges{{1, 2}, {4, 2}, {3, 1}, {2, 2}, {3, 2}};
   EXPECT_EQ(threshold_within(edges, 0, 10, 19), 0);  // all fit: nine more faces
   EXPECT_EQ(threshold_within(edges, 2.5F, 10, 15), 2.5F);
   EXPECT_EQ(threshold_within(edges, 0, 10, 18), 2);
   EXPECT_EQ(threshold_within(edges, 0, 10, 15), 3);
-  EXPECT_EQ(threshold_within(edges, 0, 10, 14), 4);  // equal errors go together
+  EXPECT_EQ(threshold_within(edges, 0, 10, 14), 4);  // equal errors are split together
   EXPECT_EQ(threshold_within(edges, 0, 10, 12), 4);
   EXPECT_EQ(threshold_within(edges, 0, 10, 11), infinity);
   EXPECT_EQ(threshold_within(edges, 0, 20, 19), infinity);
   EXPECT_EQ(threshold_within({}, 0.5F, 10, 10), 0.5F);
 }
 
-/// The same by sorting.
+/// Returns threshold_within() computed by sorting.
 float by_sorting(const Buffer<WeighedEdge>& edges, float least, uint64_t faces, uint64_t budget) {
   std::map<float, uint64_t, std::greater<>> faces_of;
   for (const WeighedEdge& e : edges)
@@ -40,7 +40,7 @@ float by_sorting(const Buffer<WeighedEdge>& edges, float least, uint64_t faces, 
   return faces > budget ? infinity : least;
 }
 
-TEST(ThresholdWithin, IsThatOfSortedErrors) {
+TEST(ThresholdWithin, ThresholdEqualsThatOfSortedErrors) {
   std::mt19937 random(7);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (int round = 0; round < 400; ++round) {

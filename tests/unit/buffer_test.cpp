@@ -16,12 +16,12 @@ namespace papilio {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool keeps_blocks = false;  // nothing is kept under this sanitizer
+constexpr bool keeps_blocks = false;  // no blocks are reused under this sanitizer
 #else
 constexpr bool keeps_blocks = true;
 #endif
 
-TEST(BufferBlocks, AreAlignedAndTheirOwn) {
+TEST(BufferBlocks, BlocksAreAlignedAndDisjoint) {
   for (size_t bytes :
        {size_t{0}, size_t{1}, size_t{255}, size_t{256}, size_t{257}, size_t{1} << 21, (size_t{5} << 20) + 3}) {
     void* one = take_block(bytes);
@@ -37,7 +37,7 @@ TEST(BufferBlocks, AreAlignedAndTheirOwn) {
   }
 }
 
-TEST(BufferBlocks, ComeBackForASizeALittleLargerAndSmaller) {
+TEST(BufferBlocks, BlocksAreReusedForSimilarSizes) {
   for (size_t bytes = 300; bytes < 40'000'000; bytes = bytes * 3 / 2) {
     void* block = take_block(bytes);
     give_block(block, bytes);
@@ -52,7 +52,7 @@ TEST(BufferBlocks, ComeBackForASizeALittleLargerAndSmaller) {
   EXPECT_EQ(spare_bytes(), 0U);
 }
 
-TEST(BufferBlocks, AreGivenBackDownToWhatMayBeKept) {
+TEST(BufferBlocks, ReleaseKeepsAtMostTheGivenBytes) {
   if (!keeps_blocks) return;
   constexpr size_t small = 1 << 12, large = 1 << 20;
   release_spare_blocks();
@@ -71,7 +71,7 @@ TEST(BufferBlocks, AreGivenBackDownToWhatMayBeKept) {
   EXPECT_EQ(spare_bytes(), 0U);
 }
 
-TEST(Buffer, OfNothingGivesItsMemoryBack) {
+TEST(Buffer, AssigningNothingReturnsTheMemory) {
   Buffer<uint32_t> numbers(1000, 7);
   numbers.clear();
   EXPECT_GE(numbers.capacity(), 1000U);
@@ -82,7 +82,7 @@ TEST(Buffer, OfNothingGivesItsMemoryBack) {
   EXPECT_EQ(numbers, (Buffer<uint32_t>{1, 2}));
 }
 
-TEST(BufferBlocks, AreSharedByThreads) {
+TEST(BufferBlocks, BlocksAreThreadSafe) {
   std::vector<std::thread> threads;
   for (uint32_t t = 0; t < 4; ++t)
     threads.emplace_back([t] {
@@ -94,8 +94,8 @@ TEST(BufferBlocks, AreSharedByThreads) {
   for (std::thread& thread : threads) thread.join();
 }
 
-// Small things that come to lie there would fill pages of 2 MiB, long after.
-TEST(BufferBlocks, LeaveNoAddressesBehindForHugePages) {
+// Otherwise later small allocations at these addresses would occupy pages of 2 MiB.
+TEST(BufferBlocks, FreedAddressesLoseHugePages) {
   give_block(take_block(size_t{9} << 20), size_t{9} << 20);
   release_spare_blocks();
   std::ifstream maps("/proc/self/smaps");
@@ -111,7 +111,7 @@ TEST(BufferBlocks, TooManyElementsAreRefused) {
 
 using Numbers = Buffer<uint32_t>;
 
-TEST(Buffer, IsConstructedOfCountsValuesListsAndRanges) {
+TEST(Buffer, ConstructorsTakeCountsValuesListsAndRanges) {
   EXPECT_TRUE(Numbers().empty());
   EXPECT_EQ(Numbers(3), (Numbers{0, 0, 0}));
   EXPECT_EQ(Numbers(2, 7), (Numbers{7, 7}));
@@ -121,7 +121,7 @@ TEST(Buffer, IsConstructedOfCountsValuesListsAndRanges) {
 }
 
 TEST(Buffer, NewElementsAreZeroOrTheValueGiven) {
-  { Numbers dirt(3000, 0xffffffff); }  // the block is taken again below
+  { Numbers dirt(3000, 0xffffffff); }  // its block is reused below
   Numbers numbers(1000, 7);
   numbers.resize(2000);
   EXPECT_EQ(numbers[999], 7U);
@@ -141,7 +141,7 @@ TEST(Buffer, ResizeForOverwriteKeepsTheOldElements) {
   EXPECT_EQ(Numbers(numbers.begin(), numbers.begin() + 3), (Numbers{1, 2, 3}));
 }
 
-TEST(Buffer, PushBackTakesAnElementOfItsOwn) {
+TEST(Buffer, PushBackAcceptsItsOwnElement) {
   Numbers numbers{1};
   for (uint32_t i = 0; i < 1000; ++i) numbers.push_back(numbers.front());
   EXPECT_EQ(numbers, Numbers(1001, 1));
@@ -149,7 +149,7 @@ TEST(Buffer, PushBackTakesAnElementOfItsOwn) {
   EXPECT_EQ(numbers.size(), 1000U);
 }
 
-TEST(Buffer, InsertsInTheMiddleAndAtTheEnd) {
+TEST(Buffer, InsertWorksInTheMiddleAndAtTheEnd) {
   Numbers numbers{1, 5};
   const std::vector<uint32_t> between{2, 3, 4};
   EXPECT_EQ(*numbers.insert(numbers.begin() + 1, between.begin(), between.end()), 2U);
@@ -157,7 +157,7 @@ TEST(Buffer, InsertsInTheMiddleAndAtTheEnd) {
   EXPECT_EQ(numbers, (Numbers{1, 2, 3, 4, 5, 6, 7}));
 }
 
-TEST(Buffer, CopiesAndMoves) {
+TEST(Buffer, CopiesAreDeepAndMovesKeepTheMemory) {
   Numbers numbers{1, 2, 3};
   Numbers copy = numbers;
   EXPECT_EQ(copy, numbers);
@@ -177,7 +177,7 @@ TEST(Buffer, CopiesAndMoves) {
   EXPECT_EQ(other, (Numbers{4}));
 }
 
-TEST(Buffer, AssignReserveClearAndEraseIf) {
+TEST(Buffer, AssignAndClearKeepReservedMemory) {
   Numbers numbers;
   numbers.reserve(100);
   EXPECT_EQ(numbers.capacity(), 100U);
@@ -192,7 +192,7 @@ TEST(Buffer, AssignReserveClearAndEraseIf) {
   EXPECT_EQ(numbers.capacity(), 100U);
 }
 
-TEST(Buffer, IsAlignedAndReadableBehindItsEnd) {
+TEST(Buffer, DataIsAlignedAndReadableBehindItsEnd) {
   for (size_t count : {1, 63, 64, 1000}) {
     Buffer<uint8_t> bytes(count);
     EXPECT_EQ(reinterpret_cast<uintptr_t>(bytes.data()) % 64, 0U);

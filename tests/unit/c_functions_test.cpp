@@ -11,7 +11,7 @@
 namespace papilio {
 namespace {
 
-/// A mesh as C has it.
+/// A mesh in C structs.
 struct Given {
   TriangleMesh mesh;
   std::vector<papilio_attribute> attributes{};
@@ -26,7 +26,7 @@ struct Given {
   }
 };
 
-/// Frees what it holds.
+/// Owner of a mesh and its latest result.
 struct Opened {
   papilio_mesh* mesh;
   papilio_result* result = nullptr;
@@ -54,7 +54,7 @@ void expect_same(const papilio_triangles& made, const TriangleMesh& expected) {
   EXPECT_EQ(std::memcmp(made.triangles, expected.triangles.data(), sizeof(Triangle) * made.face_count), 0);
 }
 
-TEST(CFunctions, GiveWhatTheCoreGives) {
+TEST(CFunctions, ResultsEqualTheCores) {
   Opened opened({test::torus(9, 7)});
   ASSERT_NE(opened.mesh, nullptr);
   for (const char* parameters :
@@ -80,7 +80,7 @@ TEST(CFunctions, GiveWhatTheCoreGives) {
   EXPECT_STREQ(papilio_version(), PAPILIO_VERSION);
 }
 
-TEST(CFunctions, AttributesComeBackInTheirOrder) {
+TEST(CFunctions, AttributesKeepTheirOrder) {
   Given given{test::torus(9, 7)};
   const size_t points = given.mesh.positions.size();
   std::vector<double> places(2 * points), normals(3 * points), moves(3 * points);
@@ -100,7 +100,7 @@ TEST(CFunctions, AttributesComeBackInTheirOrder) {
     EXPECT_EQ(made.attributes[a].components, given.attributes[a].components);
     EXPECT_EQ(made.attributes[a].kind, given.attributes[a].kind);
   }
-  // A torus about z moves as one, and its normals are those of its surface.
+  // Displacements are equal everywhere; normals follow the surface.
   EXPECT_NEAR(made.attributes[2].values[3 * made.point_count - 2], 0.5, 1e-6);
   EXPECT_NE(made.attributes[1].values[2], 1);
 
@@ -110,7 +110,7 @@ TEST(CFunctions, AttributesComeBackInTheirOrder) {
   EXPECT_EQ(papilio_result_mesh(without.result)->attributes[0].kind, PAPILIO_NORMALS);
 }
 
-TEST(CFunctions, LevelsAreHandedOverAndTheCallerMayStop) {
+TEST(CFunctions, LevelsAreReportedAndTheCallerMayStop) {
   struct Seen {
     std::vector<uint32_t> faces;
     std::vector<int32_t> levels, last;
@@ -139,7 +139,7 @@ TEST(CFunctions, LevelsAreHandedOverAndTheCallerMayStop) {
   EXPECT_EQ(seen.asked, 2);
 }
 
-TEST(CFunctions, FailuresSayWhatToDo) {
+TEST(CFunctions, FailuresStateTheRemedy) {
   Opened opened({test::torus(9, 7)});
   const auto fails = [&](const char* parameters, papilio_fault fault, const std::string& words, const char* parameter) {
     EXPECT_EQ(opened.refine(parameters), nullptr);
@@ -163,7 +163,7 @@ TEST(CFunctions, FailuresSayWhatToDo) {
   EXPECT_STREQ(papilio_last_message(), "Normals have 3 components, not 2.");
   odd.attributes[0].kind = 9;
   EXPECT_EQ(Opened(odd).mesh, nullptr);
-  EXPECT_STREQ(papilio_last_message(), "There is no kind of attribute 9.");
+  EXPECT_STREQ(papilio_last_message(), "Unknown kind of attribute: 9.");
 }
 
 }  // namespace

@@ -59,10 +59,10 @@ TriangleMesh sphere(double radius, int levels) {
   return mesh;
 }
 
-/// Enough where the answer does not depend on how many there are.
+/// Options with few samples, for results that do not depend on their number.
 constexpr CompareOptions kFew{.samples = 3000};
 
-TEST(compare, identical_meshes_are_at_no_distance) {
+TEST(Compare, IdenticalMeshesHaveZeroDistance) {
   for (const TriangleMesh& mesh : {cube(1), square(0), sphere(2, 2)}) {
     const Comparison found = compare(mesh, mesh, kFew);
     EXPECT_NEAR(found.hausdorff, 0, 1e-14);
@@ -71,7 +71,7 @@ TEST(compare, identical_meshes_are_at_no_distance) {
   }
 }
 
-TEST(compare, a_shifted_plane_is_as_far_as_it_was_shifted) {
+TEST(Compare, DistanceOfAShiftedPlaneIsTheShift) {
   const Comparison found = compare(square(0), square(0.25F));
   EXPECT_DOUBLE_EQ(found.hausdorff, 0.25);
   EXPECT_NEAR(found.rms, 0.25, 1e-12);
@@ -83,7 +83,7 @@ TEST(compare, a_shifted_plane_is_as_far_as_it_was_shifted) {
   EXPECT_DOUBLE_EQ(found.normal_degrees_mean, 0);
 }
 
-TEST(compare, a_cube_in_a_larger_one) {
+TEST(Compare, NestedCubesHaveTheExactDistances) {
   // The large cube's corner is sqrt(3) from the small one's; from within, every face is 1 away.
   const Comparison found = compare(cube(2), cube(4, {-1, -1, -1}));
   EXPECT_DOUBLE_EQ(found.max_forward, 1);
@@ -97,7 +97,7 @@ TEST(compare, a_cube_in_a_larger_one) {
   EXPECT_NEAR(found.rms_backward, std::sqrt(4.0 / 3.0), 1e-3);
 }
 
-TEST(compare, a_moved_cube) {
+TEST(Compare, ShiftedCubeHasTheExactDistances) {
   const Comparison found = compare(cube(1), cube(1, {0.25F, 0, 0}));
   EXPECT_DOUBLE_EQ(found.hausdorff, 0.25);
   // Mean squares over one mesh's faces: the left one 1/16; the four around it (1/4)^3 / 3 each; the right
@@ -107,7 +107,7 @@ TEST(compare, a_moved_cube) {
   EXPECT_NEAR(found.rms, std::sqrt((left + around + right) / 6), 1e-4);
 }
 
-TEST(compare, spheres_are_as_far_as_their_radii_differ) {
+TEST(Compare, ConcentricSpheresDifferByTheirRadii) {
   const double inner = 1, outer = 1.5;
   const Comparison found = compare(sphere(inner, 4), sphere(outer, 4), kFew);
   // Faces of level 4 sag by less than 0.2 % of the radius.
@@ -116,7 +116,7 @@ TEST(compare, spheres_are_as_far_as_their_radii_differ) {
   EXPECT_LT(found.normal_degrees_mean, 3);
 }
 
-TEST(compare, a_turned_plane_has_the_angle_it_was_turned_by) {
+TEST(Compare, NormalAngleOfATurnedPlaneIsTheTurn) {
   const float c = std::sqrt(0.75F);
   const TriangleMesh turned{{{0, 0, 0}, {c, 0, 0.5F}, {c, 1, 0.5F}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   EXPECT_NEAR(compare(square(0), turned, kFew).normal_degrees_mean, 30, 1e-3);
@@ -125,7 +125,7 @@ TEST(compare, a_turned_plane_has_the_angle_it_was_turned_by) {
   EXPECT_NEAR(compare(square(0), flipped, kFew).normal_degrees_mean, 180, 1e-4);
 }
 
-TEST(compare, directions_differ_where_one_mesh_lacks_a_part) {
+TEST(Compare, DirectionsDifferWhereAComponentIsMissing) {
   TriangleMesh both = square(0);
   both.positions.insert(both.positions.end(), {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}});
   both.triangles.push_back({4, 5, 6});
@@ -135,7 +135,7 @@ TEST(compare, directions_differ_where_one_mesh_lacks_a_part) {
   EXPECT_DOUBLE_EQ(compare(both, square(0), kFew).max_forward, 5);
 }
 
-TEST(compare, the_same_input_gives_the_same_result) {
+TEST(Compare, ResultIsDeterministicAndSymmetric) {
   const TriangleMesh a = sphere(1, 3), b = cube(1.5F, {-0.75F, -0.75F, -0.75F});
   const Comparison first = compare(a, b, kFew), second = compare(a, b, kFew);
   EXPECT_EQ(first.hausdorff, second.hausdorff);
@@ -146,7 +146,7 @@ TEST(compare, the_same_input_gives_the_same_result) {
   EXPECT_EQ(first.hausdorff, swapped.hausdorff);
 }
 
-TEST(compare, unused_positions_do_not_count) {
+TEST(Compare, UnusedPositionsAreIgnored) {
   TriangleMesh mesh = square(0);
   mesh.positions.push_back({100, 100, 100});
   mesh.positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
@@ -155,7 +155,7 @@ TEST(compare, unused_positions_do_not_count) {
   EXPECT_DOUBLE_EQ(found.diagonal, std::sqrt(2.0));
 }
 
-TEST(compare, degenerate_triangles_are_segments_and_points) {
+TEST(Compare, DegenerateTrianglesAreSegmentsAndPoints) {
   const TriangleMesh segment{{{0, 0, 0}, {1, 0, 0}, {0.5F, 0, 0}}, {{0, 1, 2}}};
   const TriangleMesh point{{{0, 3, 0}}, {{0, 0, 0}}};
   const Comparison found = compare(segment, point);
@@ -172,7 +172,7 @@ TEST(compare, degenerate_triangles_are_segments_and_points) {
   EXPECT_NEAR(same.normal_degrees_mean, 0, 1e-4);
 }
 
-TEST(compare, extreme_sizes_stay_finite) {
+TEST(Compare, ExtremeSizesStayFinite) {
   for (const float size : {1e-38F, 1e-30F, 1e30F, 3e38F}) {
     const Comparison found = compare(cube(size), cube(size, {size * 0.0625F, 0, 0}), {.samples = 100});
     EXPECT_NEAR(found.hausdorff / size, 0.0625, 1e-6);
@@ -181,13 +181,13 @@ TEST(compare, extreme_sizes_stay_finite) {
   }
 }
 
-TEST(compare, without_samples_the_vertices_are_compared) {
+TEST(Compare, ZeroSamplesCompareVertices) {
   const Comparison found = compare(square(0), square(2), {.samples = 0});
   EXPECT_DOUBLE_EQ(found.hausdorff, 2);
   EXPECT_DOUBLE_EQ(found.rms, 2);
 }
 
-TEST(compare, refuses_what_it_cannot_compare) {
+TEST(Compare, EmptyAndInvalidMeshesAreRefused) {
   const TriangleMesh empty;
   TriangleMesh out_of_range = square(0), not_finite = square(0);
   out_of_range.triangles[1][2] = 4;
@@ -206,7 +206,7 @@ TEST(compare, refuses_what_it_cannot_compare) {
 class Random {
  public:
   Vec3d point() { return {uniform_(engine_), uniform_(engine_), uniform_(engine_)}; }
-  /// Now and then degenerate: two corners alike, all alike, or all on a line.
+  /// Returns a random triangle, in some cases degenerate: two or three equal corners, or collinear ones.
   TriangleCorners triangle() {
     const Vec3d a = point(), b = point(), c = point();
     switch (engine_() % 8) {
@@ -226,7 +226,7 @@ class Random {
   std::uniform_real_distribution<double> uniform_{-1, 1};
 };
 
-/// Over a grid of the triangle's own coordinates: never less than the exact distance, and close to it.
+/// Returns the distance to a grid of barycentric points: an upper bound of the exact distance, close to it.
 double distance_by_grid(Vec3d point, const TriangleCorners& t) {
   constexpr int kSteps = 200;
   double least = std::numeric_limits<double>::infinity();
@@ -237,7 +237,7 @@ double distance_by_grid(Vec3d point, const TriangleCorners& t) {
   return least;
 }
 
-TEST(surface_distance, agrees_with_a_grid_over_the_triangle) {
+TEST(CompareDistance, TriangleDistanceMatchesAGridOfPoints) {
   Random random;
   for (int i = 0; i < 1000; ++i) {
     const TriangleCorners triangle = random.triangle();
@@ -249,12 +249,12 @@ TEST(surface_distance, agrees_with_a_grid_over_the_triangle) {
   }
 }
 
-TEST(surface_distance, equals_brute_force) {
+TEST(CompareDistance, DistanceEqualsALinearSearch) {
   Random random;
   for (const int count : {1, 2, 4, 5, 9, 100, 1000}) {
     std::vector<TriangleCorners> triangles;
     for (int i = 0; i < count; ++i) {
-      // Small ones, so that the tree has something to leave out.
+      // Small triangles, so that the tree prunes nodes.
       const Vec3d centre = random.point();
       const auto [a, b, c] = random.triangle();
       triangles.push_back({centre + 0.2 * a, centre + 0.2 * b, centre + 0.2 * c});
@@ -270,12 +270,12 @@ TEST(surface_distance, equals_brute_force) {
   }
 }
 
-TEST(surface_distance, many_triangles_in_one_place) {
+TEST(CompareDistance, ManyEqualTrianglesAreAccepted) {
   const std::vector<TriangleCorners> triangles(10'000, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   EXPECT_DOUBLE_EQ(SurfaceDistance(triangles).distance({0.25, 0.25, 3}), 3);
 }
 
-TEST(surface_distance, at_an_edge_the_face_that_agrees_counts) {
+TEST(CompareDistance, FaceOfTheMostSimilarNormalIsNearestAtAnEdge) {
   // Two faces at a right angle meet in the x axis; the point is nearest to the edge itself.
   const std::vector<TriangleCorners> triangles{{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}};
   const SurfaceDistance surface(triangles);

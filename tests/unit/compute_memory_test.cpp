@@ -17,15 +17,15 @@
 #include "tests/support/gltf_scene.h"
 #include "tests/support/shapes.h"
 
-// `max_compute_bytes` is a promise in both directions: what it lets through needs no more, and it lets through what
-// needs half of it. Each case runs in a process of its own that may have just so much memory.
+// `max_compute_bytes` bounds both ways: admitted requests need no more memory, and requests that need half of it are
+// admitted. Each case runs in a process of its own with this memory limit.
 
 namespace papilio::proto {
 namespace {
 
 using namespace test;
 
-constexpr uint64_t slack = 12 << 20;  ///< for what does not grow with the mesh
+constexpr uint64_t slack = 12 << 20;  ///< bytes that do not depend on the mesh
 
 enum Outcome : int { fits, refused, runs_out, fails };
 
@@ -63,7 +63,7 @@ Outcome refine_within(const std::string& bytes, const QueryFields& fields, uint6
   return WIFEXITED(status) ? static_cast<Outcome>(WEXITSTATUS(status)) : fails;
 }
 
-/// The lowest limit, to an eighth, that lets the request through.
+/// Returns the lowest limit that admits the request, within an eighth.
 uint64_t lowest_limit(const std::string& bytes, const QueryFields& fields) {
   constexpr uint64_t plenty = uint64_t{8} << 30;
   uint64_t limit = 32 << 20;
@@ -85,7 +85,7 @@ FormattedMesh with_values(const TriangleMesh& plain, int attributes, uint32_t co
 
 std::string encoded(const FormattedMesh& mesh) { return write_draco_exact(mesh, mesh.format); }
 
-/// A scene of one mesh with positions, or with all that a skinned and textured one has.
+/// A scene of one mesh with positions, or with all attributes of a skinned and textured mesh.
 std::string scene_of(const TriangleMesh& mesh, bool skinned) {
   GltfScene scene;
   scene.add_mesh(mesh);
@@ -156,12 +156,12 @@ void expect_kept_and_used(const std::vector<Case>& all) {
   }
 }
 
-TEST(ComputeMemory, LimitIsNeitherPassedNorHalfUnused) {
+TEST(ComputeMemory, MemoryIsBetweenHalfTheLimitAndTheLimit) {
   if (server::is_sanitized) GTEST_SKIP() << "sanitizers reserve terabytes";
   expect_kept_and_used(cases());
 }
 
-TEST(ComputeMemory, LimitOfAScenesMemoryIsNeitherPassedNorHalfUnused) {
+TEST(ComputeMemory, SceneMemoryIsBetweenHalfTheLimitAndTheLimit) {
   if (server::is_sanitized) GTEST_SKIP() << "sanitizers reserve terabytes";
   expect_kept_and_used(scene_cases());
 }

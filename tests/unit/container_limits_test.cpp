@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of control groups, as the kernel would show it.
+/// A folder of control groups in the kernel's format.
 class ContainerLimitsTest : public testing::Test {
  protected:
   ContainerLimitsTest() {
@@ -29,12 +29,12 @@ class ContainerLimitsTest : public testing::Test {
   fs::path root_;
 };
 
-TEST_F(ContainerLimitsTest, NothingToReadIsNoLimit) {
+TEST_F(ContainerLimitsTest, UnreadableGroupsAreNoLimit) {
   EXPECT_FALSE(limits().cores);
   EXPECT_FALSE(limits().memory_bytes);
 }
 
-TEST_F(ContainerLimitsTest, Version2) {
+TEST_F(ContainerLimitsTest, LimitsOfVersion2AreRead) {
   write("membership", "0::/\n");
   write("groups/cpu.max", "150000 100000\n");
   write("groups/memory.max", "1073741824\n");
@@ -42,7 +42,7 @@ TEST_F(ContainerLimitsTest, Version2) {
   EXPECT_EQ(limits().memory_bytes, 1073741824U);
 }
 
-TEST_F(ContainerLimitsTest, Version2WithoutLimits) {
+TEST_F(ContainerLimitsTest, Version2MayHaveNoLimits) {
   write("membership", "0::/\n");
   write("groups/cpu.max", "max 100000\n");
   write("groups/memory.max", "max\n");
@@ -50,7 +50,7 @@ TEST_F(ContainerLimitsTest, Version2WithoutLimits) {
   EXPECT_FALSE(limits().memory_bytes);
 }
 
-TEST_F(ContainerLimitsTest, TheLeastOfAllGroupsAbove) {
+TEST_F(ContainerLimitsTest, LowestLimitOfAllAncestorsHolds) {
   write("membership", "0::/service/worker\n");
   write("groups/service/worker/memory.max", "max\n");
   write("groups/service/worker/cpu.max", "400000 100000\n");
@@ -60,7 +60,7 @@ TEST_F(ContainerLimitsTest, TheLeastOfAllGroupsAbove) {
   EXPECT_EQ(limits().memory_bytes, 5000000U);
 }
 
-TEST_F(ContainerLimitsTest, Version1) {
+TEST_F(ContainerLimitsTest, LimitsOfVersion1AreRead) {
   write("membership", "5:memory:/\n3:cpu,cpuacct:/\n1:name=systemd:/\nodd\n");
   write("groups/memory/memory.limit_in_bytes", "268435456\n");
   write("groups/cpu,cpuacct/cpu.cfs_quota_us", "300000\n");
@@ -69,7 +69,7 @@ TEST_F(ContainerLimitsTest, Version1) {
   EXPECT_EQ(limits().memory_bytes, 268435456U);
 }
 
-TEST_F(ContainerLimitsTest, Version1WithoutLimits) {
+TEST_F(ContainerLimitsTest, Version1MayHaveNoLimits) {
   write("membership", "5:memory:/\n3:cpu:/\n");
   write("groups/memory/memory.limit_in_bytes", "9223372036854771712\n");
   write("groups/cpu/cpu.cfs_quota_us", "-1\n");
@@ -78,13 +78,13 @@ TEST_F(ContainerLimitsTest, Version1WithoutLimits) {
   EXPECT_FALSE(limits().memory_bytes);
 }
 
-TEST_F(ContainerLimitsTest, APathOfTheHostLeadsToTheContainersRoot) {
+TEST_F(ContainerLimitsTest, HostPathFallsBackToTheContainersRoot) {
   write("membership", "5:memory:/host/path/of/this\n");
   write("groups/memory/memory.limit_in_bytes", "268435456\n");
   EXPECT_EQ(limits().memory_bytes, 268435456U);
 }
 
-TEST(UsableCores, AreThoseThatMayBeRunOnAndNoMoreThanTheLimit) {
+TEST(UsableCores, CoresAreBoundedByTheLimitAndTheHardware) {
   const int all = static_cast<int>(std::thread::hardware_concurrency());
   EXPECT_EQ(usable_cores({}), all);
   EXPECT_EQ(usable_cores({.cores = 0.2, .memory_bytes = {}}), 1);

@@ -17,7 +17,7 @@ uint64_t data_limit() {
   return limit.rlim_cur;
 }
 
-// Each runs in a process of its own (CTest), so the bound is gone afterwards; in one process the next test has it too.
+// CTest runs each test in a process of its own; within one process the bound would affect later tests.
 class ContainerMemory : public testing::Test {
  protected:
   void SetUp() override {
@@ -30,14 +30,14 @@ class ContainerMemory : public testing::Test {
   rlimit before_{};
 };
 
-TEST_F(ContainerMemory, BoundsWhatIsWrittenTo) {
+TEST_F(ContainerMemory, WritableMemoryIsBounded) {
   bound_by_container(1600ULL << 20);
   EXPECT_EQ(data_limit(), 1500ULL << 20);
   EXPECT_THROW(std::vector<char>(1600ULL << 20), std::bad_alloc);
   EXPECT_NO_THROW(std::vector<char>(100ULL << 20));
 }
 
-TEST_F(ContainerMemory, IsLargerByTheStacksOfThreads) {
+TEST_F(ContainerMemory, BoundGrowsByTheStacksOfThreads) {
   bound_by_container(1600ULL << 20);
   const uint64_t alone = data_limit();
   {
@@ -48,7 +48,7 @@ TEST_F(ContainerMemory, IsLargerByTheStacksOfThreads) {
   EXPECT_EQ(data_limit(), alone);
 }
 
-TEST(StackSpace, ChangesNothingWhereThereIsNoBound) {
+TEST(StackSpace, UnboundedMemoryIsUnchanged) {
   const uint64_t before = data_limit();
   const StackSpace one;
   EXPECT_EQ(data_limit(), before);

@@ -2,22 +2,22 @@
 #include "tests/support/mesh_file_fixture.h"
 #include "tests/support/shapes.h"
 
-// The format of bytes without a name.
+// Detection of a file's format from its bytes.
 
 namespace papilio::client {
 namespace {
 
-using ContentFormat = mesh_file;
+using ContentFormat = MeshFileTest;
 
 Format format_of_bytes(std::string_view bytes) { return format_of_content("standard input", bytes); }
 
-TEST_F(ContentFormat, IsThatOfEveryFileThatIsWritten) {
+TEST_F(ContentFormat, EveryWrittenFileIsRecognized) {
   for (const Format format : kFormats)
     EXPECT_EQ(format_of_bytes(written(format, untidy())), format) << extension_of(format);
   EXPECT_EQ(format_of_bytes(test::encode_with_draco(test::icosahedron(), test::Method::edgebreaker)), Format::drc);
 }
 
-TEST_F(ContentFormat, IsFoundBehindCommentsAndByteOrderMarks) {
+TEST_F(ContentFormat, CommentsAndByteOrderMarksAreSkipped) {
   const std::string mark = "\xef\xbb\xbf";
   for (const std::string& before : {std::string(), mark, std::string("# by hand\n\n"), mark + "#\n"}) {
     EXPECT_EQ(format_of_bytes(before + "o thing\n" + std::string(kThree) + "f 1 2 3\n"), Format::obj) << before;
@@ -29,7 +29,7 @@ TEST_F(ContentFormat, IsFoundBehindCommentsAndByteOrderMarks) {
   EXPECT_EQ(format_of_bytes(binary_stl(tetrahedron(), "solid")), Format::stl);
 }
 
-TEST_F(ContentFormat, NothingElseIsTaken) {
+TEST_F(ContentFormat, OtherBytesAreRefused) {
   const std::string stl = binary_stl(tetrahedron(), "");
   for (const std::string& bytes : {std::string("hello\n"), std::string("<html><body>1 2</body></html>"),
                                    std::string("\n"), std::string("5\n"), stl.substr(0, 200), std::string("v\0 0", 4)})

@@ -26,7 +26,7 @@ Mesh with_creases(const TriangleMesh& triangles, double degrees) {
   return mesh;
 }
 
-TEST(Crease, AreTheEdgesSharperThanTheAngle) {
+TEST(Crease, EdgesSharperThanTheAngleAreCreases) {
   EXPECT_EQ(count_creases(with_creases(cube(), 60)), 12U);
   EXPECT_EQ(count_creases(with_creases(cube(), 89.9)), 12U);
   EXPECT_EQ(count_creases(with_creases(cube(), 90.1)), 0U);
@@ -52,11 +52,11 @@ TEST(Crease, CubeStaysACube) {
   }
 }
 
-TEST(Crease, CornersOfThreeStayPut) {
+TEST(Crease, CornersOfThreeCreasesDoNotMove) {
   const Mesh coarse = build_mesh(cube());
   const Mesh fine = refine(coarse, {.levels = 4, .crease_angle = 60}).mesh;
   EXPECT_TRUE(std::equal(coarse.positions.begin(), coarse.positions.end(), fine.positions.begin()));
-  // And each crease is straight up to its corner: the curve ends there.
+  // Each crease is straight up to its corner, where the curve ends.
   for (uint32_t h = 0; h < fine.topology.half_edge_count(); ++h) {
     if (fine.topology.kind[fine.topology.edge[h]] != EdgeKind::crease) continue;
     const Vec3f u = fine.positions[fine.topology.tip(h)] - fine.positions[fine.topology.origin[h]];
@@ -65,7 +65,7 @@ TEST(Crease, CornersOfThreeStayPut) {
   }
 }
 
-TEST(Crease, RimStaysInItsPlaneAndRound) {
+TEST(Crease, RimStaysPlanarAndRound) {
   const Mesh fine =
       refine(build_mesh(square_ring(24, 0.6F, 1, 0.5F)), {.levels = 3, .tension = Tension::off, .crease_angle = 60})
           .mesh;
@@ -89,7 +89,7 @@ TriangleMesh folded_sheet() {
   return sheet;
 }
 
-TEST(Crease, DartIsAnOrdinaryVertexToItsOtherEdges) {
+TEST(Crease, AdaptiveResultsAtDartsAreConsistentAndFinite) {
   Mesh mesh = build_mesh(folded_sheet());
   mark_creases(mesh, 40);
   ASSERT_GT(count_creases(mesh), 0U);
@@ -103,7 +103,7 @@ TEST(Crease, DartIsAnOrdinaryVertexToItsOtherEdges) {
 }
 
 TEST(Crease, DartReproducesLinearFunctions) {
-  // A flat sheet with creases put into it by hand: everything stays where the grid says.
+  // A flat sheet with creases marked by hand: all vertices stay at the grid's positions.
   Mesh mesh = build_mesh(grid(6, 6));
   const auto make_crease = [&](Vec3f a, Vec3f b) {
     for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
@@ -126,9 +126,9 @@ TEST(Crease, DartReproducesLinearFunctions) {
   }
 }
 
-TEST(Crease, FlatSheetHasNoneAtAnyAngle) {
+TEST(Crease, FlatSheetHasNoCreasesAtAnyAngle) {
   TriangleMesh sheet = grid(20, 20);
-  for (Vec3f& p : sheet.positions) {  // rotated and scaled, so that normals are rounded each in its own way
+  for (Vec3f& p : sheet.positions) {  // rotated and scaled, so that normals round differently
     const float x = 0.137F * p.x;
     const float y = 0.291F * p.y;
     p = {0.6F * x - 0.3F * y, 0.5F * x + 0.7F * y, 0.2F * x + 0.55F * y};
@@ -137,7 +137,7 @@ TEST(Crease, FlatSheetHasNoneAtAnyAngle) {
 }
 
 TEST(Crease, FanOfADartEndsWhereFacesAreMissing) {
-  // Six of twelve faces are held, as at the border of a red-green level: nothing lies beyond the first and last spoke.
+  // Six of twelve faces are present, as at the border of a red-green level: the fan is open.
   Mesh mesh = build_mesh(fan(6, false));
   Topology& topology = mesh.topology;
   for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {

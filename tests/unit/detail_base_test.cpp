@@ -14,7 +14,7 @@
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 
-// What the encoder of detail is made of, part by part.
+// Parts of the encoder of detail.
 
 namespace papilio {
 namespace {
@@ -29,7 +29,7 @@ TriangleMesh sphere(int levels) {
   return mesh;
 }
 
-TEST(SurfaceTree, FindsTheNearestPoint) {
+TEST(SurfaceTree, NearestPointEqualsALinearSearch) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> place(-2, 2);
   const TriangleMesh torus = test::torus(12, 8);
@@ -48,7 +48,7 @@ TEST(SurfaceTree, FindsTheNearestPoint) {
   }
 }
 
-TEST(SurfaceTree, LooksOnlyAtFacesOfAboutTheNormal) {
+TEST(SurfaceTree, NearestPointIsOnAFaceOfASimilarNormal) {
   const SurfaceTree tree(test::box({4, 4, 4}, {1, 1, 1}));
   const Vec3d near_bottom{0.5, 0.5, 0.1};
   EXPECT_NEAR(tree.nearest(near_bottom).point.z, 0, 1e-12);
@@ -56,7 +56,7 @@ TEST(SurfaceTree, LooksOnlyAtFacesOfAboutTheNormal) {
   EXPECT_NEAR(tree.nearest(near_bottom, 10, {1, 0, 0}).point.x, 1, 1e-12);
 }
 
-TEST(SurfaceDistance, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
+TEST(SurfaceDistance, ConcentricSpheresDifferByTheirRadii) {
   const TriangleMesh one = sphere(5);
   TriangleMesh other = one;
   for (Vec3f& p : other.positions) p = 1.1F * p;
@@ -65,7 +65,7 @@ TEST(SurfaceDistance, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
   EXPECT_NEAR(found.largest, 0.1, 3e-3);
 }
 
-TEST(SurfaceDistance, SeesWhatEitherSurfaceLacks) {
+TEST(SurfaceDistance, DistanceIsSymmetricWhereAComponentIsMissing) {
   const TriangleMesh one = test::cube();
   const TriangleMesh two = test::join(one, one, 5);
   const double largest = surface_distance(SurfaceTree(one), SurfaceTree(two), 2000).largest;
@@ -73,7 +73,7 @@ TEST(SurfaceDistance, SeesWhatEitherSurfaceLacks) {
   EXPECT_DOUBLE_EQ(largest, surface_distance(SurfaceTree(two), SurfaceTree(one), 2000).largest);
 }
 
-TEST(SurfaceDistance, OfVerticesIsThatOfASpikeWhichSamplesMiss) {
+TEST(SurfaceDistance, VertexDistanceIncludesSpikesBetweenSamples) {
   const TriangleMesh round = sphere(4);
   TriangleMesh spiked = round;
   spiked.positions[100] = 1.5F * spiked.positions[100];
@@ -83,7 +83,7 @@ TEST(SurfaceDistance, OfVerticesIsThatOfASpikeWhichSamplesMiss) {
   EXPECT_DOUBLE_EQ(vertex_distance(one, other), vertex_distance(other, one));
 }
 
-TEST(Folds, OfAThinPartAreNotItsOtherSheet) {
+TEST(Folds, OppositeSheetOfAThinPartIsNoFold) {
   const TriangleMesh sheet = test::grid(9, 9);
   TriangleMesh lower = test::join(sheet, sheet, 0);
   for (size_t i = sheet.positions.size(); i < lower.positions.size(); ++i) lower.positions[i].z -= 0.01F;
@@ -98,7 +98,7 @@ TEST(Folds, OfAThinPartAreNotItsOtherSheet) {
   EXPECT_EQ(count_folds(OriginalSurface(build_mesh(sheet)), SurfaceTree(moved), 0.02), 1U);
 }
 
-TEST(SurfaceWalk, ArrivesWhereTheLineMeetsTheSheet) {
+TEST(SurfaceWalk, WalkEndsAtTheIntersection) {
   const Mesh mesh = build_mesh(sphere(4));
   const SurfaceTree tree(mesh.triangles());
   std::mt19937 random(3);
@@ -117,13 +117,13 @@ TEST(SurfaceWalk, ArrivesWhereTheLineMeetsTheSheet) {
   }
 }
 
-TEST(SurfaceWalk, GivesUpWhereTheSurfaceTurnsAway) {
+TEST(SurfaceWalk, WalkFailsWithoutAForwardIntersection) {
   const Mesh mesh = build_mesh(sphere(3));
   const SurfaceTree tree(mesh.triangles());
   const uint32_t top = tree.nearest({0, 0, 2}).face;
   EXPECT_TRUE(walk_to_line(mesh, top, {0.5, 0, 0}, {0, 0, 1}));
   EXPECT_FALSE(walk_to_line(mesh, top, {1.5, 0, 0}, {0, 0, 1})) << "the line passes the sphere";
-  EXPECT_FALSE(walk_to_line(mesh, top, {0.5, 0, 0}, {0, 0, -1})) << "the face looks the other way";
+  EXPECT_FALSE(walk_to_line(mesh, top, {0.5, 0, 0}, {0, 0, -1})) << "the face has the opposite normal";
 }
 
 class Collapses : public ::testing::TestWithParam<const char*> {
@@ -137,7 +137,7 @@ class Collapses : public ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(Collapses, KeepTheTopologyAndTheOriginalsVertices) {
+TEST_P(Collapses, CollapsesKeepTheTopologyAndVerticesOfTheOriginal) {
   const Mesh original = build_mesh(shape());
   CollapseSequence sequence(original);
   for (const uint32_t faces : {800U, 200U, 100U, 0U}) {
@@ -157,12 +157,12 @@ TEST_P(Collapses, KeepTheTopologyAndTheOriginalsVertices) {
   }
 }
 
-TEST_P(Collapses, LiftVerticesToThemselvesAndInnerPointsOneToOne) {
+TEST_P(Collapses, LiftIsABijectionThatKeepsVertices) {
   const OriginalSurface original(build_mesh(shape()));
   CollapseSequence sequence(original.mesh());
   sequence.collapse_to(150);
   const BaseMesh base = sequence.base();
-  // At the corners of a face its own vertices.
+  // Corners of a face map to its vertices.
   std::vector<SurfacePlace> corners;
   for (const uint32_t face : base.face)
     for (const Vec3d weights : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) corners.push_back({face, weights});
@@ -171,7 +171,7 @@ TEST_P(Collapses, LiftVerticesToThemselvesAndInnerPointsOneToOne) {
     const uint32_t v = base.triangles.triangles[i / 3][i % 3];
     EXPECT_LT(length(original.point(corners[i]) - to_double(base.triangles.positions[v])), 1e-5);
   }
-  // Dyadic points of the base make a surface that lies on the original and covers it.
+  // Dyadic points of the base form a surface on the original that covers it.
   constexpr int levels = 4;
   const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, levels, {});
   DetailLevel level(lifted.mesh.topology);
@@ -195,7 +195,7 @@ TEST_P(Collapses, LiftVerticesToThemselvesAndInnerPointsOneToOne) {
 INSTANTIATE_TEST_SUITE_P(Shapes, Collapses, ::testing::Values("sphere", "torus", "box", "two_components"),
                          [](const auto& shape) { return std::string(shape.param); });
 
-TEST(BaseLift, RefusesABaseThatIsNotTheOneGiven) {
+TEST(BaseLift, OtherBaseIsRefused) {
   const OriginalSurface original(build_mesh(sphere(3)));
   CollapseSequence sequence(original.mesh());
   sequence.collapse_to(100);

@@ -10,7 +10,7 @@
 namespace papilio {
 namespace {
 
-TEST(BinaryCoder, ReturnsTheBitsWhateverTheirProbabilities) {
+TEST(BinaryCoder, BitsRoundTripAtAnyProbability) {
   std::mt19937 random(1);
   for (int round = 0; round < 200; ++round) {
     std::vector<std::pair<bool, uint32_t>> bits;
@@ -26,7 +26,7 @@ TEST(BinaryCoder, ReturnsTheBitsWhateverTheirProbabilities) {
   }
 }
 
-TEST(BinaryCoder, TakesTheEntropyAndAFewBytes) {
+TEST(BinaryCoder, SizeIsTheEntropyPlusAFewBytes) {
   std::mt19937 random(2);
   constexpr uint32_t count = 100'000;
   constexpr uint32_t probability = 65536 / 100;
@@ -36,9 +36,9 @@ TEST(BinaryCoder, TakesTheEntropyAndAFewBytes) {
   EXPECT_NEAR(static_cast<double>(encoder.finish().size()), entropy * count / 8, 0.03 * entropy * count / 8);
 }
 
-TEST(BinaryCoder, NothingTakesNoBytes) { EXPECT_TRUE(BinaryEncoder().finish().empty()); }
+TEST(BinaryCoder, NoBitsTakeNoBytes) { EXPECT_TRUE(BinaryEncoder().finish().empty()); }
 
-TEST(MixedBit, SquashInvertsStretchAndBothAscend) {
+TEST(MixedBit, SquashIsTheInverseOfStretchAndBothAreMonotone) {
   for (uint32_t p = 64; p < 65536 - 64; p += 16) EXPECT_NEAR(squash(stretch(p)), p, 8 + p / 128.0) << p;
   for (int32_t x = -4000; x < 4000; ++x) EXPECT_LE(squash(x), squash(x + 1));
   EXPECT_EQ(squash(0), 32768U);
@@ -54,7 +54,7 @@ TEST(MixedBit, ModelsLearnTheShareOfOnes) {
   EXPECT_NEAR(model.probability(), 6554, 1600);
 }
 
-TEST(MixedBit, MixerTrustsTheModelThatKnows) {
+TEST(MixedBit, MixerFavoursTheBetterModel) {
   BitMixer<2> mixer(1);
   BitModel knows, knows_not;
   for (int i = 0; i < 400; ++i) knows.update(true);
@@ -68,7 +68,7 @@ TEST(MixedBit, MixerTrustsTheModelThatKnows) {
   EXPECT_GT(probability, 65000U);
 }
 
-/// Contexts as wild as hostile streams make them.
+/// Random contexts, as in hostile streams.
 ResidualContext random_context(std::mt19937& random) {
   ResidualContext c;
   c.level = random() % 11;
@@ -92,7 +92,7 @@ int32_t random_residual(std::mt19937& random) {
   return random() % 2 == 0 ? largest_residual : -largest_residual;
 }
 
-TEST(ResidualModels, DecoderReturnsWhatWasCoded) {
+TEST(ResidualModels, ResidualsRoundTrip) {
   std::mt19937 random(4);
   struct Coded {
     ResidualContext context;
@@ -129,7 +129,7 @@ TEST(ResidualModels, DecoderReturnsWhatWasCoded) {
   }
 }
 
-TEST(ResidualModels, AnyBytesAreSomeResiduals) {
+TEST(ResidualModels, AnyBytesDecodeToResiduals) {
   std::mt19937 random(5);
   for (int round = 0; round < 50; ++round) {
     std::vector<uint8_t> bytes(random() % 200);
@@ -145,7 +145,7 @@ TEST(ResidualModels, AnyBytesAreSomeResiduals) {
   }
 }
 
-TEST(ResidualModels, ZerosCostNextToNothing) {
+TEST(ResidualModels, ZerosTakeAlmostNoBytes) {
   BinaryEncoder encoder;
   ResidualModels models;
   for (int i = 0; i < 100'000; ++i)

@@ -25,10 +25,10 @@ using test::pack_levels;
 
 /// Step of texture coordinates, 1/2048 of that of colours.
 constexpr float colour_step = 1.0F / 2048;
-/// At vertices: three quarters of a step.
+/// Largest error at vertices: three quarters of a step.
 constexpr double most_missed = 0.75;
 
-/// A colour that changes smoothly with the place.
+/// Returns a colour that is a smooth function of the position.
 std::array<double, 3> colour_at(Vec3d p) {
   return {std::round(128 + 100 * std::sin(3 * p.x)), std::round(128 + 100 * std::cos(2 * p.y)),
           std::round(128 + 60 * (p.z + p.x))};
@@ -64,19 +64,20 @@ TriangleMesh coloured_torus() { return coloured(test::torus(64, 32)); }
 
 DetailSource packed_levels_of_torus() { return pack_levels(coloured_torus(), {.texcoord_step = colour_step}); }
 
-TEST(DetailColours, AreThoseOfTheOriginalAtTheVertices) {
+TEST(DetailColours, DecodedColoursEqualTheOriginalsAtVertices) {
   const DetailSource source = packed_levels_of_torus();
   const TriangleMesh fine = decode_detail(source.base, source.levels);
   ASSERT_EQ(fine.attributes.size(), 1U);
   EXPECT_EQ(fine.positions.size(), build_mesh(fine).topology.vertex_count) << "no seams";
-  // Between its vertices the original has linear colours: a quarter of its longest edge's square times the curvature.
+  // Colours of the original are linear between vertices: error of a quarter of the squared longest edge times
+  // curvature.
   EXPECT_LT(largest_error(fine), most_missed + 4);
   size_t bytes = 0;
   for (const DetailStream& level : source.levels) bytes += level.texcoords.bytes.size();
   EXPECT_GT(bytes, 0U);
 }
 
-TEST(DetailColours, AreFinerWithASmallerStep) {
+TEST(DetailColours, SmallerStepLowersTheError) {
   const auto error_with = [](float texcoord_step) {
     const DetailSource source = pack_levels(coloured_torus(), {.texcoord_step = texcoord_step});
     return largest_error(decode_detail(source.base, source.levels));
@@ -84,7 +85,7 @@ TEST(DetailColours, AreFinerWithASmallerStep) {
   EXPECT_LT(error_with(colour_step), 0.5 * error_with(16 * colour_step));
 }
 
-TEST(DetailColours, OfOneColourTakeNoBytes) {
+TEST(DetailColours, OneColourTakesNoBytes) {
   TriangleMesh mesh = coloured_torus();
   std::ranges::fill(mesh.attributes[0].values, 77);
   const DetailSource source = pack_levels(mesh);
@@ -96,20 +97,20 @@ TEST(DetailColours, OfOneColourTakeNoBytes) {
   for (const double value : fine.attributes.at(0).values) EXPECT_NEAR(value, 77, 1e-3);
 }
 
-TEST(DetailColours, LieBesideTextureCoordinates) {
+TEST(DetailColours, ColoursLeaveTextureCoordinatesUnchanged) {
   const TriangleMesh tube = test::textured_tube(48, 16);
   const DetailSource both = pack_levels(coloured(tube));
   const TriangleMesh fine = decode_detail(both.base, both.levels);
   ASSERT_EQ(fine.attributes.size(), 2U);
   EXPECT_LT(largest_error(fine), most_missed + 4);
-  // The texture coordinates are those that there are without colours.
+  // Texture coordinates equal those packed without colours.
   const DetailSource alone = pack_levels(tube);
   const TriangleMesh uncoloured = decode_detail(alone.base, alone.levels);
   EXPECT_EQ(fine.attributes[0], uncoloured.attributes.at(0));
   EXPECT_EQ(fine.positions, uncoloured.positions);
 }
 
-TEST(DetailColours, OfRefinedLevelsAreThoseOfTheDecoder) {
+TEST(DetailColours, RefinedLevelsHaveTheDecodersColours) {
   for (const bool has_texcoords : {false, true}) {
     const DetailSource source = pack_levels(has_texcoords ? coloured(test::textured_tube(48, 16)) : coloured_torus());
     Mesh base = build_mesh(source.base.triangles);
@@ -133,7 +134,7 @@ TEST(DetailColours, OfRefinedLevelsAreThoseOfTheDecoder) {
   }
 }
 
-TEST(DetailColours, OfAnyBytesAreDecodedTheSame) {
+TEST(DetailColours, AnyBytesDecodeDeterministically) {
   std::mt19937 random(5);
   DetailSource source = packed_levels_of_torus();
   for (int i = 0; i < 20; ++i) {
@@ -147,7 +148,7 @@ TEST(DetailColours, OfAnyBytesAreDecodedTheSame) {
   }
 }
 
-TEST(DetailColours, BeyondTheLargestNumberAreRefused) {
+TEST(DetailColours, OverflowingColoursAreRefused) {
   DetailSource source = packed_levels_of_torus();
   source.levels[0].texcoords = {1e16F, {}};  // bits that are all 1
   EXPECT_THROW((void)decode_detail(source.base, source.levels), Error);

@@ -21,7 +21,7 @@
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
 
-// Boundaries and creases of an original: found, kept by collapses, coded.
+// Boundaries and creases of an original: detection, collapses and coding.
 
 namespace papilio {
 namespace {
@@ -42,7 +42,7 @@ CodedBase unchanged_base(const TriangleMesh& base) { return {base, 9 * base.posi
 
 size_t count(const Topology& t, EdgeKind kind) { return static_cast<size_t>(std::ranges::count(t.kind, kind)); }
 
-TEST(LinearStencils, AreTheRulesAtCurvesToo) {
+TEST(LinearStencils, StencilsEqualTheRulesAtCurves) {
   std::mt19937 random(1);
   size_t curves = 0;
   for (int round = 0; round < 150; ++round) {
@@ -74,7 +74,7 @@ TEST(LinearStencils, AreTheRulesAtCurvesToo) {
   EXPECT_GT(curves, 1000U);
 }
 
-TEST(SharpCurves, OfABoxAreItsEdgesAndCorners) {
+TEST(SharpCurves, BoxHasItsEdgesAndCorners) {
   Mesh mesh = build_mesh(test::box({6, 6, 6}, {1, 2, 3}));
   mark_sharp_curves(mesh);
   EXPECT_EQ(count(mesh.topology, EdgeKind::crease), 12U * 6);
@@ -83,14 +83,14 @@ TEST(SharpCurves, OfABoxAreItsEdgesAndCorners) {
   EXPECT_EQ(std::ranges::count(roles, CurveRole::inner), 12 * 5);
 }
 
-TEST(SharpCurves, OfATubeWithLidsAreItsRims) {
+TEST(SharpCurves, TubeWithLidsHasItsRims) {
   Mesh mesh = build_mesh(test::tube(48, 10, 2, true));
   mark_sharp_curves(mesh);
   EXPECT_EQ(count(mesh.topology, EdgeKind::crease), 2U * 48);
   EXPECT_TRUE(mesh.topology.shape.corners.empty());
 }
 
-TEST(SharpCurves, AreNotMadeOfNoise) {
+TEST(SharpCurves, NoiseMakesNoCurves) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> noise(-0.03F, 0.03F);
   TriangleMesh rough = test::torus(80, 40);
@@ -112,14 +112,14 @@ TEST(SharpCurves, AreNotMadeOfNoise) {
   EXPECT_EQ(count(mesh.topology, EdgeKind::crease), 0U);
 }
 
-TEST(SharpCurves, BoundariesOfASquareHaveItsCorners) {
+TEST(SharpCurves, BoundaryOfASquareHasFourCorners) {
   Mesh mesh = build_mesh(sheet(10));
   mark_sharp_curves(mesh);
   EXPECT_EQ(count(mesh.topology, EdgeKind::crease), 0U);
   EXPECT_EQ(mesh.topology.shape.corners.size(), 4U);
 }
 
-TEST(OriginalCurves, MeetAPlaneWhereTheCurveDoes) {
+TEST(OriginalCurves, MeetReturnsTheIntersectionWithAPlane) {
   Mesh mesh = build_mesh(test::tube(64, 8, 1, false));
   mark_sharp_curves(mesh);
   const OriginalCurves curves(mesh);
@@ -134,7 +134,7 @@ TEST(OriginalCurves, MeetAPlaneWhereTheCurveDoes) {
   EXPECT_FALSE(curves.meet(start.face, start.point, {0, 1.5, 0}, {0, 1, 0}, 100)) << "the plane misses the circle";
 }
 
-TEST(ManifoldSurface, PartsWhatTouches) {
+TEST(ManifoldSurface, TouchingFansAreSeparated) {
   // Two tetrahedra that share an edge, and one that touches at a vertex.
   TriangleMesh touching = test::tetrahedron();
   const TriangleMesh other = test::tetrahedron();
@@ -164,13 +164,28 @@ TEST(ManifoldSurface, PartsWhatTouches) {
   EXPECT_EQ(moved, 1U);
 }
 
-TEST(ManifoldSurface, PartsEdgesOfThreeFaces) {
+TEST(ManifoldSurface, EdgesOfThreeFacesAreSeparated) {
   const TriangleMesh three{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 1}, {0, -1, -1}},
                            .triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
   const ManifoldSurface parted = manifold_surface(three, 0.01);
   EXPECT_EQ(parted.parted, 2U);
   EXPECT_EQ(parted.mesh.topology.face_count(), 3U);
   EXPECT_EQ(count(parted.mesh.topology, EdgeKind::boundary), 9U);
+}
+
+TEST(ManifoldSurface, FacesBackToBackAreSeparated) {
+  // A two-sided leaf: its boundary edges have two faces, its diagonal four.
+  const TriangleMesh leaf{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2F}, {0, 1, 0}},
+                          .triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
+  const Mesh parted = manifold_surface(leaf, 0.01).mesh;
+  EXPECT_EQ(parted.topology.face_count(), 4U);
+  EXPECT_EQ(parted.topology.vertex_count, 12U);
+  EXPECT_EQ(count(parted.topology, EdgeKind::boundary), 12U);
+  for (const Vec3f p : parted.positions) {
+    float least = 1;
+    for (const Vec3f q : leaf.positions) least = std::min(least, length(p - q));
+    EXPECT_LE(least, 0.0101F);
+  }
 }
 
 class CurvedCollapses : public ::testing::TestWithParam<const char*> {
@@ -186,7 +201,7 @@ class CurvedCollapses : public ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(CurvedCollapses, KeepTopologyCurvesAndCorners) {
+TEST_P(CurvedCollapses, CollapsesKeepTopologyCurvesAndCorners) {
   const Mesh mesh = original();
   CollapseSequence sequence(mesh);
   for (const uint32_t faces : {400U, 100U, 40U, 0U}) {
@@ -214,7 +229,7 @@ TEST_P(CurvedCollapses, KeepTopologyCurvesAndCorners) {
   }
 }
 
-TEST_P(CurvedCollapses, LiftCurvesToCurvesAndCoverTheOriginal) {
+TEST_P(CurvedCollapses, LiftMapsCurvesToCurvesAndCoversTheOriginal) {
   const OriginalSurface surface(original());
   CollapseSequence sequence(surface.mesh());
   sequence.collapse_to(120);
@@ -244,7 +259,7 @@ TEST_P(CurvedCollapses, LiftCurvesToCurvesAndCoverTheOriginal) {
   EXPECT_LT(distance.largest, 0.06 * surface.diagonal());
 }
 
-TEST_P(CurvedCollapses, AreCodedWithTheirCurves) {
+TEST_P(CurvedCollapses, BaseAndCurvesRoundTrip) {
   const OriginalSurface surface(original());
   CollapseSequence sequence(surface.mesh());
   sequence.collapse_to(100);
@@ -258,7 +273,7 @@ TEST_P(CurvedCollapses, AreCodedWithTheirCurves) {
   EXPECT_EQ(plain.shape.corners, marked.shape.corners);
 }
 
-TEST_P(CurvedCollapses, EncodeToTheDistanceThatIsStated) {
+TEST_P(CurvedCollapses, EncodingHasTheStatedDistance) {
   const TriangleMesh triangles = original().triangles();
   DetailOptions options;
   options.rms = 2e-3;
@@ -277,12 +292,12 @@ TEST_P(CurvedCollapses, EncodeToTheDistanceThatIsStated) {
 INSTANTIATE_TEST_SUITE_P(Shapes, CurvedCollapses, ::testing::Values("tube", "can", "sheet", "box"),
                          [](const auto& shape) { return std::string(shape.param); });
 
-TEST(BaseCurves, NoneTakeNoBytes) {
+TEST(BaseCurves, BaseWithoutCurvesTakesNoBytes) {
   EXPECT_TRUE(encode_base_curves(build_mesh(test::icosahedron()).topology).empty());
-  EXPECT_TRUE(encode_base_curves(build_mesh(test::fan(6, true)).topology).empty()) << "boundaries need none";
+  EXPECT_TRUE(encode_base_curves(build_mesh(test::fan(6, true)).topology).empty()) << "boundaries take no bytes";
 }
 
-TEST(BaseCurves, OfRandomMarksAreDecoded) {
+TEST(BaseCurves, RandomMarksRoundTrip) {
   std::mt19937 random(5);
   for (int round = 0; round < 100; ++round) {
     Mesh mesh = build_mesh(test::random_manifold(random));

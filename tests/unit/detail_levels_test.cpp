@@ -10,14 +10,14 @@
 #include "tests/support/streamed_detail.h"
 #include "tests/support/two_sided_distance.h"
 
-// Refinement of a base with detail: its levels are the decoder's, and everything chooses among their vertices.
+// Refinement of a base with detail: levels equal the decoder's, and adaptive results use their vertices.
 
 namespace papilio {
 namespace {
 
 constexpr int levels_of_detail = 4;
 
-/// Residuals without order, at all levels.
+/// Random residuals at all levels.
 DetailSource rough_detail() {
   return test::detail_of_residuals(test::icosahedron(), levels_of_detail, 0.1F, [](int l, uint32_t e, Vec3f) {
     return static_cast<int32_t>((e * 2654435761U + static_cast<uint32_t>(l)) >> 16U) % 5 - 2;
@@ -26,7 +26,7 @@ DetailSource rough_detail() {
 
 constexpr int levels_of_bump = 3;
 
-/// A smooth surface whose last level alone has a bump, at the highest x.
+/// A smooth surface with a bump at the highest x, only in its last level.
 DetailSource detail_with_late_bump() {
   const TriangleMesh base = test::torus(40, 20);
   const float farthest = bounding_box(base.positions).max.x;
@@ -72,7 +72,7 @@ Options view_options(double error_pixels) {
   return options;
 }
 
-TEST(DetailLevels, UniformLevelsAreThoseOfTheDecoder) {
+TEST(DetailLevels, UniformLevelsEqualTheDecoders) {
   const DetailSource source = rough_detail();
   for (int levels = 0; levels <= levels_of_detail; ++levels)
     for (const bool edges : {false, true})
@@ -112,7 +112,7 @@ DetailSource encoded(const TriangleMesh& original, double rms) {
   return {std::move(made.base), std::move(made.levels)};
 }
 
-TEST(DetailLevels, BoundariesAndCreasesAreThoseOfTheDecoder) {
+TEST(DetailLevels, BoundariesAndCreasesEqualTheDecoders) {
   TriangleMesh sheet = test::grid(16, 16);
   for (Vec3f& p : sheet.positions) p.z = 2 * std::sin(0.3F * p.x) * std::cos(0.2F * p.y);
   for (const auto& [original, kind] :
@@ -130,7 +130,7 @@ TEST(DetailLevels, BoundariesAndCreasesAreThoseOfTheDecoder) {
   }
 }
 
-TEST(DetailLevels, ATinyToleranceGivesTheDecodersLevelsWithoutError) {
+TEST(DetailLevels, TinyToleranceGivesTheDecodersFinestLevel) {
   const DetailSource source = rough_detail();
   Options options;
   options.levels = levels_of_detail;
@@ -140,7 +140,7 @@ TEST(DetailLevels, ATinyToleranceGivesTheDecodersLevelsWithoutError) {
   EXPECT_EQ(result.error, 0);
 }
 
-TEST(DetailLevels, TheErrorLeftIsWithinTheTolerance) {
+TEST(DetailLevels, ReportedErrorIsWithinTheTolerance) {
   for (const double tolerance : {0.02, 0.004, 0.0008, 0.0001}) {
     Options options;
     options.levels = levels_of_detail;
@@ -149,7 +149,7 @@ TEST(DetailLevels, TheErrorLeftIsWithinTheTolerance) {
   }
 }
 
-TEST(DetailLevels, FurtherLevelsSubdivideTheFinestDecodedOne) {
+TEST(DetailLevels, FurtherLevelsSubdivideTheFinestDecodedLevel) {
   const DetailSource source = rough_detail();
   for (const Tension tension : {Tension::off, Tension::soft}) {
     Options options;
@@ -168,7 +168,7 @@ TEST(DetailLevels, ToleranceHoldsAgainstTheFinestLevel) {
   for (const double tolerance : {0.03, 0.01, 0.003, 0.001}) expect_tolerance(rough_detail(), tolerance);
 }
 
-TEST(DetailLevels, ToleranceHoldsWhereTheLastLevelAloneMovesTheSurface) {
+TEST(DetailLevels, ToleranceHoldsWhereOnlyTheLastLevelMovesTheSurface) {
   for (const double tolerance : {0.02, 0.005}) expect_tolerance(detail_with_late_bump(), tolerance);
 }
 
@@ -183,7 +183,7 @@ TEST(DetailLevels, ToleranceHoldsAgainstLevelsBelowTheDetail) {
   expect_vertices_among(result.mesh, uniform.triangles());
 }
 
-TEST(DetailLevels, BudgetsChooseAmongTheDecodersVertices) {
+TEST(DetailLevels, BudgetResultsUseTheDecodersVertices) {
   const DetailSource source = rough_detail();
   const Mesh uniform = build_mesh(decoded(source, levels_of_detail));
   double before = 1;
@@ -201,7 +201,7 @@ TEST(DetailLevels, BudgetsChooseAmongTheDecodersVertices) {
   }
 }
 
-TEST(DetailLevels, FlatnessChoosesAmongTheDecodersVertices) {
+TEST(DetailLevels, FlatnessResultsUseTheDecodersVertices) {
   const DetailSource source = rough_detail();
   Options options;
   options.levels = levels_of_detail;
@@ -211,7 +211,7 @@ TEST(DetailLevels, FlatnessChoosesAmongTheDecodersVertices) {
   expect_vertices_among(mesh, decoded(source, levels_of_detail));
 }
 
-TEST(DetailLevels, AViewFindsABumpBelowFlatFaces) {
+TEST(DetailLevels, ViewRefinesABumpBelowFlatFaces) {
   const DetailSource bump = detail_with_late_bump();
   const TriangleMesh all = decoded(bump);
   const auto highest = [](std::span<const Vec3f> positions) { return bounding_box(positions).max.x; };
@@ -224,7 +224,7 @@ TEST(DetailLevels, AViewFindsABumpBelowFlatFaces) {
   EXPECT_NE(highest(refine(test::with_detail(bump), from_behind).mesh.positions), highest(all.positions));
 }
 
-TEST(DetailLevels, LimitsHoldForWhatIsDecoded) {
+TEST(DetailLevels, LimitsHoldForDecodedLevels) {
   Options options = view_options(0);
   options.view->fov_y = 1;  // shows few faces
   options.face_limit = 20U << 6U;
@@ -241,7 +241,7 @@ TEST(DetailLevels, LimitsHoldForWhatIsDecoded) {
   EXPECT_EQ(result.levels, 3);
 }
 
-TEST(DetailLevels, ADistanceThatCannotBeBoundedWithinTheLimitsIsRefused) {
+TEST(DetailLevels, ToleranceThatLimitsCannotVerifyIsRefused) {
   Options options;
   options.levels = levels_of_detail;
   options.tolerance = 0.05;
@@ -257,7 +257,7 @@ TEST(DetailLevels, ADistanceThatCannotBeBoundedWithinTheLimitsIsRefused) {
   EXPECT_LE(refine(test::with_detail(rough_detail()), options).error, options.tolerance);
 }
 
-TEST(DetailLevels, APreparedMeshGivesTheBitsOfOneThatIsNot) {
+TEST(DetailLevels, PreparedMeshesGiveBitIdenticalResults) {
   const DetailSource source = rough_detail();
   for (const uint64_t budget : {uint64_t{0}, uint64_t{200'000}, uint64_t{100} << 20}) {
     const PreparedMesh prepared(test::with_detail(source), {}, budget);
@@ -288,7 +288,7 @@ TEST(DetailLevels, ConcurrentRequestsShareOneDetail) {
     EXPECT_EQ(made[static_cast<size_t>(levels)], decoded(source, levels));
 }
 
-TEST(DetailLevels, ACancelledDecodingGoesOnLater) {
+TEST(DetailLevels, CancelledDecodingCanBeResumed) {
   const DetailSource source = rough_detail();
   const auto detail = stream_detail(source);
   int asked = 0;
@@ -298,7 +298,7 @@ TEST(DetailLevels, ACancelledDecodingGoesOnLater) {
       std::ranges::equal(detail->new_vertices(3), std::span(all.positions).last(detail->new_vertices(3).size())));
 }
 
-TEST(DetailLevels, DamagedDetailIsRefusedAgainAndAgain) {
+TEST(DetailLevels, DamagedDetailIsRefusedEveryTime) {
   DetailSource source = rough_detail();
   source.levels[1].step = 1e18F;
   source.levels[1].bytes.assign(40, 0xAA);
@@ -329,7 +329,7 @@ TEST(DetailLevels, DetailOfAnotherMeshIsRefused) {
   EXPECT_THROW(other_order.attach_detail(stream_detail(rough_detail())), Error);
 }
 
-TEST(DetailLevels, TheInPlaceSchemeIsRefused) {
+TEST(DetailLevels, InPlaceSchemeIsRefused) {
   Options options;
   options.scheme = Scheme::in_place;
   options.tolerance = 0.01;

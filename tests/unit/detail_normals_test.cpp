@@ -9,7 +9,7 @@
 #include "tests/support/lens.h"
 #include "tests/support/shapes.h"
 
-// Normals of an original: where they are split, and what its levels make of that.
+// Normals of an original: splits, and normals of the decoded levels.
 
 namespace papilio {
 namespace {
@@ -18,7 +18,7 @@ using test::Shading;
 
 constexpr double rim_angle = 30;  // degrees, less than that of edges that are sharp by themselves
 constexpr uint32_t lens_segments = 32, lens_rings = 10;
-/// Turn between the facets at the rim, whose normals lie half a ring inside: the normals of the decoded surface.
+/// Angle between the facets at the rim of the decoded surface; their normals are half a ring inside.
 constexpr double facet_angle = rim_angle + (180 - rim_angle) / 2 / lens_rings;
 
 TriangleMesh lens(Shading shading) { return test::lens(lens_segments, lens_rings, rim_angle, shading); }
@@ -34,7 +34,7 @@ Vec3d normal_at(const Mesh& mesh, uint32_t h) {
   return {value[0], value[1], value[2]};
 }
 
-/// Mean angle between the normals of both faces at the ends of edges, which are creases or not.
+/// Returns the mean angle between the normals of both faces at the ends of edges, of creases or of other edges.
 double mean_split(const Mesh& mesh, bool at_creases) {
   double sum = 0;
   size_t count = 0;
@@ -47,7 +47,7 @@ double mean_split(const Mesh& mesh, bool at_creases) {
   return sum / static_cast<double>(count);
 }
 
-/// Mean angle, over the corners, to the normals of the caps.
+/// Returns the mean angle of the corners' normals to those of the caps.
 double mean_angle_to_caps(const Mesh& mesh) {
   double sum = 0;
   const Topology& t = mesh.topology;
@@ -60,7 +60,7 @@ double mean_angle_to_caps(const Mesh& mesh) {
   return sum / t.half_edge_count();
 }
 
-/// Encodes an original, and decodes it with normals in its style.
+/// Encodes an original and decodes it with normals of its style.
 Mesh encode_and_decode(const TriangleMesh& original, NormalStyle expected) {
   const EncodedDetail encoded =
       encode_detail(original, {.rms = 1e-3, .face_limit = 8000}, [](const TriangleMesh& base) {
@@ -73,7 +73,7 @@ Mesh encode_and_decode(const TriangleMesh& original, NormalStyle expected) {
   return decoded;
 }
 
-TEST(OwnNormals, OfALensAreSplitAtItsHardRim) {
+TEST(OwnNormals, LensIsHardAtItsRim) {
   const Mesh mesh = build_mesh(lens(Shading::hard_rim));
   const OwnNormals found = find_own_normals(mesh);
   EXPECT_EQ(found.style, NormalStyle::creased);
@@ -84,13 +84,13 @@ TEST(OwnNormals, OfALensAreSplitAtItsHardRim) {
   }
 }
 
-TEST(OwnNormals, AreSmoothFacetedOrAbsent) {
+TEST(OwnNormals, SmoothFacetedAndAbsentStylesAreRecognized) {
   EXPECT_EQ(find_own_normals(build_mesh(lens(Shading::smooth))).style, NormalStyle::smooth);
   EXPECT_EQ(find_own_normals(build_mesh(lens(Shading::faceted))).style, NormalStyle::faceted);
   EXPECT_EQ(find_own_normals(build_mesh(lens(Shading::absent))).style, NormalStyle::absent);
 }
 
-TEST(OwnNormals, MakeCreasesOfHardEdgesAlone) {
+TEST(OwnNormals, OnlyHardEdgesBecomeCreases) {
   for (const Shading shading : {Shading::absent, Shading::smooth, Shading::hard_rim, Shading::faceted}) {
     Mesh mesh = build_mesh(lens(shading));
     const Topology before = mesh.topology;
@@ -102,8 +102,8 @@ TEST(OwnNormals, MakeCreasesOfHardEdgesAlone) {
   }
 }
 
-TEST(OwnNormals, SayThatOtherSharpEdgesAreSmooth) {
-  // A box whose upper side alone is hard: its other edges stay sharp by their angle unless the hard ones are most.
+TEST(OwnNormals, SharpEdgesStayCreasesWhereFewAreHard) {
+  // A box with hard edges only at its upper side: other edges are creases by their angle unless most edges are hard.
   TriangleMesh box = test::box({6, 6, 6}, {1, 1, 1});
   TriangleMesh points;
   Attribute normals{.components = 3, .unit_length = true, .values = {}};
@@ -127,7 +127,7 @@ TEST(OwnNormals, SayThatOtherSharpEdgesAreSmooth) {
   EXPECT_EQ(number_of_creases(few.topology), 12U * 6) << "4 of 12 edges are hard";
 }
 
-TEST(DetailNormals, AreSplitWhereTheOriginalsAre) {
+TEST(DetailNormals, NormalsAreSplitAsInTheOriginal) {
   const Mesh decoded = encode_and_decode(lens(Shading::hard_rim), NormalStyle::creased);
   EXPECT_GE(number_of_creases(decoded.topology), 16U);
   EXPECT_NEAR(mean_split(decoded, true), facet_angle, 5);
@@ -135,7 +135,7 @@ TEST(DetailNormals, AreSplitWhereTheOriginalsAre) {
   EXPECT_LT(mean_angle_to_caps(decoded), 5);
 }
 
-TEST(DetailNormals, AreSplitNowhereWhereTheOriginalsAreSmooth) {
+TEST(DetailNormals, SmoothOriginalsHaveUnsplitNormals) {
   const Mesh decoded = encode_and_decode(lens(Shading::smooth), NormalStyle::smooth);
   EXPECT_EQ(number_of_creases(decoded.topology), 0U);
   EXPECT_EQ(mean_split(decoded, false), 0);

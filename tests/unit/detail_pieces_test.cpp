@@ -16,12 +16,12 @@
 #include "tests/support/streamed_detail.h"
 #include "tests/support/textured_shapes.h"
 
-// Pieces of packed levels: what each needs, what is the same whatever else is there, and their bounds.
+// Pieces of packed levels: dependencies, independence of other pieces, and bounds.
 
 namespace papilio {
 namespace {
 
-/// Without the bytes of pieces, each as `is_missing(level, piece)` says.
+/// Removes the bytes of the pieces for which `is_missing(level, piece)` holds.
 template <class IsMissing>
 DetailSource without(DetailSource source, const IsMissing& is_missing) {
   for (size_t l = 0; l < source.levels.size(); ++l) {
@@ -50,7 +50,7 @@ DetailSource without(DetailSource source, const IsMissing& is_missing) {
   return source;
 }
 
-/// Whether it is a base: others touch themselves.
+/// Returns whether the mesh is a valid base: manifold.
 bool is_manifold(const TriangleMesh& base) {
   try {
     (void)mesh_of_base({base, {}});
@@ -61,15 +61,15 @@ bool is_manifold(const TriangleMesh& base) {
   }
 }
 
-/// Bends the sides of a shape; its hard edges stay hard.
+/// Bends the sides of a shape and keeps its hard edges.
 TriangleMesh bent(TriangleMesh shape) {
   for (Vec3f& p : shape.positions)
     p += 0.1F * Vec3f{std::sin(5 * p.y) * std::cos(4 * p.z), std::sin(6 * p.z + p.x), std::cos(5 * p.x - 3 * p.y)};
   return shape;
 }
 
-/// Compares what pieces make that can be decoded, where some are missing, with what they make where none is. Returns
-/// how many new vertices that were.
+/// Compares the vertices of decodable pieces, if others are missing, with the complete result. Returns the number of
+/// vertices compared.
 uint64_t expect_same_where_decoded(const DetailSource& some, const DetailSource& all) {
   const Mesh base = mesh_of_base(all.base);
   const auto is_decoded = decodable_pieces(some.base, some.levels);
@@ -100,7 +100,7 @@ uint64_t expect_same_where_decoded(const DetailSource& some, const DetailSource&
 }
 
 /// On random surfaces: closed and open, of one component and several, with irregular vertices of all kinds.
-TEST(DetailPieces, AreDecodedToTheSameBitsWhateverElseIsThere) {
+TEST(DetailPieces, DecodedBitsDoNotDependOnOtherPieces) {
   std::mt19937 random(20);
   uint64_t compared = 0;
   for (int round = 0; round < 60; ++round) {
@@ -119,7 +119,7 @@ TEST(DetailPieces, AreDecodedToTheSameBitsWhateverElseIsThere) {
   EXPECT_GT(compared, 20'000U);
 }
 
-TEST(DetailPieces, OfCurvesAndTextureCoordinatesToo) {
+TEST(DetailPieces, CurvesAndTextureCoordinatesAreInPieces) {
   std::mt19937 random(21);
   for (const TriangleMesh& shape : {test::charted_box(16), test::textured_tube(48, 32)}) {
     const DetailSource all = test::pack_levels(bent(shape), {.step = 1e-3F, .piece_bytes = 60});
@@ -131,14 +131,14 @@ TEST(DetailPieces, OfCurvesAndTextureCoordinatesToo) {
   }
 }
 
-TEST(DetailPieces, NeedThoseOfTheLevelBeforeAroundThem) {
+TEST(DetailPieces, MissingPieceLosesDependentPiecesOfTheNextLevel) {
   const auto residual = [](int l, uint32_t e, Vec3f) { return static_cast<int32_t>(e + l) % 3 - 1; };
   const DetailSource all = test::detail_of_residuals(test::torus(24, 12), 2, 0.05F, residual, {12, 12});
   int in_part = 0;
   for (size_t missing = 0; missing < 12; ++missing) {
     const auto decoded =
         decodable_pieces(all.base, without(all, [&](size_t l, size_t p) { return l == 0 && p == missing; }).levels);
-    EXPECT_EQ(std::ranges::count(decoded[0], 0), missing == 0 ? 12 : 1);  // the models of all start with the first's
+    EXPECT_EQ(std::ranges::count(decoded[0], 0), missing == 0 ? 12 : 1);  // all models start from the first piece's
     EXPECT_EQ(decoded[1][missing], 0);
     const auto lost = std::ranges::count(decoded[1], 0);
     EXPECT_GT(lost, 1);
@@ -148,7 +148,7 @@ TEST(DetailPieces, NeedThoseOfTheLevelBeforeAroundThem) {
   EXPECT_GT(in_part, 4);
 }
 
-TEST(DetailPieces, ThatAreMissingLeaveTheButterfly) {
+TEST(DetailPieces, LevelsWithoutPiecesEqualTheButterfly) {
   const DetailSource all =
       test::detail_of_residuals(test::torus(12, 8), 2, 0.1F, [](int, uint32_t, Vec3f) { return 1; }, {5, 7});
   const DetailSource none = without(all, [](size_t, size_t) { return true; });
@@ -162,7 +162,7 @@ TEST(DetailPieces, ThatAreMissingLeaveTheButterfly) {
 }
 
 /// The last level in groups of about 32 faces of the base.
-TEST(DetailPieces, TakeFewMoreBytesThanOneStream) {
+TEST(DetailPieces, PiecesTakeFewMoreBytesThanOneStream) {
   const TriangleMesh bunny = test::real_mesh("bunny.obj");
   const auto packed = [&](uint64_t piece_bytes) {
     const float step = 3e-4F * bounding_box(bunny.positions).diagonal();
@@ -180,8 +180,8 @@ TEST(DetailPieces, TakeFewMoreBytesThanOneStream) {
   EXPECT_LT(bytes_of(pieces), 1.02 * bytes_of(one));
 }
 
-/// Sphere and cone hold the faces of the last level, and the largest move what each piece moves.
-TEST(DetailPieces, StateBoundsThatHold) {
+/// Sphere and cone contain the faces of the last level; the largest move bounds the moves of each piece.
+TEST(DetailPieces, StatedBoundsHold) {
   for (const TriangleMesh& shape : {test::torus(96, 48), test::charted_box(16), test::textured_tube(48, 32)}) {
     const DetailSource all = test::pack_levels(bent(shape), {.base_faces = 90, .levels = 3, .piece_bytes = 100});
     const Mesh base = mesh_of_base(all.base);
@@ -223,7 +223,7 @@ TEST(DetailPieces, StateBoundsThatHold) {
   }
 }
 
-TEST(DetailPieces, ThatAreNotThoseOfTheBytesAreRefused) {
+TEST(DetailPieces, PiecesThatDoNotMatchTheBytesAreRefused) {
   const DetailSource whole = test::detail_of_residuals(
       test::octahedron(), 1, 0.1F, [](int, uint32_t e, Vec3f) { return static_cast<int32_t>(e % 3); }, {4});
   const auto refused = [&](const auto& change) {
@@ -244,7 +244,7 @@ TEST(DetailPieces, ThatAreNotThoseOfTheBytesAreRefused) {
   EXPECT_TRUE(refused([](DetailStream& level) { level.bytes.push_back(1); }));
 }
 
-TEST(DetailPieces, OfAnyBytesDecode) {
+TEST(DetailPieces, AnyBytesDecode) {
   std::mt19937 random(23);
   for (int round = 0; round < 100; ++round) {
     const TriangleMesh base = test::icosahedron();

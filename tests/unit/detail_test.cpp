@@ -11,6 +11,7 @@
 #include "core/detail/base_lift.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/placement.h"
+#include "core/detail/residual_fit.h"
 #include "core/detail/surface_distance.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
@@ -23,7 +24,7 @@
 namespace papilio {
 namespace {
 
-/// Leaves the base as it is, at the price of nine bytes a vertex.
+/// Returns the base unchanged, at nine bytes per vertex.
 CodedBase keep_base(const TriangleMesh& base) { return {base, 9 * base.positions.size()}; }
 
 Fault fault_of(const std::function<void()>& call) {
@@ -54,7 +55,7 @@ void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, do
   }
 }
 
-TEST(Detail, OfASmoothSurfaceReachesTheDistanceThatItStates) {
+TEST(Detail, SmoothSurfaceHasTheStatedDistance) {
   for (const TriangleMesh& original : {test::bumpy_sphere(4), test::torus(60, 30)}) {
     DetailOptions options;
     options.rms = 1e-3;
@@ -64,25 +65,25 @@ TEST(Detail, OfASmoothSurfaceReachesTheDistanceThatItStates) {
     uint64_t bytes = 9 * encoded.base.triangles.positions.size();
     for (const DetailStream& level : encoded.levels) bytes += level.bytes.size();
     EXPECT_EQ(bytes, encoded.bytes);
-    EXPECT_LT(bytes, original.positions.size()) << "less than a byte a vertex";
+    EXPECT_LT(bytes, original.positions.size()) << "less than a byte per vertex";
   }
 }
 
-TEST(Detail, OfARealMeshReachesTheDistanceThatItStates) {
+TEST(Detail, RealMeshHasTheStatedDistance) {
   const TriangleMesh original = build_mesh(test::real_mesh("cgal/elephant.off")).triangles();
   DetailOptions options;
   options.rms = 3e-3;
   expect_reach(original, encode_detail(original, options, keep_base), options.rms);
 }
 
-TEST(Detail, OfSharpEdgesReachesTheDistanceThatItStates) {
+TEST(Detail, SharpEdgesHaveTheStatedDistance) {
   const TriangleMesh original = test::box({16, 16, 16}, {1, 2, 3});
   DetailOptions options;
   options.rms = 2e-3;
   expect_reach(original, encode_detail(original, options, keep_base), options.rms);
 }
 
-TEST(Detail, KeepsTopology) {
+TEST(Detail, EncodingKeepsTheTopology) {
   const TriangleMesh original = test::join(test::bumpy_sphere(3), test::torus(30, 15), 4);
   DetailOptions options;
   options.rms = 4e-3;
@@ -92,7 +93,7 @@ TEST(Detail, KeepsTopology) {
   EXPECT_TRUE(std::ranges::all_of(decoded.topology.kind, [](EdgeKind kind) { return kind == EdgeKind::smooth; }));
 }
 
-TEST(Detail, IsDeterministic) {
+TEST(Detail, EncodingIsDeterministic) {
   const TriangleMesh original = test::bumpy_sphere(3);
   DetailOptions options;
   options.rms = 4e-3;
@@ -103,8 +104,8 @@ TEST(Detail, IsDeterministic) {
   EXPECT_EQ(decode_detail(one.base, one.levels), decode_detail(two.base, two.levels));
 }
 
-/// A vertex is at the same place however many levels follow.
-TEST(Detail, VerticesStayWhereTheyAre) {
+/// Positions of vertices do not depend on the number of later levels.
+TEST(Detail, VerticesKeepTheirPositions) {
   const TriangleMesh original = test::bumpy_sphere(3);
   DetailOptions options;
   options.rms = 2e-3;
@@ -116,8 +117,8 @@ TEST(Detail, VerticesStayWhereTheyAre) {
   }
 }
 
-/// The butterfly reproduces smooth surfaces to a higher order than flat faces do: residuals of a finely sampled sphere
-/// and torus shrink level by level, by 4 at least, the factor of midpoints.
+/// Residuals of a finely sampled sphere and torus shrink by at least 4 per level: the butterfly is of higher order than
+/// midpoints.
 TEST(Detail, ResidualsOfSmoothSurfacesShrink) {
   for (const TriangleMesh& triangles : {test::bumpy_sphere(6), test::torus(300, 150)}) {
     const OriginalSurface original(build_mesh(triangles));
@@ -137,6 +138,27 @@ TEST(Detail, ResidualsOfSmoothSurfacesShrink) {
       before = mean;
     }
   }
+}
+
+TEST(Detail, SavingBitsInvertsAlmostNoFaces) {
+  const OriginalSurface original(build_mesh(test::real_mesh("cgal/elephant.off")));
+  CollapseSequence sequence(original.mesh());
+  sequence.collapse_to(400);
+  const BaseMesh base = sequence.base();
+  constexpr int levels = 3;
+  const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, levels, {});
+  const StepSchedule steps{.last = static_cast<float>(0.004 * original.diagonal())};
+  ResidualFit fit(original, lifted.mesh.positions, place_on_original(original, lifted, levels, steps, {}), {});
+  const TriangleMesh placed = fit.surface(levels);
+  fit.improve(5 * levels, 2);
+  const TriangleMesh improved = fit.surface(levels);
+  const auto normal = [](const TriangleMesh& mesh, const Triangle& t) {
+    return cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+  };
+  EXPECT_NE(placed, improved);
+  size_t turned = 0;
+  for (const Triangle& t : placed.triangles) turned += dot(normal(placed, t), normal(improved, t)) < 0 ? 1 : 0;
+  EXPECT_LE(turned, 2U) << "of " << placed.triangles.size();
 }
 
 TEST(Detail, AnyStreamsDecodeOrAreRefused) {
@@ -162,7 +184,7 @@ TEST(Detail, AnyStreamsDecodeOrAreRefused) {
   }
 }
 
-TEST(Detail, WithoutResidualsIsTheButterfly) {
+TEST(Detail, LevelsWithoutResidualsEqualTheButterfly) {
   const TriangleMesh base = test::torus(8, 6);
   const std::vector<DetailStream> levels(2, {.step = 1, .bytes = {255, 255, 255, 255, 255, 255, 255, 255}});
   Options options;
@@ -177,8 +199,8 @@ TEST(Detail, WithoutResidualsIsTheButterfly) {
   EXPECT_EQ(decoded.triangles, smooth.triangles);
 }
 
-/// Decoders of every processor must give these bits.
-TEST(Detail, DecodesToTheRecordedBits) {
+/// Expects the bits that decoders on all processors must produce.
+TEST(Detail, DecodedPositionsEqualTheRecordedHash) {
   std::vector<DetailStream> levels(3);
   std::mt19937 random(11);
   for (DetailStream& level : levels) {
@@ -191,7 +213,7 @@ TEST(Detail, DecodesToTheRecordedBits) {
             "057533a8e38f0e39e63a105ffc55102d4f3a78ce1288f489805524f34729ce0b");
 }
 
-TEST(Detail, SaysWhatItCannotTake) {
+TEST(Detail, UnsupportedOriginalsAreRefused) {
   const DetailOptions options;
   const TriangleMesh sphere = test::bumpy_sphere(2);
   EXPECT_EQ(fault_of([&] { (void)encode_detail({}, options, keep_base); }), Fault::no_faces);
@@ -211,7 +233,7 @@ TEST(Detail, SaysWhatItCannotTake) {
               Fault::bad_option);
 }
 
-TEST(Detail, StopsWhenItIsCancelled) {
+TEST(Detail, CancellationStopsEncodingAndDecoding) {
   const TriangleMesh sphere = test::bumpy_sphere(3);
   for (int calls = 0; calls < 60; calls += 11) {
     int left = calls;
@@ -225,7 +247,7 @@ TEST(Detail, StopsWhenItIsCancelled) {
             Fault::cancelled);
 }
 
-TEST(Detail, TakesTheSmallestSurfaces) {
+TEST(Detail, SmallestSurfacesAreEncoded) {
   for (const TriangleMesh& original : {test::tetrahedron(), test::octahedron(), test::cube(), test::bipyramid(40)}) {
     DetailOptions options;
     options.rms = 0.01;

@@ -13,6 +13,7 @@
 #include "core/detail/base_points.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/level_decoder.h"
+#include "core/detail/manifold_surface.h"
 #include "core/detail/seams.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
@@ -46,8 +47,8 @@ size_t texcoord_bytes(const DetailSource& source) {
   return bytes;
 }
 
-/// Largest error of texture coordinates at the points of a mesh and at the centres of its faces. `error(place,
-/// texcoord, normal)`: of one; the normal is that of a face there.
+/// Returns the largest error of texture coordinates at the points of a mesh and at the centres of its faces.
+/// `error(position, texcoord, normal)` returns the error of one, given the normal of its face.
 double largest_error(const TriangleMesh& mesh, const std::function<double(Vec3d, Texcoord, Vec3d)>& error) {
   double largest = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -66,11 +67,11 @@ double texcoord_distance(Texcoord a, Texcoord b) { return std::max(std::abs(a[0]
 
 double error_on_tube(Vec3d p, Texcoord c, Vec3d /*normal*/) {
   const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
-  const double off = c[0] - turn;  // a whole number if it is right
+  const double off = c[0] - turn;  // an integer if exact
   return std::max(std::abs(off - std::round(off)), std::abs(c[1] - std::clamp(p.z / 2, 0.0, 1.0)));
 }
 
-/// Of places on the sides of the box. Faces may be folded, so that the normal may have either direction.
+/// Returns the error at a position on the box. Folded faces may have the opposite normal.
 double error_on_box(Vec3d p, Texcoord c, Vec3d normal) {
   return std::min(texcoord_distance(c, box_texcoord(normal, p)), texcoord_distance(c, box_texcoord(-1.0 * normal, p)));
 }
@@ -79,14 +80,14 @@ int64_t euler_characteristic_of_charts(const Mesh& mesh) {
   return cut_at_seams(mesh, seam_edges(mesh)).topology.euler_characteristic();
 }
 
-TEST(Seams, OfATubeAreItsCut) {
+TEST(Seams, TubeHasOneSeamAtItsCut) {
   const Mesh mesh = build_mesh(textured_tube(20, 7));
   EXPECT_EQ(seam_edges(mesh).size(), 7U);
   EXPECT_EQ(mesh.topology.euler_characteristic(), 0);
   EXPECT_EQ(euler_characteristic_of_charts(mesh), 1) << "a disc";
 }
 
-TEST(Seams, OfABoxPartItsSides) {
+TEST(Seams, SeamsOfABoxSeparateItsSides) {
   const Mesh mesh = build_mesh(charted_box(4));
   EXPECT_EQ(seam_edges(mesh).size(), 12U * 4);
   const CutSurface cut = cut_at_seams(mesh, seam_edges(mesh));
@@ -100,10 +101,10 @@ TEST(Seams, OfABoxPartItsSides) {
   }
 }
 
-TEST(Seams, WithoutAttributesThereAreNone) { EXPECT_TRUE(seam_edges(build_mesh(test::cube())).empty()); }
+TEST(Seams, MeshWithoutAttributesHasNoSeams) { EXPECT_TRUE(seam_edges(build_mesh(test::cube())).empty()); }
 
-TEST(Seams, ASeamThatEndsInsideTheSurfaceLeavesOneVertexThere) {
-  // A closed fan of six, cut along one spoke: the rim vertex there is two points, the centre one.
+TEST(Seams, InnerEndOfASeamIsOneVertex) {
+  // A closed fan of six, cut along one spoke: two points at its rim vertex, one at the centre.
   const TriangleMesh fan = test::fan(6, true);
   const Mesh mesh = build_mesh(with_texcoords(fan, [&](const Triangle& t, size_t i) {
     const bool is_first = t == fan.triangles[0];
@@ -117,7 +118,7 @@ TEST(Seams, ASeamThatEndsInsideTheSurfaceLeavesOneVertexThere) {
   EXPECT_EQ(cut.topology.shape.corners.size(), 3U) << "both ends of the cut, one of them twice";
 }
 
-TEST(CollapseSequence, KeepsSeamsAndTheirTexcoords) {
+TEST(CollapseSequence, CollapsesKeepSeamsAndTheirTexcoords) {
   for (const bool is_box : {true, false}) {
     const Mesh original = build_mesh(is_box ? charted_box(10) : textured_tube(40, 20));
     CollapseSequence sequence(original);
@@ -144,7 +145,7 @@ TEST(CollapseSequence, KeepsSeamsAndTheirTexcoords) {
   }
 }
 
-TEST(DetailTexcoords, OfAFlatSheetTakeNoBytes) {
+TEST(DetailTexcoords, FlatSheetTakesNoBytes) {
   const DetailSource made = pack_levels(flat_sheet(20));
   EXPECT_EQ(texcoord_bytes(made), 0U);
   EXPECT_LT(largest_error(decode_all(made),
@@ -152,7 +153,7 @@ TEST(DetailTexcoords, OfAFlatSheetTakeNoBytes) {
             1e-6);
 }
 
-TEST(DetailTexcoords, OfABoxAreThoseOfItsSides) {
+TEST(DetailTexcoords, ChartsOfABoxStayAccurateAndClosed) {
   const DetailSource made = pack_levels(charted_box(8));
   EXPECT_EQ(texcoord_bytes(made), 0U);
   const TriangleMesh fine = decode_all(made);
@@ -163,7 +164,7 @@ TEST(DetailTexcoords, OfABoxAreThoseOfItsSides) {
   EXPECT_EQ(euler_characteristic_of_charts(mesh), 6);
 }
 
-TEST(DetailTexcoords, OfATubeAreRightOnBothSidesOfItsCut) {
+TEST(DetailTexcoords, TubeIsAccurateOnBothSidesOfItsCut) {
   const DetailSource made = pack_levels(textured_tube(48, 16));
   const TriangleMesh fine = decode_all(made);
   EXPECT_LT(largest_error(fine, error_on_tube), 1.5 * largest_miss);
@@ -177,7 +178,7 @@ TEST(DetailTexcoords, OfATubeAreRightOnBothSidesOfItsCut) {
   EXPECT_EQ(euler_characteristic_of_charts(mesh), 1);
 }
 
-TEST(DetailTexcoords, AreFinerWithASmallerStep) {
+TEST(DetailTexcoords, SmallerStepLowersTheError) {
   const TriangleMesh original = textured_tube(48, 16);
   double before = 1;
   for (const float step : {1.0F / 128, 1.0F / 512, 1.0F / 2048}) {
@@ -188,12 +189,12 @@ TEST(DetailTexcoords, AreFinerWithASmallerStep) {
   }
 }
 
-TEST(DetailTexcoords, ASmoothSeamIsNoCrease) {
+TEST(DetailTexcoords, SmoothSeamIsNoCrease) {
   EXPECT_EQ(std::ranges::count(mesh_of_base(pack_levels(textured_tube(48, 16)).base).topology.kind, EdgeKind::crease),
             0);
 }
 
-TEST(DetailTexcoords, MayBeSkipped) {
+TEST(DetailTexcoords, SkippedTexcoordsLeaveTheSurfaceUnchanged) {
   DetailSource made = pack_levels(textured_tube(48, 16));
   const TriangleMesh whole = decode_all(made);
   ASSERT_GT(texcoord_bytes(made), 0U);
@@ -205,7 +206,7 @@ TEST(DetailTexcoords, MayBeSkipped) {
   EXPECT_LT(largest_error(skipped, error_on_tube), 0.05);
 }
 
-TEST(DetailTexcoords, OfAnyBytesAreDecodedTheSame) {
+TEST(DetailTexcoords, AnyBytesDecodeDeterministically) {
   DetailSource made = pack_levels(charted_box(6), {.levels = 3, .step = 1e-3F});
   std::mt19937 random(9);
   for (int round = 0; round < 20; ++round) {
@@ -220,7 +221,7 @@ TEST(DetailTexcoords, OfAnyBytesAreDecodedTheSame) {
   }
 }
 
-TEST(DetailTexcoords, BeyondTheLargestNumberAreRefused) {
+TEST(DetailTexcoords, OverflowingTexcoordsAreRefused) {
   DetailSource made = pack_levels(charted_box(6), {.levels = 2, .step = 1e-3F});
   for (DetailStream& level : made.levels) level.texcoords = {1e18F, {}};  // bits that are all 1
   EXPECT_THROW((void)decode_all(made), Error);
@@ -228,7 +229,7 @@ TEST(DetailTexcoords, BeyondTheLargestNumberAreRefused) {
   EXPECT_THROW((void)decode_all(made), Error);
 }
 
-TEST(DetailTexcoords, AreEncodedWithTheirSurface) {
+TEST(DetailTexcoords, EncoderWritesAndCountsTexcoords) {
   const DetailOptions options{.rms = 5e-3, .face_limit = 2000};
   const EncodedDetail made = encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base) {
     return CodedBase{base, 9 * base.positions.size()};
@@ -257,7 +258,7 @@ Mesh with_levels(const DetailSource& source) {
   return mesh;
 }
 
-TEST(DetailTexcoords, OfRefinedLevelsAreThoseOfTheDecoder) {
+TEST(DetailTexcoords, RefinedLevelsHaveTheDecodersTexcoords) {
   for (const bool is_box : {true, false}) {
     const DetailSource source = pack_levels(is_box ? charted_box(8) : textured_tube(48, 16));
     Options options;
@@ -269,7 +270,7 @@ TEST(DetailTexcoords, OfRefinedLevelsAreThoseOfTheDecoder) {
   }
 }
 
-TEST(DetailTexcoords, OfChosenFacesAreThoseOfTheDecoder) {
+TEST(DetailTexcoords, AdaptiveTexcoordsEqualTheDecoders) {
   const DetailSource source = pack_levels(textured_tube(48, 16));
   const auto whole = texcoords_at_places(decode_all(source));
   for (const uint64_t faces : {300U, 1500U}) {
@@ -282,7 +283,7 @@ TEST(DetailTexcoords, OfChosenFacesAreThoseOfTheDecoder) {
   }
 }
 
-TEST(DetailTexcoords, BelowTheLastLevelAreInterpolated) {
+TEST(DetailTexcoords, LevelsBelowTheLastInterpolateTexcoords) {
   const DetailSource source = pack_levels(textured_tube(48, 16), {.levels = 3});
   Options options;
   options.levels = 4;
@@ -307,7 +308,7 @@ TEST(DetailTexcoords, OtherAttributesAreRefused) {
   expect_refused(mesh);
 }
 
-TEST(ManifoldSurface, PartsAttributesToo) {
+TEST(ManifoldSurface, SeparatedFansKeepTheirAttributes) {
   // Two boxes that touch at an edge.
   TriangleMesh one = charted_box(2);
   TriangleMesh two = one;

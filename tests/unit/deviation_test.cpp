@@ -8,7 +8,7 @@
 
 #include "papilio/triangle_distance.h"
 
-// The short way to the distance from two triangles against the long one, which asks each triangle for itself.
+// The fast distance to two triangles against the distances to each of them.
 
 namespace papilio {
 namespace {
@@ -30,7 +30,7 @@ double by_triangles(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_apex) {
   return std::sqrt(std::min(squared(apex), squared(other_apex)));
 }
 
-TEST(Deviation, OfTwoFacesIsTheDistanceToTheNearer) {
+TEST(Deviation, DeviationIsTheDistanceToTheNearerFace) {
   RandomPoints points;
   int above_none = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -45,11 +45,11 @@ TEST(Deviation, OfTwoFacesIsTheDistanceToTheNearer) {
     const double to_edge = std::sqrt(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)));
     above_none += std::abs(expected - to_edge) < 1e-12 ? 1 : 0;
   }
-  EXPECT_GT(above_none, 500);  // the distance to the edge itself is met, too
+  EXPECT_GT(above_none, 500);  // cases in which the edge is nearest
 }
 
-TEST(Deviation, NeverExceedsTheDistanceToTheEdgesMiddle) {
-  // Almost flat, and the vertex almost in the middle: there rounding is as large as the distances.
+TEST(Deviation, DeviationNeverExceedsTheDistanceToTheMidpoint) {
+  // Nearly flat faces and a vertex near the midpoint: rounding errors are as large as the distances.
   RandomPoints points;
   for (int i = 0; i < 20000; ++i) {
     const float height = i % 2 == 0 ? 1e-7F : 0;
@@ -62,7 +62,7 @@ TEST(Deviation, NeverExceedsTheDistanceToTheEdgesMiddle) {
   }
 }
 
-TEST(Deviation, OfAPointInAFaceIsNone) {
+TEST(Deviation, PointInAFaceHasZeroDeviation) {
   RandomPoints points;
   for (int i = 0; i < 1000; ++i) {
     const float x = 0.5F + 0.4F * points.share();
@@ -71,8 +71,8 @@ TEST(Deviation, OfAPointInAFaceIsNone) {
   }
 }
 
-TEST(Deviation, OfFlatFacesIsThatOfTheirEdges) {
-  // Both triangles have no area: what is left of them are segments.
+TEST(Deviation, DegenerateFacesAreMeasuredAsSegments) {
+  // Both triangles have no area: they are segments.
   EXPECT_DOUBLE_EQ(deviation_from_faces({0.5F, 2, 0}, {0, 0, 0}, {1, 0, 0}, {0.5F, 0, 0}, {2, 0, 0}), 2);
   EXPECT_DOUBLE_EQ(deviation_from_faces({4, 4, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}), 5);
 }

@@ -44,7 +44,7 @@ class StoreFolderTest : public testing::Test {
   const fs::path file_ = file_of(id_);
 };
 
-/// What other programs, disks and power cuts leave in place of a mesh.
+/// Damage by other programs, disks and power failures.
 struct Damage {
   const char* name;
   void (*make)(const fs::path& file);
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Damages, DamagedMeshTest,
                                                 }}),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST_P(DamagedMeshTest, IsAbsentToGetAndRepairedByPut) {
+TEST_P(DamagedMeshTest, GetOmitsADamagedMeshAndPutReplacesIt) {
   DirectoryStore store(folder_, 1 << 20);
   EXPECT_TRUE(store.put(id_, mesh_));
   GetParam().make(file_);
@@ -82,18 +82,18 @@ TEST_P(DamagedMeshTest, IsAbsentToGetAndRepairedByPut) {
   EXPECT_FALSE(store.put(id_, mesh_));
 }
 
-TEST_P(DamagedMeshTest, IsRepairedWithoutAGetBeforeAndCountedOnce) {
+TEST_P(DamagedMeshTest, PutReplacesADamagedMeshAndCountsItOnce) {
   DirectoryStore store(folder_, 1 << 20);
   EXPECT_TRUE(store.put(id_, mesh_));
   GetParam().make(file_);
-  DirectoryStore later(folder_, 1 << 20);  // counts what is there
+  DirectoryStore later(folder_, 1 << 20);  // counts the existing meshes
   EXPECT_TRUE(later.put(id_, mesh_));
   ASSERT_NE(later.get(id_), nullptr);
   EXPECT_EQ(later.usage()->meshes, 1U);
   EXPECT_EQ(later.usage()->bytes, mesh_.size());
 }
 
-TEST_F(StoreFolderTest, ADamagedMeshIsRepairedWhereThereIsNoRoomForAnother) {
+TEST_F(StoreFolderTest, PutRepairsADamagedMeshInAFullStore) {
   DirectoryStore store(folder_, mesh_.size() + 10);
   EXPECT_TRUE(store.put(id_, mesh_));
   fs::resize_file(file_, mesh_.size() - 1);
@@ -101,8 +101,8 @@ TEST_F(StoreFolderTest, ADamagedMeshIsRepairedWhereThereIsNoRoomForAnother) {
   ASSERT_NE(store.get(id_), nullptr);
 }
 
-// A `get` that removes what it found damaged could remove what a `put` has repaired since.
-TEST_F(StoreFolderTest, GetLeavesADamagedFileToPutAndRemove) {
+// A `get` that removed a damaged file could remove the file that a concurrent `put` has written.
+TEST_F(StoreFolderTest, GetDoesNotRemoveADamagedFile) {
   DirectoryStore store(folder_, 1 << 20);
   store.put(id_, mesh_);
   fs::resize_file(file_, 10);
@@ -112,7 +112,7 @@ TEST_F(StoreFolderTest, GetLeavesADamagedFileToPutAndRemove) {
   EXPECT_FALSE(fs::exists(file_));
 }
 
-TEST_F(StoreFolderTest, AFolderInPlaceOfAMeshIsAbsentAndItsFilesStay) {
+TEST_F(StoreFolderTest, FolderInPlaceOfAMeshIsKeptAndNoMesh) {
   write(file_ / "of_others", "bytes");
   DirectoryStore store(folder_, 1 << 20);
   EXPECT_EQ(store.usage()->meshes, 0U);
@@ -129,7 +129,7 @@ TEST_F(StoreFolderTest, AFolderInPlaceOfAMeshIsAbsentAndItsFilesStay) {
   EXPECT_EQ(store.usage()->bytes, 0U);
 }
 
-TEST_F(StoreFolderTest, AFileInPlaceOfTheFolderOfMeshesIsNoMesh) {
+TEST_F(StoreFolderTest, FileInPlaceOfAFolderIsNoMesh) {
   write(file_.parent_path(), "bytes");
   DirectoryStore store(folder_, 1 << 20);
   EXPECT_EQ(store.get(id_), nullptr);
@@ -138,7 +138,7 @@ TEST_F(StoreFolderTest, AFileInPlaceOfTheFolderOfMeshesIsNoMesh) {
   EXPECT_THROW(store.put(id_, mesh_), Problem);
 }
 
-/// Permissions bind everybody but root: while it lives, root is another user.
+/// Drops root's effective user for its lifetime: root ignores permissions.
 class NotRoot {
  public:
   NotRoot() {
@@ -151,7 +151,7 @@ class NotRoot {
   NotRoot& operator=(const NotRoot&) = delete;
 };
 
-TEST_F(StoreFolderTest, FoldersThatCannotBeReadAreNamedAndSkipped) {
+TEST_F(StoreFolderTest, UnreadableFoldersAreLoggedAndSkipped) {
   fs::permissions(folder_, fs::perms::all);
   const fs::path closed = folder_ / "lost+found";
   fs::create_directory(closed);
@@ -163,7 +163,7 @@ TEST_F(StoreFolderTest, FoldersThatCannotBeReadAreNamedAndSkipped) {
     for (int i = 0; i < 20; ++i) store.put(sha256(std::to_string(i)), std::to_string(i));
     DirectoryStore later(folder_, 1'000);
     EXPECT_EQ(later.usage()->meshes, 20U);
-    EXPECT_THROW(later.put(id_, mesh_), Problem);  // counts once more
+    EXPECT_THROW(later.put(id_, mesh_), Problem);  // counts again
     EXPECT_EQ(later.usage()->meshes, 20U);
   });
   fs::permissions(closed, fs::perms::all);
@@ -171,10 +171,10 @@ TEST_F(StoreFolderTest, FoldersThatCannotBeReadAreNamedAndSkipped) {
   size_t warnings = 0;
   for (size_t at = log.find(closed.string()); at != std::string::npos; at = log.find(closed.string(), at + 1))
     ++warnings;
-  EXPECT_EQ(warnings, 2U) << log;  // one a store
+  EXPECT_EQ(warnings, 2U) << log;  // one per store
 }
 
-TEST_F(StoreFolderTest, ADirectoryThatCannotBeReadIsRefusedInWords) {
+TEST_F(StoreFolderTest, UnreadableDirectoryIsRefusedWithItsName) {
   fs::permissions(folder_, static_cast<fs::perms>(0333));
   const NotRoot user;
   try {
@@ -186,19 +186,19 @@ TEST_F(StoreFolderTest, ADirectoryThatCannotBeReadIsRefusedInWords) {
   }
 }
 
-TEST_F(StoreFolderTest, ADirectoryThatCanNoLongerBeReadIsUnavailable) {
+TEST_F(StoreFolderTest, DirectoryThatBecomesUnreadableIsUnavailable) {
   DirectoryStore store(folder_, 1'000);
   fs::permissions(folder_, static_cast<fs::perms>(0333));
   const NotRoot user;
   try {
-    store.put(id_, mesh_);  // larger than the store: it is counted again before it is refused
+    store.put(id_, mesh_);  // larger than the store: meshes are counted again before the refusal
     ADD_FAILURE() << "was put";
   } catch (const Problem& problem) {
     EXPECT_EQ(problem.code(), Code::store_unavailable);
   }
 }
 
-/// Waits until the condition holds; false when it has not within a minute.
+/// Waits until the condition holds; returns false after a minute.
 bool eventually(const std::function<bool()>& condition) {
   for (int i = 0; i < 6000; ++i) {
     if (condition()) return true;
@@ -207,7 +207,7 @@ bool eventually(const std::function<bool()>& condition) {
   return false;
 }
 
-TEST_F(StoreFolderTest, AbandonedPartFilesAreRemovedWhileItRuns) {
+TEST_F(StoreFolderTest, RunningStoreRemovesAbandonedPartFiles) {
   const DirectoryStore store(folder_, 1'000, 10ms);
   const fs::path abandoned = folder_ / "ab" / "12-34.part";
   const fs::path locked = folder_ / "ab" / "12-35.part";
@@ -221,7 +221,7 @@ TEST_F(StoreFolderTest, AbandonedPartFilesAreRemovedWhileItRuns) {
   for (const fs::path& file : {locked, foreign, abandoned, second}) fs::last_write_time(file, hour_ago);
   EXPECT_TRUE(eventually([&] { return !fs::exists(abandoned) && !fs::exists(second); }));
   for (const fs::path& file : {locked, young, foreign}) EXPECT_TRUE(fs::exists(file)) << file;
-  ::close(writer);  // as its end would
+  ::close(writer);  // as the end of its process would
   EXPECT_TRUE(eventually([&] { return !fs::exists(locked); }));
   for (const fs::path& file : {young, foreign}) EXPECT_TRUE(fs::exists(file)) << file;
 }

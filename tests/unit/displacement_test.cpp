@@ -22,7 +22,7 @@ Attribute displacement_attribute() {
   return attribute;
 }
 
-/// The mesh with a displacement of each point: up to `size` in any direction.
+/// Returns the mesh with random displacements of its points, up to `size` in each coordinate.
 TriangleMesh displaced(TriangleMesh mesh, double size, uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-size, size);
@@ -56,7 +56,7 @@ double furthest(const Mesh& base, const Mesh& moved_base, double share) {
   return most;
 }
 
-TEST(Displacement, MovesTheRefinedMeshAsItMovesTheCoarseOne) {
+TEST(Displacement, DisplacedResultEqualsTheRefinedDisplacedMesh) {
   std::mt19937 random(1);
   int compared = 0;
   for (const TriangleMesh& shape : {icosahedron(), torus(7, 5), grid(4, 3), fan(5, false), fan(40, true), bipyramid(9),
@@ -78,7 +78,7 @@ TEST(Displacement, MovesTheRefinedMeshAsItMovesTheCoarseOne) {
   EXPECT_GT(compared, 120);  // of 144
 }
 
-TEST(Displacement, FollowsTheRulesOfTheMeshUnderTensionAndShapeRules) {
+TEST(Displacement, MostDisplacementsHoldUnderTensionAndShapeRules) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const TriangleMesh coarse = displaced(real_mesh(name), 1e-6, 2);
     for (const Tension tension : {Tension::soft, Tension::sharp}) {
@@ -86,7 +86,7 @@ TEST(Displacement, FollowsTheRulesOfTheMeshUnderTensionAndShapeRules) {
       const Mesh base = refine(build_mesh(coarse), options).mesh;
       const Mesh other = refine(build_mesh(moved(coarse, 1)), options).mesh;
       ASSERT_EQ(base.topology.origin, other.topology.origin);
-      // The factors of tension move, too, but where they are 0 or 1: most vertices show nothing of that.
+      // Factors of tension change with the positions unless they are 0 or 1, as they are at most vertices.
       const double size = bounding_box(base.positions).diagonal();
       uint64_t near = 0;
       for (uint32_t h = 0; h < base.topology.half_edge_count(); ++h) {
@@ -110,7 +110,7 @@ std::map<Place, Vec3d> by_place(const Mesh& mesh) {
   return all;
 }
 
-TEST(Displacement, IsTheSameToTheBitWhateverIsRefined) {
+TEST(Displacement, DisplacementsAreBitIdenticalToUniform) {
   const TriangleMesh coarse = displaced(real_mesh("bunny600.obj"), 0.01, 3);
   for (const Tension tension : {Tension::off, Tension::soft, Tension::sharp}) {
     const std::map<Place, Vec3d> uniform = by_place(refine(build_mesh(coarse), {.levels = 3, .tension = tension}).mesh);
@@ -127,8 +127,8 @@ TEST(Displacement, IsTheSameToTheBitWhateverIsRefined) {
   }
 }
 
-/// Two squares that touch along a side, of which only one moves.
-TEST(Displacement, IsLinearWherePointsOfOneVertexMoveApart) {
+/// Two squares that share a side; only one is displaced.
+TEST(Displacement, DisplacementsStaySeparateWhereOneSideMoves) {
   TriangleMesh coarse = join(grid(2, 2), grid(2, 2), 2);
   Attribute displacement = displacement_attribute();
   for (size_t p = 0; p < coarse.positions.size(); ++p)
@@ -144,7 +144,7 @@ TEST(Displacement, IsLinearWherePointsOfOneVertexMoveApart) {
   }
 }
 
-TEST(Displacement, OfVerticesIsUnknownWherePointsDiffer) {
+TEST(Displacement, VertexDisplacementIsUnknownWherePointsDiffer) {
   TriangleMesh coarse = join(grid(1, 1), grid(1, 1), 1);
   Attribute displacement = displacement_attribute();
   for (size_t p = 0; p < coarse.positions.size(); ++p)

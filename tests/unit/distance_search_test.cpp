@@ -11,7 +11,7 @@ namespace {
 
 using Value = std::function<double(double)>;
 
-/// Searches, and checks what holds of every search.
+/// Searches and checks the invariants of every search.
 std::vector<Probe> search(const DistanceGoal& goal, const Value& value) {
   size_t most_in_round = 0;
   const std::vector<Probe> probes = search_distance(goal, [&](std::span<const double> round) {
@@ -31,7 +31,7 @@ std::vector<Probe> search(const DistanceGoal& goal, const Value& value) {
   return probes;
 }
 
-/// Returns the largest value found that is at most the goal, as a share of it; 0 where there is none.
+/// Returns the largest value found that is at most the goal, as a share of it; 0 if there is none.
 double best_share(const DistanceGoal& goal, const Value& value) {
   double best = 0;
   for (const Probe& probe : search(goal, value))
@@ -39,7 +39,7 @@ double best_share(const DistanceGoal& goal, const Value& value) {
   return best;
 }
 
-TEST(DistanceSearch, FindsTheGoalOfPowersOfTheDistance) {
+TEST(DistanceSearch, IncreasingPowersReachTheGoal) {
   for (const double power : {0.6, 0.8, 1.0, 1.3, 1.7})
     for (const double factor : {2.0, 8.0, 50.0}) {
       const DistanceGoal goal{.value = 1e-3, .power = 1, .first = 1e-3 / 8};
@@ -48,7 +48,7 @@ TEST(DistanceSearch, FindsTheGoalOfPowersOfTheDistance) {
     }
 }
 
-TEST(DistanceSearch, FindsTheGoalOfValuesThatFall) {
+TEST(DistanceSearch, DecreasingPowersReachTheGoal) {
   for (const double power : {-0.5, -0.9, -1.4})
     for (const double goal_bytes : {3e3, 4e4, 2e5}) {
       const DistanceGoal goal{.value = goal_bytes, .power = -0.8, .first = 1e-3};
@@ -57,7 +57,7 @@ TEST(DistanceSearch, FindsTheGoalOfValuesThatFall) {
     }
 }
 
-TEST(DistanceSearch, ComesNearWhereValuesAreNotMonotone) {
+TEST(DistanceSearch, NonMonotoneValuesReachFourFifthsOfTheGoal) {
   for (const double phase : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0}) {
     const DistanceGoal goal{.value = 1e-3, .power = 1, .first = 1e-3 / 8};
     EXPECT_GE(best_share(goal, [&](double rms) { return 5 * rms * (1 + 0.15 * std::sin(20 * std::log(rms) + phase)); }),
@@ -66,17 +66,17 @@ TEST(DistanceSearch, ComesNearWhereValuesAreNotMonotone) {
   }
 }
 
-TEST(DistanceSearch, ComesNearAStepFromBelow) {
+TEST(DistanceSearch, DiscontinuityIsApproachedFromBelow) {
   const DistanceGoal goal{.value = 1e-3, .power = 1, .first = 1e-3 / 8};
   EXPECT_GE(best_share(goal, [](double rms) { return rms < 2.3e-4 ? 3 * rms : 30 * rms; }), 0.55);
 }
 
-TEST(DistanceSearch, EndsWithTheFirstProbeThatIsNearEnough) {
+TEST(DistanceSearch, FirstProbeNearEnoughEndsTheSearch) {
   const DistanceGoal goal{.value = 1e-3, .power = 1, .first = 1e-4};
   EXPECT_EQ(search(goal, [](double rms) { return 9.95 * rms; }), (std::vector<Probe>{{1e-4, 9.95 * 1e-4}}));
 }
 
-TEST(DistanceSearch, EndsAtTheBounds) {
+TEST(DistanceSearch, UnreachableGoalsEndAtTheBounds) {
   const DistanceGoal goal{.value = 1e-3, .power = 1, .first = 1e-4};
   const std::vector<Probe> out_of_reach = search(goal, [](double rms) { return 1 + rms; });
   EXPECT_EQ(std::ranges::min(out_of_reach, {}, &Probe::rms).rms, goal.least);
@@ -84,7 +84,7 @@ TEST(DistanceSearch, EndsAtTheBounds) {
   EXPECT_EQ(std::ranges::max(always, {}, &Probe::rms).rms, goal.most);
 }
 
-TEST(DistanceSearch, PassesOnWhatAnEncodingThrows) {
+TEST(DistanceSearch, EncoderExceptionsAreRethrown) {
   EXPECT_THROW((void)search_distance({.value = 1}, [](auto) -> std::vector<double> { throw std::runtime_error("no"); }),
                std::runtime_error);
 }

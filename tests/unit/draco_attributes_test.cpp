@@ -128,7 +128,7 @@ TEST(DracoAttributes, DracoDecoderSeesOnePositionAVertex) {
   for (int speed : {0, 3, 5, 7, 10}) {
     size_t positions = 0;
     const FormattedMesh seen = decode_to_obj(write(fine, coarse, input.format, {.speed = speed}), &positions);
-    EXPECT_EQ(positions, fine.topology.vertex_count) << "no position is written twice, at no speed";
+    EXPECT_EQ(positions, fine.topology.vertex_count) << "a position is written twice";
     EXPECT_EQ(seen.triangles.size(), 192U);
     EXPECT_EQ(build_mesh(seen).attributes.point_count, fine.attributes.point_count);
     ASSERT_EQ(seen.attributes.size(), 2U);
@@ -216,7 +216,7 @@ TEST(DracoAttributes, ExtremeValuesGiveReadableStreams) {
 
 // libdraco predicted them as octahedral coordinates of two numbers: values changed, and with one number it wrote out of
 // bounds.
-TEST(DracoAttributes, IntegerNormalsOfAnyLengthAreKept) {
+TEST(DracoAttributes, IntegerNormalsOfAnyLengthRoundTrip) {
   std::mt19937 random(3);
   for (uint32_t components = 1; components <= 4; ++components) {
     FormattedMesh input = charted_cube();
@@ -278,7 +278,7 @@ TEST(DracoAttributes, MeshesOfEveryKindKeepFacesAndCharts) {
   }
 }
 
-TEST(DracoAttributes, ExactKeepsValuesToTheBit) {
+TEST(DracoAttributes, ExactValuesRoundTripBitIdentically) {
   const FormattedMesh input = decorated_cube();
   const FormattedMesh read = read_draco(write_draco_exact(input, input.format), {});
   EXPECT_EQ(read.format, input.format);

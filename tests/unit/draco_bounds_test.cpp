@@ -64,8 +64,8 @@ struct BoundedPrimitive {
   Json document{{"accessors", Json::array()}};
 };
 
-/// Returns a surface with attributes. `is_soup`: each corner is a vertex of its own, some triangles come twice, have no
-/// area, or are left out with their vertices.
+/// Returns a surface with attributes. `is_soup`: each corner is a separate vertex, and some triangles are repeated,
+/// without area, or removed with their vertices.
 BoundedPrimitive bounded_primitive(const TriangleMesh& mesh, const std::vector<RandomAttribute>& attributes,
                                    bool is_soup, std::mt19937& random) {
   BoundedPrimitive made;
@@ -117,7 +117,7 @@ std::pair<std::vector<double>, std::vector<double>> decoded_bounds_of(const Form
   return bounds;
 }
 
-TEST(DracoBounds, AreThoseOfTheDecodedNumbers) {
+TEST(DracoBounds, StatedBoundsEqualTheDecoded) {
   std::mt19937 random(11);
   std::vector<TriangleMesh> surfaces{test::tetrahedron(), test::torus(9, 8), test::grid(7, 5), test::bipyramid(9)};
   for (int i = 0; i < 8; ++i) surfaces.push_back(test::random_manifold(random));

@@ -19,7 +19,7 @@ uint64_t count_renumbered(const std::string& draco) {
 }
 
 // Each symbol adds a face at the vertex: three for each merged triangle.
-TEST(DracoMerges, CountsRenumberedCornersOfKnownMeshes) {
+TEST(DracoMerges, CountOfRenumberedCornersEqualsTheClosedForm) {
   for (uint32_t triangles : {2U, 3U, 10U, 100U}) {
     uint64_t expected = 0;
     for (uint32_t i = 1, faces = 1; i < triangles; ++i) {
@@ -59,7 +59,7 @@ TEST(DracoMerges, StreamThatRenumbersQuadraticallyIsRefused) {
   }
 }
 
-TEST(DracoMerges, CrowdedMeshesAreRead) {
+TEST(DracoMerges, CrowdedMeshesAreAccepted) {
   for (const TriangleMesh& mesh : {faces_at_one_edge(60'000), triangles_at_one_vertex(60'000), shuffled_cone(60'000)})
     EXPECT_EQ(read_draco(write_draco_exact(mesh), {}).triangles.size(), 60'000U);
 }

@@ -14,7 +14,7 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// A primitive and the document whose accessors it had: the first for POSITION, then one an attribute, then indices.
+/// A primitive and the document of its accessors: POSITION, one per attribute, then indices.
 struct Primitive {
   VertexSet set;
   Buffer<Triangle> triangles;
@@ -36,8 +36,8 @@ void add_stream(Primitive& primitive, const char* semantic, Elements elements, b
   primitive.set.attributes.push_back({semantic, accessor, std::move(elements)});
 }
 
-/// A surface of which each corner is a vertex of its own, with attributes that vertices share at random: seams that
-/// cross, end, and close. `is_repetitive`: with triangles that repeat others or have no area.
+/// Returns a surface with a separate vertex per corner and random attributes, so that seams cross, end and close.
+/// `is_repetitive`: some triangles are repeated or have no area.
 Primitive random_primitive(const TriangleMesh& mesh, uint32_t seed, bool is_repetitive, bool declares_bounds) {
   std::mt19937 random(seed);
   Primitive out;
@@ -81,7 +81,7 @@ DracoContent encode(const Primitive& primitive, int speed) {
                                 {.position_bits = 12, .speed = speed});
 }
 
-/// Builds the mesh from all attributes as the core has them, and writes it.
+/// Builds the core's mesh from all attributes and writes it.
 std::string encode_by_core(const Primitive& primitive, int speed) {
   const Elements& positions = primitive.set.attributes[0].elements;
   FormattedMesh input;
@@ -104,7 +104,7 @@ std::string encode_by_core(const Primitive& primitive, int speed) {
                      attribute_encoding(mesh, input.format));
 }
 
-TEST(DracoPrimitive, IsWrittenAsTheCoreBuildsItFromAllAttributes) {
+TEST(DracoPrimitive, StreamEqualsTheCoresWithAllAttributes) {
   uint32_t seed = 0;
   for (const TriangleMesh& surface : surfaces())
     for (const bool is_repetitive : {false, true})
@@ -114,7 +114,7 @@ TEST(DracoPrimitive, IsWrittenAsTheCoreBuildsItFromAllAttributes) {
       }
 }
 
-TEST(DracoPrimitive, IsDescribedAsAReaderDecodesIt) {
+TEST(DracoPrimitive, DescriptionMatchesTheDecodedPrimitive) {
   uint32_t seed = 100;
   for (const TriangleMesh& surface : surfaces())
     for (const bool declares_bounds : {false, true})

@@ -34,7 +34,7 @@ Buffer<Vec3f> sorted(Buffer<Vec3f> positions) {
   return positions;
 }
 
-TEST(DracoReader, ReadsBothMethodsAndMetadata) {
+TEST(DracoReader, BothMethodsAndMetadataAreRead) {
   const TriangleMesh mesh = icosahedron();
   for (Method method : {Method::edgebreaker, Method::sequential}) {
     for (bool metadata : {false, true}) {
@@ -50,7 +50,7 @@ TEST(DracoReader, ReadsBothMethodsAndMetadata) {
   }
 }
 
-TEST(DracoReader, RefusesBytesOtherThanDraco) {
+TEST(DracoReader, OtherBytesAreRefused) {
   EXPECT_EQ(code_of(""), Code::mesh_not_draco);
   EXPECT_EQ(code_of("solid cube"), Code::mesh_not_draco);
   EXPECT_EQ(code_of("DRACO"), Code::mesh_not_draco);
@@ -58,7 +58,7 @@ TEST(DracoReader, RefusesBytesOtherThanDraco) {
   EXPECT_EQ(code_of(std::string("DRACO\2\2\1\7\0\0\0\0\0\0", 15)), Code::mesh_not_draco);
 }
 
-TEST(DracoReader, RefusesOtherVersionsAndPointClouds) {
+TEST(DracoReader, OtherVersionsAndPointCloudsAreRefused) {
   std::string bytes = encode_with_draco(cube(), Method::edgebreaker);
   bytes[5] = 1;
   EXPECT_EQ(code_of(bytes), Code::mesh_unsupported);
@@ -68,7 +68,7 @@ TEST(DracoReader, RefusesOtherVersionsAndPointClouds) {
   EXPECT_EQ(code_of(encode_point_cloud(cube())), Code::mesh_unsupported);
 }
 
-TEST(DracoReader, RefusesDeclaredCountsAboveTheLimits) {
+TEST(DracoReader, DeclaredCountsAboveTheLimitsAreRefused) {
   const std::string bytes = encode_with_draco(icosahedron(), Method::edgebreaker);
   EXPECT_EQ(code_of(bytes, {.max_input_faces = 19}), Code::mesh_too_large);
   EXPECT_EQ(code_of(bytes, {.max_input_vertices = 11}), Code::mesh_too_large);
@@ -102,7 +102,7 @@ TEST(DracoReader, DamagedStreamsGiveIndicesInRangeOrAProblem) {
   }
 }
 
-TEST(DracoWriter, DecodesToTheSameMeshWithinHalfAGridStep) {
+TEST(DracoWriter, DecodedMeshIsWithinHalfAGridStep) {
   for (const TriangleMesh& shape : {icosahedron(), torus(7, 5), grid(4, 3), join(cube(), fan(5, false), 4)}) {
     const Mesh mesh = build_mesh(shape);
     const QuantizationBox box = quantization_box(mesh.positions);
@@ -166,7 +166,7 @@ TEST(DracoWriter, TinyAndHugeMeshesKeepTheirShape) {
   }
 }
 
-TEST(DracoWriter, ExactKeepsPositionsToTheBit) {
+TEST(DracoWriter, ExactPositionsRoundTripBitIdentically) {
   for (const TriangleMesh& mesh : {real_mesh("bunny600.obj"), icosahedron(), grid(3, 3)}) {
     const TriangleMesh read = read_draco(write_draco_exact(mesh), {});
     EXPECT_EQ(sorted(read.positions), sorted(mesh.positions));
@@ -186,7 +186,7 @@ TEST(DracoWriter, RandomManifoldsKeepFacesAndEulerCharacteristic) {
   }
 }
 
-TEST(QuantizationBox, IsACubePaddedByAnEighth) {
+TEST(QuantizationBox, BoxIsACubePaddedByAnEighth) {
   const QuantizationBox box = quantization_box(grid(8, 2).positions);
   EXPECT_FLOAT_EQ(box.range, 10);
   EXPECT_EQ(box.origin, (Vec3f{-1, -4, -5}));

@@ -28,7 +28,8 @@ namespace {
 
 using namespace test;
 
-/// Returns whether each edge and each face (up to two sides) has vertices of its own, and each vertex one fan of faces.
+/// Returns whether edges have distinct pairs of vertices, no vertex is pinched, and the mesh is not two faces back to
+/// back.
 bool is_manifold(const Mesh& mesh) {
   const Topology& topology = mesh.topology;
   std::set<std::pair<uint32_t, uint32_t>> pairs;
@@ -247,7 +248,7 @@ TEST(Edgebreaker, BytesEqualLibdracosWithAttributesOfEveryKind) {
 }
 
 // libdraco then codes no attribute with its entropy coder; this writer still codes the others.
-TEST(Edgebreaker, WritesIntegersTooLargeForTheEntropyCoder) {
+TEST(Edgebreaker, IntegersTooLargeForTheEntropyCoderAreWritten) {
   TriangleMesh triangles = tetrahedron();
   const std::vector<double> large{0, -(1 << 21), 1 << 30, 77};
   triangles.attributes = {{.components = 1, .values = large}, {.components = 1, .values = {3, 5, 8, 9}}};

@@ -11,8 +11,7 @@
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 
-// Every mesh of libcgal-demo's data folder, whatever is wrong with it: it is refined without a crack, or refused with
-// the reason. Prints a table.
+// Every mesh of libcgal-demo's data folder is refined without cracks or refused with a reason. Prints a table.
 
 namespace papilio {
 namespace {
@@ -20,7 +19,7 @@ namespace {
 using namespace test;
 namespace fs = std::filesystem;
 
-/// What cannot be read as triangles is refused with a reason.
+/// Loads a mesh; expects a reason if it cannot be read.
 std::optional<Mesh> load(const fs::path& path, BuildReport& report) {
   std::string reason;
   try {
@@ -30,7 +29,7 @@ std::optional<Mesh> load(const fs::path& path, BuildReport& report) {
   } catch (const Error& error) {
     reason = error.what();
   }
-  EXPECT_GT(reason.size(), 20U) << path << ": a refusal must say why";
+  EXPECT_GT(reason.size(), 20U) << path << ": the reason is too short";
   std::printf("%-32s refused: %s\n", path.filename().c_str(), reason.c_str());
   return std::nullopt;
 }
@@ -39,7 +38,7 @@ uint32_t count_shared(const Mesh& mesh) {
   return static_cast<uint32_t>(std::ranges::count(mesh.topology.kind, EdgeKind::shared));
 }
 
-/// Refines and checks; returns the number of faces.
+/// Refines and checks a mesh. Returns the number of faces.
 uint32_t refine_and_check(const Mesh& coarse, const Options& options) {
   const Mesh fine = refine(coarse, options).mesh;
   EXPECT_TRUE(is_consistent(fine));
@@ -50,7 +49,7 @@ uint32_t refine_and_check(const Mesh& coarse, const Options& options) {
   return fine.topology.face_count();
 }
 
-TEST(EveryRealMesh, IsRefinedWithoutACrackOrRefusedWithTheReason) {
+TEST(EveryRealMesh, ResultHasNoCracksOrInputIsRefused) {
   std::printf("%-32s %7s %7s %6s %7s %7s %7s %7s %7s %8s %8s %8s\n", "", "V", "F", "chi", "rim", "shared", "turned",
               "pinched", "dropped", "uniform", "red-gr.", "in-place");
   uint32_t refined = 0;

@@ -7,7 +7,7 @@ namespace {
 
 const std::vector<std::string> names{"levels", "crease_angle", "view.edge_pixels", "to", "help"};
 
-TEST(FlagNames, HyphensUnderscoresAndDotsAreTheSame) {
+TEST(FlagNames, HyphensUnderscoresAndDotsAreEquivalent) {
   for (const std::string typed :
        {"--view.edge_pixels", "--view.edge-pixels", "--view-edge-pixels", "--view_edge_pixels"}) {
     EXPECT_EQ(known_flag(typed, names), "--view.edge_pixels");
@@ -16,13 +16,13 @@ TEST(FlagNames, HyphensUnderscoresAndDotsAreTheSame) {
   EXPECT_EQ(known_flag("--crease-angle", names), "--crease_angle");
 }
 
-TEST(FlagNames, WhatIsNoKnownFlagStays) {
+TEST(FlagNames, UnknownFlagsAreUnchanged) {
   for (const std::string typed :
        {"--crease", "--levelss", "-o", "-", "--", "", "crease-angle", "--=", "--to=x-y", "---to", "-1,2"})
     EXPECT_EQ(known_flag(typed, names), typed);
 }
 
-TEST(FlagNames, AMisspeltFlagIsAnsweredWithTheOneMeant) {
+TEST(FlagNames, MisspeltFlagGetsASuggestion) {
   EXPECT_EQ(unexpected_argument("--crease_angel=30", "papilio refine", names),
             "papilio refine has no flag --crease_angel. Did you mean --crease_angle?");
   EXPECT_EQ(unexpected_argument("--edge-pixels", "papilio refine", names),

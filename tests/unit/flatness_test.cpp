@@ -13,17 +13,15 @@ namespace {
 
 using namespace test;
 
-uint32_t count(const EdgeMarks& marks) {
+uint32_t count(const Marks& marks) {
   return static_cast<uint32_t>(std::count_if(marks.begin(), marks.end(), [](uint8_t m) { return m != 0; }));
 }
 
-EdgeMarks flatness_marks(const Mesh& mesh, double threshold) {
-  return find_curved(mesh, face_normals(mesh), {}, threshold, Growth::off, whole_region(mesh.topology));
+Marks flatness_marks(const Mesh& mesh, double threshold) {
+  return find_curved(mesh, face_normals(mesh), threshold, Growth::off, whole_region(mesh.topology));
 }
 
-void grow(const Topology& mesh, Growth growth, EdgeMarks& marks) {
-  papilio::grow(mesh, growth, whole_region(mesh), marks);
-}
+void grow(const Topology& mesh, Growth growth, Marks& marks) { papilio::grow(mesh, growth, whole_region(mesh), marks); }
 
 TEST(Flatness, CubeMarksItsTwelveEdgesAndNoDiagonal) {
   const Mesh mesh = build_mesh(cube());
@@ -33,33 +31,33 @@ TEST(Flatness, CubeMarksItsTwelveEdgesAndNoDiagonal) {
   EXPECT_EQ(count(flatness_marks(mesh, -1.0)), 0U);
 }
 
-TEST(Flatness, IcosahedronHasOneDihedralAngle) {
+TEST(Flatness, AllEdgesOfAnIcosahedronHaveOneThreshold) {
   const Mesh mesh = build_mesh(icosahedron());
   const double tau = std::sqrt(5.0) / 3;
   EXPECT_EQ(count(flatness_marks(mesh, tau + 1e-5)), 30U);
   EXPECT_EQ(count(flatness_marks(mesh, tau - 1e-5)), 0U);
 }
 
-TEST(Flatness, BoundaryIsJudgedByTheTurnOfItsCurve) {
+TEST(Flatness, BoundaryEdgesAreMarkedWhereTheirCurveTurns) {
   const Mesh mesh = build_mesh(grid(4, 4));
-  // Flat inside; the rim turns by 90 degrees at four corners, which have two rim edges each.
+  // Flat inside; the boundary turns by 90 degrees at four corners of two boundary edges each.
   EXPECT_EQ(count(flatness_marks(mesh, 0.5)), 8U);
   EXPECT_EQ(count(flatness_marks(mesh, -0.1)), 0U);
 }
 
-TEST(Flatness, FaceWithoutAreaMarksNothingOnItsAccount) {
+TEST(Flatness, FaceWithoutAreaMarksNoEdges) {
   // A sliver whose three vertices lie on one line, between two faces of a folded sheet.
   const Mesh mesh = build_mesh(
       {{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}}});
-  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  const Marks marks = flatness_marks(mesh, 1.0);
   for (uint32_t i = 0; i < 3; ++i) EXPECT_EQ(marks[mesh.topology.edge[i]], 0);
 }
 
-TEST(Flatness, ATiltedPlaneIsFlatAtOneToo) {
+TEST(Flatness, TiltedPlaneIsFlatAtThresholdOne) {
   TriangleMesh plane = grid(6, 6);
   for (Vec3f& p : plane.positions) p = {p.x + 0.3F * p.y, p.y - 0.7F * p.x, 0.37F * p.x + 0.51F * p.y};
   const Mesh mesh = build_mesh(plane);
-  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  const Marks marks = flatness_marks(mesh, 1.0);
   for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
     if (mesh.topology.kind[e] == EdgeKind::smooth) {
       EXPECT_EQ(marks[e], 0);
@@ -67,7 +65,7 @@ TEST(Flatness, ATiltedPlaneIsFlatAtOneToo) {
   }
 }
 
-TEST(Flatness, TinyAndHugeMeshesAreJudgedAlike) {
+TEST(Flatness, MarksDoNotDependOnScale) {
   for (float scale : {1e-30F, 1e17F}) {
     TriangleMesh shape = icosahedron();
     for (Vec3f& p : shape.positions) p = scale * p;
@@ -75,23 +73,23 @@ TEST(Flatness, TinyAndHugeMeshesAreJudgedAlike) {
   }
 }
 
-TEST(Flatness, CutEdgesHaveNoCurveToTurn) {
+TEST(Flatness, CutEdgesAreNeverMarked) {
   Mesh mesh = build_mesh(grid(20, 20));
   for (Vec3f& p : mesh.positions) p.z = std::sin(p.x) * std::cos(p.y);
-  std::vector<uint32_t> cut;  // they leave the boundary, whose neighbours are those of another curve
+  std::vector<uint32_t> cut;  // edges that end at the boundary
   for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
     const float y = mesh.positions[mesh.topology.origin[mesh.topology.half_edge[e]]].y;
     if (mesh.topology.kind[e] == EdgeKind::smooth && (y == 0 || y == 20)) cut.push_back(e);
   }
   ASSERT_FALSE(cut.empty());
   for (uint32_t e : cut) mesh.topology.kind[e] = EdgeKind::cut;
-  const EdgeMarks marks = flatness_marks(mesh, 1.0);
+  const Marks marks = flatness_marks(mesh, 1.0);
   for (uint32_t e : cut) EXPECT_EQ(marks[e], 0) << e;
 }
 
-TEST(Growth, FacesMarksTheOtherEdgesOfBothTriangles) {
+TEST(Growth, FacesModeMarksTheEdgesOfBothTriangles) {
   const Mesh mesh = build_mesh(icosahedron());
-  EdgeMarks marks(30, 0);
+  Marks marks(30, 0);
   marks[7] = 1;
   grow(mesh.topology, Growth::off, marks);
   EXPECT_EQ(count(marks), 1U);
@@ -99,19 +97,19 @@ TEST(Growth, FacesMarksTheOtherEdgesOfBothTriangles) {
   EXPECT_EQ(count(marks), 5U);
 }
 
-TEST(Growth, VerticesMarksAllEdgesAtBothEnds) {
+TEST(Growth, VerticesModeMarksAllEdgesAtBothEnds) {
   const Mesh mesh = build_mesh(icosahedron());
-  EdgeMarks marks(30, 0);
+  Marks marks(30, 0);
   marks[7] = 1;
   grow(mesh.topology, Growth::vertices, marks);
   EXPECT_EQ(count(marks), 9U);  // five at each end, one of them common
 }
 
-TEST(Growth, IsOneStepHoweverManyMarks) {
+TEST(Growth, EachCallGrowsByOneStep) {
   const Mesh mesh = build_mesh(torus(12, 12));
-  EdgeMarks marks(mesh.topology.edge_count(), 0);
+  Marks marks(mesh.topology.edge_count(), 0);
   marks[0] = 1;
-  EdgeMarks twice = marks;
+  Marks twice = marks;
   grow(mesh.topology, Growth::faces, marks);
   EXPECT_EQ(count(marks), 5U);
   grow(mesh.topology, Growth::faces, twice);

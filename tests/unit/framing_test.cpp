@@ -24,18 +24,18 @@ bool shows_all(const View& view, const Box& box) {
   return true;
 }
 
-// A cube of side 2, seen with 90 degrees: its front, at z = 1, fills the picture from one unit before it.
-TEST(Framing, EyeOfACubeIsAtItsClosedForm) {
+// A cube of side 2 in a field of view of 90 degrees: its front at z = 1 fills the picture at distance 1.
+TEST(Framing, EyeOfACubeEqualsTheClosedForm) {
   const Box cube{{-1, -1, -1}, {1, 1, 1}};
   View view{.fov_y = 90, .viewport = {500, 500}};
   EXPECT_NEAR(framing_eye(view, cube).z, 2 * 1.05, 1e-12);
-  view.viewport = {250, 500};  // half as wide: the sides decide
+  view.viewport = {250, 500};  // half as wide: the width is the bound
   EXPECT_NEAR(framing_eye(view, cube).z, 3 * 1.05, 1e-12);
   view.near = 10;
   EXPECT_NEAR(framing_eye(view, cube).z, 3 * 1.05 + 10, 1e-12);
 }
 
-TEST(Framing, WholeBoxIsInThePictureAndFillsIt) {
+TEST(Framing, WholeBoxIsVisibleAndFillsThePicture) {
   std::mt19937 random(5);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
   for (int round = 0; round < 2000; ++round) {
@@ -54,7 +54,7 @@ TEST(Framing, WholeBoxIsInThePictureAndFillsIt) {
     if (round % 7 == 0) view.projection = Projection::orthographic;
     view.eye = framing_eye(view, box);
     ASSERT_TRUE(shows_all(view, box)) << round;
-    // A tenth nearer, something is cut off.
+    // A tenth nearer, part of the box is outside.
     view.near = 1e-9;
     view.eye = view.target + 0.9 * (view.eye - view.target);
     if (round % 4 != 0 && round % 3 != 0) {

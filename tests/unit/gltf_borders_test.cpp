@@ -10,7 +10,7 @@
 #include "tests/support/gltf_refinement.h"
 #include "tests/support/shapes.h"
 
-// Where primitives meet, whatever their types of components: no gaps.
+// Borders between primitives of any component types have no gaps.
 
 namespace papilio::proto::gltf {
 namespace {
@@ -28,7 +28,7 @@ std::string name_of(Compression compression) {
   return std::string(compression_names.at(static_cast<size_t>(compression)));
 }
 
-/// Edges by position that not exactly two triangles have.
+/// Returns the number of edges, by position, that do not have exactly two triangles.
 size_t open_edges(const MeshGeometry& geometry) {
   std::map<std::pair<Position, Position>, int> uses;
   for (const TrianglePrimitive& primitive : geometry.primitives) {
@@ -43,7 +43,7 @@ size_t open_edges(const MeshGeometry& geometry) {
   return static_cast<size_t>(std::ranges::count_if(uses, [](const auto& use) { return use.second != 2; }));
 }
 
-/// A closed shape, its triangles dealt out to two primitives with vertices of their own.
+/// A closed shape in two primitives with separate vertices, each of half of the triangles.
 GltfScene scene_of_two_materials(const TriangleMesh& shape) {
   GltfScene scene;
   scene.add_mesh(shape);
@@ -74,7 +74,7 @@ TEST(GltfBorders, BordersBetweenMaterialsStayClosed) {
     }
 }
 
-/// Appends vectors, times `scale`, as int16. Returns the accessor.
+/// Appends vectors, times `scale`, as int16. Returns the accessor's number.
 size_t add_quantized(GltfScene& scene, const Buffer<Vec3f>& vectors, double scale) {
   std::vector<int16_t> numbers;
   for (const Vec3f& p : vectors)
@@ -104,7 +104,7 @@ TEST(GltfBorders, QuantizedPositionsKeepTheirGridOrBecomeFloats) {
   EXPECT_EQ(open_edges(widened), 0U);
 }
 
-/// An icosahedron whose upper half alone bulges beyond y = 1, its triangles from top to bottom.
+/// An icosahedron of which only the upper half bulges beyond y = 1; triangles from top to bottom.
 TriangleMesh raised_icosahedron() {
   TriangleMesh shape = test::icosahedron();
   const auto height = [&](const Triangle& t) {

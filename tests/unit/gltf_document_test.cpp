@@ -12,7 +12,7 @@ namespace {
 
 using test::GltfScene;
 
-/// The refusal's code and words.
+/// Returns the problem with which the document is refused.
 Problem refusal_of(const std::string& bytes) {
   try {
     (void)read_document(bytes);
@@ -30,7 +30,7 @@ std::string with_byte(std::string bytes, size_t at, char byte) {
 
 std::string text_document(const std::string& members) { return R"({"asset":{"version":"2.0"})" + members + "}"; }
 
-TEST(GltfContainer, ChunksSurviveTheRoundTrip) {
+TEST(GltfContainer, ChunksRoundTrip) {
   std::vector<ExtraChunk> extra{{0x12345678, "marker__"}};
   const std::string glb = write_glb("{ }", std::vector<Piece>{{"ab"}, {{}, "cde"}}, extra);
   const Container found = read_glb(glb);
@@ -49,7 +49,7 @@ TEST(GltfContainer, EveryTruncationIsRefused) {
   EXPECT_THROW((void)read_glb(glb + "more"), Problem);
 }
 
-TEST(GltfContainer, DamageIsRefusedByItsName) {
+TEST(GltfContainer, DamageIsRefusedWithItsErrorCode) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const std::string glb = scene.glb();
@@ -59,7 +59,7 @@ TEST(GltfContainer, DamageIsRefusedByItsName) {
   EXPECT_EQ(refusal_of("solid cube").code(), Code::mesh_not_gltf);
 }
 
-TEST(GltfDataUri, EveryLengthSurvivesTheRoundTrip) {
+TEST(GltfDataUri, EveryLengthRoundTrips) {
   std::string bytes;
   for (int length = 0; length < 300; ++length) {
     const std::string uri = encode_data_uri(bytes, "data:application/gltf-buffer;base64,");
@@ -72,7 +72,7 @@ TEST(GltfDataUri, EveryLengthSurvivesTheRoundTrip) {
   EXPECT_FALSE(decode_data_uri("data:;base64,AAAAA"));
 }
 
-TEST(GltfDocument, BuffersAreReadFromTheirPlaces) {
+TEST(GltfDocument, EmbeddedAndExternalBuffersAreRead) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const std::string glb = scene.glb();
@@ -84,13 +84,13 @@ TEST(GltfDocument, BuffersAreReadFromTheirPlaces) {
   EXPECT_EQ(read.buffers[0].bytes(), "a.b");
 }
 
-TEST(GltfDocument, NoFileIsFetchedUnasked) {
+TEST(GltfDocument, FilesAreNotFetchedWithoutAReader) {
   const Problem problem = refusal_of(text_document(R"(,"buffers":[{"byteLength":3,"uri":"file:///etc/passwd"}])"));
   EXPECT_EQ(problem.code(), Code::mesh_unsupported);
   EXPECT_NE(std::string(problem.what()).find("not fetched"), std::string::npos);
 }
 
-TEST(GltfDocument, JsonIsBounded) {
+TEST(GltfDocument, MalformedAndOversizedJsonIsRefused) {
   const auto refused = [](const std::string& text) { return refusal_of(text).code() == Code::mesh_not_gltf; };
   EXPECT_TRUE(refused(std::string(100'000, '[')));
   EXPECT_TRUE(refused(text_document(",\"extras\":" + std::string(80, '[') + std::string(80, ']'))));
@@ -102,7 +102,7 @@ TEST(GltfDocument, JsonIsBounded) {
   EXPECT_TRUE(refused(text_document(many + "}")));
 }
 
-TEST(GltfDocument, BuffersAreCounted) {
+TEST(GltfDocument, MoreThan256BuffersAreRefused) {
   std::string buffers = R"({"byteLength":0,"uri":"data:;base64,"})";
   for (int i = 1; i < 256; ++i) buffers += R"(,{"byteLength":0,"uri":"data:;base64,"})";
   EXPECT_NO_THROW((void)read_document(text_document(",\"buffers\":[" + buffers + "]")));
@@ -122,7 +122,7 @@ TEST(GltfDocument, OtherVersionsAndNewerCompressionAreRefusedByName) {
   EXPECT_NE(std::string(optional.what()).find("bufferViews[0] has KHR_meshopt_compression"), std::string::npos);
 }
 
-TEST(GltfDocument, KindsOfFilesConvertIntoEachOther) {
+TEST(GltfDocument, GlbAndGltfConvertIntoEachOther) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const std::string glb = scene.glb();

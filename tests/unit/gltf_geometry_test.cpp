@@ -62,7 +62,7 @@ TEST(GltfGeometry, StripsFansAndListsWithoutIndicesKeepTheirWinding) {
   EXPECT_EQ(triangles(5, true), (Buffer<Triangle>{{0, 1, 2}}));
 }
 
-TEST(GltfGeometry, PointsAndLinesAreLeftOut) {
+TEST(GltfGeometry, PointsAndLinesAreIgnored) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   for (int mode = 0; mode < 4; ++mode) {
@@ -73,7 +73,7 @@ TEST(GltfGeometry, PointsAndLinesAreLeftOut) {
   EXPECT_EQ(refusal_of(scene), Code::mesh_not_gltf);
 }
 
-TEST(GltfGeometry, QuantizedAndStridedPositionsAreWhatTheyStandFor) {
+TEST(GltfGeometry, QuantizedAndStridedPositionsAreConverted) {
   GltfScene scene;
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   const std::vector<int16_t> numbers{0, 1, 2, 99, -32767, -32768, 32767, 99, 3, 4, 5, 99};
@@ -86,7 +86,7 @@ TEST(GltfGeometry, QuantizedAndStridedPositionsAreWhatTheyStandFor) {
   EXPECT_EQ(vertex_positions(geometry_of(scene).sets[0])[1], (Vec3f{-1, -1, 1}));
 }
 
-TEST(GltfGeometry, SparseElementsReplaceThoseOfTheView) {
+TEST(GltfGeometry, SparseElementsReplaceElementsOfTheView) {
   GltfScene scene;
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   const size_t indices = scene.add_view(std::string("\2", 1));
@@ -114,7 +114,7 @@ TEST(GltfGeometry, PrimitivesOfEqualAttributesShareTheirVertices) {
   EXPECT_EQ(found.primitives.size(), 2U);
 }
 
-TEST(GltfGeometry, CountsAreCheckedAgainstBytesAndLimits) {
+TEST(GltfGeometry, CountsBeyondBytesOrLimitsAreRefused) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   GltfScene other = scene;
@@ -125,7 +125,7 @@ TEST(GltfGeometry, CountsAreCheckedAgainstBytesAndLimits) {
   EXPECT_EQ(refusal_of(scene, {.max_input_faces = 19}), Code::mesh_too_large);
   EXPECT_EQ(refusal_of(scene, {.max_input_faces = 20}), Code::internal);
   other = scene;
-  other.json["accessors"][0].erase("bufferView");  // zeros, of which bytes bound nothing
+  other.json["accessors"][0].erase("bufferView");  // zeros: no bytes bound the count
   other.json["accessors"][0]["count"] = 100'000'000;
   EXPECT_EQ(refusal_of(other), Code::mesh_too_large);
   other = scene;
@@ -133,13 +133,13 @@ TEST(GltfGeometry, CountsAreCheckedAgainstBytesAndLimits) {
   EXPECT_EQ(refusal_of(other), Code::mesh_not_gltf);
 }
 
-TEST(GltfGeometry, AnIndexOutOfRangeIsNamed) {
+TEST(GltfGeometry, IndexOutOfRangeIsRefused) {
   GltfScene scene;
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}});
   EXPECT_EQ(refusal_of(scene), Code::mesh_unusable);
 }
 
-/// Replaces the view of an accessor by a compressed one.
+/// Replaces the view of an accessor by a compressed view.
 void compress_view(GltfScene& scene, size_t accessor, const std::string& mode, size_t stride) {
   const size_t view = scene.json["accessors"][accessor]["bufferView"];
   Json& old = scene.json["bufferViews"][view];
@@ -207,7 +207,7 @@ TEST(GltfGeometry, DracoPrimitivesAreDecompressed) {
   EXPECT_EQ(refusal_of(wrong), Code::mesh_not_gltf);
 }
 
-TEST(GltfGeometry, EqualVerticesAreFound) {
+TEST(GltfGeometry, EqualVerticesHaveOneRepresentative) {
   GltfScene scene;
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}}});
   EXPECT_EQ(equal_vertices(geometry_of(scene).sets[0]), (std::vector<uint32_t>{0, 1, 2, 1}));

@@ -9,7 +9,7 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 
-// Scenes level by level, from a cache, and with instances of their own.
+// Levels of scenes, cached scenes and instances.
 
 namespace papilio::proto::gltf {
 namespace {
@@ -18,7 +18,7 @@ using test::faces_of;
 using test::GltfScene;
 using test::refined;
 
-/// A bunny of the size 1 and a torus, shown twice: large, and small and far away.
+/// A bunny of size 1 and a torus with two nodes: a large one, and a small one far away.
 GltfScene scene_of_three_nodes() {
   TriangleMesh bunny = test::real_mesh("bunny600.obj");
   const Box box = bounding_box(bunny.positions);
@@ -51,7 +51,7 @@ std::vector<EncodedLevel> levels_of(SceneRefinement&& refinement) {
   return levels;
 }
 
-TEST(GltfLevels, EachIsASceneAndTheLastIsTheResult) {
+TEST(GltfLevels, EachLevelIsASceneAndTheLastIsTheResult) {
   const std::string glb = scene_of_three_nodes().glb();
   for (const QueryFields& fields : ways()) {
     const EncodedLevel whole = refined(glb, fields);
@@ -72,7 +72,7 @@ TEST(GltfLevels, EachIsASceneAndTheLastIsTheResult) {
   }
 }
 
-TEST(GltfLevels, StopWhereTheCallerThrows) {
+TEST(GltfLevels, ThrowingCallerStopsTheLevels) {
   const std::string glb = scene_of_three_nodes().glb();
   SceneRefinement refinement(glb, parse_query({{"levels", "3"}}), {});
   EXPECT_THROW((void)refinement.run(
@@ -81,12 +81,12 @@ TEST(GltfLevels, StopWhereTheCallerThrows) {
 }
 
 #if defined(__SANITIZE_THREAD__)
-constexpr int turns = 1;  // a minute with two
+constexpr int turns = 1;  // two take a minute
 #else
 constexpr int turns = 2;
 #endif
 
-TEST(GltfLevels, OfACachedSceneAreTheSameBytes) {
+TEST(GltfLevels, CachedSceneGivesIdenticalBytes) {
   const auto glb = std::make_shared<const std::string>(scene_of_three_nodes().glb());
   for (const uint64_t budget : {uint64_t{1} << 30, uint64_t{1} << 20}) {
     const auto shared = std::make_shared<const SharedScene>(glb, Limits{}, budget);
@@ -100,11 +100,11 @@ TEST(GltfLevels, OfACachedSceneAreTheSameBytes) {
         EXPECT_EQ(levels_of(SceneRefinement(shared, parse_query(fields), {})).back().bytes, cold.bytes);
       }
     EXPECT_GT(shared->bytes(), before);
-    EXPECT_LT(shared->bytes(), before + budget + (uint64_t{8} << 20));  // besides, the level of their own edges
+    EXPECT_LT(shared->bytes(), before + budget + (uint64_t{8} << 20));  // plus the level of their edges
   }
 }
 
-TEST(GltfInstances, ShareAMeshUnlessTheyAreSplit) {
+TEST(GltfInstances, InstancesShareAMeshUnlessSplit) {
   const std::string glb = scene_of_three_nodes().glb();
   const QueryFields fields{{"tolerance", "0.001"}};
   const EncodedLevel together = refined(glb, fields);
@@ -117,12 +117,12 @@ TEST(GltfInstances, ShareAMeshUnlessTheyAreSplit) {
   EXPECT_EQ(json["nodes"][2]["mesh"], 2);
   EXPECT_EQ(faces_of(apart.bytes, 1), faces_of(together.bytes, 1));
   EXPECT_GT(faces_of(apart.bytes, 1), 192U);
-  EXPECT_EQ(faces_of(apart.bytes, 2), 192U);  // far too small to need more
+  EXPECT_EQ(faces_of(apart.bytes, 2), 192U);  // too small to be split
   EXPECT_EQ(apart.statistics.faces, faces_of(apart.bytes, 0) + faces_of(apart.bytes, 1) + 192U);
 }
 
-/// A scene whose second node shows its mesh by EXT_mesh_gpu_instancing; at a hundredth of the first one's scale, but
-/// for the last instance.
+/// A scene whose second node has EXT_mesh_gpu_instancing, at a hundredth of the first node's scale except for the last
+/// instance.
 GltfScene scene_of_gpu_instances(float last_scale) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
@@ -136,7 +136,7 @@ GltfScene scene_of_gpu_instances(float last_scale) {
   return scene;
 }
 
-TEST(GltfInstances, OfTheGpuAreSeenWhereTheyAre) {
+TEST(GltfInstances, GpuInstancesCountAtTheirScales) {
   const QueryFields fields{{"tolerance", "0.001"}};
   const std::string same = refined(scene_of_gpu_instances(100).glb(), fields).bytes;
   EXPECT_GT(faces_of(same, 0), 1000U);
@@ -144,10 +144,10 @@ TEST(GltfInstances, OfTheGpuAreSeenWhereTheyAre) {
   EXPECT_EQ(faces_of(refined(scene_of_gpu_instances(1).glb(), fields).bytes, 1), 20U);
 }
 
-TEST(GltfInstances, OfTheGpuAreCounted) {
+TEST(GltfInstances, GpuInstancesAreCounted) {
   GltfScene scene = scene_of_gpu_instances(1);
   for (size_t a = scene.json["accessors"].size() - 2; a < scene.json["accessors"].size(); ++a) {
-    scene.json["accessors"][a].erase("bufferView");  // zeros, of which bytes bound nothing
+    scene.json["accessors"][a].erase("bufferView");  // zeros: no bytes bound the count
     scene.json["accessors"][a]["count"] = 1'000'001;
   }
   try {
@@ -158,12 +158,12 @@ TEST(GltfInstances, OfTheGpuAreCounted) {
   }
 }
 
-TEST(GltfInstances, OfAMeshThatIsNoSceneAreRefused) {
+TEST(GltfInstances, SplittingAMeshThatIsNoSceneIsRefused) {
   const std::string draco = write_draco_exact(test::icosahedron());
   EXPECT_THROW(Refinement(draco, parse_query({{"split_instances", "true"}}), {}), Problem);
 }
 
-TEST(GltfInstances, CopiesAreBounded) {
+TEST(GltfInstances, CopiesBeyondTheLimitAreRefused) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   scene.json["meshes"][0]["extras"] = std::string(1 << 20, 'x');

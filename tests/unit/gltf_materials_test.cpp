@@ -49,7 +49,7 @@ FormattedMesh with_coordinates(const TriangleMesh& shape) {
   return mesh;
 }
 
-TEST(GltfMaterials, SurviveAsASceneOfOneMesh) {
+TEST(GltfMaterials, MaterialsRoundTripThroughASceneOfOneMesh) {
   const FormattedMesh mesh = with_coordinates(test::icosahedron());
   const Materials materials = two_materials(mesh.triangles.size());
   const std::string glb = scene_of_mesh(mesh, materials);
@@ -103,7 +103,7 @@ TEST(GltfMaterials, BordersStayClosedWhenTheSceneIsRefined) {
   EXPECT_EQ(flat.materials.materials[0].base_color, (std::array<double, 4>{0.1, 0.2, 0.3, 0.4}));
 }
 
-TEST(GltfMaterials, ImagesWithoutCoordinatesAreLeftOut) {
+TEST(GltfMaterials, ImagesWithoutCoordinatesAreOmitted) {
   const FormattedMesh mesh{test::icosahedron(), {}};
   const Json json = test::json_of_glb(scene_of_mesh(mesh, two_materials(mesh.triangles.size())));
   EXPECT_FALSE(json.contains("images"));
@@ -111,7 +111,7 @@ TEST(GltfMaterials, ImagesWithoutCoordinatesAreLeftOut) {
   EXPECT_EQ(json["materials"].size(), 2U);
 }
 
-TEST(GltfMaterials, NamesThatAreNotUtf8AreTakenForLatin1) {
+TEST(GltfMaterials, NamesThatAreNotUtf8AreReadAsLatin1) {
   Materials materials{.materials = {{.name = "Terraind\xe4k"}, {.name = "Terrain\xc3\xa4"}}};
   materials.of_triangle.assign(20, 0);
   const Json json = test::json_of_glb(scene_of_mesh({test::icosahedron(), {}}, materials));
@@ -138,14 +138,14 @@ GltfScene textured_scene() {
   return scene;
 }
 
-/// The texture coordinates of the first point, downwards as in glTF.
+/// Returns the texture coordinates of the first point, with v downwards as in glTF.
 std::array<double, 2> coordinates_of(const GltfScene& scene) {
   const MaterialMesh flat = flatten_with_materials(scene.glb(), {});
   const std::vector<double>& values = flat.mesh.attributes.at(0).values;
   return {values.at(0), 1 - values.at(1)};
 }
 
-TEST(GltfMaterials, CoordinatesAreThoseOfTheTexture) {
+TEST(GltfMaterials, CoordinatesIncludeTheTextureTransform) {
   GltfScene scene = textured_scene();
   EXPECT_EQ(coordinates_of(scene), (std::array<double, 2>{0.25, 0.5}));
   Json& texture = scene.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
@@ -158,7 +158,7 @@ TEST(GltfMaterials, CoordinatesAreThoseOfTheTexture) {
   EXPECT_NEAR(coordinates_of(scene)[1], -0.25, 1e-9);
 }
 
-TEST(GltfMaterials, SharedVerticesComeApartBetweenTextureMaps) {
+TEST(GltfMaterials, SharedVerticesAreSplitBetweenTextureMaps) {
   GltfScene scene = textured_scene();
   Json second = scene.primitive();
   second["material"] = 1;
@@ -185,7 +185,7 @@ TEST(GltfMaterials, AlphaCountsUnlessTheMaterialIsOpaque) {
   }
 }
 
-TEST(GltfMaterials, WhatIsDamagedIsRefused) {
+TEST(GltfMaterials, DamagedMaterialsAreRefused) {
   const auto refuse = [](const std::function<void(Json&)>& damage) {
     GltfScene scene = textured_scene();
     damage(scene.json);

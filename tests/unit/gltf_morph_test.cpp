@@ -37,7 +37,7 @@ TEST(GltfMorph, AnyWeightOfAMorphTargetGivesTheRefinedMorph) {
       const Vec3f d{0.2F * p.y * p.z, 0.3F * p.x, -0.1F * p.x * p.y};
       displacements.insert(displacements.end(), {d.x, d.y, d.z});
       positions[i] += weight * d;
-      const float ring = std::hypot(p.x, p.y);  // of radius 1, round z
+      const float ring = std::hypot(p.x, p.y);  // radius 1 about z
       const Vec3f out{p.x - p.x / ring, p.y - p.y / ring, p.z};
       normals[3 * i] = out.x / length(out);
       normals[3 * i + 1] = out.y / length(out);
@@ -69,7 +69,7 @@ TEST(GltfMorph, AnyWeightOfAMorphTargetGivesTheRefinedMorph) {
   }
 }
 
-TEST(GltfMorph, QuantizedDisplacementsBecomeFloatsWhereTheirTypeDoesNotReach) {
+TEST(GltfMorph, OverflowingQuantizedDisplacementsBecomeFloats) {
   const TriangleMesh shape = test::icosahedron();
   GltfScene scene;
   scene.add_mesh(shape);

@@ -18,7 +18,7 @@ using test::GltfScene;
 using Json = GltfScene::Json;
 
 std::string no_file(const std::string& uri) {
-  ADD_FAILURE() << uri << " is asked for";
+  ADD_FAILURE() << uri << " is read";
   return {};
 }
 
@@ -73,7 +73,7 @@ TEST(GltfPacking, BuffersAndImagesBecomeOneChunk) {
   EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
 }
 
-TEST(GltfPacking, ABufferWithExtrasOfItsOwnStaysOne) {
+TEST(GltfPacking, BufferWithConflictingExtrasStaysSeparate) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   Json json = scene.json;
@@ -97,7 +97,7 @@ TEST(GltfPacking, ABufferWithExtrasOfItsOwnStaysOne) {
   EXPECT_EQ(corners_of(flatten_scene(glb, {})), corners_of(test::icosahedron()));
 }
 
-TEST(GltfPacking, AGlbFileIsPackedAlready) {
+TEST(GltfPacking, GlbFileIsUnchanged) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   EXPECT_EQ(pack_scene(scene.glb(), no_file, no_file), scene.glb());
@@ -107,7 +107,7 @@ TEST(GltfPacking, AGlbFileIsPackedAlready) {
   EXPECT_EQ(pack_scene(unpacked.document, binary, no_file), scene.glb());
 }
 
-TEST(GltfFlattening, EveryNodeHasItsTriangles) {
+TEST(GltfFlattening, EveryNodeContributesItsTriangles) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   scene.add_node({{"mesh", 0}, {"scale", {-2, 2, 2}}, {"translation", {9, 0, 0}}});  // mirrored
@@ -118,7 +118,7 @@ TEST(GltfFlattening, EveryNodeHasItsTriangles) {
   EXPECT_FALSE(find_only_mesh(scene.glb(), {}));
 }
 
-TEST(GltfFlattening, TrianglesWithoutNormalsHaveThoseOfTheirPlanes) {
+TEST(GltfFlattening, TrianglesWithoutNormalsGetFaceNormals) {
   const TriangleMesh shape = test::icosahedron();
   GltfScene scene;
   scene.add_mesh(shape);
@@ -156,7 +156,7 @@ TEST(GltfFlattening, VerticesWithoutColoursAreWhite) {
   for (size_t i = colors.size() / 2; i < colors.size(); ++i) EXPECT_EQ(colors[i], 255);
 }
 
-TEST(GltfFlattening, AMeshSurvivesAsASceneOfOne) {
+TEST(GltfFlattening, MeshRoundTripsThroughAScene) {
   FormattedMesh mesh{test::icosahedron(), {}};
   mesh.attributes = {{.components = 2, .unit_length = false, .values = std::vector<double>(24, 0.25)},
                      {.components = 4, .unit_length = false, .values = std::vector<double>(48, 51)}};

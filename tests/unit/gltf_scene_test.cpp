@@ -33,7 +33,7 @@ std::multiset<Point> corners_of(const MeshGeometry& geometry) {
   return corners;
 }
 
-TEST(GltfScene, PositionsAreThoseOfTheCore) {
+TEST(GltfScene, PositionsEqualTheCores) {
   const TriangleMesh shape = test::torus(8, 6);
   GltfScene scene;
   scene.add_mesh(shape);
@@ -63,7 +63,7 @@ TEST(GltfScene, StripsFansAndLooseTrianglesBecomeOneSurface) {
   EXPECT_TRUE(primitive.contains("indices"));
 }
 
-TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
+TEST(GltfScene, NormalsFollowTheSurfaceAndTheInputsSplits) {
   const TriangleMesh shape = test::icosahedron();
   GltfScene scene;
   scene.add_mesh(shape);
@@ -84,7 +84,7 @@ TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
     EXPECT_GT(dot(normal, to_double(positions[i])) / length(to_double(positions[i])), 0.98);
   }
 
-  const TriangleMesh cube = test::cube();  // each face of its own normals
+  const TriangleMesh cube = test::cube();  // with face normals
   GltfScene flat;
   Buffer<Vec3f> corners;
   std::vector<float> directions;
@@ -100,7 +100,7 @@ TEST(GltfScene, NormalsAreThoseOfTheSurfaceAndSplitWhereTheInputSplitsThem) {
   flat.primitive().erase("indices");
   flat.primitive()["attributes"]["NORMAL"] = flat.add_accessor(directions, "VEC3");
   const MeshGeometry hard = geometry_of(refined(flat.glb(), {{"levels", "2"}, {"shape", "mechanical"}}).bytes);
-  EXPECT_EQ(hard.sets[0].count, 6U * 25);  // a grid of its own on each side
+  EXPECT_EQ(hard.sets[0].count, 6U * 25);  // a separate grid on each side
   const Elements& of_sides = hard.sets[0].find("NORMAL")->elements;
   for (uint32_t i = 0; i < hard.sets[0].count; ++i) {
     double largest = 0;
@@ -138,7 +138,7 @@ TEST(GltfScene, WeightsOfJointsAreAddedJointByJoint) {
   EXPECT_TRUE(seen);
 }
 
-TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
+TEST(GltfScene, AttributesAreInterpolatedOrCopiedByKind) {
   GltfScene scene;
   scene.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   Json& attributes = scene.primitive()["attributes"];
@@ -166,7 +166,7 @@ TEST(GltfScene, AttributesAreInterpolatedByTheirMeaning) {
   }
 }
 
-TEST(GltfScene, FeatureIdsSurviveDracoToTheBit) {
+TEST(GltfScene, FeatureIdsRoundTripThroughDraco) {
   const TriangleMesh shape = test::icosahedron();
   GltfScene scene;
   scene.add_mesh(shape);
@@ -202,7 +202,7 @@ TEST(GltfScene, ToleranceIsAShareOfTheScene) {
   EXPECT_EQ(made.statistics.stop_reason, StopReason::converged);
 }
 
-TEST(GltfScene, AMeshIsAsFineAsAnyOfItsNodesNeeds) {
+TEST(GltfScene, MeshIsFineEnoughForAllItsNodes) {
   GltfScene scene = scene_of_two_scales(10, 0.1);
   scene.json["nodes"].push_back({{"mesh", 1}, {"scale", {10, 10, 10}}});
   const EncodedLevel made = refined(scene.glb(), {{"tolerance", "0.001"}});
@@ -219,7 +219,7 @@ TEST(GltfScene, MaxFacesBoundsAllMeshesTogether) {
   EXPECT_THROW(refined(scene_of_two_scales(1, 1).glb(), {{"max_faces", "39"}}), Problem);
 }
 
-TEST(GltfScene, TheViewSeesMeshesWhereTheirNodesShowThem) {
+TEST(GltfScene, ViewUsesTheNodesTransforms) {
   GltfScene scene = scene_of_two_scales(1, 1);
   const QueryFields view{{"view.eye", "0,0,30"}, {"view.target", "0,0,0"},     {"view.fov_y", "10"},
                          {"levels", "3"},        {"view.viewport", "500,500"}, {"view.edge_pixels", "1"}};
@@ -231,7 +231,7 @@ TEST(GltfScene, TheViewSeesMeshesWhereTheirNodesShowThem) {
   EXPECT_EQ(faces_of(refined(scene.glb(), view).bytes, 0), 20U);
 }
 
-TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
+TEST(GltfScene, ViewOfATransformedNodeEqualsTheInverseView) {
   TriangleMesh shape = test::torus(12, 8);
   GltfScene scene;
   scene.add_mesh(shape);
@@ -249,7 +249,7 @@ TEST(GltfScene, AViewThroughANodeIsTheViewOfTheMovedMesh) {
   EXPECT_EQ(made.statistics.faces, same.statistics.faces);
 }
 
-TEST(GltfScene, BacksOfOpenMeshesAreSeenWhereTheirMaterialShowsThem) {
+TEST(GltfScene, BacksOfOpenMeshesCountIfDoubleSided) {
   TriangleMesh sheet = test::grid(6, 6);
   for (Vec3f& p : sheet.positions) p.z = 0.3F * std::sin(p.x) * std::cos(p.y);
   const auto faces_from_behind = [](const TriangleMesh& mesh, bool is_double_sided) {
@@ -266,19 +266,19 @@ TEST(GltfScene, BacksOfOpenMeshesAreSeenWhereTheirMaterialShowsThem) {
   EXPECT_EQ(faces_from_behind(closed, true), faces_from_behind(closed, false));
 }
 
-TEST(GltfScene, LimitsHoldForTheWholeScene) {
+TEST(GltfScene, LimitsCountAllMeshesOfAScene) {
   const std::string glb = scene_of_two_scales(1, 1).glb();
   EXPECT_NO_THROW(refined(glb, {{"levels", "2"}}, {.max_output_faces = 640}));
   EXPECT_THROW(refined(glb, {{"levels", "2"}}, {.max_output_faces = 639}), Problem);
   EXPECT_THROW(refined(glb, {{"levels", "2"}}, {.max_input_faces = 39}), Problem);
 }
 
-TEST(GltfScene, WhatIsNotRefinedKeepsItsBytes) {
+TEST(GltfScene, UnrefinedPrimitivesKeepTheirBytes) {
   const std::string glb = scene_of_two_scales(1, 1).glb();
   EXPECT_EQ(refined(glb, {{"levels", "0"}}).bytes, glb);
 }
 
-TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
+TEST(GltfScene, SceneWithoutTrianglesIsRefused) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   scene.primitive()["mode"] = 0;
@@ -289,7 +289,7 @@ TEST(GltfScene, ASceneWithoutTrianglesIsRefused) {
   EXPECT_THROW(refined(scene.glb(), {}), Problem);
 }
 
-TEST(GltfScene, AnUnusedViewOfNoBufferIsRefused) {
+TEST(GltfScene, UnusedViewWithoutABufferIsRefused) {
   for (const Json& buffer : {Json("zero"), Json::array({0})})
     for (const bool is_compressed : {false, true}) {
       GltfScene scene;

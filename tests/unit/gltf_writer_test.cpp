@@ -21,7 +21,7 @@ std::string_view compression_name(Compression compression) {
 using test::GltfScene;
 using Json = GltfScene::Json;
 
-/// Replaces the geometry of all meshes by itself, with every vertex twice.
+/// Replaces the geometry of all meshes by a copy with each vertex twice.
 std::string rewrite(const std::string& glb, Compression compression = Compression::same) {
   Document document = read_document(glb);
   Views views(document);
@@ -43,7 +43,7 @@ std::string rewrite(const std::string& glb, Compression compression = Compressio
   return write_document(document, std::move(pieces), FileKind::glb).document;
 }
 
-/// Bytes of the binary chunk that no view holds.
+/// Returns the number of bytes of the binary chunk outside of all views.
 size_t dead_bytes(const std::string& glb) {
   const Json json = test::json_of_glb(glb);
   std::vector<bool> used(test::binary_of_glb(glb).size());
@@ -61,7 +61,7 @@ size_t dead_bytes(const std::string& glb) {
 
 std::string marker(int number) { return "marker-" + std::to_string(number) + "-of-sixteen"; }
 
-/// A scene with sixteen things that no refinement needs.
+/// A scene with sixteen markers in elements that no refinement uses.
 GltfScene marked_scene() {
   GltfScene scene;
   Json& json = scene.json;
@@ -92,7 +92,7 @@ GltfScene marked_scene() {
   return scene;
 }
 
-TEST(GltfWriter, SixteenOfSixteenMarkersSurvive) {
+TEST(GltfWriter, AllSixteenMarkersSurvive) {
   const std::string before = marked_scene().glb();
   for (const std::string_view name : compression_names) {
     const std::string after = test::refined(before, {{"levels", "2"}, {"output.compress", std::string(name)}}).bytes;
@@ -117,7 +117,7 @@ TEST(GltfWriter, OtherElementsKeepTheirPlacesAndBytes) {
   EXPECT_EQ(old_json["meshes"][0]["primitives"][0].dump(), new_json["meshes"][0]["primitives"][0].dump());
 }
 
-TEST(GltfWriter, NoOldGeometryIsLeft) {
+TEST(GltfWriter, OldGeometryIsRemoved) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const std::string before = scene.glb();
@@ -127,7 +127,7 @@ TEST(GltfWriter, NoOldGeometryIsLeft) {
   EXPECT_EQ(after.find(test::view_of_glb(before, 0)), after.rfind(test::view_of_glb(before, 0)) - 144);
 }
 
-TEST(GltfWriter, AnAccessorThatOthersNeedStays) {
+TEST(GltfWriter, SharedAccessorIsKept) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   Json points = scene.primitive();
@@ -141,7 +141,7 @@ TEST(GltfWriter, AnAccessorThatOthersNeedStays) {
   EXPECT_EQ(test::view_of_glb(rewrite(before), 0), test::view_of_glb(before, 0));
 }
 
-/// A scene whose only view holds positions of two meshes, one of them of points, and indices are left out.
+/// A scene without indices whose only view has the positions of two meshes, one of them of points.
 GltfScene shared_view_scene() {
   GltfScene scene;
   std::vector<float> numbers(36);
@@ -156,7 +156,7 @@ GltfScene shared_view_scene() {
   return scene;
 }
 
-TEST(GltfWriter, TheReplacedPartOfASharedViewIsRemoved) {
+TEST(GltfWriter, ReplacedPartOfASharedViewIsRemoved) {
   const std::string before = shared_view_scene().glb();
   const std::string after = rewrite(before);
   const Json json = test::json_of_glb(after);
@@ -166,7 +166,7 @@ TEST(GltfWriter, TheReplacedPartOfASharedViewIsRemoved) {
   EXPECT_LT(dead_bytes(after), 32U);
 }
 
-TEST(GltfWriter, EachCompressionReadsBackAsTheSamePositions) {
+TEST(GltfWriter, PositionsRoundTripInEachCompression) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const auto positions_of = [](const std::string& glb) {
@@ -211,7 +211,7 @@ TEST(GltfWriter, EachCompressionReadsBackAsTheSamePositions) {
   }
 }
 
-TEST(GltfWriter, BoundsOfPositionsAreRenewed) {
+TEST(GltfWriter, BoundsOfPositionsAreRecomputed) {
   GltfScene scene;
   scene.add_mesh(test::icosahedron());
   const Json before = scene.json["accessors"][0];
@@ -220,8 +220,8 @@ TEST(GltfWriter, BoundsOfPositionsAreRenewed) {
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(after["min"][i].get<float>(), before["min"][i].get<float>());
 }
 
-TEST(GltfWriter, DocumentsWithoutViewsGetThem) {
-  // Lists that were added while a primitive was written moved the primitive.
+TEST(GltfWriter, DocumentsWithoutViewsAreWritten) {
+  // Adding lists invalidated the reference to the primitive while it was written.
   Document document = read_document(R"({"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "count": 3,
       "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]})");
   Views views(document);

@@ -10,7 +10,7 @@
 #include "proto/draco_writer.h"
 #include "tests/support/crowded_meshes.h"
 
-// Work on meshes whose faces crowd at one vertex or edge is near-linear in them.
+// Work on meshes with many faces at one vertex or edge is near-linear.
 
 namespace papilio::proto {
 namespace {
@@ -19,7 +19,7 @@ using namespace test;
 
 constexpr uint32_t few = 15'000;
 
-/// Of this thread, at best.
+/// Returns the thread's CPU time of the fastest of some runs.
 double processor_seconds(const std::function<void()>& work) {
   double least = 1e9;
   for (int i = 0; i < 3; ++i) {
@@ -34,8 +34,8 @@ double processor_seconds(const std::function<void()>& work) {
   return least;
 }
 
-/// `work` of so many faces, made beforehand. Four times the faces take about four times as long; quadratic work would
-/// take 16 times.
+/// Expects near-linear `work`, whose inputs are made beforehand: four times the faces take about four times as long;
+/// quadratic work would take 16 times.
 void expect_near_linear(const std::function<std::function<void()>(uint32_t)>& work, uint32_t faces = few) {
   const double one = processor_seconds(work(faces));
   const double four = processor_seconds(work(4 * faces));
@@ -55,7 +55,7 @@ TEST(Growth, EncodingCrowdedMeshesIsNearLinear) {
       });
 }
 
-// At speeds below 5 the encoder, too, has a vertex fall in two at each split symbol.
+// At speeds below 5 the encoder also duplicates a vertex at each split symbol.
 TEST(Growth, EncodingAMeshOfManySplitsIsNearLinear) {
   const auto encode = [&](uint32_t faces) {
     return [mesh = build_mesh(read_draco(merging_stream(faces / 4), {}))] {

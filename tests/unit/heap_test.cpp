@@ -25,7 +25,7 @@ size_t resident_bytes() {
   return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Takes and frees memory as a large request does, and keeps a little between that nobody can give back with it.
+/// Takes and frees memory as a large request does, and keeps small blocks between that prevent its return.
 std::vector<std::unique_ptr<char>> leave_holes() {
   std::vector<std::unique_ptr<char>> kept;
   std::vector<std::vector<char>> freed;
@@ -37,26 +37,26 @@ std::vector<std::unique_ptr<char>> leave_holes() {
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SKIP_WITHOUT_GLIBC() GTEST_SKIP() << "the sanitizers bring an allocator of their own"
+#define SKIP_WITHOUT_GLIBC() GTEST_SKIP() << "the sanitizers replace the allocator"
 #else
 #define SKIP_WITHOUT_GLIBC()
 #endif
 
-TEST(FreeMemory, GoesBackToTheSystemOnceRequestsAreDone) {
+TEST(FreeMemory, MemoryIsReturnedOnceRequestsAreDone) {
   SKIP_WITHOUT_GLIBC();
   FreeMemory memory;
   const auto kept = leave_holes();
   const size_t before = resident_bytes();
   memory.give_back();
-  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "nothing was done, so nothing is to be looked for";
+  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "no request, so no memory is returned";
   memory.count_request();
   memory.give_back();
-  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "more may follow at once";
+  EXPECT_GT(resident_bytes(), before - blocks * block_bytes / 8) << "another request may follow";
   memory.give_back();
   EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
 }
 
-TEST(FreeMemory, GoesBackNowAndThenThoughRequestsKeepComing) {
+TEST(FreeMemory, MemoryIsReturnedBetweenContinuousRequests) {
   SKIP_WITHOUT_GLIBC();
   FreeMemory memory;
   const auto kept = leave_holes();
@@ -69,7 +69,7 @@ TEST(FreeMemory, GoesBackNowAndThenThoughRequestsKeepComing) {
   EXPECT_LT(resident_bytes(), before - blocks * block_bytes / 2);
 }
 
-TEST(FreeMemory, IsKeptForTheNextRequestUntilItGoesBackFromTheEndsOfArenasToo) {
+TEST(FreeMemory, ArenaEndsAreReturnedAfterRequests) {
   SKIP_WITHOUT_GLIBC();
   set_up_heap(2);
   FreeMemory memory;
@@ -82,18 +82,18 @@ TEST(FreeMemory, IsKeptForTheNextRequestUntilItGoesBackFromTheEndsOfArenasToo) {
   };
   std::thread(work).join();
   std::thread(work).join();
-  EXPECT_GT(resident_bytes(), before + blocks / 8 * block_bytes) << "given back to be taken again";
+  EXPECT_GT(resident_bytes(), before + blocks / 8 * block_bytes) << "memory was returned between requests";
   memory.give_back();
   memory.give_back();
   EXPECT_LT(resident_bytes(), before + (2U << 20));
 }
 
-TEST(Heap, SpareBlocksAreGivenBackBeforeNewFails) {
+TEST(Heap, SpareBlocksAreReturnedBeforeNewFails) {
   set_up_heap(2);
   const std::new_handler handler = std::get_new_handler();
   ASSERT_NE(handler, nullptr);
   give_block(take_block(1 << 20), 1 << 20);
-  if (spare_bytes() > 0) handler();  // under the address sanitizer there are none
+  if (spare_bytes() > 0) handler();  // the address sanitizer keeps no spare blocks
   EXPECT_EQ(spare_bytes(), 0U);
   EXPECT_THROW(handler(), std::bad_alloc);
   std::set_new_handler(nullptr);

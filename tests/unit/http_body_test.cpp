@@ -1,13 +1,13 @@
 #include "tests/support/http_fixture.h"
 
-// Bodies and forms: whole, damaged, too large, too slow to come; none is ever taken for the next request.
+// Bodies and forms: complete, damaged, too large or too slow. None is parsed as the next request.
 
 namespace papilio::server {
 namespace {
 
 // Bodies
 
-TEST_F(HttpServerTest, ReadsBodiesOfEitherFraming) {
+TEST_F(HttpServerTest, BodiesOfEitherFramingAreRead) {
   start();
   Client client(port_);
   EXPECT_EQ(client.ask(post("/echo", std::string(body_limit, 'x'))).body, std::string(body_limit, 'x'));
@@ -19,7 +19,7 @@ TEST_F(HttpServerTest, ReadsBodiesOfEitherFraming) {
   EXPECT_EQ(client.ask(get("/hello")).status, 200);
 }
 
-TEST_F(HttpServerTest, ReadsABodyThatComesByteByByte) {
+TEST_F(HttpServerTest, BodySentByteByByteIsRead) {
   start();
   Client client(port_);
   for (const char c : request("POST /echo", "Transfer-Encoding: chunked\r\n", "5\r\nhello\r\n0\r\n\r\n")) {
@@ -29,7 +29,7 @@ TEST_F(HttpServerTest, ReadsABodyThatComesByteByByte) {
   EXPECT_EQ(client.receive().body, "hello");
 }
 
-TEST_F(HttpServerTest, TooLargeByContentLengthIsRefusedBeforeTheBodyComes) {
+TEST_F(HttpServerTest, TooLargeContentLengthIsRefusedBeforeTheBody) {
   start();
   const std::string head = request("POST /echo", "Content-Length: 4097\r\n");
   expect_refused(head, 413, "body_too_large");
@@ -37,14 +37,14 @@ TEST_F(HttpServerTest, TooLargeByContentLengthIsRefusedBeforeTheBodyComes) {
   EXPECT_NE(ask(head).body.find("4096 bytes"), std::string::npos) << "the limit is named";
 }
 
-TEST_F(HttpServerTest, TooLargeBodyIsNotExecutedAsTheNextRequest) {
+TEST_F(HttpServerTest, TooLargeBodyIsNotParsedAsARequest) {
   start();
   std::string body;
   while (body.size() < 2 * body_limit) body += smuggled;
   expect_refused(post("/echo", body), 413, "body_too_large");
 }
 
-TEST_F(HttpServerTest, TooLargeUploadStillReadsTheRefusal) {
+TEST_F(HttpServerTest, ClientOfATooLargeUploadReceivesTheRefusal) {
   start();
   Client client(port_);
   client.send(request("POST /echo", "Content-Length: 1000000\r\n"));
@@ -54,7 +54,7 @@ TEST_F(HttpServerTest, TooLargeUploadStillReadsTheRefusal) {
   EXPECT_TRUE(client.at_end());
 }
 
-TEST_F(HttpServerTest, ChunkedBodyIsRefusedAsSoonAsItPassesTheLimit) {
+TEST_F(HttpServerTest, ChunkedBodyIsRefusedOnceItExceedsTheLimit) {
   start();
   const std::string chunked = "Transfer-Encoding: chunked\r\n";
   const std::string chunk = "800\r\n" + std::string(0x800, 'x') + "\r\n";
@@ -100,7 +100,7 @@ TEST_F(HttpServerTest, ChunkLinesOutsideTheGrammarAreRefused) {
   }
 }
 
-TEST_F(HttpServerTest, TrailersThatNoHeadCouldHoldAreRefused) {
+TEST_F(HttpServerTest, MalformedTrailersAreRefused) {
   start();
   using namespace std::string_literals;
   for (const std::string& trailer : {"X: a\rb"s, "X: \0"s, "no colon"s, " folded: x"s, "X : y"s}) {
@@ -122,7 +122,7 @@ TEST_F(HttpServerTest, BodyThatEndsEarlyIsRefused) {
   for (const Finished& one : log) EXPECT_EQ(one.code, "bad_request");
 }
 
-TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsWanted) {
+TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsRead) {
   start();
   Client client(port_);
   EXPECT_EQ(client.ask(request("POST /echo", "Content-Length: 5\r\nExpect: 100-Continue\r\n")).status, 100);
@@ -160,7 +160,7 @@ TEST_F(HttpServerTest, PostWithoutLengthIsRefusedAtOnce) {
   expect_problem(ask(request("POST /echo")), 411, "length_required");
 }
 
-TEST_F(HttpServerTest, UnreadBodiesAreNotExecuted) {
+TEST_F(HttpServerTest, UnreadBodiesAreNotParsedAsRequests) {
   start();
   expect_refused(post("/refuse", smuggled), 400, "bad_parameter");
   expect_refused(post("/nowhere", smuggled), 404, "not_found");
@@ -174,14 +174,14 @@ TEST_F(HttpServerTest, UnreadBodiesAreNotExecuted) {
   EXPECT_EQ(counted_, 0);
 }
 
-TEST_F(HttpServerTest, ReadingABodyTwiceIsABug) {
+TEST_F(HttpServerTest, ReadingABodyTwiceIsAnInternalError) {
   start();
   expect_problem(ask(post("/twice", "x")), 500, "internal");
 }
 
 // Forms
 
-TEST_F(HttpServerTest, ReadsFormParts) {
+TEST_F(HttpServerTest, FormPartsAreRead) {
   start();
   Client client(port_);
   const Reply reply =

@@ -6,14 +6,14 @@
 
 #include "tests/support/http_fixture.h"
 
-// Answers and connections: failures of handlers, streams, clients that go away, sockets, draining.
+// Answers and connections: failures of handlers, streams, disconnects, sockets, draining.
 
 namespace papilio::server {
 namespace {
 
 // Failures of handlers
 
-TEST_F(HttpServerTest, ExceptionsBecomeInternalWithoutAWord) {
+TEST_F(HttpServerTest, ExceptionsBecomeInternalErrorsWithoutTheirMessage) {
   start();
   Client client(port_);
   for (const char* path : {"/throw", "/throw-odd"}) {
@@ -28,7 +28,7 @@ TEST_F(HttpServerTest, ExceptionsBecomeInternalWithoutAWord) {
   EXPECT_EQ(log[0].detail, "the secret");
 }
 
-TEST_F(HttpServerTest, ProblemsAreAnsweredInTheirOwnWords) {
+TEST_F(HttpServerTest, ProblemsKeepTheirDetail) {
   start();
   const auto json = nlohmann::json::parse(ask(post("/refuse", "")).body);
   EXPECT_EQ(json["detail"], "no");
@@ -39,9 +39,9 @@ TEST_F(HttpServerTest, ProblemsAreAnsweredInTheirOwnWords) {
   EXPECT_EQ(busy.field("Retry-After"), "1");
 }
 
-// Streams and clients that go away
+// Streams and disconnects
 
-TEST_F(HttpServerTest, StreamsInChunks) {
+TEST_F(HttpServerTest, StreamsAreChunked) {
   start();
   Client client(port_);
   const Reply reply = client.ask(get("/stream"));
@@ -51,14 +51,14 @@ TEST_F(HttpServerTest, StreamsInChunks) {
   EXPECT_EQ(client.ask(get("/hello")).status, 200);
 }
 
-TEST_F(HttpServerTest, StreamsUntilTheCloseForHttp10) {
+TEST_F(HttpServerTest, StreamsEndWithTheConnectionInHttp10) {
   start();
   const Reply reply = ask("GET /stream HTTP/1.0\r\n\r\n");
   EXPECT_EQ(reply.field("Transfer-Encoding"), "");
   EXPECT_EQ(reply.body, "one two three");
 }
 
-TEST_F(HttpServerTest, StreamThatThrowsIsSeenAsCutShort) {
+TEST_F(HttpServerTest, StreamThatThrowsIsTruncated) {
   start();
   Client client(port_);
   EXPECT_EQ(client.ask(get("/stream-throws")).body, "begun");
@@ -66,7 +66,7 @@ TEST_F(HttpServerTest, StreamThatThrowsIsSeenAsCutShort) {
   EXPECT_EQ(finished(1).at(0).code, "not_sent");
 }
 
-TEST_F(HttpServerTest, HandlerSeesThatTheClientIsGone) {
+TEST_F(HttpServerTest, HandlerDetectsADisconnect) {
   start();
   for (const bool reset : {false, true}) {
     saw_gone_ = false;
@@ -79,7 +79,7 @@ TEST_F(HttpServerTest, HandlerSeesThatTheClientIsGone) {
   }
 }
 
-TEST_F(HttpServerTest, StreamSeesThatTheClientIsGone) {
+TEST_F(HttpServerTest, StreamDetectsADisconnect) {
   start();
   for (const bool reset : {false, true}) {
     saw_gone_ = false;
@@ -92,18 +92,18 @@ TEST_F(HttpServerTest, StreamSeesThatTheClientIsGone) {
   EXPECT_EQ(finished(2).at(1).code, "not_sent");
 }
 
-TEST_F(HttpServerTest, StreamWhoseClientIsGoneIsLoggedAsNotSent) {
+TEST_F(HttpServerTest, DisconnectedStreamIsLoggedAsNotSent) {
   start();
   Client client(port_);
   client.send(get("/pour"));
   EXPECT_EQ(client.receive(true).status, 200);
-  client.close_sending();  // what is written could still be
+  client.close_sending();  // half-closed: the client could still read
   while (client.skip(65536)) continue;
   EXPECT_EQ(finished(1).at(0).code, "not_sent");
 }
 
 TEST_F(HttpServerTest, ClientThatReadsSlowlyIsServed) {
-  // 80 KB a second: far too little to free a third of the socket's megabytes within a second.
+  // 80 KB/s: too slow to free a third of the socket's buffer within a second.
   options_.write_seconds = 1;
   start();
   Client client(port_, 4096);
@@ -115,7 +115,7 @@ TEST_F(HttpServerTest, ClientThatReadsSlowlyIsServed) {
   }
 }
 
-/// Reads the whole answer in small pieces, about 24 KB a second; returns its size, with the head.
+/// Reads the whole answer in small pieces at about 24 KB/s. Returns its size with the head.
 size_t read_slowly(const Client& client) {
   size_t size = 0;
   for (size_t count = 1; count > 0; size += count) {
@@ -125,18 +125,18 @@ size_t read_slowly(const Client& client) {
   return size;
 }
 
-TEST_F(HttpServerTest, SteadySlowReaderGetsTheWholeAnswer) {
-  // Far too little to make the socket writable within a second.
+TEST_F(HttpServerTest, SteadySlowReaderReceivesTheWholeAnswer) {
+  // Too slow to make the socket writable within a second.
   options_.write_seconds = 1;
   start();
   const Client client(port_, 2048);
   client.send(get("/large", "Connection: close\r\n"));
   EXPECT_GT(read_slowly(client), large_size);
   EXPECT_EQ(finished(1).at(0).code, "");
-  EXPECT_GT(finished(1).at(0).milliseconds, 2000) << "longer than the wait for one byte";
+  EXPECT_GT(finished(1).at(0).milliseconds, 2000) << "longer than the timeout of one write";
 }
 
-TEST_F(HttpServerTest, AnswersCountWhileTheyAreSent) {
+TEST_F(HttpServerTest, AnswersAreCountedUntilTheyAreSent) {
   start();
   auto client = std::make_unique<Client>(port_, 2048);
   client->send(get("/large-shared"));
@@ -153,7 +153,7 @@ TEST_F(HttpServerTest, AnswersCountWhileTheyAreSent) {
   EXPECT_TRUE(eventually([&] { return server_->held().answers == 0; }));
 }
 
-TEST_F(HttpServerTest, WhereAnswersHoldTooMuchTheOldestIsCut) {
+TEST_F(HttpServerTest, OldestAnswerIsCutBeyondTheBudget) {
   options_.max_held_bytes = 5 * large_size / 2;
   start();
   std::vector<std::unique_ptr<Client>> clients;
@@ -172,7 +172,7 @@ TEST_F(HttpServerTest, WhereAnswersHoldTooMuchTheOldestIsCut) {
   }
 }
 
-TEST_F(HttpServerTest, ABodyDoesNotCountWhileItsAnswerIsSent) {
+TEST_F(HttpServerTest, BodyIsNotCountedWhileItsAnswerIsSent) {
   options_.max_body_bytes = options_.max_held_bytes = 1 << 20;
   start();
   Client slow(port_, 2048);
@@ -205,7 +205,7 @@ int port_of(int fd, int (*name)(int, sockaddr*, socklen_t*)) {
   return name(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 ? ntohs(address.sin_port) : -1;
 }
 
-TEST_F(HttpServerTest, AcceptedSocketsDoNotDelaySmallAnswers) {
+TEST_F(HttpServerTest, AcceptedSocketsHaveNoDelaySet) {
   start();
   Client client(port_);
   EXPECT_EQ(client.ask(get("/hello")).status, 200);
@@ -217,7 +217,7 @@ TEST_F(HttpServerTest, AcceptedSocketsDoNotDelaySmallAnswers) {
   EXPECT_EQ(no_delay, 1);
 }
 
-TEST_F(HttpServerTest, BacklogIsLong) {
+TEST_F(HttpServerTest, BacklogIs1024OrTheSystemsMaximum) {
   start();
   const int fd = server_socket([&](int one) {
     int listens = 0;
@@ -258,7 +258,7 @@ TEST_F(HttpServerTest, PortIsFreeForTheNextServerAtOnce) {
 
 // Draining and stopping
 
-TEST_F(HttpServerTest, DrainWaitsForTheRunningAndRefusesTheRest) {
+TEST_F(HttpServerTest, DrainWaitsForRunningRequestsAndRefusesOthers) {
   start();
   Client running(port_);
   running.send(get("/hold"));
@@ -284,7 +284,7 @@ TEST_F(HttpServerTest, DrainWaitsForTheRunningAndRefusesTheRest) {
   EXPECT_FALSE(Client(port_).connected());
 }
 
-TEST_F(HttpServerTest, DrainCutsWhatTakesTooLongAndSigpipeKillsNobody) {
+TEST_F(HttpServerTest, DrainCutsLongRequestsAndSigpipeIsIgnored) {
   start();
   Client client(port_);
   client.send(get("/watch"));
@@ -308,7 +308,7 @@ TEST_F(HttpServerTest, DrainDoesNotWaitForIdleConnections) {
   EXPECT_TRUE(idle.at_end());
 }
 
-TEST_F(HttpServerTest, StopBeforeRunIsNotLost) {
+TEST_F(HttpServerTest, StopBeforeRunEndsRun) {
   for (const bool drains : {false, true}) {
     HttpServer server(options_);
     const int port = server.bind();

@@ -1,13 +1,13 @@
 #include "tests/support/http_fixture.h"
 
-// Ordinary requests, and heads that no client should send.
+// Ordinary requests and malformed heads.
 
 namespace papilio::server {
 namespace {
 
 // Ordinary requests
 
-TEST_F(HttpServerTest, AnswersWithLengthDateAndId) {
+TEST_F(HttpServerTest, AnswersHaveLengthDateAndId) {
   start();
   Client client(port_);
   const Reply reply = client.ask(get("/hello"));
@@ -20,14 +20,14 @@ TEST_F(HttpServerTest, AnswersWithLengthDateAndId) {
   EXPECT_EQ(reply.field("Connection"), "");
 }
 
-TEST_F(HttpServerTest, NeverCompressesOnItsOwn) {
+TEST_F(HttpServerTest, AnswersAreNotCompressed) {
   start();
   const Reply reply = ask(get("/hello", "Accept-Encoding: gzip, br\r\n"));
   EXPECT_EQ(reply.body, "hello GET");
   EXPECT_EQ(reply.field("Content-Encoding"), "");
 }
 
-TEST_F(HttpServerTest, HeadFollowsGetWithoutABody) {
+TEST_F(HttpServerTest, HeadEqualsGetWithoutABody) {
   start();
   Client client(port_);
   const Reply head = client.ask(request("HEAD /hello"), true);
@@ -52,7 +52,7 @@ TEST_F(HttpServerTest, UnknownPathsAre404ForAnyMethod) {
   for (const char* method : {"GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "PURGE"}) {
     Client client(port_);
     expect_problem(client.ask(request(std::string(method) + " /nowhere")), 404, "not_found");
-    EXPECT_EQ(client.ask(get("/hello")).status, 200) << "nothing is unread: the connection stays";
+    EXPECT_EQ(client.ask(get("/hello")).status, 200) << "nothing is unread: the connection is kept";
   }
   expect_problem(ask(get("/hello/")), 404, "not_found");
   expect_problem(ask(get("/hello%2e")), 404, "not_found");
@@ -85,7 +85,7 @@ TEST_F(HttpServerTest, AbsoluteTargetsHaveTheirOwnPathOrTheRoot) {
   start();
   for (const char* origin : {"http://test:80", "HTTP://test", "https://127.0.0.1:", "http://[::1]:8080", "http://%41"})
     EXPECT_EQ(ask(get(std::string(origin) + "/query?a=1")).body, "a=1;") << origin;
-  // The path is empty, whatever slashes the query holds: there is no route at the root here.
+  // The path is empty: slashes in the query do not count. The root has no route here.
   for (const char* target :
        {"http://test?x/hello", "http://test", "http://test?/hello", "http://test:80?a=http://x/hello"})
     expect_problem(ask(get(target)), 404, "not_found");
@@ -107,7 +107,7 @@ TEST_F(HttpServerTest, HeaderValuesAreNotPercentDecoded) {
   EXPECT_EQ(ask(get("/mirror", "X-In: %0d%0aX: \xc3\xa4 %41\r\n")).body, "%0d%0aX: \xc3\xa4 %41");
 }
 
-TEST_F(HttpServerTest, KeepsAConnectionForManyRequests) {
+TEST_F(HttpServerTest, ConnectionServesItsLimitOfRequests) {
   options_.keep_alive_requests = 300;
   start();
   Client client(port_);
@@ -121,7 +121,7 @@ TEST_F(HttpServerTest, KeepsAConnectionForManyRequests) {
   EXPECT_TRUE(client.at_end());
 }
 
-TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
+TEST_F(HttpServerTest, PipelinedRequestsAreAnsweredInOrder) {
   start();
   Client client(port_);
   client.send(post("/echo", "first") + "\r\n" + get("/query?second=") + post("/echo", "third"));
@@ -130,7 +130,7 @@ TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   EXPECT_EQ(client.receive().body, "third");
 }
 
-TEST_F(HttpServerTest, ClosesWhenTheClientAsksForIt) {
+TEST_F(HttpServerTest, ConnectionClosesOnTheClientsRequest) {
   start();
   for (const std::string& bytes : {get("/hello", "Connection: Close\r\n"), get("/hello", "Connection: x, close\r\n"),
                                    std::string("GET /hello HTTP/1.0\r\n\r\n")}) {
@@ -142,7 +142,7 @@ TEST_F(HttpServerTest, ClosesWhenTheClientAsksForIt) {
   }
 }
 
-TEST_F(HttpServerTest, ServesFiftyConnectionsAtOnce) {
+TEST_F(HttpServerTest, FiftyConcurrentConnectionsAreServed) {
   start();
   std::vector<std::thread> clients;
   std::atomic<int> good = 0;
@@ -158,7 +158,7 @@ TEST_F(HttpServerTest, ServesFiftyConnectionsAtOnce) {
   EXPECT_EQ(finished(250).size(), 250u);
 }
 
-TEST_F(HttpServerTest, LogsEachRequestOnce) {
+TEST_F(HttpServerTest, EachRequestIsLoggedOnce) {
   start();
   Client client(port_);
   client.ask(post("/echo?secret=1", "12345", "X-Request-Id: mine\r\n"));
@@ -318,7 +318,7 @@ TEST_F(HttpServerTest, SilentConnectionsHoldNoThread) {
   EXPECT_EQ(half.ask("st: test\r\n\r\n").status, 200);
 }
 
-TEST_F(HttpServerTest, BusyConnectionsTakeTurns) {
+TEST_F(HttpServerTest, BusyConnectionDoesNotStarveOthers) {
   options_.threads = 1;
   start();
   std::atomic<bool> done = false;
@@ -340,14 +340,14 @@ TEST_F(HttpServerTest, RemoteAddressCannotBeForged) {
   EXPECT_EQ(ask(get("/address", "REMOTE_ADDR: 6.6.6.6\r\nX-Forwarded-For: 6.6.6.6\r\n")).body, "127.0.0.1 6.6.6.6");
 }
 
-TEST_F(HttpServerTest, OnlyATrustedProxySaysWhoseRequestItIs) {
+TEST_F(HttpServerTest, OnlyTrustedProxiesNameTheClient) {
   start();
   const std::string forwarded = "X-Forwarded-For: 6.6.6.6, 10.0.0.7\r\n";
   EXPECT_EQ(ask(get("/client", forwarded)).body, "127.0.0.1");
   stop();
   options_.trusted_proxies = {"10.0.0.1", "127.0.0.1"};
   start();
-  EXPECT_EQ(ask(get("/client", forwarded)).body, "10.0.0.7") << "the first is what the client claims";
+  EXPECT_EQ(ask(get("/client", forwarded)).body, "10.0.0.7") << "the first address is forged";
   EXPECT_EQ(ask(get("/client")).body, "127.0.0.1");
   stop();
   options_.authorize = [](const Request&, Access) { return std::string("the key's name"); };
@@ -355,7 +355,7 @@ TEST_F(HttpServerTest, OnlyATrustedProxySaysWhoseRequestItIs) {
   EXPECT_EQ(ask(get("/client", forwarded)).body, "the key's name");
 }
 
-TEST_F(HttpServerTest, TakesOverSaneRequestIdsOnly) {
+TEST_F(HttpServerTest, OnlyValidRequestIdsAreKept) {
   start();
   const std::string longest(64, 'a');
   for (const std::string& sane : {std::string("a"), std::string("Az09._-"), longest}) {
@@ -376,7 +376,7 @@ TEST_F(HttpServerTest, TakesOverSaneRequestIdsOnly) {
   EXPECT_EQ(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
-TEST_F(HttpServerTest, NothingFromTheClientCanAddHeaderLines) {
+TEST_F(HttpServerTest, ClientDataCannotAddHeaderLines) {
   start();
   const Reply reply = ask(get("/mirror?X-Out=a%0d%0aX-Evil:%20b%0a&X-Bad%0d%0aX-Evil=c&Content-Length=1&Connection=x"));
   EXPECT_EQ(reply.field("X-Out"), "a  X-Evil: b ");

@@ -8,14 +8,14 @@
 
 #include "tests/support/rounding.h"
 
-// Against the standard library's long double, and by values that are known.
+// Compared with the standard library's long double and with exact values.
 
 namespace papilio {
 namespace {
 
 using test::error_in_units;
 
-TEST(Hypotenuse, IsRoundedToTheNearestAlmostAlways) {
+TEST(Hypotenuse, ErrorIsBelow51HundredthsOfAnUlp) {
   EXPECT_EQ(hypotenuse(3, -4), 5);
   EXPECT_EQ(hypotenuse(0, 0), 0);
   EXPECT_EQ(hypotenuse(0, -2), 2);

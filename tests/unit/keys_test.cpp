@@ -14,7 +14,7 @@ namespace {
 
 using proto::Problem;
 
-/// A request of which only the header is asked.
+/// A request with only an Authorization header.
 class Asking final : public Request {
  public:
   explicit Asking(std::string authorization) : authorization_(std::move(authorization)) {}
@@ -42,7 +42,7 @@ class KeysTest : public testing::Test {
  protected:
   ~KeysTest() override { std::filesystem::remove(file_); }
   void write(const std::string& text) const { std::ofstream(file_) << text; }
-  /// The client's name, or the problem's code.
+  /// Returns the client's name or the problem's code.
   static std::string outcome(const Keys& keys, const std::string& authorization, Access access) {
     try {
       return keys.authorize(Asking(authorization), access);
@@ -62,7 +62,7 @@ class KeysTest : public testing::Test {
       std::filesystem::temp_directory_path() / ("papilio-keys-" + std::to_string(::getpid()));
 };
 
-TEST_F(KeysTest, SeveralAreValidAtOnceEachWithItsRights) {
+TEST_F(KeysTest, SeveralKeysAreValidWithTheirOwnRights) {
   write("# comment\n\nold  0123456789abcdef\n  new  sha256:" + sha256("fedcba9876543210") + "  manage\n");
   const Keys keys(file_);
   EXPECT_EQ(keys.size(), 2U);
@@ -76,7 +76,7 @@ TEST_F(KeysTest, SeveralAreValidAtOnceEachWithItsRights) {
   EXPECT_EQ(outcome(keys, "", Access::open), "");
 }
 
-TEST_F(KeysTest, ADigestMayBeInCapitals) {
+TEST_F(KeysTest, DigestsAreCaseInsensitive) {
   std::string digest = sha256("fedcba9876543210");
   std::ranges::transform(digest, digest.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   for (const char* mark : {"sha256:", "SHA256:", "Sha256:"}) {
@@ -87,7 +87,7 @@ TEST_F(KeysTest, ADigestMayBeInCapitals) {
   }
 }
 
-TEST_F(KeysTest, AMalformedDigestIsRefusedByLineAndNotTakenAsAKey) {
+TEST_F(KeysTest, MalformedDigestIsRefusedWithItsLine) {
   const std::string digest = sha256("fedcba9876543210");
   for (const std::string& wrong :
        {"SHA256:" + digest.substr(1), "sha256:" + digest + "0", "SHA256:" + digest.substr(1) + "g", "sha256=" + digest,
@@ -99,7 +99,7 @@ TEST_F(KeysTest, AMalformedDigestIsRefusedByLineAndNotTakenAsAKey) {
   }
 }
 
-TEST_F(KeysTest, AKeyOfHexadecimalDigitsIsAKey) {
+TEST_F(KeysTest, HexadecimalKeyIsNoDigest) {
   const std::string key = sha256("anything");  // as `openssl rand -hex 32` makes them
   for (const std::string& literal : {key, "share:" + key, "md5" + key}) {
     write("one " + literal + "\n");
@@ -107,7 +107,7 @@ TEST_F(KeysTest, AKeyOfHexadecimalDigitsIsAKey) {
   }
 }
 
-TEST_F(KeysTest, ReloadKeepsTheOldOnesWhenTheNewCannotBeRead) {
+TEST_F(KeysTest, FailedReloadKeepsTheOldKeys) {
   write("one 0123456789abcdef\n");
   Keys keys(file_);
   write("one 0123456789abcdef\ntwo fedcba9876543210\n");
@@ -118,7 +118,7 @@ TEST_F(KeysTest, ReloadKeepsTheOldOnesWhenTheNewCannotBeRead) {
   EXPECT_EQ(outcome(keys, "Bearer fedcba9876543210", Access::use), "two");
 }
 
-TEST_F(KeysTest, FaultsAreNamedByLine) {
+TEST_F(KeysTest, FaultsStateTheirLine) {
   write("one 0123456789abcdef\ntwo short\n");
   EXPECT_NE(refusal().find(":2: a key has at least 16"), std::string::npos) << refusal();
   write("one 0123456789abcdef admin\n");

@@ -15,15 +15,14 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 
-// The last level of a request holds the children of what is red and nothing else. Where it holds something, that is
-// what the level has of which all faces are held.
+// The last level of a request has only the children of red faces. They equal the children in the whole level.
 
 namespace papilio {
 namespace {
 
 using namespace test;
 
-/// Closed meshes without creases whose vertices are shaken, tried.
+/// Closed meshes without creases, with jittered vertices and tried splits.
 std::vector<std::shared_ptr<HierarchyLevel>> ring_levels(std::mt19937& random) {
   std::vector<TriangleMesh> shapes{tetrahedron(),
                                    icosahedron(),
@@ -51,20 +50,20 @@ Buffer<uint8_t> random_faces(const Topology& mesh, std::mt19937& random) {
   return red;
 }
 
-/// The last level beside all of that level, whose numbers are other ones.
+/// Map from the numbers of the last level to those of the whole level.
 class SomeOfAll {
  public:
   SomeOfAll(const Topology& above, const Buffer<uint8_t>& red, const Part& part, const HierarchyLevel& last)
       : red_(red), part_(part), last_(last), inner_edges_of_all_(2 * above.edge_count()) {}
 
-  /// Where these are in the whole level.
+  /// Return the numbers in the whole level.
   [[nodiscard]] uint32_t half_edge(uint32_t h) const { return 12 * last_.parent_of(Topology::face(h)) + h % 12; }
   [[nodiscard]] uint32_t edge(uint32_t e) const {
     const uint32_t halves = 2 * part_.edges.count() + 2;
     if (e < halves) return 2 * part_.edges.numbers()[e / 2] + e % 2;
     return inner_edges_of_all_ + 3 * part_.faces.numbers()[(e - halves) / 3] + (e - halves) % 3;
   }
-  /// Whether these are not in the part: one of the last level, one of the whole.
+  /// Return whether a half-edge is outside of the part: of the last level, and of the whole level.
   [[nodiscard]] bool is_other(uint32_t h) const { return h / 12 == part_.other_face(); }
   [[nodiscard]] bool is_left_out(uint32_t h_of_all) const { return red_[h_of_all / 12] == 0; }
 
@@ -75,7 +74,7 @@ class SomeOfAll {
   uint32_t inner_edges_of_all_;
 };
 
-TEST(LastLevel, HasWhatTheWholeLevelHas) {
+TEST(LastLevel, PartialLevelEqualsTheWholeWhereItIsBuilt) {
   std::mt19937 random(1);
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
@@ -121,7 +120,7 @@ TEST(LastLevel, HasWhatTheWholeLevelHas) {
     }
 }
 
-TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
+TEST(LastLevel, VerticesEqualTheWholeLevelsAndTheBoxBoundsThem) {
   std::mt19937 random(5);
   const Options options{.tension = Tension::off};
   size_t between = 0;
@@ -151,7 +150,7 @@ TEST(LastLevel, HasTheVerticesOfTheLevelAndABoxRoundItsOwn) {
   EXPECT_GT(between, 5000U);
 }
 
-TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
+TEST(LastLevel, RegionEqualsThatOfAPartialLevel) {
   std::mt19937 random(2);
   for (int round = 0; round < 10; ++round)
     for (const auto& above : ring_levels(random)) {
@@ -164,7 +163,7 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
           choose_below(choice, std::make_shared<HierarchyLevel>(refine_level(*above, red).level));
       for (const LevelChoice* below : {&in_last, &in_part})
         EXPECT_EQ(below->region.faces.size(), 4 * marked(red).size());
-      // Numbers differ, but not what they stand for.
+      // Numbers differ, but the positions are equal.
       const auto ends = [](const LevelChoice& below) {
         std::vector<std::array<Vec3f, 2>> all;
         const Mesh& mesh = below.level->mesh;
@@ -176,76 +175,6 @@ TEST(LastLevel, ItsRegionIsThatOfAnyLevel) {
       };
       EXPECT_EQ(ends(in_last), ends(in_part));
     }
-}
-
-TEST(LastLevel, FlatnessIsTheSameByFacesAndByEdges) {
-  std::mt19937 random(3);
-  size_t curved = 0;
-  size_t flat = 0;
-  for (int round = 0; round < 12; ++round)
-    for (const auto& above : ring_levels(random)) {
-      const Buffer<uint8_t> red = random_faces(above->mesh.topology, random);
-      LevelChoice choice = choose_coarsest(above);
-      mark_red(choice, marked(red));
-      const auto level = std::make_shared<HierarchyLevel>(refine_level(*above, red).level);
-      Topology& topology = level->mesh.topology;
-      choice = choose_below(choice, level);
-      Region& region = choice.region;
-      const Buffer<uint32_t> edges = region.edges();
-      EXPECT_FALSE(region.has_curves);
-      const bool has_creases = round % 2 == 1;
-      if (has_creases)
-        for (int i = 0; i < 5; ++i) topology.kind[edges[random() % edges.size()]] = EdgeKind::crease;
-      Buffer<Vec3f> normals = face_normals(level->mesh);
-      for (int i = 0; i < 5; ++i) normals[random() % normals.size()] = {};
-      const NormalProducts kept(topology.edge_count(), std::numeric_limits<float>::infinity());
-      const auto find = [&](bool has_curves, Growth growth, const NormalProducts& products) {
-        region.has_curves = has_curves;
-        return find_curved(level->mesh, normals, products, 0.95, growth, region);
-      };
-      for (const Growth growth : {Growth::off, Growth::faces, Growth::vertices}) {
-        EdgeMarks expected(topology.edge_count(), 0);
-        for (uint32_t e : edges) {
-          Region alone;
-          alone.has_edge.assign(topology.edge_count(), 0);
-          alone.has_edge[e] = 1;
-          expected[e] = find_curved(level->mesh, normals, kept, 0.95, Growth::off, alone)[e];
-          ++(expected[e] != 0 ? curved : flat);
-        }
-        grow(topology, growth, region, expected);
-        EXPECT_EQ(find(true, growth, {}), expected);
-        EXPECT_EQ(find(true, growth, kept), expected) << "from what is known";
-        if (has_creases) continue;
-        EXPECT_EQ(find(false, growth, {}), expected) << "by faces";
-      }
-    }
-  EXPECT_GT(curved, 1000U);
-  EXPECT_GT(flat, 1000U);
-}
-
-/// Where errors do not decide, what one level more adds lies behind what was there.
-void expect_more_of_the_same(const Mesh& coarse, Options options) {
-  Buffer<Vec3f> above;
-  for (options.levels = 1; options.levels <= 3; ++options.levels) {
-    const Mesh mesh = refine(coarse, options).mesh;
-    ASSERT_GE(mesh.positions.size(), above.size());
-    ASSERT_TRUE(std::ranges::equal(above, std::span(mesh.positions).first(above.size()))) << options.levels;
-    above = mesh.positions;
-  }
-}
-
-TEST(LastLevel, ChangesNothingAbove) {
-  std::mt19937 random(4);
-  std::uniform_real_distribution<float> shake(-0.1F, 0.1F);
-  for (int round = 0; round < 40; ++round) {
-    TriangleMesh shape = random_manifold(random);
-    for (Vec3f& p : shape.positions) p += Vec3f{shake(random), shake(random), shake(random)};
-    expect_more_of_the_same(build_mesh(shape), {.flatness = {0.9}, .crease_angle = round % 3 == 0 ? 40.0 : 180.0});
-  }
-  // Dividing one face can make a sliver of another, or of none what was one.
-  const Mesh elephant = build_mesh(real_mesh("elephant2k.drc"));
-  for (double threshold = 0.7; threshold < 0.85; threshold += 0.002)
-    expect_more_of_the_same(elephant, {.flatness = {threshold}, .tension = Tension::off});
 }
 
 }  // namespace

@@ -10,14 +10,14 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 
-// However much of a level is made for what a request wants to look into, below that it is what all of the level has.
+// Partial levels equal the whole level below the requested faces.
 
 namespace papilio {
 namespace {
 
 using namespace test;
 
-/// This share of the faces, from one side of the mesh.
+/// Marks this share of the faces, from one side of the mesh.
 Buffer<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
   const Topology& topology = mesh.topology;
   std::vector<double> height(topology.face_count());
@@ -31,8 +31,8 @@ Buffer<uint8_t> side_of(const Mesh& mesh, double share, Vec3d direction) {
   return red;
 }
 
-/// The children of red faces, of which either level may hold others too. `in_all`: which face of the level above those
-/// are where all are held.
+/// Compares the children of red faces; either level may have more. `in_all`: number of each face of the level above in
+/// the whole level.
 void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const Buffer<uint8_t>& red,
                   const std::vector<uint32_t>& in_all) {
   const Topology& topology = some.mesh.topology;
@@ -56,14 +56,14 @@ void expect_alike(const HierarchyLevel& some, const HierarchyLevel& all, const B
   }
 }
 
-/// Where the faces of a level are in one that holds all.
+/// Returns the number in the whole level of each face of a level.
 std::vector<uint32_t> places_in_all(const HierarchyLevel& some, const HierarchyLevel& all) {
   std::vector<uint32_t> places(some.mesh.topology.face_count());
   for (uint32_t f = 0; f < places.size(); ++f) places[f] = all.first_child_of(some.parent_of(f)) + f % 4;
   return places;
 }
 
-/// Some of the faces that a request may want divided in their turn: they and those beside them are below red ones.
+/// Returns some of the faces that a request may divide next: they and their neighbours are children of red faces.
 Buffer<uint8_t> some_below(const HierarchyLevel& level, const Buffer<uint8_t>& red, std::mt19937& random) {
   const Topology& topology = level.mesh.topology;
   const uint32_t density = 1 + random() % 3;
@@ -78,11 +78,7 @@ Buffer<uint8_t> some_below(const HierarchyLevel& level, const Buffer<uint8_t>& r
   return below;
 }
 
-struct Count {
-  int whole = 0, part = 0, below_whole_for_some = 0;
-};
-
-void compare(const Mesh& coarse, const Options& options, std::mt19937& random, Count& count) {
+void compare(const Mesh& coarse, const Options& options, std::mt19937& random, int& parts) {
   const Hooks hooks;
   const Progress progress(options, hooks);
   Levels all(coarse, options, progress);
@@ -100,29 +96,26 @@ void compare(const Mesh& coarse, const Options& options, std::mt19937& random, C
     SCOPED_TRACE(std::to_string(share) + " of " + std::to_string(options.levels) + " levels");
     const std::shared_ptr<const HierarchyLevel> first = some.deepest();
     expect_alike(*first, *all_of_first, red, in_all);
-    ++(first->is_whole ? count.whole : count.part);
+    parts += first->is_whole ? 0 : 1;
     if (options.levels <= 2) continue;
     const Buffer<uint8_t> red_below = some_below(*first, red, random);
     if (std::ranges::find(red_below, 1) == red_below.end()) continue;
     some.deepen(red_below);
     expect_alike(*some.deepest(), *all.deepest(), red_below, places_in_all(*first, *all_of_first));
-    count.below_whole_for_some += first->is_whole && !first->is_tried_whole() ? 1 : 0;
   }
 }
 
-TEST(Levels, AreBelowWhatIsRedAsWhereAllIs) {
+TEST(Levels, PartialLevelsEqualWholeLevels) {
   std::mt19937 random(5);
-  Count count;
+  int parts = 0;
   for (const TriangleMesh& triangles : {real_mesh("bunny600.obj"), torus(12, 9), grid(9, 7), box({4, 4, 4}, {1, 1, 1})})
     for (int levels : {1, 2, 3, 4})
       for (Tension tension : {Tension::off, Tension::soft})
         for (double w : {0.0, 0.02})
           for (double tolerance : {0.0, 1e-3})
             compare(build_mesh(triangles), {.levels = levels, .tension = tension, .w = w, .tolerance = tolerance},
-                    random, count);
-  EXPECT_GT(count.whole, 100);
-  EXPECT_GT(count.part, 100);
-  EXPECT_GT(count.below_whole_for_some, 20);
+                    random, parts);
+  EXPECT_GT(parts, 100);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-/// Seen from +z, in parallel: 100 pixels are a length of 1.
+/// Orthographic view from +z with 100 pixels per unit.
 View flat_view(std::vector<Vec3d> lights) {
   View view;
   view.fov_y = 90;
@@ -46,14 +46,14 @@ double weight(const Mesh& mesh, const View& view, double distance = 1e-3) {
 
 constexpr double floor_weight = 0.4;
 
-TEST(LightWeight, IsLeastWhereLightFallsEvenlyOnWhatIsFlatOrNotAtAll) {
+TEST(LightWeight, EvenlyLitAndUnlitEdgesHaveTheFloorWeight) {
   EXPECT_NEAR(weight(roof(0, 0), flat_view({{0, 0, 1}})), floor_weight, 1e-6);
   EXPECT_NEAR(weight(roof(0, 0), flat_view({{0, 0, -1}})), floor_weight, 1e-6);
   EXPECT_NEAR(weight(roof(-0.2, 0.2), flat_view({{0, 0, -1}})), floor_weight, 1e-6);
-  EXPECT_NEAR(weight(roof(-0.2, 0.2), flat_view({{0, 0, 1}, {0, 0, 1}})), floor_weight, 1e-6) << "white both";
+  EXPECT_NEAR(weight(roof(-0.2, 0.2), flat_view({{0, 0, 1}, {0, 0, 1}})), floor_weight, 1e-6) << "both faces are white";
 }
 
-TEST(LightWeight, GrowsWithTheSlopeOfTheShadingAndWithItsChange) {
+TEST(LightWeight, WeightGrowsWithShadingSlopeAndChange) {
   for (double angle : {0.3, 0.8, 1.4}) {
     const View view = flat_view({{std::sin(angle), 0, std::cos(angle)}});
     EXPECT_NEAR(weight(roof(0, 0), view), std::hypot(floor_weight, 1.3 * std::sin(angle)), 1e-6);
@@ -64,11 +64,11 @@ TEST(LightWeight, GrowsWithTheSlopeOfTheShadingAndWithItsChange) {
   }
 }
 
-TEST(LightWeight, IsMostOnTheSilhouetteAndMoreThereAgainstTheLight) {
+TEST(LightWeight, SilhouetteEdgesWeighMostIfLit) {
   const Mesh silhouette = roof(1, 2);
   const View dark = flat_view({{-1, 0, 0}});
   const View lit = flat_view({{0, 0, 1}});
-  // The edge shows its whole length of 100 pixels and is off by 0.1.
+  // The edge has 100 pixels and a deviation of 0.1.
   EXPECT_NEAR(weight(silhouette, dark), std::hypot(floor_weight, 0.8 * 0.3 * 10), 1e-6);
   const double outline = 0.8 * (0.3 + 0.7 * std::cos(1.0)) * 10;
   const double shading = 1.3 * (2 * std::cos(1.0) + std::sin(1.0) / 2) * std::sqrt(std::cos(1.0) / 2);
@@ -77,7 +77,7 @@ TEST(LightWeight, IsMostOnTheSilhouetteAndMoreThereAgainstTheLight) {
   EXPECT_GT(weight(silhouette, lit), 2 * weight(roof(-0.3, 0.3), lit));
 }
 
-TEST(LightWeight, OfAnOutlineThatIsOffByPixelsIsTheRootOfItsAreaOverTheDeviation) {
+TEST(LightWeight, OutlineWeightEqualsTheClosedForm) {
   const Mesh open = roof(0, 0);
   const View view = flat_view({{0, 0, 1}});
   const uint32_t edge = open.topology.edge[1];
@@ -89,14 +89,14 @@ TEST(LightWeight, OfAnOutlineThatIsOffByPixelsIsTheRootOfItsAreaOverTheDeviation
   }
 }
 
-TEST(LightWeight, DoesNotDependOnTheLengthOfTheLights) {
+TEST(LightWeight, WeightDoesNotDependOnLengthOrOrderOfLights) {
   const Mesh mesh = roof(0.2, 0.7);
   const double expected = weight(mesh, flat_view({{0.4, 0.1, 0.3}, {-1, 0, 0.2}}));
   EXPECT_NEAR(weight(mesh, flat_view({{4e9, 1e9, 3e9}, {-1e-9, 0, 0.2e-9}})), expected, 1e-12);
-  EXPECT_NEAR(weight(mesh, flat_view({{-1, 0, 0.2}, {0.4, 0.1, 0.3}})), expected, 1e-12) << "nor on their order";
+  EXPECT_NEAR(weight(mesh, flat_view({{-1, 0, 0.2}, {0.4, 0.1, 0.3}})), expected, 1e-12) << "depends on their order";
 }
 
-TEST(LightWeight, IsPositiveAndFiniteWhateverTheEdge) {
+TEST(LightWeight, WeightIsPositiveAndFiniteForAnyEdge) {
   const Mesh flat = build_mesh({.positions = {{0, 0, 0}, {0, 1, 0}, {0, 0.5F, 0}, {1, 0, 0}},
                                 .triangles = {{0, 1, 2}, {1, 0, 3}}});  // one face has no area
   for (const Mesh& mesh : {flat, roof(0, 0), roof(1, 2), roof(2, 2)}) {
@@ -115,7 +115,7 @@ TEST(LightWeight, IsPositiveAndFiniteWhateverTheEdge) {
   }
 }
 
-/// The mesh in the middle of the picture, from this direction.
+/// View of the mesh in the middle of the picture, from this direction.
 View view_of(const Mesh& mesh, Vec3d direction, std::vector<Vec3d> lights) {
   const Box box = bounding_box(mesh.positions);
   View view;
@@ -133,12 +133,12 @@ const std::vector<Vec3d> directions{{0.3, 0.2, 1}, {1, 0.3, -0.2}};
 
 struct Picture {
   const char* mesh;
-  double gain;  ///< decibels; the least seen of four pictures, and a little less
+  double gain;  ///< decibels; slightly below the smallest measured gain of four pictures
 };
 
 class LightingOnRealMeshes : public ::testing::TestWithParam<Picture> {};
 
-TEST_P(LightingOnRealMeshes, GivesABetterPictureWithTheSameNumberOfFaces) {
+TEST_P(LightingOnRealMeshes, LightingImprovesThePictureAtEqualFaceCount) {
   const Mesh coarse = build_mesh(real_mesh(GetParam().mesh));
   const Mesh uniform = refine(coarse, Options{.levels = 3}).mesh;
   for (Vec3d direction : directions) {
@@ -159,7 +159,7 @@ TEST_P(LightingOnRealMeshes, GivesABetterPictureWithTheSameNumberOfFaces) {
   }
 }
 
-TEST_P(LightingOnRealMeshes, LeavesPositionsAsTheyAre) {
+TEST_P(LightingOnRealMeshes, VerticesDoNotDependOnLights) {
   const Mesh coarse = build_mesh(real_mesh(GetParam().mesh));
   Options options{.levels = 2};
   const UniformHierarchy uniform(coarse, options);

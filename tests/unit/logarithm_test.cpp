@@ -7,14 +7,14 @@
 
 #include "tests/support/rounding.h"
 
-// Against the standard library's long double.
+// Compared with the standard library's long double.
 
 namespace papilio::proto::edgebreaker {
 namespace {
 
 using test::error_in_units;
 
-TEST(Logarithm, IsWithinThreeUnitsInTheLastPlace) {
+TEST(Logarithm, ErrorIsBelowThreeUlp) {
   for (int exponent = -30; exponent <= 30; ++exponent)
     EXPECT_EQ(logarithm_to_base_2(std::ldexp(1.0, exponent)), exponent);
   std::mt19937 random(4);

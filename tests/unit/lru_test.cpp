@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint64_t overhead = Lru<int>::entry_bytes;
 
-TEST(Lru, KeepsWhatFitsAndForgetsWhatWasUsedLongestAgo) {
+TEST(Lru, LeastRecentlyUsedValueIsEvicted) {
   Lru<int> lru(3 * (100 + overhead));
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(lru.put(std::to_string(i), std::make_shared<int>(i), 100));
   EXPECT_EQ(lru.bytes(), 3 * (100 + overhead));
@@ -21,7 +21,7 @@ TEST(Lru, KeepsWhatFitsAndForgetsWhatWasUsedLongestAgo) {
   EXPECT_EQ(lru.size(), 3U);
 }
 
-TEST(Lru, ALargerValueUnderTheSameKeyTakesTheOldOnesPlace) {
+TEST(Lru, PutReplacesTheValueOfItsKey) {
   Lru<int> lru(1000 + 2 * overhead);
   EXPECT_TRUE(lru.put("a", std::make_shared<int>(1), 100));
   EXPECT_FALSE(lru.put("a", std::make_shared<int>(2), 300));
@@ -30,7 +30,7 @@ TEST(Lru, ALargerValueUnderTheSameKeyTakesTheOldOnesPlace) {
   EXPECT_EQ(lru.size(), 1U);
 }
 
-TEST(Lru, WhatIsLargerThanTheBudgetIsNotKeptAndCostsNothingElse) {
+TEST(Lru, ValueLargerThanTheBudgetIsNotStoredAndEvictsNothing) {
   Lru<int> lru(500);
   EXPECT_TRUE(lru.put("small", std::make_shared<int>(1), 100));
   EXPECT_TRUE(lru.put("large", std::make_shared<int>(2), 400));
@@ -38,7 +38,7 @@ TEST(Lru, WhatIsLargerThanTheBudgetIsNotKeptAndCostsNothingElse) {
   EXPECT_NE(lru.get("small"), nullptr);
 }
 
-TEST(Lru, AValueLivesOnWithItsUsers) {
+TEST(Lru, EvictedValueStaysValidForItsUsers) {
   Lru<int> lru(100 + overhead);
   lru.put("a", std::make_shared<int>(7), 100);
   const std::shared_ptr<int> held = lru.get("a");
@@ -50,7 +50,7 @@ TEST(Lru, AValueLivesOnWithItsUsers) {
   EXPECT_EQ(lru.bytes(), 0U);
 }
 
-TEST(Lru, ThreadsShareIt) {
+TEST(Lru, ConcurrentUseIsSafe) {
   Lru<int> lru(10 * (100 + overhead));
   std::vector<std::jthread> threads;
   for (int t = 0; t < 4; ++t)

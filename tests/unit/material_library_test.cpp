@@ -18,9 +18,9 @@ using testing::IsEmpty;
 constexpr std::string_view textured_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 /// A square whose two triangles have materials.
-class MaterialLibrary : public mesh_file {
+class MaterialLibrary : public MeshFileTest {
  protected:
-  /// Reads in.obj with these libraries, its faces of the materials `a` and `b`.
+  /// Reads in.obj with these libraries; its faces have the materials `a` and `b`.
   MaterialRead read_square(const std::string& libraries) {
     put("in.obj",
         libraries + "\n" + std::string(textured_square) + "usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n");
@@ -38,7 +38,7 @@ class MaterialLibrary : public mesh_file {
   }
 };
 
-TEST_F(MaterialLibrary, ValuesBecomeThoseOfGltf) {
+TEST_F(MaterialLibrary, ValuesAreConvertedToGltf) {
   put("a.mtl",
       "newmtl a\nKd 0.1 0.2 0.3\nd 0.5\nKe 4 5 6\nPr 0.25\nPm 0.75\nnewmtl unused\nmap_Kd missing.png\nnewmtl b\n");
   const MaterialRead read = read_square("mtllib a.mtl");
@@ -73,7 +73,7 @@ TEST_F(MaterialLibrary, ImagesAreReadOnceByTheirContent) {
   EXPECT_EQ(found.images[1], (proto::gltf::Image{"my glow", "image/jpeg", test::jpeg_bytes("glow"), ""}));
   EXPECT_EQ(found.materials[0].image(ImageUse::base_color), 0U);
   EXPECT_EQ(found.materials[0].image(ImageUse::emissive), 1U);
-  EXPECT_EQ(found.materials[0].emissive, (std::array<double, 3>{1, 1, 1}));  // as it has an image
+  EXPECT_EQ(found.materials[0].emissive, (std::array<double, 3>{1, 1, 1}));  // default with an image
   EXPECT_EQ(found.materials[1].image(ImageUse::base_color), 0U);
   EXPECT_EQ(found.materials[1].image(ImageUse::normal), 0U);
 }
@@ -88,7 +88,7 @@ TEST_F(MaterialLibrary, SeveralLibrariesAreSearchedInOrder) {
   EXPECT_EQ(read.model.materials.materials[1].base_color, (std::array<double, 4>{1, 0, 0, 1}));
 }
 
-TEST_F(MaterialLibrary, AMissingLibraryIsLeftOutWithAWarning) {
+TEST_F(MaterialLibrary, MissingLibraryIsSkippedWithAWarning) {
   const MaterialRead read = read_square("mtllib no.mtl");
   EXPECT_TRUE(read.model.materials.empty());
   EXPECT_EQ(read.model.mesh.triangles.size(), 2U);
@@ -96,14 +96,14 @@ TEST_F(MaterialLibrary, AMissingLibraryIsLeftOutWithAWarning) {
               ElementsAre(HasSubstr("in.obj: names the material library \"no.mtl\", which is not there")));
 }
 
-TEST_F(MaterialLibrary, AMissingImageIsLeftOutWithOneWarning) {
+TEST_F(MaterialLibrary, MissingImageIsSkippedWithOneWarning) {
   put("a.mtl", "newmtl a\nmap_Kd no.png\nnewmtl b\nmap_Kd no.png\n");
   const MaterialRead read = read_square("mtllib a.mtl");
   EXPECT_FALSE(read.model.materials.materials[0].image(ImageUse::base_color));
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("a.mtl: names the image \"no.png\", which is not there")));
 }
 
-TEST_F(MaterialLibrary, OtherImagesAreLeftOutWithAWarning) {
+TEST_F(MaterialLibrary, UnsupportedImagesAreSkippedWithAWarning) {
   put("wood.png", "BM not a PNG");
   put("a.mtl", "newmtl a\nmap_Kd wood.png\nnewmtl b\nmap_Bump wood.png\n");
   const MaterialRead read = read_square("mtllib a.mtl");
@@ -112,14 +112,14 @@ TEST_F(MaterialLibrary, OtherImagesAreLeftOutWithAWarning) {
   EXPECT_THAT(read.model.materials.images, IsEmpty());
 }
 
-TEST_F(MaterialLibrary, MaterialsThatNoLibraryDefinesAreWhite) {
+TEST_F(MaterialLibrary, UndefinedMaterialsAreWhite) {
   put("a.mtl", "newmtl b\nKd 0 0 0\n");
   const MaterialRead read = read_square("mtllib a.mtl");
   EXPECT_EQ(read.model.materials.materials[0], (Material{.name = "a", .metallic = 0, .roughness = 1}));
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("in.obj: has 1 material that no library defines, \"a\"")));
 }
 
-TEST_F(MaterialLibrary, NamesDoNotLeadOutOfTheFolder) {
+TEST_F(MaterialLibrary, PathsOutsideTheFolderAreNotRead) {
   put("secret.mtl", "newmtl a\nKd 0 0 0\n");
   put("secret.png", test::png_bytes("secret"));
   put_below("inner", "in.obj",
@@ -132,7 +132,7 @@ TEST_F(MaterialLibrary, NamesDoNotLeadOutOfTheFolder) {
       read.warnings,
       ElementsAre(HasSubstr("names the material library \"../secret.mtl\", which is not in its folder; put it there"),
                   HasSubstr("a.mtl: names the image \"../secret.png\", which is not in its folder; put it there")));
-  // Put there, they are found by their own names.
+  // Images in the folder are found by their file names.
   put("inner/secret.png", test::png_bytes("public"));
   const MaterialRead again = read_with_materials(place, read_mesh(place));
   EXPECT_EQ(image_bytes(again, 0, ImageUse::base_color), test::png_bytes("public"));
@@ -158,7 +158,7 @@ TEST_F(MaterialLibrary, ImagesNeedTextureCoordinates) {
   EXPECT_EQ(read.model.materials.materials.size(), 1U);
 }
 
-TEST_F(MaterialLibrary, OneImageOfChannelsIsThatOfRoughnessAndMetal) {
+TEST_F(MaterialLibrary, ChannelsOfOneImageGiveRoughnessAndMetalness) {
   put("pbr.png", test::png_bytes("pbr"));
   put("a.mtl",
       "newmtl a\nmap_Pr -imfchan g pbr.png\nmap_Pm -imfchan b pbr.png\nnewmtl b\nmap_Pr pbr.png\nmap_d pbr.png\n");

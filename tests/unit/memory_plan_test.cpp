@@ -54,7 +54,7 @@ TEST(MemoryPlan, NonManifoldResultsHaveNoMorePoints) {
   }
 }
 
-TEST(MemoryPlan, WhatTheCallerNeedsCounts) {
+TEST(MemoryPlan, OutputBytesAreCounted) {
   const Mesh coarse = build_mesh(torus(8, 6));
   Options options{.levels = 3};
   const uint64_t faces = 64ULL * coarse.topology.face_count();

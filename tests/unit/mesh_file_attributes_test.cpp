@@ -13,7 +13,7 @@ using proto::FormattedMesh;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class mesh_file_attributes : public mesh_file {
+class MeshFileAttributes : public MeshFileTest {
  protected:
   [[nodiscard]] FormattedMesh read_obj(const std::string& text) const {
     return read_triangles(put("in.obj", text), Format::obj);
@@ -22,7 +22,7 @@ class mesh_file_attributes : public mesh_file {
 
 constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n";
 
-TEST_F(mesh_file_attributes, corners_name_them_in_all_forms) {
+TEST_F(MeshFileAttributes, ObjCornersOfAllFormsAreRead) {
   for (const std::string face : {"f 1/1/1 2/2/1 3/3/1 4/4/1", "f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1"}) {
     const FormattedMesh mesh = read_obj(std::string(kSquare) + face + "\n");
     EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
@@ -37,24 +37,24 @@ TEST_F(mesh_file_attributes, corners_name_them_in_all_forms) {
   EXPECT_THAT(read_obj(std::string(kSquare) + "f 1 2 3\n").attributes, IsEmpty());
 }
 
-TEST_F(mesh_file_attributes, a_face_may_come_before_what_it_names) {
+TEST_F(MeshFileAttributes, ObjFacesMayPrecedeTheirVertices) {
   EXPECT_THAT(read_obj("f 1/1 2/2 3/3\n" + std::string(kSquare)).attributes[0].values,
-              ElementsAre(0, 0, 1, 0, 1, 1, 0, 0));  // the fourth position is a point without any
+              ElementsAre(0, 0, 1, 0, 1, 1, 0, 0));  // the fourth position has no attributes
 }
 
-TEST_F(mesh_file_attributes, a_seam_is_several_points_of_one_position) {
+TEST_F(MeshFileAttributes, SeamsAreSeveralPointsOfOnePosition) {
   const FormattedMesh mesh = read_obj(std::string(kSquare) + "f 1/1 2/2 3/3\nf 1/2 3/3 4/4\n");
   EXPECT_THAT(mesh.positions,
               ElementsAre(Vec3f{0, 0, 0}, Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{1, 1, 0}, Vec3f{0, 1, 0}));
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 2, 3}, Triangle{1, 3, 4}));
 }
 
-TEST_F(mesh_file_attributes, missing_ones_are_zero) {
+TEST_F(MeshFileAttributes, MissingValuesAreZero) {
   const FormattedMesh mesh = read_obj(std::string(kSquare) + "f 1/1 2 3/3\n");
   EXPECT_THAT(mesh.attributes[0].values, ElementsAre(0, 0, 0, 0, 1, 1, 0, 0));
 }
 
-TEST_F(mesh_file_attributes, texture_coordinates_have_as_many_components_as_they_need) {
+TEST_F(MeshFileAttributes, TexcoordsHaveTwoComponentsUnlessTheThirdIsUsed) {
   const std::string vertices(kThree);
   EXPECT_EQ(read_obj(vertices + "vt 1\nvt 1 2\nf 1/1 2/2 3/2\n").attributes[0],
             (Attribute{2, false, {1, 0, 1, 2, 1, 2}}));
@@ -62,7 +62,7 @@ TEST_F(mesh_file_attributes, texture_coordinates_have_as_many_components_as_they
   EXPECT_EQ(read_obj(vertices + "vt 1 2 3\nf 1/1 2/1 3/1\n").attributes[0].components, 3U);
 }
 
-TEST_F(mesh_file_attributes, damage_is_refused) {
+TEST_F(MeshFileAttributes, DamageIsRefused) {
   for (const std::string damage :
        {"f 1/5 2/1 3/1", "f 1/-5 2/1 3/1", "f 1/0 2/1 3/1", "f 1//2 2//1 3//1", "f 1//-2 2//1 3//1", "vt", "vt x",
         "vt 1 x", "vn 1 0", "vn", "vt 1e39 0", "f 1/99999999999999999999 2/1 3/1", "f 5/1 1/1 2/1", "f 1/1-2 2/1 3/1"})
@@ -71,7 +71,7 @@ TEST_F(mesh_file_attributes, damage_is_refused) {
               HasSubstr("a face names a texture coordinate (vt) that is not there"));
 }
 
-TEST_F(mesh_file_attributes, writing_keeps_them_and_closes_seams) {
+TEST_F(MeshFileAttributes, ObjKeepsAttributesAndClosesSeams) {
   FormattedMesh cube = test::charted_cube();
   std::vector<double> normals;
   for (size_t p = 0; p < 24; ++p) normals.insert(normals.end(), {0.6, -0.0, 0.8});
@@ -92,7 +92,7 @@ TEST_F(mesh_file_attributes, writing_keeps_them_and_closes_seams) {
     }
 }
 
-TEST_F(mesh_file_attributes, normalized_integers_are_written_as_what_they_stand_for) {
+TEST_F(MeshFileAttributes, NormalizedIntegersAreWrittenAsFractions) {
   FormattedMesh mesh{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
   test::add_attribute(mesh, AttributeKind::tex_coord, proto::ValueType::uint16, 2, {0, 65535, 0, 0, 65535, 0});
   test::add_attribute(mesh, AttributeKind::normal, proto::ValueType::int8, 3, {0, 0, 127, 0, 0, -127, 0, 127, 0});
@@ -102,7 +102,7 @@ TEST_F(mesh_file_attributes, normalized_integers_are_written_as_what_they_stand_
               HasSubstr("vt 0 1\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 0 -1\nvn 0 1 0\nf 1/1/1 2/2/2 3/3/3\n"));
 }
 
-TEST_F(mesh_file_attributes, ply_keeps_normals_colours_and_texture_coordinates) {
+TEST_F(MeshFileAttributes, PlyKeepsNormalsColoursAndTexcoords) {
   FormattedMesh cube = test::charted_cube();
   std::vector<double> colors;
   std::vector<double> normals;
@@ -117,7 +117,7 @@ TEST_F(mesh_file_attributes, ply_keeps_normals_colours_and_texture_coordinates) 
   const FormattedMesh read = read_triangles(path("out.ply"), Format::ply);
   EXPECT_EQ(read.positions, cube.positions);
   EXPECT_EQ(read.triangles, cube.triangles);
-  ASSERT_EQ(read.attributes.size(), 3U);  // the number of the chart has no name in PLY
+  ASSERT_EQ(read.attributes.size(), 3U);  // PLY has no name for the chart's number
   EXPECT_EQ(read.attributes[0], cube.attributes[3]);
   EXPECT_EQ(read.attributes[1], cube.attributes[2]);
   EXPECT_EQ(read.attributes[2], cube.attributes[1]);
@@ -125,7 +125,7 @@ TEST_F(mesh_file_attributes, ply_keeps_normals_colours_and_texture_coordinates) 
   EXPECT_TRUE(read.format.attributes[1].normalized);
 }
 
-TEST_F(mesh_file_attributes, ply_in_its_dialects) {
+TEST_F(MeshFileAttributes, PlyDialectsAreRead) {
   const auto read_ply = [&](const std::string& vertex, const std::string& line) {
     return read_triangles(put("in.ply", ply_header("ascii", kXyz + vertex, kIndices) + "0 0 0" + line + "1 0 0" + line +
                                             "0 1 0" + line + "3 0 1 2\n"),
@@ -143,7 +143,7 @@ TEST_F(mesh_file_attributes, ply_in_its_dialects) {
               ElementsAre(0, 2, 0, 2, 0, 2));
 }
 
-TEST_F(mesh_file_attributes, other_formats_keep_positions_alone) {
+TEST_F(MeshFileAttributes, OffAndStlKeepOnlyPositions) {
   const FormattedMesh cube = test::charted_cube();
   for (const Format format : {Format::off, Format::stl}) {
     const fs::path file = path("out" + extension_of(format));
@@ -152,7 +152,7 @@ TEST_F(mesh_file_attributes, other_formats_keep_positions_alone) {
   }
 }
 
-TEST_F(mesh_file_attributes, damaged_files_never_crash) {
+TEST_F(MeshFileAttributes, DamagedFilesNeverCrash) {
   const FormattedMesh cube = test::charted_cube();
   write_triangles(path("out.obj"), Format::obj, cube, cube.format);
   const std::string bytes = read_bytes(path("out.obj"), kMaxFileBytes);
@@ -171,7 +171,7 @@ TEST_F(mesh_file_attributes, damaged_files_never_crash) {
   }
 }
 
-/// Group of each face, or nothing if the mesh has none.
+/// Returns the group of each face; empty without groups.
 std::vector<double> groups_of(const proto::FormattedMesh& mesh) {
   std::vector<double> groups;
   for (size_t a = 0; a < mesh.attributes.size(); ++a) {
@@ -186,7 +186,7 @@ std::vector<double> groups_of(const proto::FormattedMesh& mesh) {
   return groups;
 }
 
-TEST_F(mesh_file_attributes, smoothing_groups_of_obj) {
+TEST_F(MeshFileAttributes, ObjSmoothingGroupsAreRead) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
   const std::string faces[]{"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};
   const auto groups = [&](const std::string& text) {
@@ -200,7 +200,7 @@ TEST_F(mesh_file_attributes, smoothing_groups_of_obj) {
     EXPECT_EQ(groups(all + faces[0] + faces[1] + all + faces[2] + faces[3]), Groups{}) << all;
 }
 
-TEST_F(mesh_file_attributes, smoothing_groups_come_back_from_obj_and_draco) {
+TEST_F(MeshFileAttributes, SmoothingGroupsRoundTripThroughObjAndDraco) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ns 1\nf 1 3 2\nf 1 2 4\ns off\nf 2 3 4\ns 2\nf 3 1 4\n";
   const proto::FormattedMesh mesh = parse_triangles("it", Format::obj, text);
   const std::string written = encode_triangles("it", Format::obj, mesh, mesh.format);

@@ -2,12 +2,12 @@
 
 #include "tests/support/mesh_file_fixture.h"
 
-// PLY and STL in their dialects, and damaged.
+// Dialects of PLY and STL, and damaged files.
 
 namespace papilio::client {
 namespace {
 
-TEST_F(mesh_file, ply_skips_what_it_does_not_know) {
+TEST_F(MeshFileTest, UnknownPlyElementsAndPropertiesAreSkipped) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   for (const auto order : {std::endian::little, std::endian::big}) {
     std::string bytes =
@@ -46,7 +46,7 @@ TEST_F(mesh_file, ply_skips_what_it_does_not_know) {
   }
 }
 
-TEST_F(mesh_file, ply_damage_is_refused) {
+TEST_F(MeshFileTest, DamagedPlyIsRefused) {
   const std::string good = ply_header("ascii", kXyz, kIndices) + kPlyText;
   EXPECT_EQ(complaint(Format::ply, good), "");
   for (const std::string& text :
@@ -71,7 +71,7 @@ TEST_F(mesh_file, ply_damage_is_refused) {
               HasSubstr("line 13: expected a number, found 'x'"));
 }
 
-TEST_F(mesh_file, ply_may_declare_what_it_likes) {
+TEST_F(MeshFileTest, PlyCountsBeyondTheFileAreRefused) {
   for (const std::string format : {"ascii", "binary_little_endian"}) {
     for (const std::string element : {"vertex", "face", "thing"}) {
       const std::string text = "ply\nformat " + format + " 1.0\nelement " + element + " 4000000000\n" +
@@ -81,7 +81,7 @@ TEST_F(mesh_file, ply_may_declare_what_it_likes) {
   }
 }
 
-TEST_F(mesh_file, stl_binary_may_begin_with_solid) {
+TEST_F(MeshFileTest, BinaryStlMayBeginWithSolid) {
   for (const std::string header : {"", "solid", "solid facet normal 0 0 1"}) {
     const std::string bytes = binary_stl(untidy(), header);
     EXPECT_EQ(bits(read(Format::stl, bytes)), bits(soup(untidy())));
@@ -90,12 +90,12 @@ TEST_F(mesh_file, stl_binary_may_begin_with_solid) {
   }
 }
 
-TEST_F(mesh_file, stl_binary_may_begin_with_a_byte_order_mark) {
+TEST_F(MeshFileTest, BinaryStlMayBeginWithAByteOrderMark) {
   for (const std::string header : {"\xef\xbb\xbf solid", "\xff\xfe", "\xfe\xff"})
     EXPECT_EQ(read(Format::stl, binary_stl(untidy(), header)), soup(untidy()));
 }
 
-TEST_F(mesh_file, stl_count_that_disagrees_with_the_length_is_refused) {
+TEST_F(MeshFileTest, StlCountThatContradictsTheLengthIsRefused) {
   const std::string four = binary_stl(tetrahedron(), "");
   const auto with_count = [&](uint32_t count, const std::string& rest = "") {
     std::string bytes = four.substr(0, 80);
@@ -109,12 +109,12 @@ TEST_F(mesh_file, stl_count_that_disagrees_with_the_length_is_refused) {
   EXPECT_THAT(complaint(Format::stl, with_count(5)),
               HasSubstr("declares 5 triangles, which take 334 bytes, but has 284"));
   EXPECT_THAT(complaint(Format::stl, with_count(4, std::string(100, 'x'))), HasSubstr("hold 6"));
-  // What is no whole number of triangles was appended by its writer.
+  // Trailing bytes that are no whole triangles are accepted: some writers append them.
   for (const size_t size : {1U, 49U, 51U, 5003U})
     EXPECT_EQ(read(Format::stl, with_count(4, std::string(size, 'x'))), soup(tetrahedron()));
 }
 
-TEST_F(mesh_file, stl_text_in_its_dialects) {
+TEST_F(MeshFileTest, TextStlDialectsAreRead) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1e-39F, -0.0F}}, {{0, 1, 2}}};
   for (const std::string text : {
            "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-39 "
@@ -132,7 +132,7 @@ TEST_F(mesh_file, stl_text_in_its_dialects) {
   EXPECT_EQ(read(Format::stl, solid + "\n" + solid).triangles.size(), 2U);
 }
 
-TEST_F(mesh_file, stl_damage_is_refused) {
+TEST_F(MeshFileTest, DamagedStlIsRefused) {
   for (const std::string text : {"solid", "solid\n", "solid a\nendsolid a\n",
                                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvert",
                                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 "

@@ -1,11 +1,11 @@
-// Under the sanitizers g++ takes the points that OpenMesh fills in later for forgotten ones.
+// Under the sanitizers g++ warns of uninitialised points, which OpenMesh fills in later.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include "tests/support/mesh_file_fixture.h"
 
-// OpenMesh as an independent reader and writer of sound files.
+// OpenMesh as an independent reader and writer of valid files.
 
 namespace papilio::client {
 namespace {
@@ -22,7 +22,7 @@ TriangleMesh from_openmesh(const OpenMeshTriangles& mesh) {
     Triangle triangle{};
     size_t corner = 0;
     for (const auto vertex : mesh.fv_range(face)) triangle[corner++] = static_cast<uint32_t>(vertex.idx());
-    // Its faces may begin at any corner.
+    // OpenMesh's faces may begin at any corner.
     std::ranges::rotate(triangle, std::ranges::min_element(triangle));
     result.triangles.push_back(triangle);
   }
@@ -34,7 +34,7 @@ TriangleMesh with_smallest_first(TriangleMesh mesh) {
   return mesh;
 }
 
-/// The triangles of a soup, by the number of each corner's position in `positions`.
+/// Returns the triangles of a soup as indices into `positions`.
 TriangleMesh welded(const TriangleMesh& apart, const Buffer<Vec3f>& positions) {
   TriangleMesh mesh{positions, apart.triangles};
   for (Triangle& triangle : mesh.triangles)
@@ -43,7 +43,7 @@ TriangleMesh welded(const TriangleMesh& apart, const Buffer<Vec3f>& positions) {
   return mesh;
 }
 
-TEST_F(mesh_file, openmesh_reads_what_is_written) {
+TEST_F(MeshFileTest, OpenMeshReadsWrittenFiles) {
   for (const Format format : {Format::obj, Format::ply, Format::off}) {
     const fs::path file = path("ours" + extension_of(format));
     write_triangles(file, format, tetrahedron());
@@ -58,7 +58,7 @@ TEST_F(mesh_file, openmesh_reads_what_is_written) {
   EXPECT_EQ(welded.n_faces(), 4U);
 }
 
-TEST_F(mesh_file, reads_what_openmesh_writes) {
+TEST_F(MeshFileTest, FilesOfOpenMeshAreRead) {
   const TriangleMesh mesh = tetrahedron();
   OpenMeshTriangles theirs;
   for (const Vec3f& p : mesh.positions) theirs.add_vertex({p.x, p.y, p.z});

@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST_F(mesh_file, format_is_told_by_extension) {
+TEST_F(MeshFileTest, ExtensionDeterminesTheFormat) {
   EXPECT_EQ(format_of("a/b.drc"), Format::drc);
   EXPECT_EQ(format_of("b.OBJ"), Format::obj);
   EXPECT_EQ(format_of("b.x.Ply"), Format::ply);
@@ -30,13 +30,13 @@ TEST_F(mesh_file, format_is_told_by_extension) {
   }
 }
 
-TEST_F(mesh_file, draco_belongs_to_proto) {
+TEST_F(MeshFileTest, DracoIsALogicError) {
   EXPECT_THROW((void)read_triangles(path("a.drc"), Format::drc), std::logic_error);
   EXPECT_THROW(write_triangles(path("a.drc"), Format::drc, tetrahedron()), std::logic_error);
   EXPECT_EQ(files(), 0U);
 }
 
-TEST_F(mesh_file, round_trips_keep_every_bit) {
+TEST_F(MeshFileTest, RoundTripsAreBitIdentical) {
   for (const TriangleMesh& mesh : {tetrahedron(), untidy(), hard_numbers()}) {
     for (const Format format : kFormats) {
       const TriangleMesh expected = format == Format::stl ? soup(mesh) : mesh;
@@ -47,7 +47,7 @@ TEST_F(mesh_file, round_trips_keep_every_bit) {
   }
 }
 
-TEST_F(mesh_file, round_trips_of_real_meshes_keep_every_bit) {
+TEST_F(MeshFileTest, RoundTripsOfRealMeshesAreBitIdentical) {
   const std::vector<fs::path> meshes = real_meshes();
   ASSERT_FALSE(meshes.empty()) << "PAPILIO_MESHES names no folder with cgal/*.off; run ./dev test";
   for (const fs::path& source : meshes) {
@@ -66,7 +66,7 @@ TEST_F(mesh_file, round_trips_of_real_meshes_keep_every_bit) {
   }
 }
 
-/// Sound files of every format, small enough to be damaged in every place.
+/// Valid files of every format, small enough to be damaged at every byte.
 std::vector<std::pair<Format, std::string>> sound_files() {
   return {
       {Format::obj, "# tetrahedron\n" + std::string(kThree) + "vn 0 0 1\nf 1//1 2//1 3//1\nf -3 -2 -1\n"},
@@ -86,7 +86,7 @@ std::vector<std::pair<Format, std::string>> sound_files() {
   };
 }
 
-/// Whether it is taken; if so, it must make sense.
+/// Returns whether the file is read. The mesh must then be valid.
 bool is_taken(const fs::path& file, Format format) {
   try {
     const TriangleMesh mesh = read_triangles(file, format);
@@ -99,14 +99,13 @@ bool is_taken(const fs::path& file, Format format) {
   }
 }
 
-TEST_F(mesh_file, files_cut_short_are_refused) {
+TEST_F(MeshFileTest, TruncatedFilesAreRefused) {
   for (const auto& [format, bytes] : sound_files()) {
     EXPECT_TRUE(is_taken(put("whole", bytes), format)) << bytes;
     for (size_t size = 0; size < bytes.size(); ++size) {
       const std::string cut = bytes.substr(0, size);
       const bool taken = is_taken(put("cut", cut), format);
-      // What tells OBJ's end is nothing, and a text's last words may be the end of a colour, of a name or of
-      // a line.
+      // OBJ has no end marker, and the last words of a text may belong to a colour, a name or a line.
       const size_t can_end =
           format == Format::obj ? bytes.find("f 1//1") : bytes.size() - (format == Format::off ? 13 : 4);
       if (size < can_end) {
@@ -116,7 +115,7 @@ TEST_F(mesh_file, files_cut_short_are_refused) {
   }
 }
 
-TEST_F(mesh_file, damaged_files_are_refused_or_make_sense) {
+TEST_F(MeshFileTest, DamagedFilesAreRefusedOrValid) {
   std::mt19937 random(3);
   const std::vector<std::string> scraps{"\n",  " ",     "-",          "/",           "\\\n", "#",
                                         "nan", "1e999", "4294967295", "-2147483649", "\xff"};
@@ -147,7 +146,7 @@ TEST_F(mesh_file, damaged_files_are_refused_or_make_sense) {
   EXPECT_GT(refused, 500U);
 }
 
-TEST_F(mesh_file, garbage_is_refused) {
+TEST_F(MeshFileTest, RandomBytesAreRefused) {
   std::mt19937 random(5);
   for (int round = 0; round < 50; ++round) {
     std::string garbage(random() % 2000, ' ');
@@ -156,7 +155,7 @@ TEST_F(mesh_file, garbage_is_refused) {
   }
 }
 
-TEST_F(mesh_file, what_is_no_file_is_refused) {
+TEST_F(MeshFileTest, MissingAndEmptyFilesAreRefused) {
   for (const Format format : kFormats) {
     EXPECT_THROW((void)read_triangles(path("absent"), format), FileError);
     EXPECT_THROW((void)read_triangles(path(""), format), FileError);
@@ -169,7 +168,7 @@ TEST_F(mesh_file, what_is_no_file_is_refused) {
   }
 }
 
-TEST_F(mesh_file, bytes_are_read_up_to_a_limit) {
+TEST_F(MeshFileTest, BytesAboveTheLimitAreRefused) {
   const std::string bytes(200'000, 'x');
   EXPECT_EQ(read_bytes(put("bytes", bytes), bytes.size()), bytes);
   EXPECT_THROW((void)read_bytes(path("bytes"), bytes.size() - 1), FileError);
@@ -177,7 +176,7 @@ TEST_F(mesh_file, bytes_are_read_up_to_a_limit) {
   EXPECT_EQ(read_bytes(put("empty", ""), 0), "");
 }
 
-TEST_F(mesh_file, writing_replaces_the_whole_file) {
+TEST_F(MeshFileTest, WritingReplacesTheWholeFile) {
   write_atomically(path("a"), "a longer content");
   write_atomically(path("a"), std::string_view("b\0c", 3));
   EXPECT_EQ(read_bytes(path("a"), 100), std::string("b\0c", 3));
@@ -186,7 +185,7 @@ TEST_F(mesh_file, writing_replaces_the_whole_file) {
   EXPECT_EQ(files(), 2U);
 }
 
-TEST_F(mesh_file, writing_follows_links) {
+TEST_F(MeshFileTest, WritingFollowsSymlinks) {
   put("target", "old");
   fs::create_symlink("target", path("link"));
   write_atomically(path("link"), "new");
@@ -194,7 +193,7 @@ TEST_F(mesh_file, writing_follows_links) {
   EXPECT_EQ(read_bytes(path("target"), 100), "new");
 }
 
-TEST_F(mesh_file, failed_writing_leaves_nothing) {
+TEST_F(MeshFileTest, FailedWriteLeavesNoFile) {
   fs::create_directory(path("folder"));
   put("file", "kept");
   EXPECT_THROW(write_atomically(path("absent/a"), "x"), FileError);
@@ -211,12 +210,12 @@ TEST_F(mesh_file, failed_writing_leaves_nothing) {
   }
 }
 
-TEST_F(mesh_file, writing_without_permission_leaves_nothing) {
+TEST_F(MeshFileTest, WriteWithoutPermissionLeavesNoFile) {
   EXPECT_THROW(write_atomically("/proc/papilio", "x"), FileError);  // not even root may write there
   EXPECT_FALSE(fs::exists("/proc/papilio"));
 }
 
-TEST_F(mesh_file, a_full_disk_keeps_the_old_file) {
+TEST_F(MeshFileTest, FullDiskKeepsTheOldFile) {
   put("mesh.ply", "old");
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
@@ -236,7 +235,7 @@ TEST_F(mesh_file, a_full_disk_keeps_the_old_file) {
   EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(mesh_file, a_mesh_with_bad_indices_is_not_written) {
+TEST_F(MeshFileTest, MeshWithInvalidIndicesIsNotWritten) {
   TriangleMesh mesh = tetrahedron();
   mesh.triangles[2][1] = 4;
   for (const Format format : kFormats)
@@ -244,7 +243,7 @@ TEST_F(mesh_file, a_mesh_with_bad_indices_is_not_written) {
   EXPECT_EQ(files(), 0U);
 }
 
-TEST_F(mesh_file, stl_normals_are_zero_where_there_is_none) {
+TEST_F(MeshFileTest, StlNormalsOfDegenerateFacesAreZero) {
   const std::string bytes = written(Format::stl, {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 1, 2}, {0, 1, 1}}});
   float normals[2][3];
   std::memcpy(normals[0], bytes.data() + 84, 12);

@@ -1,29 +1,29 @@
 #include "tests/support/mesh_file_fixture.h"
 
-// OBJ and OFF in their dialects, and damaged.
+// Dialects of OBJ and OFF, and damaged files.
 
 namespace papilio::client {
 namespace {
 
 using testing::ElementsAre;
 
-TEST_F(mesh_file, obj_corners_in_all_their_forms) {
+TEST_F(MeshFileTest, ObjCornersOfAllFormsAreRead) {
   const std::string vertices(kThree);
   for (const std::string face : {"f 1 2 3", "f 1/4 2/5 3/6", "f 1//4 2//5 3//6", "f 1/4/7 2/5/8 3/6/9", "f -3 -2 -1",
                                  "f -3/-1/-2 -2//-1 -1/-1", "f\t1  2 \\\n3", "f 1 2 \\\r\n 3 # three", "f +1 2/ 3//"})
     EXPECT_THAT(read(Format::obj, vertices + face).triangles, ElementsAre(Triangle{0, 1, 2})) << face;
 }
 
-TEST_F(mesh_file, obj_negative_corners_count_from_the_latest_vertex) {
+TEST_F(MeshFileTest, NegativeObjCornersCountFromTheLatestVertex) {
   const std::string text = std::string(kThree) + "f -3 -2 -1\nv 1 1 0\nf -3 -1 -2\n";
   EXPECT_THAT(read(Format::obj, text).triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{1, 3, 2}));
 }
 
-TEST_F(mesh_file, obj_faces_may_come_first) {
+TEST_F(MeshFileTest, ObjFacesMayPrecedeVertices) {
   EXPECT_THAT(read(Format::obj, "f 1 2 3\n" + std::string(kThree)).triangles, ElementsAre(Triangle{0, 1, 2}));
 }
 
-TEST_F(mesh_file, obj_other_keywords_are_passed_over) {
+TEST_F(MeshFileTest, OtherObjKeywordsAreSkipped) {
   const std::string text =
       "# made by hand\r\n\r\nmtllib /dev/zero\r\no thing\r\ng a b\r\nv 0 0 0 1.0\r\nv 1 0 0 0.5 0.5 0.5\r\nv "
       "0 1 0\r\n"
@@ -31,7 +31,7 @@ TEST_F(mesh_file, obj_other_keywords_are_passed_over) {
   EXPECT_EQ(read(Format::obj, text), (TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
 }
 
-TEST_F(mesh_file, a_byte_order_mark_of_utf8_is_skipped) {
+TEST_F(MeshFileTest, Utf8ByteOrderMarkIsSkipped) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const std::string mark = "\xef\xbb\xbf";
   EXPECT_EQ(read(Format::obj, mark + std::string(kThree) + "f 1 2 3\n"), expected);
@@ -46,7 +46,7 @@ TEST_F(mesh_file, a_byte_order_mark_of_utf8_is_skipped) {
   EXPECT_NE(complaint(Format::obj, mark), "");
 }
 
-TEST_F(mesh_file, other_unicode_encodings_are_refused_by_name) {
+TEST_F(MeshFileTest, OtherUnicodeEncodingsAreRefusedByName) {
   const auto widened = [](std::string_view text, const std::string& before, const std::string& after) {
     std::string wide;
     for (const char c : text) wide += before + c + after;
@@ -64,7 +64,7 @@ TEST_F(mesh_file, other_unicode_encodings_are_refused_by_name) {
   }
 }
 
-TEST_F(mesh_file, concave_polygons_are_cut_inside) {
+TEST_F(MeshFileTest, ConcavePolygonsAreCutInside) {
   const std::string arrow = "0 0 0\n4 2 0\n0 4 0\n1 2 0\n";
   const auto inside = ElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3});
   EXPECT_THAT(read(Format::obj, "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\nf 1 2 3 4\n").triangles, inside);
@@ -82,7 +82,7 @@ TEST_F(mesh_file, concave_polygons_are_cut_inside) {
               inside);
 }
 
-TEST_F(mesh_file, a_number_is_read_as_the_nearest_float) {
+TEST_F(MeshFileTest, NumbersAreReadAsTheNearestFloat) {
   const TriangleMesh mesh =
       read(Format::obj, "v 0.1 1e-60 -1e-400\nv 16777217.000001 +.5 1e-45\nv nan inf -inf\nf 1 2 3\n");
   EXPECT_EQ(mesh.positions[0], (Vec3f{0.1F, 0, 0}));
@@ -92,7 +92,7 @@ TEST_F(mesh_file, a_number_is_read_as_the_nearest_float) {
               HasSubstr("line 2: expected a number"));
 }
 
-TEST_F(mesh_file, obj_damage_is_refused) {
+TEST_F(MeshFileTest, DamagedObjIsRefused) {
   const std::string vertices(kThree);
   for (const std::string damage :
        {"f 1 2 4", "f 0 1 2", "f -4 1 2", "f 1 2", "f 1 2 x3", "f 1.5 2 3", "f /1/2 2 3", "f 1 2 99999999999999999999",
@@ -103,7 +103,7 @@ TEST_F(mesh_file, obj_damage_is_refused) {
               HasSubstr("line 5: expected the number of a vertex, found 'bad'; export the mesh again"));
 }
 
-TEST_F(mesh_file, off_in_its_dialects) {
+TEST_F(MeshFileTest, OffDialectsAreRead) {
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   for (const std::string& text : {
            "OFF\n" + std::string(kOffBody),
@@ -119,7 +119,7 @@ TEST_F(mesh_file, off_in_its_dialects) {
     EXPECT_EQ(read(Format::off, text), expected) << text;
 }
 
-TEST_F(mesh_file, off_damage_is_refused) {
+TEST_F(MeshFileTest, DamagedOffIsRefused) {
   for (const std::string text :
        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n",
         "OFF\n3 4000000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "OFF\n4000000000 1 0\n0 0 0\n",
@@ -131,7 +131,7 @@ TEST_F(mesh_file, off_damage_is_refused) {
     EXPECT_NE(complaint(Format::off, text), "") << text;
 }
 
-TEST_F(mesh_file, off_goes_on_after_its_faces) {
+TEST_F(MeshFileTest, OffWithTrailingFacesIsRefused) {
   EXPECT_THAT(complaint(Format::off, "OFF\n" + std::string(kOffBody) + "3 2 1 0\n"),
               HasSubstr("line 7: the file goes on"));
 }

@@ -11,7 +11,7 @@ namespace papilio::server {
 namespace {
 
 // FIPS 180-2, appendix B.
-TEST(Sha256, TestVectors) {
+TEST(Sha256, HashesEqualTheTestVectors) {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
@@ -27,10 +27,10 @@ std::string tag(const proto::QueryFields& query, const std::string& id = "id", c
 TEST(EntityTag, EqualParametersHaveEqualTags) {
   EXPECT_EQ(tag({}), tag({{"levels", "2"}, {"w", "0"}}));
   EXPECT_EQ(tag({{"levels", "3"}, {"w", "0.05"}}), tag({{"w", "5e-2"}, {"levels", "3"}}));
-  EXPECT_EQ(tag({{"view.fov_y", "45"}}), tag({{"view.up", "0,1,0"}})) << "both are a view of defaults";
+  EXPECT_EQ(tag({{"view.fov_y", "45"}}), tag({{"view.up", "0,1,0"}})) << "both are the default view";
 }
 
-TEST(EntityTag, WhateverChangesTheAnswerChangesTheTag) {
+TEST(EntityTag, TagChangesWithEveryParameter) {
   std::set<std::string> tags{tag({}), tag({}, "other"), tag({}, "id", "other")};
   size_t expected = 3;
   for (const proto::ParameterInfo& info : proto::parameter_table()) {
@@ -50,7 +50,7 @@ TEST(EntityTag, WhateverChangesTheAnswerChangesTheTag) {
   }
 }
 
-TEST(NoneMatch, IsAListOfTagsOrAStar) {
+TEST(NoneMatch, ListsOfTagsAndTheWildcardMatch) {
   EXPECT_TRUE(none_match_has("\"a\"", "\"a\""));
   EXPECT_TRUE(none_match_has("\"b\", W/\"a\" ", "\"a\""));
   EXPECT_TRUE(none_match_has("*", "\"a\""));

@@ -37,10 +37,10 @@ class StoreTest : public testing::TestWithParam<const char*> {
 };
 INSTANTIATE_TEST_SUITE_P(Kinds, StoreTest, testing::Values("memory", "directory"));
 
-TEST_P(StoreTest, GivesBackWhatWasPut) {
+TEST_P(StoreTest, StoredBytesAreReturned) {
   const auto store = open();
   EXPECT_EQ(store->kind(), GetParam());
-  std::string bytes(5000, '\0');  // not text: with zeros in it
+  std::string bytes(5000, '\0');  // binary: with zeros
   for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
   const std::string id = sha256(bytes);
   EXPECT_EQ(store->get(id), nullptr);
@@ -56,7 +56,7 @@ TEST_P(StoreTest, GivesBackWhatWasPut) {
   EXPECT_EQ(store->usage()->bytes, 0U);
 }
 
-TEST_P(StoreTest, RefusesWhatCannotFit) {
+TEST_P(StoreTest, MeshLargerThanTheBudgetIsRefused) {
   const auto store = open(2000);
   const std::string bytes(3000, 'x');
   try {
@@ -67,7 +67,7 @@ TEST_P(StoreTest, RefusesWhatCannotFit) {
   }
 }
 
-TEST_P(StoreTest, ThreadsPutTheSameMeshAtOnce) {
+TEST_P(StoreTest, ConcurrentPutsOfOneMeshAreSafe) {
   const auto store = open();
   const std::string bytes(100000, 'm');
   const std::string id = sha256(bytes);
@@ -89,7 +89,7 @@ TEST_P(StoreTest, ThreadsPutTheSameMeshAtOnce) {
 using DirectoryStoreTest = StoreTest;
 INSTANTIATE_TEST_SUITE_P(Directory, DirectoryStoreTest, testing::Values("directory"));
 
-TEST_P(DirectoryStoreTest, OthersMayUseTheDirectory) {
+TEST_P(DirectoryStoreTest, ServersShareTheDirectory) {
   const auto one = open();
   const auto two = open();
   const std::string id = sha256("mesh");
@@ -99,7 +99,7 @@ TEST_P(DirectoryStoreTest, OthersMayUseTheDirectory) {
   EXPECT_EQ(one->get(id), nullptr);
 }
 
-TEST_P(DirectoryStoreTest, WhatOthersTookAwayIsRoomAgain) {
+TEST_P(DirectoryStoreTest, RemovalsByOthersFreeRoom) {
   const auto one = open(1000);
   const auto two = open(1000);
   const std::string large(900, 'a');
@@ -110,7 +110,7 @@ TEST_P(DirectoryStoreTest, WhatOthersTookAwayIsRoomAgain) {
   EXPECT_TRUE(one->put(sha256(other), other));
 }
 
-TEST_P(DirectoryStoreTest, WhatWasThereBeforeCounts) {
+TEST_P(DirectoryStoreTest, ExistingMeshesAreCounted) {
   const std::string large(900, 'a');
   open(1000)->put(sha256(large), large);
   const auto later = open(1000);
@@ -118,7 +118,7 @@ TEST_P(DirectoryStoreTest, WhatWasThereBeforeCounts) {
   EXPECT_THROW(later->put(sha256("other"), std::string(900, 'b')), Problem);
 }
 
-TEST_P(DirectoryStoreTest, FilesOfOthersAreLeftAloneAndDoNotCount) {
+TEST_P(DirectoryStoreTest, ForeignFilesAreKeptAndNotCounted) {
   fs::create_directories(folder_ / "00");
   const auto hours_ago = fs::file_time_type::clock::now() - std::chrono::hours(3);
   const auto make = [&](const std::string& name) {
@@ -136,7 +136,7 @@ TEST_P(DirectoryStoreTest, FilesOfOthersAreLeftAloneAndDoNotCount) {
   EXPECT_EQ(store->usage()->meshes, 0U);
 }
 
-TEST_P(DirectoryStoreTest, WhatCannotBeReadIsNotAbsent) {
+TEST_P(DirectoryStoreTest, UnreadableMeshIsUnavailable) {
   const auto store = open();
   const std::string id = sha256("mesh");
   EXPECT_FALSE(store->contains(id));
@@ -154,8 +154,8 @@ TEST_P(DirectoryStoreTest, WhatCannotBeReadIsNotAbsent) {
   }
 }
 
-// Many rounds: where a count of the files missed one that was put meanwhile, one round in a hundred kept two.
-TEST_P(DirectoryStoreTest, MeshesPutAtOnceDoNotPassTheBudgetTogether) {
+// Many rounds: a count that missed a concurrent put kept two meshes in one round of a hundred.
+TEST_P(DirectoryStoreTest, ConcurrentPutsDoNotExceedTheBudget) {
   const std::string bytes(900'000, 'x');
   const auto store = open(1'000'000);
   for (int round = 0; round < 100; ++round) {
@@ -177,7 +177,7 @@ TEST_P(DirectoryStoreTest, MeshesPutAtOnceDoNotPassTheBudgetTogether) {
   }
 }
 
-TEST(RedisAddress, IsRead) {
+TEST(RedisAddress, AllFormsAreParsed) {
   const auto plain = parse_redis_address("redis://cache");
   EXPECT_EQ(plain->host, "cache");
   EXPECT_EQ(plain->port, 6379);
@@ -199,7 +199,7 @@ TEST(RedisAddress, IsRead) {
     EXPECT_FALSE(parse_redis_address(bad)) << bad;
 }
 
-/// Something that takes connections and never says a word.
+/// A server that accepts connections and never replies.
 class SilentServer {
  public:
   SilentServer() : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0)) {
@@ -217,7 +217,7 @@ class SilentServer {
   SilentServer& operator=(const SilentServer&) = delete;
 
   [[nodiscard]] int port() const { return port_; }
-  /// How many have connected since the last call.
+  /// Returns the number of connections since the last call.
   [[nodiscard]] int connections() const {
     int count = 0;
     for (int fd = ::accept(fd_, nullptr, nullptr); fd >= 0; fd = ::accept(fd_, nullptr, nullptr), ++count) ::close(fd);
@@ -229,12 +229,12 @@ class SilentServer {
   int port_ = 0;
 };
 
-TEST(RedisStore, WhileRedisKeepsSilentOneAtATimeWaitsForIt) {
+TEST(RedisStore, OneThreadAtATimeProbesASilentServer) {
   const SilentServer redis;
   RedisStore store(*parse_redis_address("redis://127.0.0.1:" + std::to_string(redis.port())), 1 << 20, 0);
   EXPECT_THROW((void)store.contains("a"), Problem);
   EXPECT_EQ(redis.connections(), 1);
-  EXPECT_THROW((void)store.contains("a"), Problem);  // known to be away: not asked
+  EXPECT_THROW((void)store.contains("a"), Problem);  // known to be unavailable: no connection
   EXPECT_EQ(redis.connections(), 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   std::vector<std::jthread> threads;

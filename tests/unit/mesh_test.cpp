@@ -50,14 +50,14 @@ TEST(Mesh, RandomManifoldsAreConsistentAndCleanlyReported) {
   }
 }
 
-TEST(Mesh, WeldsPointsOfEqualPosition) {
+TEST(Mesh, PointsOfEqualPositionAreWelded) {
   TriangleMesh soup;
   for (const Triangle& t : cube().triangles) {
     for (uint32_t v : t) soup.positions.push_back(cube().positions[v]);
     const auto n = static_cast<uint32_t>(soup.positions.size());
     soup.triangles.push_back({n - 3, n - 2, n - 1});
   }
-  soup.positions[0].x = -0.0F;  // the same place as 0
+  soup.positions[0].x = -0.0F;  // equal to 0
   BuildReport report;
   const Mesh mesh = build_mesh(soup, &report);
   EXPECT_EQ(mesh.topology.vertex_count, 8U);
@@ -66,17 +66,17 @@ TEST(Mesh, WeldsPointsOfEqualPosition) {
   EXPECT_TRUE(is_consistent(mesh));
 }
 
-TEST(Mesh, KeepsFaceOrderAndNumbersVerticesAsFacesNameThem) {
+TEST(Mesh, VerticesAreNumberedInOrderOfTheFaces) {
   const Mesh mesh = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{3, 2, 1}, {0, 1, 2}}});
   EXPECT_EQ(mesh.topology.origin, (Buffer<uint32_t>{0, 1, 2, 3, 2, 1}));
   EXPECT_EQ(mesh.positions[0], (Vec3f{1, 1, 0}));
 }
 
-TEST(Mesh, DropsAndCountsWhatCannotBeRefined) {
+TEST(Mesh, DefectiveFacesAndPointsAreDroppedAndCounted) {
   TriangleMesh mesh = tetrahedron();
   mesh.positions.push_back({9, 9, 9});          // isolated
   mesh.triangles.push_back({0, 1, 1});          // degenerate
-  mesh.triangles.push_back({2, 1, 0});          // repeated: the first face turned
+  mesh.triangles.push_back({2, 1, 0});          // repeated: the first face, reversed
   mesh.positions.push_back(mesh.positions[0]);  // welded
   mesh.triangles.push_back({0, 5, 2});          // degenerate once welded
   BuildReport report;
@@ -89,7 +89,7 @@ TEST(Mesh, DropsAndCountsWhatCannotBeRefined) {
   EXPECT_TRUE(is_consistent(built));
 }
 
-TEST(Mesh, TwoFacesBackToBackAreASphereNotARepetition) {
+TEST(Mesh, TwoFacesBackToBackAreASphere) {
   BuildReport report;
   const Mesh mesh = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, &report);
   EXPECT_EQ(report.repeated_faces, 0U);
@@ -122,7 +122,7 @@ TEST(Mesh, PinchedVerticesAreFound) {
   EXPECT_EQ(report.pinched_vertices, 0U);
 }
 
-TEST(Mesh, RefusesWhatItCannotTake) {
+TEST(Mesh, UnusableInputsAreRefused) {
   EXPECT_EQ(fault_of({}), Fault::no_faces);
   EXPECT_EQ(fault_of({{{0, 0, 0}}, {{0, 0, 0}}}), Fault::no_faces);
   EXPECT_EQ(fault_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}), Fault::index_out_of_range);
@@ -133,12 +133,12 @@ TEST(Mesh, RefusesWhatItCannotTake) {
   }
 }
 
-TEST(Mesh, AFanOfManyThousandsOfFacesIsBuilt) {
+TEST(Mesh, VerticesOfValence100000AreBuilt) {
   const Mesh mesh = build_mesh(bipyramid(100'000));
   EXPECT_EQ(mesh.topology.euler_characteristic(), 2);
 }
 
-TEST(Mesh, BoundingBox) {
+TEST(Mesh, BoxOfACubeIsTheCube) {
   const Box box = bounding_box(cube().positions);
   EXPECT_EQ(box.min, (Vec3f{0, 0, 0}));
   EXPECT_EQ(box.max, (Vec3f{1, 1, 1}));
@@ -147,12 +147,12 @@ TEST(Mesh, BoundingBox) {
   EXPECT_EQ(bounding_box({}).largest_coordinate(), 0);
 }
 
-TEST(Mesh, BoundingBoxOfEachPoint) {
+TEST(Mesh, BoxBoundsAnyNumberOfPoints) {
   const std::vector<Vec3f> points{{1, -2, 3}, {-4, 5, -6}, {7, -8, 9}, {-7, 2, -10}};
   for (size_t count = 1; count <= points.size(); ++count)
     for (size_t first = 0; first + count <= points.size(); ++first) {
       const std::vector<Vec3f> some(points.begin() + static_cast<ptrdiff_t>(first),
-                                    points.begin() + static_cast<ptrdiff_t>(first + count));  // nothing behind its end
+                                    points.begin() + static_cast<ptrdiff_t>(first + count));  // no readable padding
       const auto least = [&](float Vec3f::*c) { return (*std::ranges::min_element(some, {}, c)).*c; };
       const auto most = [&](float Vec3f::*c) { return (*std::ranges::max_element(some, {}, c)).*c; };
       const Box box = bounding_box(some);
@@ -174,14 +174,14 @@ TriangleMesh random_soup(std::mt19937& random) {
   return mesh;
 }
 
-TEST(NumberEdges, MakesWhatBuildingMakes) {
+TEST(NumberEdges, NumberedEdgesEqualTheBuiltOnes) {
   std::mt19937 random(11);
   for (int i = 0; i < 300; ++i) {
     const Topology built = build_mesh(i % 2 == 0 ? random_soup(random) : random_manifold(random)).topology;
     Topology mesh = built;
     forget_edges(mesh);
     EXPECT_FALSE(mesh.has_edges());
-    mesh.darts = {0};  // of a crease that is forgotten
+    mesh.darts = {0};  // of a crease that is lost
     number_edges(mesh);
     ASSERT_TRUE(mesh.darts.empty());
     ASSERT_TRUE(mesh.has_edges());
@@ -191,8 +191,8 @@ TEST(NumberEdges, MakesWhatBuildingMakes) {
   }
 }
 
-// From a certain valence on edges are found in another way.
-TEST(Mesh, HubsOfAnyValenceAreConnectedLikeOtherVertices) {
+// Edges are found by another algorithm above a certain valence.
+TEST(Mesh, HubsOfAnyValenceAreConnected) {
   for (uint32_t valence : {5U, 30U, 31U, 32U, 33U, 34U, 35U, 3000U})
     for (bool closed : {false, true}) {
       BuildReport report;
@@ -206,7 +206,7 @@ TEST(Mesh, HubsOfAnyValenceAreConnectedLikeOtherVertices) {
     }
 }
 
-TEST(Mesh, TrianglesOfOneThatIsNotNeededAnyMoreAreTheSame) {
+TEST(Mesh, TrianglesOfAnRvalueMeshAreEqual) {
   TriangleMesh with_attributes = cube();
   with_attributes.attributes = {
       {.components = 1, .values = std::vector<double>(with_attributes.positions.size(), 0.5)}};

@@ -34,14 +34,14 @@ void expect_clean(const TriangleMesh& model, const Expected& expected) {
   EXPECT_TRUE(test::is_consistent(mesh));
 }
 
-TEST(Models, KnotIsClosedAndOneTube) { expect_clean(server::knot(), {216, 432, 0}); }
+TEST(Models, KnotIsAClosedTube) { expect_clean(server::knot(), {216, 432, 0}); }
 
-TEST(Models, MugHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::mug(), {172, 344, 0}); }
+TEST(Models, MugIsClosedWithThePapersCounts) { expect_clean(server::mug(), {172, 344, 0}); }
 
-TEST(Models, WheelHasTheCountsOfThePaperAndIsClosed) { expect_clean(server::wheel(), {163, 290, 18}); }
+TEST(Models, WheelIsClosedWithThePapersCounts) { expect_clean(server::wheel(), {163, 290, 18}); }
 
 TEST(Models, FacesLookOutward) {
-  // The clay of a mug of these measures, and the wheel's parts added up: torus, hub, spokes; all coarse polygons.
+  // Volumes of a mug of these dimensions, and of the wheel's parts (torus, hub, spokes) as coarse polygons.
   EXPECT_GT(signed_volume(server::knot()), 500);
   EXPECT_NEAR(signed_volume(server::mug()), 115, 15);
   EXPECT_NEAR(signed_volume(server::wheel()), 8300, 500);

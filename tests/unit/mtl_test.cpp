@@ -90,12 +90,12 @@ TEST(Mtl, MaterialNamesMayHaveBlanksOrBeEmpty) {
   EXPECT_EQ(materials[2].name, "Terraind\xe4k");
 }
 
-TEST(Mtl, LineEndsAndAByteOrderMarkDoNotMatter) {
+TEST(Mtl, LineEndsAndAByteOrderMarkAreIgnored) {
   const auto expected = parse_mtl("newmtl a b\nKd 1 0 0\nmap_Kd x y.png\n");
   EXPECT_EQ(parse_mtl("\xef\xbb\xbfnewmtl a b\r\n# c\r\n  Kd 1 \\\r\n 0 0\r\n\tmap_Kd x y.png"), expected);
 }
 
-TEST(Mtl, DamageIsNamed) {
+TEST(Mtl, DamageIsRefusedWithItsLine) {
   EXPECT_THAT(mtl_complaint("newmtl a\nKd 1 x 0"), HasSubstr("line 2: expected a finite number, found 'x'"));
   EXPECT_THAT(mtl_complaint("newmtl a\nd nan"), HasSubstr("line 2: expected a finite number, found 'nan'"));
   EXPECT_THAT(mtl_complaint("newmtl a\nKe 1 inf 0"), HasSubstr("found 'inf'"));
@@ -107,7 +107,7 @@ TEST(Mtl, DamageIsNamed) {
   EXPECT_THAT(mtl_complaint(many), HasSubstr("line 65537: there are more than 65536 materials"));
 }
 
-TEST(Mtl, WhatIsWrittenIsReadAgain) {
+TEST(Mtl, MaterialsRoundTrip) {
   MtlMaterial full{.name = "a b",
                    .diffuse = Color{0.1, 1.0 / 3, 1},
                    .emissive = Color{12, 0, 1e-9},

@@ -7,19 +7,20 @@
 namespace papilio::proto {
 namespace {
 
-const std::vector<Part> parts{{{{"Content-Type", "application/x-draco"}, {"Papilio-Faces", "12"}}, "abc"},
-                              {{{"Content-Type", "text/plain"}}, ""},
-                              {{{"Content-Type", "application/json"}}, "--papilio-test--\r\n\r\n--papilio-test\r\n"}};
+const std::vector<BodyPart> parts{
+    {{{"Content-Type", "application/x-draco"}, {"Papilio-Faces", "12"}}, "abc"},
+    {{{"Content-Type", "text/plain"}}, ""},
+    {{{"Content-Type", "application/json"}}, "--papilio-test--\r\n\r\n--papilio-test\r\n"}};
 
 std::string body_of(const MultipartWriter& writer) {
   std::string body;
-  for (const Part& part : parts) body += writer.part(part);
+  for (const BodyPart& part : parts) body += writer.part(part);
   return body + writer.end();
 }
 
-std::vector<Part> read(const std::string& type, const std::string& body, size_t piece) {
-  std::vector<Part> found;
-  MultipartReader reader(type, 1000, [&](Part part) { found.push_back(std::move(part)); });
+std::vector<BodyPart> read(const std::string& type, const std::string& body, size_t piece) {
+  std::vector<BodyPart> found;
+  MultipartReader reader(type, 1000, [&](BodyPart part) { found.push_back(std::move(part)); });
   for (size_t begin = 0; begin < body.size(); begin += piece) reader.feed(std::string_view(body).substr(begin, piece));
   reader.finish();
   return found;
@@ -29,7 +30,7 @@ TEST(Multipart, PartsRoundTripInPiecesOfAnySize) {
   const MultipartWriter writer("papilio-test");
   const std::string body = body_of(writer);
   for (size_t piece = 1; piece <= body.size(); ++piece) {
-    const std::vector<Part> found = read(writer.content_type(), body, piece);
+    const std::vector<BodyPart> found = read(writer.content_type(), body, piece);
     ASSERT_EQ(found.size(), parts.size()) << piece;
     for (size_t i = 0; i < parts.size(); ++i) {
       EXPECT_EQ(found[i].body, parts[i].body);

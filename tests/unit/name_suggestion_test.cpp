@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<std::string_view, 6> known_names{"levels",   "tolerance",        "w",
                                                       "view.eye", "view.edge_pixels", "view.up"};
 
-TEST(NameSuggestion, IsTheNearestNameWithinAThirdOfItsLength) {
+TEST(NameSuggestion, NearestNameWithinAThirdOfTheLengthIsSuggested) {
   EXPECT_EQ(suggest_name("tolerence", known_names), "tolerance");   // substitution
   EXPECT_EQ(suggest_name("toleranc", known_names), "tolerance");    // deletion
   EXPECT_EQ(suggest_name("ttolerance", known_names), "tolerance");  // insertion

@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, NewFileTest, testing::Values(NewFile::Until::unn
                            return instance.param == NewFile::Until::unnamed ? "Unnamed" : "Part";
                          });
 
-TEST_P(NewFileTest, HasItsNameOnlyOncePublished) {
+TEST_P(NewFileTest, FileHasItsNameOnlyOncePublished) {
   {
     NewFile file(folder_, GetParam());
     ASSERT_TRUE(file.is_open());
@@ -51,7 +51,7 @@ TEST_P(NewFileTest, HasItsNameOnlyOncePublished) {
   EXPECT_TRUE(file_holds(file_, "bytes"));
 }
 
-TEST_P(NewFileTest, LeavesNothingWhenItIsNotPublished) {
+TEST_P(NewFileTest, UnpublishedFileIsRemoved) {
   {
     const NewFile file(folder_, GetParam());
     ASSERT_TRUE(file.write_and_sync("bytes"));
@@ -59,7 +59,7 @@ TEST_P(NewFileTest, LeavesNothingWhenItIsNotPublished) {
   EXPECT_EQ(entries(), 0);
 }
 
-TEST_P(NewFileTest, ReplacesAFileAndAnEmptyFolder) {
+TEST_P(NewFileTest, PublishReplacesAFileOrAnEmptyFolder) {
   for (const bool is_folder : {false, true}) {
     fs::remove(file_);
     if (is_folder)
@@ -74,7 +74,7 @@ TEST_P(NewFileTest, ReplacesAFileAndAnEmptyFolder) {
   }
 }
 
-TEST_P(NewFileTest, LeavesAFolderWithFilesAlone) {
+TEST_P(NewFileTest, PublishKeepsAFolderWithFiles) {
   fs::create_directory(file_);
   std::ofstream(file_ / "of_others") << "old";
   {
@@ -93,7 +93,7 @@ TEST(FileBytes, OnlyRegularFilesAreRead) {
   EXPECT_EQ(read_file(folder), nullptr);
   EXPECT_EQ(errno, EISDIR);
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_EQ(read_file(folder / "pipe"), nullptr);  // nobody writes into it: it must not be waited for
+  EXPECT_EQ(read_file(folder / "pipe"), nullptr);  // without a writer: opening must not block
   EXPECT_EQ(read_file(folder / "none"), nullptr);
   EXPECT_EQ(errno, ENOENT);
   const std::string bytes(200'000, 'b');

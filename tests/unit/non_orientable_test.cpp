@@ -8,8 +8,8 @@
 #include "proto/draco_writer.h"
 #include "tests/support/invariants.h"
 
-// Surfaces that cannot be wound alike: along a line of edges two faces run in the same direction. Each side is refined
-// as if the surface ended there, and there must be no crack.
+// Non-orientable surfaces: along a line of edges both faces run in the same direction. Each side is refined as at a
+// boundary, without a crack.
 
 namespace papilio {
 namespace {
@@ -18,7 +18,7 @@ using namespace test;
 
 constexpr uint32_t around = 16, across = 6;
 
-/// Quads between (i, j), where i = `around` is i = 0 with j turned over; across it `columns` vertices.
+/// Grid of quads; i = `around` is i = 0 with j reversed. `columns`: vertices across.
 template <class At>
 TriangleMesh turned_strip(uint32_t columns, uint32_t cells, const At& at) {
   TriangleMesh mesh;
@@ -46,7 +46,7 @@ TriangleMesh moebius_strip() {
   });
 }
 
-/// A figure of eight that turns by half a circle on its way round; its two crossings are kept apart.
+/// A figure of eight swept round with half a turn; the vertices at its self-intersection stay separate.
 TriangleMesh klein_bottle() {
   return turned_strip(across, across, [](double u, double j) {
     const double v = 2 * std::numbers::pi * j / across;
@@ -86,7 +86,7 @@ TEST(NonOrientable, MoebiusStripHasOneBoundaryAndNoCrack) {
     EXPECT_TRUE(is_consistent(fine));
     EXPECT_EQ(euler_characteristic(fine.triangles()), 0);
     const EdgeCensus edges = count_edges(fine.triangles());
-    // Every edge with one face lies on the boundary: no more of them than the boundary splits into.
+    // Edges with one face are the halves of boundary edges.
     EXPECT_LE(edges.boundary, 8 * 2 * around);
     EXPECT_GE(edges.boundary, 2 * around);
     EXPECT_GE(edges.irregular, across);

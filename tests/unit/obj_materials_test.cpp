@@ -27,26 +27,26 @@ TEST(ObjMaterials, NamesMayBeEmpty) {
   EXPECT_THAT(found.of_triangle, ElementsAre(0));
 }
 
-TEST(ObjMaterials, FilesWithoutNamesHaveNone) {
+TEST(ObjMaterials, FileWithoutNamesHasNoMaterials) {
   const ObjMaterials found = materials_of_obj("mtllib a.mtl\nf 1 2 3\n");
   EXPECT_THAT(found.libraries, ElementsAre("a.mtl"));
   EXPECT_THAT(found.names, IsEmpty());
   EXPECT_THAT(found.of_triangle, IsEmpty());
 }
 
-TEST(ObjMaterials, EachLineOfLibrariesCountsOnce) {
+TEST(ObjMaterials, RepeatedLibrariesAreListedOnce) {
   EXPECT_THAT(materials_of_obj("mtllib a.mtl b.mtl\nmtllib my c.mtl\nmtllib a.mtl b.mtl\nmtllib\nf 1 2 3\n").libraries,
               ElementsAre("a.mtl b.mtl", "my c.mtl"));
 }
 
 TEST(ObjMaterials, TrianglesOfPolygonsHaveTheFacesMaterial) {
-  // A concave polygon, which is cut by ears.
+  // A concave polygon, which is triangulated by ear clipping.
   const std::string text =
       "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nusemtl a\nf 1 2 3 4 5\nusemtl b\nf 1 2 3\nusemtl a\nf 1 2 3\n";
   EXPECT_THAT(parse_obj_file("in.obj", text).materials.of_triangle, ElementsAre(0, 0, 0, 1, 0));
 }
 
-TEST(ObjMaterials, TooManyAreRefused) {
+TEST(ObjMaterials, TooManyMaterialsAreRefused) {
   std::string text(kThree);
   for (size_t i = 0; i <= most_materials; ++i) text += "usemtl " + std::to_string(i) + "\nf 1 2 3\n";
   EXPECT_THAT([&] { (void)parse_obj_file("in.obj", text); },
@@ -64,7 +64,7 @@ TEST(ObjMaterials, FacesOfOneMaterialAreWrittenTogether) {
   EXPECT_THAT(back.materials.of_triangle, ElementsAre(none, 0, 1, 1));
 }
 
-TEST(ObjMaterials, SmoothingGroupsAreWrittenWithThem) {
+TEST(ObjMaterials, SmoothingGroupsAndMaterialsRoundTrip) {
   const std::string text =
       std::string(kThree) + "v 1 1 0\nusemtl a\ns 1\nf 1 2 3\nusemtl b\nf 2 4 3\nusemtl a\ns off\nf 1 3 2\n";
   const ObjFile file = parse_obj_file("in.obj", text);

@@ -18,7 +18,7 @@
 namespace papilio::test {
 namespace {
 
-/// A sphere of radius one: an octahedron in four, four times, its vertices moved out.
+/// A sphere of radius 1: an octahedron split in four four times, with vertices moved to the sphere.
 TriangleMesh fine_sphere() {
   Options options;
   options.levels = 4;
@@ -48,7 +48,7 @@ TEST(Quadric, MinimumIsWherePlanesMeet) {
   ASSERT_TRUE(sum.minimum());
   EXPECT_NEAR(length(*sum.minimum() - corner), 0, 1e-12);
   EXPECT_NEAR(sum.at(corner), 0, 1e-12);
-  EXPECT_NEAR(sum.at({3, -3, 5}), 4, 1e-12) << "the weight times the squared distance to the one plane left";
+  EXPECT_NEAR(sum.at({3, -3, 5}), 4, 1e-12) << "weight times squared distance to the other plane";
 }
 
 TEST(Quadric, ParallelPlanesHaveNoSingleMinimum) {
@@ -88,7 +88,7 @@ TEST(OptimalCollapse, TetrahedronIsTheSmallestSphere) {
   EXPECT_THROW((void)collapse_optimally(fine_sphere(), 2), std::runtime_error);
 }
 
-TEST(OptimalCollapse, IsCloserThanHalfEdgeCollapse) {
+TEST(OptimalCollapse, DistanceIsBelowHalfEdgeCollapses) {
   for (const TriangleMesh& mesh : {fine_sphere(), torus(60, 30)}) {
     const TriangleMesh halved = by_meshoptimizer(mesh, 300);
     ASSERT_GT(halved.triangles.size(), 200U);
@@ -98,7 +98,7 @@ TEST(OptimalCollapse, IsCloserThanHalfEdgeCollapse) {
   }
 }
 
-TEST(OptimalCollapse, SeveralSizesEqualSingleRuns) {
+TEST(OptimalCollapse, ResultsOfSeveralSizesEqualSingleRuns) {
   const TriangleMesh mesh = torus(40, 20);
   const std::vector<size_t> sizes = {1000, 400, 399, 60};
   for (const Quadrics quadrics : {Quadrics::accumulated, Quadrics::memoryless}) {
@@ -109,23 +109,23 @@ TEST(OptimalCollapse, SeveralSizesEqualSingleRuns) {
   }
 }
 
-TEST(OptimalCollapse, SizesOutOfReachAreLeftOut) {
+TEST(OptimalCollapse, UnreachableSizesAreOmitted) {
   EXPECT_EQ(collapse_to_sizes(fine_sphere(), std::vector<size_t>{100, 4, 2}).size(), 2U);
 }
 
-TEST(OptimalCollapse, MemorylessIsNearer) {
+TEST(OptimalCollapse, MemorylessQuadricsAreMoreAccurate) {
   const TriangleMesh mesh = torus(120, 60);
   EXPECT_LT(rms(mesh, collapse_optimally(mesh, 600, Quadrics::memoryless)),
             0.9 * rms(mesh, collapse_optimally(mesh, 600, Quadrics::accumulated)));
 }
 
-TEST(OptimalCollapse, MemorylessKeepsTheOutline) {
+TEST(OptimalCollapse, MemorylessQuadricsKeepTheBoundary) {
   const TriangleMesh square = grid(12, 12);
   const TriangleMesh result = collapse_optimally(square, 2, Quadrics::memoryless);
   EXPECT_LT(client::compare(square, result, {.samples = 2000}).hausdorff, 1e-6);
 }
 
-TEST(OptimalCollapse, NonManifoldIsCutIntoSheets) {
+TEST(OptimalCollapse, NonManifoldMeshIsSplitIntoSheets) {
   // Three squares that share an edge of five segments.
   TriangleMesh wings = grid(5, 5);
   for (const Vec3f side : {Vec3f{0, 0, 1}, Vec3f{-1, 0, 0}}) {

@@ -10,14 +10,14 @@
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
 
-// The outline of what a view shows, where no error is asked for: it lies below faces that are turned away.
+// Outlines in views without an error target: they are below back faces.
 
 namespace papilio {
 namespace {
 
 using namespace test;
 
-/// How far a mesh reaches in the picture in each of 360 directions, in pixels: the outline of what is convex.
+/// Returns the extent of a mesh in the picture in each of 360 directions, in pixels: the outline if convex.
 std::vector<double> reach(const Mesh& mesh, const View& view) {
   constexpr size_t directions = 360;
   const Camera camera(view);
@@ -43,7 +43,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return most;
 }
 
-TEST(Outline, OfASphereIsRoundAtAnyLeastLengthOfEdges) {
+TEST(Outline, SphereHasARoundOutlineAtAnyEdgeLength) {
   Mesh sphere = build_mesh(icosahedron());
   sphere = refine(sphere, {.levels = 1}).mesh;
   for (Vec3f& p : sphere.positions) p = 1 / length(p) * p;
@@ -59,14 +59,30 @@ TEST(Outline, OfASphereIsRoundAtAnyLeastLengthOfEdges) {
   }
 }
 
-/// The share of pixels that only one of two pictures covers.
+TEST(Outline, FlatnessOutlineEqualsTheResultWithoutAView) {
+  Mesh sphere = refine(build_mesh(icosahedron()), {.levels = 1}).mesh;
+  for (Vec3f& p : sphere.positions) p = 1 / length(p) * p;
+  const View view{.eye = {0.3, 0.2, 3.5}};
+  for (const double flatness : {0.999, 0.9999})
+    for (const double edge_pixels : {0.0, 10.0}) {
+      Options options{.levels = 6, .flatness = {flatness}};
+      const Mesh everywhere = refine(sphere, options).mesh;
+      options.view = view;
+      options.view->edge_pixels = edge_pixels;
+      const Mesh refined = refine(sphere, options).mesh;
+      EXPECT_LT(largest_difference(reach(refined, view), reach(everywhere, view)), 0.25) << flatness << edge_pixels;
+      EXPECT_LT(refined.topology.face_count(), everywhere.topology.face_count() / 2) << flatness << edge_pixels;
+    }
+}
+
+/// Returns the share of pixels that only one of two pictures covers.
 double share_apart(const Image& a, const Image& b) {
   size_t apart = 0;
   for (size_t i = 0; i < a.grey.size(); ++i) apart += (a.grey[i] > 0) != (b.grey[i] > 0) ? 1 : 0;
   return static_cast<double>(apart) / static_cast<double>(a.grey.size());
 }
 
-TEST(Outline, OfARealMeshIsThatOfTheUniformResult) {
+TEST(Outline, RealMeshHasTheUniformResultsOutline) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   const Box box = bounding_box(bunny.positions);
   const Vec3d middle = 0.5 * (to_double(box.min) + to_double(box.max));
@@ -76,7 +92,7 @@ TEST(Outline, OfARealMeshIsThatOfTheUniformResult) {
     View view{.eye = middle + 1.3 * box.diagonal() * Vec3d{std::sin(angle), 0.3, std::cos(angle)}, .target = middle};
     view.viewport = {400, 400};
     view.edge_pixels = 2;
-    view.lights = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};  // from everywhere
+    view.lights = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};  // from all directions
     const Image wanted = render(uniform, view);
     Options options{.levels = 4, .view = view};
     options.view->lights.clear();

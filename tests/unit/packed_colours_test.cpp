@@ -40,7 +40,7 @@ FormattedMesh coloured(const TriangleMesh& plain, uint32_t components = 3) {
   return mesh;
 }
 
-/// Largest difference of colours, in bytes, from what `coloured` gives where the points are. `number`: of the
+/// Returns the largest difference of colours, in bytes, from those of `coloured` at the points. `number`: of the
 /// attribute.
 double largest_error(const FormattedMesh& mesh, size_t number = 0) {
   const Attribute& colours = mesh.attributes.at(number);
@@ -55,7 +55,7 @@ double largest_error(const FormattedMesh& mesh, size_t number = 0) {
 }
 
 constexpr double wanted_rms = 2e-3;
-/// Three quarters of the usual step of 4, the rounding of bytes, and what the positions are off.
+/// Bound: three quarters of the default step of 4, the rounding of bytes, and the error of positions.
 constexpr double largest_miss = 6;
 
 std::string packed_coloured_torus() {
@@ -65,7 +65,7 @@ std::string packed_coloured_torus() {
   return std::move(packed.glb);
 }
 
-TEST(PackedColours, ComeBackNearlyAndInBytes) {
+TEST(PackedColours, ColoursRoundTripApproximatelyInBytes) {
   const PackedModel model = read_packed(packed_coloured_torus());
   EXPECT_TRUE(model.has_colours());
   EXPECT_FALSE(model.has_texcoords());
@@ -78,7 +78,7 @@ TEST(PackedColours, ComeBackNearlyAndInBytes) {
   EXPECT_LT(largest_error(fine), largest_miss);
 }
 
-TEST(PackedColours, AreThoseOfTheBaseInAnyViewer) {
+TEST(PackedColours, AnyViewerReadsTheColoursOfTheBase) {
   const std::string glb = packed_coloured_torus();
   const ColourJson json = test::json_of_glb(glb);
   const size_t number = json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
@@ -87,7 +87,7 @@ TEST(PackedColours, AreThoseOfTheBaseInAnyViewer) {
   EXPECT_LT(largest_error(gltf::flatten_scene(glb, {})), 1);
 }
 
-TEST(PackedColours, OfRefinedScenesAndDracoAnswersAreThoseOfTheDecoder) {
+TEST(PackedColours, RefinedScenesAndDracoAnswersHaveTheDecodersColours) {
   const std::string glb = packed_coloured_torus();
   const PackedModel model = read_packed(glb);
   const auto colours_at = [](const FormattedMesh& mesh) {
@@ -109,7 +109,7 @@ TEST(PackedColours, OfRefinedScenesAndDracoAnswersAreThoseOfTheDecoder) {
   EXPECT_LT(largest_error(answer), largest_miss);
 }
 
-TEST(PackedColours, AreKeptWhereTheFileIsPlainDraco) {
+TEST(PackedColours, PlainDracoFilesKeepColours) {
   const gltf::MaterialMesh cube{.mesh = coloured(test::cube())};
   const Packed packed = pack(cube, {.rms = 1e-2, .face_limit = 500});
   ASSERT_FALSE(packed.model);
@@ -118,7 +118,7 @@ TEST(PackedColours, AreKeptWhereTheFileIsPlainDraco) {
   EXPECT_LT(largest_error(read->mesh), 1);
 }
 
-TEST(PackedColours, AreTakenInBytesWithoutOpacity) {
+TEST(PackedColours, ColoursArePackedAsBytesWithoutOpacity) {
   FormattedMesh mesh = coloured(test::cube(), 4);
   EXPECT_FALSE(has_opacity(mesh));
   std::optional<Attribute> taken = colours_to_pack(mesh);
@@ -140,7 +140,7 @@ TEST(PackedColours, AreTakenInBytesWithoutOpacity) {
   EXPECT_FALSE(colours_to_pack(FormattedMesh{}));
 }
 
-TEST(PackedColours, OfOtherFormatsAreRefused) {
+TEST(PackedColours, MissingAndUnknownAttributesAreRefused) {
   const std::string glb = test::packed_fixture(coloured(test::icosahedron()), 2).glb;
   const auto expect = [&](const char* code, const std::function<void(ColourJson & primitive)>& change) {
     EXPECT_EQ(test::refusal_of(glb, [&](ColourJson& json) { change(json["meshes"][0]["primitives"][0]); }), code);

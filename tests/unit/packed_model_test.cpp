@@ -23,7 +23,7 @@ using test::packed_fixture;
 using test::PackedFixture;
 using Json = test::GltfScene::Json;
 
-/// Writes the model again with a changed document.
+/// Returns the file with a changed document.
 std::string changed(const std::string& glb, const std::function<void(Json&)>& change) {
   Json json = test::json_of_glb(glb);
   change(json);
@@ -34,7 +34,7 @@ std::string changed(const std::string& glb, const std::function<void(Json&)>& ch
 
 Json& extension_in(Json& json) { return json["meshes"][0]["primitives"][0]["extensions"]["PAPILIO_detail"]; }
 
-/// Writes the model again with another extension PAPILIO_detail.
+/// Returns the file with a changed extension PAPILIO_detail.
 std::string with(const std::string& glb, const std::function<void(Json&)>& change) {
   return changed(glb, [&](Json& json) { change(extension_in(json)); });
 }
@@ -45,7 +45,7 @@ size_t binary_begin(const std::string& glb) { return glb.size() - test::binary_o
 /// Byte of the table in the binary chunk: it follows the base.
 size_t table_begin(const PackedFixture& made) { return made.base_stream.size(); }
 
-/// The model again with other bytes in its table.
+/// Returns the file with other bytes in its table.
 std::string with_table(const PackedFixture& made, size_t at, const std::string& bytes) {
   std::string glb = made.glb;
   glb.replace(binary_begin(glb) + table_begin(made) + at, bytes.size(), bytes);
@@ -66,7 +66,7 @@ constexpr std::array<size_t, 4> distances_at{10, 14, 22, 26};
 constexpr std::array<size_t, 2> steps_at{18, 34};
 constexpr size_t level_bytes_at = 30;
 
-/// Returns the code with which a file is refused, and "read" for one that is read.
+/// Returns the code with which a file is refused; "read" if it is read.
 std::string refusal(const std::string& glb, const ReadOptions& options = {}) {
   try {
     (void)read_packed(glb, options);
@@ -77,7 +77,7 @@ std::string refusal(const std::string& glb, const ReadOptions& options = {}) {
   }
 }
 
-TEST(PackedModel, BaseAndStreamsComeBackToTheBit) {
+TEST(PackedModel, BaseAndStreamsRoundTripExactly) {
   const PackedFixture made = packed_fixture(test::torus(12, 8), 3);
   const PackedModel model = read_packed(made.glb);
   EXPECT_EQ(model.base, made.detail.base);
@@ -104,7 +104,7 @@ TEST(PackedModel, DistancesAreRoundedUpToFloats) {
   }
 }
 
-TEST(PackedModel, AnyStepComesBackToTheBit) {
+TEST(PackedModel, AnyStepRoundTripsExactly) {
   PackedFixture made = packed_fixture(test::octahedron(), 1);
   for (const float step : {1e-38F, 1e-45F, 9.99e17F, 0.1F, 1.0F / 3, 16777217.0F, 5e-7F}) {
     made.detail.levels[0].step = step;
@@ -131,7 +131,7 @@ TEST(PackedModel, StreamsFollowTheBaseLevelByLevel) {
   EXPECT_EQ(binary.substr(made.base_stream.size() + 18 + 2 * 16, expected.size()), expected);
 }
 
-TEST(PackedModel, AStreamMayBeEmpty) {
+TEST(PackedModel, EmptyStreamIsRead) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2, 0);
   const PackedModel model = read_packed(made.glb);
   EXPECT_TRUE(model.levels.at(1).stream.bytes.empty());
@@ -149,12 +149,12 @@ TEST(PackedModel, LevelsBeyondTheRequestAreNotRead) {
   EXPECT_EQ(model.declared_levels, 4U);
 }
 
-TEST(PackedModel, ATruncatedFileIsRefusedUnlessAllowed) {
+TEST(PackedModel, TruncatedFileIsRefusedByDefault) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 3);
   for (size_t size = 0; size < made.glb.size(); ++size) EXPECT_NE(refusal(made.glb.substr(0, size)), "read") << size;
 }
 
-TEST(PackedModel, APrefixGivesItsWholeLevels) {
+TEST(PackedModel, PrefixGivesItsCompleteLevels) {
   constexpr size_t bytes_per_level = 40;
   const PackedFixture made = packed_fixture(test::icosahedron(), 3, bytes_per_level);
   const size_t base_end = binary_begin(made.glb) + made.base_stream.size() + 18 + 3 * 16;
@@ -172,11 +172,11 @@ TEST(PackedModel, APrefixGivesItsWholeLevels) {
   }
 }
 
-TEST(PackedModel, BytesBeyondTheFileAreRefusedEvenIfItMayBeCut) {
+TEST(PackedModel, TrailingBytesAreRefusedEvenIfTruncationIsAllowed) {
   EXPECT_EQ(refusal(packed_fixture(test::icosahedron(), 1).glb + "more", {.may_be_cut = true}), "mesh_not_gltf");
 }
 
-TEST(PackedModel, AnotherVersionIsRefused) {
+TEST(PackedModel, OtherVersionsAreRefused) {
   const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
   for (const int version : {0, 1, 3, 1000}) {
     const std::string other = with(glb, [&](Json& json) { json["version"] = version; });
@@ -186,14 +186,14 @@ TEST(PackedModel, AnotherVersionIsRefused) {
   EXPECT_EQ(refusal(with(glb, [](Json& json) { json.erase("version"); })), "mesh_not_gltf");
 }
 
-TEST(PackedModel, AStepThatIsNoPositiveFloatIsRefused) {
+TEST(PackedModel, NonPositiveAndHugeStepsAreRefused) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2);
   EXPECT_EQ(refusal(with_table(made, steps_at[1], bytes_of(0.5F))), "read");
   for (const float step : {0.0F, -1.0F, 1.1e18F, std::numeric_limits<float>::infinity(), std::nanf("")})
     for (const size_t at : steps_at) EXPECT_EQ(refusal(with_table(made, at, bytes_of(step))), "mesh_not_gltf") << step;
 }
 
-TEST(PackedModel, ADistanceThatIsNoDistanceIsRefused) {
+TEST(PackedModel, NegativeAndNonFiniteDistancesAreRefused) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 1);
   for (const size_t at : distances_at) {
     EXPECT_EQ(refusal(with_table(made, at, bytes_of(0.5F))), "read");
@@ -202,9 +202,9 @@ TEST(PackedModel, ADistanceThatIsNoDistanceIsRefused) {
   }
 }
 
-TEST(PackedModel, AWrongViewIsRefused) {
+TEST(PackedModel, InvalidBufferViewIsRefused) {
   const std::string glb = packed_fixture(test::icosahedron(), 2).glb;
-  for (const Json& view : {Json(0), Json(2), Json(1000), Json(-1), Json("1"), Json(nullptr)})  // of the base, none
+  for (const Json& view : {Json(0), Json(2), Json(1000), Json(-1), Json("1"), Json(nullptr)})  // 0: the base's
     EXPECT_EQ(refusal(with(glb, [&](Json& json) { json["bufferView"] = view; })), "mesh_not_gltf") << view;
   EXPECT_EQ(refusal(with(glb, [](Json& json) { json.erase("bufferView"); })), "mesh_not_gltf");
   for (const char* key : {"byteLength", "byteOffset"})
@@ -213,7 +213,7 @@ TEST(PackedModel, AWrongViewIsRefused) {
   EXPECT_EQ(refusal(changed(glb, [](Json& json) { json["bufferViews"][1]["byteStride"] = 4; })), "mesh_not_gltf");
 }
 
-TEST(PackedModel, SizesThatDoNotFillTheViewAreRefused) {
+TEST(PackedModel, SizesThatContradictTheViewAreRefused) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2, 40);
   EXPECT_EQ(refusal(with_table(made, level_bytes_at, bytes_of(40U))), "read");
   for (const uint32_t bytes : {0U, 39U, 41U, 0xFFFFFFFFU})
@@ -230,7 +230,7 @@ TEST(PackedModel, TooManyLevelsAndUnknownFlagsAreRefused) {
     EXPECT_EQ(refusal(with_table(made, 1, std::string(1, static_cast<char>(flags)))), "mesh_not_gltf") << flags;
 }
 
-TEST(PackedModel, CountsThatTheBaseDoesNotHaveAreRefused) {
+TEST(PackedModel, CountsThatContradictTheBaseAreRefused) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2);
   EXPECT_EQ(refusal(with_table(made, edges_at, bytes_of(30U))), "read");
   EXPECT_EQ(refusal(with_table(made, edges_at, bytes_of(31U))), "mesh_not_gltf");
@@ -248,13 +248,13 @@ TEST(PackedModel, FacesBeyondTheLimitAreRefused) {
   EXPECT_EQ(refusal(glb, {.limits = {.max_input_faces = 19}}), "mesh_too_large");
 }
 
-TEST(PackedModel, TheLimitHoldsBeforeTheBaseIsDecoded) {
+TEST(PackedModel, FaceLimitHoldsBeforeTheBaseIsDecoded) {
   const std::string glb = packed_fixture(test::icosahedron(), 4).glb;
   const std::string large = changed(glb, [](Json& json) { json["accessors"][1]["count"] = 6'000'000; });
   EXPECT_EQ(refusal(large), "result_too_large");
 }
 
-TEST(PackedModel, OfAnOpenBaseHasTheEdgesOfEachLevel) {
+TEST(PackedModel, CountsOfAnOpenBaseEqualTheDecoded) {
   PackedFixture made = packed_fixture(test::grid(3, 2), 3);
   made.detail.base.curves = {1, 2, 3};
   const PackedModel model = read_packed(write_packed(made.detail, {made.base_stream}));
@@ -267,7 +267,7 @@ TEST(PackedModel, OfAnOpenBaseHasTheEdgesOfEachLevel) {
   EXPECT_EQ(model.levels.back().faces, fine.triangles.size());
 }
 
-TEST(PackedModel, ABaseThatIsNotManifoldIsRefused) {
+TEST(PackedModel, NonManifoldBaseIsRefused) {
   const TriangleMesh pinched = test::join(test::fan(6, false), test::fan(6, false, -3), 0);
   const TriangleMesh three_faces{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 1}, {0, -1, -1}},
                                  .triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
@@ -294,7 +294,7 @@ TEST(PackedModel, ExtensionsMayHaveAnyOrder) {
   EXPECT_EQ(read_packed(other).base, made.detail.base);
 }
 
-TEST(PackedModel, ScenesThatTheFormatDoesNotAllowAreRefused) {
+TEST(PackedModel, UnsupportedScenesAreRefused) {
   const std::string glb = packed_fixture(test::icosahedron(), 1).glb;
   const auto expect = [&](const std::function<void(Json&)>& change) {
     EXPECT_EQ(refusal(changed(glb, change)), "mesh_unsupported");
@@ -314,7 +314,7 @@ TEST(PackedModel, OnlyFilesWithTheExtensionArePacked) {
   for (const char* bytes : {"", "glTF", "DRACO", "{\"asset\":{}}"}) EXPECT_FALSE(is_packed(bytes));
 }
 
-TEST(PackedModel, TheDescriptionHasCountsAndDistances) {
+TEST(PackedModel, DescriptionHasCountsAndBytes) {
   const auto json = nlohmann::json::parse(describe(read_packed(packed_fixture(test::icosahedron(), 2).glb)));
   EXPECT_EQ(json["base"]["faces"], 20);
   EXPECT_EQ(json["levels"][1]["new_vertices"], 120);

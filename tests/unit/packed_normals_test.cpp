@@ -20,7 +20,7 @@
 #include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
 
-// Normals of packed models, and of the files without levels that take their place.
+// Normals of packed models and of plain Draco files that replace them.
 
 namespace papilio::proto::detail {
 namespace {
@@ -38,7 +38,7 @@ FormattedMesh small_lens(double degrees, Shading shading) {
   return with_normal_format(test::lens(12, 4, degrees, shading));
 }
 
-/// Writes an original without levels, as pack() does where that is smaller, and reads it.
+/// Writes an original without levels, as pack() does if that is smaller, and reads it.
 PlainModel packed_plainly(const FormattedMesh& original) {
   const PlainOriginal plain = plain_original(build_mesh(original, nullptr, rounding_gap));
   const PlainDraco file =
@@ -49,7 +49,7 @@ PlainModel packed_plainly(const FormattedMesh& original) {
   return read.value_or(PlainModel{});
 }
 
-/// Largest angle between the normals of a lens and those of a mesh of it, in degrees.
+/// Returns the largest angle between the normals of a lens and of a mesh of it, in degrees.
 double largest_angle(const FormattedMesh& mesh, double degrees) {
   double largest = 0;
   for (const Triangle& triangle : mesh.triangles) {
@@ -65,7 +65,7 @@ double largest_angle(const FormattedMesh& mesh, double degrees) {
   return largest * 180 / std::numbers::pi;
 }
 
-TEST(PackedNormals, StyleComesBack) {
+TEST(PackedNormals, StyleRoundTrips) {
   test::PackedFixture made = test::packed_fixture(test::cube(), 1);
   EXPECT_EQ(read_packed(made.glb).normals, NormalStyle::absent);
   for (const NormalStyle style : {NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
@@ -74,7 +74,7 @@ TEST(PackedNormals, StyleComesBack) {
   }
 }
 
-TEST(PackedNormals, OfAnUnknownStyleAreRefused) {
+TEST(PackedNormals, UnknownStyleIsRefused) {
   test::PackedFixture made = test::packed_fixture(test::cube(), 1);
   made.detail.normals = NormalStyle::smooth;
   const std::string glb = write_packed(made.detail, {made.base_stream});
@@ -92,7 +92,7 @@ TEST(PackedNormals, OfAnUnknownStyleAreRefused) {
   }
 }
 
-TEST(PackedNormals, AreDecodedInTheStyleOfTheOriginalUnlessAsked) {
+TEST(PackedNormals, StyleOfTheOriginalIsTheDefault) {
   PackedModel model = read_packed(test::packed_fixture(test::cube(), 1).glb);
   EXPECT_TRUE(decode_packed(model).attributes.empty());
   EXPECT_EQ(decode_packed(model, {.normals = NormalStyle::smooth}).attributes.size(), 1U);
@@ -101,7 +101,7 @@ TEST(PackedNormals, AreDecodedInTheStyleOfTheOriginalUnlessAsked) {
   model.normals = NormalStyle::smooth;
   EXPECT_TRUE(decode_packed(model, {.normals = NormalStyle::absent}).attributes.empty());
   const FormattedMesh smooth = decode_packed(model);
-  EXPECT_EQ(smooth.positions.size(), 26U) << "one normal a vertex";
+  EXPECT_EQ(smooth.positions.size(), 26U) << "one normal per vertex";
   EXPECT_EQ(smooth.format.attributes.at(0).kind, AttributeKind::normal);
   for (size_t i = 0; i < smooth.attributes.at(0).values.size(); i += 3) {
     const double* n = &smooth.attributes[0].values[i];
@@ -109,7 +109,7 @@ TEST(PackedNormals, AreDecodedInTheStyleOfTheOriginalUnlessAsked) {
   }
 }
 
-TEST(PackedNormals, AreThoseOfRefinementsToo) {
+TEST(PackedNormals, RefinementsHaveTheDecodersNormals) {
   test::PackedFixture made = test::packed_fixture(test::cube(), 1);
   for (const NormalStyle style :
        {NormalStyle::absent, NormalStyle::smooth, NormalStyle::creased, NormalStyle::faceted}) {
@@ -134,14 +134,14 @@ TEST(PackedNormals, AreThoseOfRefinementsToo) {
   }
 }
 
-TEST(PlainNormals, AreInTheFileWhereHardEdgesAreNotSharp) {
+TEST(PlainNormals, NormalsAreStoredIfHardEdgesAreNotSharp) {
   const PlainModel model = packed_plainly(small_lens(20, Shading::hard_rim));
   EXPECT_EQ(model.normals, NormalStyle::absent);
   ASSERT_EQ(model.mesh.attributes.size(), 1U);
   EXPECT_LT(largest_angle(model.mesh, 20), 2);
 }
 
-TEST(PlainNormals, AreFoundWhereHardEdgesAreSharp) {
+TEST(PlainNormals, NormalsAreRecomputedIfHardEdgesAreSharp) {
   const PlainModel model = packed_plainly(small_lens(90, Shading::hard_rim));
   EXPECT_EQ(model.normals, NormalStyle::creased);
   EXPECT_TRUE(model.mesh.attributes.empty());
@@ -150,7 +150,7 @@ TEST(PlainNormals, AreFoundWhereHardEdgesAreSharp) {
   EXPECT_LT(largest_angle(shaded, 90), 10);
 }
 
-TEST(PlainNormals, AreFoundWhereTheyAreSmoothOrThoseOfTheFaces) {
+TEST(PlainNormals, SmoothAndFacetedNormalsAreRecomputed) {
   const PlainModel smooth = packed_plainly(small_lens(90, Shading::smooth));
   EXPECT_EQ(smooth.normals, NormalStyle::smooth);
   EXPECT_TRUE(smooth.mesh.attributes.empty());
@@ -160,12 +160,12 @@ TEST(PlainNormals, AreFoundWhereTheyAreSmoothOrThoseOfTheFaces) {
   EXPECT_TRUE(with_normals(faceted.mesh, faceted.normals).attributes.empty());
 }
 
-TEST(PlainNormals, OfAnOriginalWithoutThemAreSplitAsItsShapeIs) {
+TEST(PlainNormals, MissingNormalsAreComputedFromTheShape) {
   const PlainModel prism = packed_plainly(with_normal_format(test::tube(10, 1, 2, true)));
   EXPECT_EQ(prism.normals, NormalStyle::absent);
   const FormattedMesh shaded = with_normals_of_shape(prism.mesh);
   ASSERT_EQ(shaded.attributes.size(), 1U);
-  for (const Triangle& triangle : shaded.triangles) {  // its sides meet at 36 degrees, which no sharp curve has
+  for (const Triangle& triangle : shaded.triangles) {  // its sides meet at 36 degrees, below the angle of sharp curves
     const auto at = [&](size_t i) { return to_double(shaded.positions[triangle[i]]); };
     const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
     for (const uint32_t p : triangle) {
@@ -177,7 +177,7 @@ TEST(PlainNormals, OfAnOriginalWithoutThemAreSplitAsItsShapeIs) {
   EXPECT_EQ(with_normals_of_shape(ring.mesh).positions.size(), ring.mesh.positions.size()) << "nothing is split";
 }
 
-TEST(PlainNormals, ThatNoSurfaceHasAreInTheFileAlone) {
+TEST(PlainNormals, InvertedNormalsAreStoredButNotCompared) {
   TriangleMesh turned = test::lens(12, 4, 90, Shading::smooth);
   for (double& value : turned.attributes[0].values) value = -value;
   const PlainOriginal made = plain_original(build_mesh(turned));

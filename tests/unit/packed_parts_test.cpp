@@ -32,8 +32,8 @@ namespace {
 using test::refusal_of;
 using PartJson = test::GltfScene::Json;
 
-/// A torus without a material in its first quarter, with two in the others. `has_texcoords`: shares of a turn, cut
-/// where the first part begins.
+/// A torus without a material in its first quarter and with two materials in the others. `has_texcoords`: shares of a
+/// turn, cut at the start of the first part.
 gltf::MaterialMesh parted_torus(bool has_texcoords = false) {
   gltf::MaterialMesh torus;
   static_cast<TriangleMesh&>(torus.mesh) = test::torus(96, 48);
@@ -76,7 +76,7 @@ Vec3d centre(const TriangleMesh& mesh, const Triangle& t) {
          (to_double(mesh.positions[t[0]]) + to_double(mesh.positions[t[1]]) + to_double(mesh.positions[t[2]]));
 }
 
-/// Faces whose material, by name, is not that of the torus there.
+/// Returns the number of faces whose material, by name, differs from that of the torus at their position.
 size_t wrong_faces(const TriangleMesh& mesh, const gltf::Materials& materials) {
   const std::array<std::string, 3> names{"", "red", "blue"};
   size_t wrong = 0;
@@ -88,7 +88,7 @@ size_t wrong_faces(const TriangleMesh& mesh, const gltf::Materials& materials) {
   return wrong;
 }
 
-/// Largest distance to a true border of the ends of edges between two materials.
+/// Returns the largest distance of the ends of edges between two materials to an exact border.
 double largest_miss_of_borders(const TriangleMesh& mesh, const std::vector<uint32_t>& of_triangle) {
   const Mesh built = build_mesh(TriangleMesh{mesh.positions, mesh.triangles});
   const Topology& t = built.topology;
@@ -105,14 +105,14 @@ double largest_miss_of_borders(const TriangleMesh& mesh, const std::vector<uint3
   return largest;
 }
 
-/// The materials of the faces of a model's levels, by those of its base.
+/// Returns the materials of the faces of a level from those of the base.
 std::vector<uint32_t> materials_below(const std::vector<uint32_t>& of_base, size_t faces) {
   std::vector<uint32_t> made;
   for (size_t f = 0; f < faces; ++f) made.push_back(of_base.at(f / (faces / of_base.size())));
   return made;
 }
 
-TEST(MeshParts, AreJoinedAgain) {
+TEST(MeshParts, SplitPartsJoinToTheMesh) {
   const gltf::MaterialMesh torus = parted_torus(true);
   gltf::MaterialMesh numbered = torus;
   gltf::add_material_attribute(numbered);
@@ -134,7 +134,7 @@ TEST(MeshParts, AreJoinedAgain) {
   for (size_t p = 0; p < 3; ++p) EXPECT_EQ(again.at(p).triangles, parts[p].triangles);
 }
 
-TEST(MeshParts, OfAMeshWithoutAreItself) {
+TEST(MeshParts, MeshWithoutPartsIsOnePart) {
   const TriangleMesh cube = test::cube();
   EXPECT_FALSE(has_parts(cube.attributes));
   ASSERT_EQ(split_parts(cube).size(), 1U);
@@ -142,7 +142,7 @@ TEST(MeshParts, OfAMeshWithoutAreItself) {
   EXPECT_EQ(join_parts(split_parts(cube)), cube);
 }
 
-TEST(PackedParts, KeepTheirMaterialsAndBorders) {
+TEST(PackedParts, DecodedPartsKeepMaterialsAndBorders) {
   for (const bool has_texcoords : {false, true}) {
     const std::string glb = packed_torus(has_texcoords);
     const gltf::MaterialMesh base = gltf::flatten_with_materials(glb, {});
@@ -164,7 +164,7 @@ TEST(PackedParts, KeepTheirMaterialsAndBorders) {
   }
 }
 
-TEST(PackedParts, HaveColoursAndTextureCoordinatesBesideThem) {
+TEST(PackedParts, PartsCombineWithColoursAndTexcoords) {
   gltf::MaterialMesh torus = parted_torus(true);
   Attribute colours{.components = 3, .values = {}};
   for (const Vec3f p : torus.mesh.positions)
@@ -197,7 +197,7 @@ TEST(PackedParts, HaveColoursAndTextureCoordinatesBesideThem) {
   EXPECT_LT(largest_of_texcoords, 0.005);
 }
 
-TEST(PackedParts, AreSmoothAcrossTheirBorders) {
+TEST(PackedParts, SurfaceIsSmoothAcrossBorders) {
   const std::string glb = packed_torus();
   const PackedModel model = read_packed(glb);
   EXPECT_TRUE(model.base.curves.empty());
@@ -205,7 +205,7 @@ TEST(PackedParts, AreSmoothAcrossTheirBorders) {
   for (const EdgeKind kind : fine.topology.kind) ASSERT_EQ(kind, EdgeKind::smooth);
 }
 
-TEST(PackedParts, RefinedScenesHaveTheLevelsOfTheDecoder) {
+TEST(PackedParts, RefinedScenesEqualTheDecodersLevels) {
   const std::string glb = packed_torus(true);
   const PackedModel model = read_packed(glb);
   const auto places = [](const TriangleMesh& mesh) {
@@ -236,7 +236,7 @@ TEST(PackedParts, RefinedScenesHaveTheLevelsOfTheDecoder) {
   EXPECT_EQ(texcoords_at(scene.mesh), texcoords_at(decoded));
 }
 
-TEST(PackedParts, AreNumberedInDracoAnswers) {
+TEST(PackedParts, DracoAnswersNumberTheParts) {
   const std::string glb = packed_torus();
   FormattedMesh answer = read_draco(Refinement(glb, parse_query({{"levels", "2"}}), {}).run().bytes, {});
   ASSERT_TRUE(gltf::has_material_attribute(answer));
@@ -246,7 +246,7 @@ TEST(PackedParts, AreNumberedInDracoAnswers) {
   EXPECT_LE(wrong_faces(answer, materials), answer.triangles.size() / 50);
 }
 
-TEST(PackedParts, OfPlainDracoAreKept) {
+TEST(PackedParts, PlainDracoFilesKeepParts) {
   gltf::MaterialMesh cube{.mesh = {}};
   static_cast<TriangleMesh&>(cube.mesh) = test::cube();
   cube.materials.materials = {{.name = "a"}, {.name = "b"}};
@@ -262,7 +262,7 @@ TEST(PackedParts, OfPlainDracoAreKept) {
       << "all parts are on one grid";
 }
 
-TEST(PackedParts, OfACutFileAreThoseOfItsWholeLevels) {
+TEST(PackedParts, TruncatedFileKeepsTheBaseAndCompleteLevels) {
   const std::string glb = packed_torus();
   const PackedModel whole = read_packed(glb);
   const PackedModel cut = read_packed(std::string_view(glb).substr(0, glb.size() - 8), {.may_be_cut = true});
@@ -270,7 +270,7 @@ TEST(PackedParts, OfACutFileAreThoseOfItsWholeLevels) {
   EXPECT_EQ(cut.base, whole.base);
 }
 
-TEST(PackedParts, ComeBackToTheBit) {
+TEST(PackedParts, PartsRoundTripExactly) {
   const test::PartedFixture made = test::parted_fixture();
   EXPECT_EQ(made.base_streams.size(), 2U);
   const PackedModel model = read_packed(made.glb);
@@ -280,7 +280,7 @@ TEST(PackedParts, ComeBackToTheBit) {
   EXPECT_EQ(decode_detail(model.base, model.streams()), decode_detail(made.detail.base, model.streams()));
 }
 
-TEST(PackedParts, OfOneMaterialHaveNoBorder) {
+TEST(PackedParts, PartsOfOneMaterialHaveNoBorder) {
   const test::PartedFixture made = test::parted_fixture();
   const PackedModel model = read_packed(test::with_json(made.glb, [](PartJson& json) {
     for (PartJson& primitive : json["meshes"][0]["primitives"]) primitive["material"] = 1;
@@ -292,7 +292,7 @@ TEST(PackedParts, OfOneMaterialHaveNoBorder) {
   EXPECT_NE(positions_of(made.detail.base), positions_of(whole)) << "residuals at borders are those of a curve";
 }
 
-TEST(PackedParts, ThatDoNotFitAreRefused) {
+TEST(PackedParts, InconsistentPartsAreRefused) {
   const std::string glb = test::parted_fixture().glb;
   const auto expect = [&](const char* code, const std::function<void(PartJson & primitives)>& change) {
     EXPECT_EQ(refusal_of(glb, [&](PartJson& json) { change(json["meshes"][0]["primitives"]); }), code);

@@ -14,7 +14,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/textured_shapes.h"
 
-// Packed models whose levels are in several pieces: their table, their order in the file, files that are cut.
+// Packed models whose levels have several pieces: table, order in the file, truncated files.
 
 namespace papilio::proto::detail {
 namespace {
@@ -30,11 +30,11 @@ PackedFixture textured_levels_in_pieces() { return in_pieces(packed_fixture(test
 size_t begin_of_table(const PackedFixture& made) {
   return made.glb.size() - test::binary_of_glb(made.glb).size() + made.base_stream.size();
 }
-/// Bytes of the table of pieces begin behind the rows.
+/// Offset of the table of pieces, after the rows.
 constexpr size_t pieces_at = 18 + 3 * 20;
 constexpr size_t count_at = 18 + 20 + 16;  // of the second level's pieces
 
-/// The model again with another number in its table.
+/// Returns the file with another number in its table.
 std::string with_number(const PackedFixture& made, size_t at, uint32_t number) {
   std::string glb = made.glb;
   for (unsigned i = 0; i < 4; ++i) glb[begin_of_table(made) + at + i] = static_cast<char>(number >> (8 * i) & 0xFF);
@@ -53,7 +53,7 @@ std::string refusal_of_pieces(const std::string& glb) {
   }
 }
 
-TEST(PackedPieces, ComeBackToTheBit) {
+TEST(PackedPieces, PiecesRoundTripExactly) {
   for (const PackedFixture& made : {levels_in_pieces(), textured_levels_in_pieces()}) {
     const PackedModel model = read_packed(made.glb);
     ASSERT_EQ(model.levels.size(), 3U);
@@ -66,12 +66,12 @@ TEST(PackedPieces, ComeBackToTheBit) {
   }
 }
 
-TEST(PackedPieces, ModelsOfOnePieceALevelHaveNoTableOfThem) {
+TEST(PackedPieces, OnePiecePerLevelHasNoPieceTable) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 3);
   EXPECT_EQ(in_pieces(made, {1, 1, 1}).glb, made.glb);
 }
 
-TEST(PackedPieces, MayBeCountedThoughEachLevelIsOne) {
+TEST(PackedPieces, PieceTableOfWholeLevelsRoundTrips) {
   const PackedFixture made = packed_fixture(test::icosahedron(), 2);
   LevelTable table = read_table(std::string_view(made.glb).substr(begin_of_table(made)));
   EXPECT_FALSE(table.has_pieces);
@@ -86,8 +86,8 @@ TEST(PackedPieces, MayBeCountedThoughEachLevelIsOne) {
   EXPECT_TRUE(again.has_pieces && again.rows[0].pieces.empty() && again.rows[1].pieces.empty());
 }
 
-/// With its residuals the texture coordinates of each piece.
-TEST(PackedPieces, LieOneBehindTheOther) {
+/// Each piece has its residuals followed by its texture coordinates.
+TEST(PackedPieces, PiecesAreStoredConsecutively) {
   const PackedFixture made = textured_levels_in_pieces();
   const DetailStream& last = made.detail.levels[2];
   std::string expected;
@@ -102,7 +102,7 @@ TEST(PackedPieces, LieOneBehindTheOther) {
   EXPECT_NE(made.glb.find(expected), std::string::npos);
 }
 
-TEST(PackedPieces, OfAPrefixAreThoseThatAreWhole) {
+TEST(PackedPieces, PrefixGivesItsCompletePieces) {
   for (const PackedFixture& made : {levels_in_pieces(), textured_levels_in_pieces()}) {
     const LevelTable table = read_table(std::string_view(made.glb).substr(begin_of_table(made)));
     size_t end = begin_of_table(made) + table.size();
@@ -130,7 +130,7 @@ TEST(PackedPieces, OfAPrefixAreThoseThatAreWhole) {
   }
 }
 
-TEST(PackedPieces, OfOtherCountsAreRefused) {
+TEST(PackedPieces, InvalidCountsAreRefused) {
   const PackedFixture made = levels_in_pieces();
   EXPECT_EQ(refusal_of_pieces(with_number(made, count_at, 3U)), "read");
   for (const uint32_t count : {0U, 1U, 2U, 4U, 65535U, 65536U, 0xFFFFFFFFU})
@@ -139,7 +139,7 @@ TEST(PackedPieces, OfOtherCountsAreRefused) {
   EXPECT_EQ(refusal_of_pieces(many.glb), "mesh_not_gltf");
 }
 
-TEST(PackedPieces, OfOtherBytesAreRefused) {
+TEST(PackedPieces, InvalidByteCountsAreRefused) {
   const PackedFixture made = levels_in_pieces();
   const uint32_t bytes = made.detail.levels[1].pieces[0].bytes;
   EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at, bytes)), "read");
@@ -147,7 +147,7 @@ TEST(PackedPieces, OfOtherBytesAreRefused) {
     EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at, other)), "mesh_not_gltf") << other;
 }
 
-TEST(PackedPieces, OfBoundsThatAreNoneAreRefused) {
+TEST(PackedPieces, InvalidBoundsAreRefused) {
   const PackedFixture made = levels_in_pieces();
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto refused = [&](size_t number, const std::vector<float>& values) {
@@ -162,7 +162,7 @@ TEST(PackedPieces, OfBoundsThatAreNoneAreRefused) {
   EXPECT_EQ(refusal_of_pieces(with_number(made, pieces_at + 4 * 9, -1.0F)), "read");
 }
 
-TEST(PackedPieces, AreInTheDescription) {
+TEST(PackedPieces, DescriptionCountsPiecesAndMissingPieces) {
   const auto described = [](const std::string& glb) {
     return test::GltfScene::Json::parse(describe(read_packed(glb, {.may_be_cut = true})));
   };

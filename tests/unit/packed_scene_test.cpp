@@ -16,7 +16,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/two_sided_distance.h"
 
-// Packed models in the pipelines of scenes and meshes.
+// Packed models in refinements of scenes and meshes.
 
 namespace papilio::proto::detail {
 namespace {
@@ -25,7 +25,7 @@ constexpr size_t view_bytes = 5000;  // of a level
 
 using Corners = std::array<std::array<float, 3>, 3>;
 
-/// Faces by the positions of their corners, in an order of their own.
+/// Returns the faces by the positions of their corners, sorted.
 std::vector<Corners> sorted_faces(const TriangleMesh& mesh) {
   std::vector<Corners> faces;
   for (const Triangle& t : mesh.triangles) {
@@ -64,7 +64,7 @@ TEST(PackedScene, ResidualsOfAnotherCompressionAreRemoved) {
   }
 }
 
-TEST(PackedScene, ACopiedSceneKeepsItsResiduals) {
+TEST(PackedScene, CopiedSceneKeepsItsResiduals) {
   const std::string glb = packed_scene();
   const gltf::UnpackedScene files = gltf::unpack_scene(glb, "a.bin");
   const std::string back =
@@ -74,7 +74,7 @@ TEST(PackedScene, ACopiedSceneKeepsItsResiduals) {
   EXPECT_EQ(model.levels[1].stream.bytes, read_packed(glb).levels[1].stream.bytes);
 }
 
-TEST(PackedScene, AtLevelZeroIsItsBaseToTheByte) {
+TEST(PackedScene, LevelZeroIsTheBaseWithoutResiduals) {
   const std::string glb = packed_scene();
   const std::string base = test::refined(glb, {{"levels", "0"}}).bytes;
   const auto json = test::json_of_glb(base);
@@ -86,7 +86,7 @@ TEST(PackedScene, AtLevelZeroIsItsBaseToTheByte) {
     EXPECT_LE(view.value("byteOffset", 0U) + view["byteLength"].get<size_t>(), json["buffers"][0]["byteLength"]);
 }
 
-TEST(PackedScene, LevelsAreThoseOfTheDecoder) {
+TEST(PackedScene, LevelsEqualTheDecoders) {
   const std::string glb = packed_scene();
   const PackedModel model = read_packed(glb);
   const auto stored =
@@ -100,7 +100,7 @@ TEST(PackedScene, LevelsAreThoseOfTheDecoder) {
   }
 }
 
-TEST(PackedScene, FurtherLevelsGoOnFromTheFinest) {
+TEST(PackedScene, FurtherLevelsSubdivideTheFinest) {
   const std::string made = test::refined(packed_scene(), {{"levels", "4"}, {"output.compress", "none"}}).bytes;
   EXPECT_EQ(test::faces_of(made), 20U << 8U);
 }
@@ -120,7 +120,7 @@ TEST(PackedScene, StreamedLevelsHaveTheSameVertices) {
   }
 }
 
-TEST(PackedScene, AToleranceEndsWithTheFinestLevel) {
+TEST(PackedScene, TinyToleranceEndsAtTheFinestLevel) {
   const EncodedLevel made = test::refined(packed_scene(), {{"tolerance", "0.000001"}, {"output.compress", "none"}});
   EXPECT_EQ(made.statistics.level, 2);
   EXPECT_EQ(made.statistics.error, 0);
@@ -129,7 +129,7 @@ TEST(PackedScene, AToleranceEndsWithTheFinestLevel) {
   EXPECT_EQ(sorted_faces(triangles_of(made.bytes)), sorted_faces(decode_detail(model.base, model.streams())));
 }
 
-TEST(PackedScene, AsAMeshHasTheSameLevels) {
+TEST(PackedScene, MeshRequestsEqualTheDecodersLevels) {
   const std::string glb = packed_scene();
   const PackedModel model = read_packed(glb);
   for (int levels = 0; levels <= 2; ++levels) {
@@ -145,7 +145,7 @@ TEST(PackedScene, AsAMeshHasTheSameLevels) {
   }
 }
 
-TEST(PackedScene, OfAVersionToComeIsItsBase) {
+TEST(PackedScene, SceneOfALaterVersionIsReadAsItsBase) {
   std::string glb = packed_scene();
   const size_t at = glb.find("\"version\":2,");
   ASSERT_NE(at, std::string::npos);
@@ -154,7 +154,7 @@ TEST(PackedScene, OfAVersionToComeIsItsBase) {
   EXPECT_EQ(test::faces_of(test::refined(glb, {{"levels", "1"}}).bytes), 80U);
 }
 
-TEST(PackedScene, ThatIsDamagedIsRefused) {
+TEST(PackedScene, DamagedPackedSceneIsRefused) {
   std::string glb = packed_scene();
   constexpr std::string_view before = "\"version\":2,\"bufferView\":";
   const size_t at = glb.find(before);
@@ -163,13 +163,13 @@ TEST(PackedScene, ThatIsDamagedIsRefused) {
   EXPECT_THROW((void)test::refined(glb, {{"levels", "1"}}), Problem);
 }
 
-TEST(PackedScene, LimitsHoldForTheLevelsAskedForAlone) {
+TEST(PackedScene, LimitsCountOnlyRequestedLevels) {
   const Limits limits{.max_output_faces = 100};
   EXPECT_EQ(test::faces_of(test::refined(packed_scene(), {{"levels", "1"}}, limits).bytes), 80U);
   EXPECT_THROW((void)test::refined(packed_scene(), {{"levels", "2"}}, limits), Problem);
 }
 
-TEST(PackedScene, InMemoryIsCountedWithItsDecodedLevels) {
+TEST(PackedScene, BytesIncludeDecodedLevels) {
   const test::PackedFixture packed = test::packed_fixture(test::torus(12, 8), 4);
   const gltf::SharedScene stored(std::make_shared<const std::string>(packed.glb), {}, 0);
   const uint64_t before = stored.bytes();

@@ -25,7 +25,7 @@ namespace {
 using test::refusal_of;
 using TexturedJson = test::GltfScene::Json;
 
-/// A cube of six charts, with its texture coordinates alone.
+/// A cube of six charts with texture coordinates as its only attribute.
 FormattedMesh textured_cube() {
   FormattedMesh cube = test::charted_cube();
   cube.attributes.erase(cube.attributes.begin());
@@ -43,12 +43,12 @@ gltf::Materials one_material() {
   return made;
 }
 
-/// Bytes of the table, and where it has the step and the size of the first level's texture coordinates.
+/// Bytes of the table, and the offsets of the step and size of the first level's texture coordinates.
 constexpr size_t table_bytes = 18 + 2 * 24;
 constexpr size_t step_at = 34;
 constexpr size_t size_at = 38;
 
-/// Returns the code with which the model is refused that has another number of 32 bits in its table.
+/// Returns the code with which the model is refused after a 32-bit number of its table is changed.
 std::string refusal_with(const test::PackedFixture& made, size_t at, uint32_t number) {
   std::string glb = made.glb;
   const size_t begin = glb.size() - test::binary_of_glb(glb).size() + made.base_stream.size() + at;
@@ -56,7 +56,7 @@ std::string refusal_with(const test::PackedFixture& made, size_t at, uint32_t nu
   return refusal_of(glb, [](TexturedJson&) {});
 }
 
-TEST(PackedTexcoords, ComeBackToTheBit) {
+TEST(PackedTexcoords, TexcoordsRoundTripExactly) {
   const test::PackedFixture made = textured_fixture();
   const PackedModel model = read_packed(made.glb);
   EXPECT_EQ(model.base, made.detail.base);
@@ -71,14 +71,14 @@ TEST(PackedTexcoords, ComeBackToTheBit) {
   EXPECT_EQ(model.levels[0].vertices, 18U) << "seams do not open the surface";
 }
 
-TEST(PackedTexcoords, AreThoseOfTheBaseInAnyViewer) {
+TEST(PackedTexcoords, AnyViewerReadsTheTexcoordsOfTheBase) {
   const FormattedMesh base = gltf::flatten_scene(textured_fixture().glb, {});
   ASSERT_EQ(base.format.attributes.size(), 1U);
   EXPECT_EQ(base.format.attributes[0].kind, AttributeKind::tex_coord);
   EXPECT_EQ(base.positions.size(), 24U);
 }
 
-TEST(PackedTexcoords, AreTurnedOverOnTheWayInAndOut) {
+TEST(PackedTexcoords, VerticalAxisIsFlippedInPackingAndDecoding) {
   const FormattedMesh cube = textured_cube();
   const std::optional<Attribute> taken = texcoords_to_pack(cube);
   ASSERT_TRUE(taken);
@@ -94,7 +94,7 @@ TEST(PackedTexcoords, AreTurnedOverOnTheWayInAndOut) {
     for (const double value : texcoords.values) EXPECT_TRUE(value == std::round(value) && value >= 0);
 }
 
-TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
+TEST(PackedTexcoords, LevelWithTruncatedTexcoordsIsIncomplete) {
   const test::PackedFixture made = textured_fixture();
   const size_t end = made.glb.size() - made.glb.size() % 4;
   const size_t levels_end =
@@ -105,7 +105,7 @@ TEST(PackedTexcoords, ALevelWithoutAllOfThemIsNotWhole) {
   EXPECT_EQ(read_packed(made.glb.substr(0, levels_end - 81), {.may_be_cut = true}).levels.size(), 0U);
 }
 
-TEST(PackedTexcoords, OfALevelMayBeAbsent) {
+TEST(PackedTexcoords, LevelWithoutTexcoordsIsRead) {
   test::PackedFixture made = textured_fixture();
   made.detail.levels[0].texcoords = {};
   const PackedModel model = read_packed(write_packed(made.detail, {made.base_stream}));
@@ -113,7 +113,7 @@ TEST(PackedTexcoords, OfALevelMayBeAbsent) {
   EXPECT_EQ(model.levels.at(1).stream.texcoords.step, made.detail.levels[1].texcoords.step);
 }
 
-TEST(PackedTexcoords, ThatAreNoneAreRefused) {
+TEST(PackedTexcoords, InvalidTexcoordStreamsAreRefused) {
   const test::PackedFixture made = textured_fixture();
   const std::string glb = made.glb;
   const auto expect = [&](const char* code, const std::function<void(TexturedJson&)>& change) {
@@ -136,7 +136,7 @@ TEST(PackedTexcoords, ThatAreNoneAreRefused) {
             "mesh_unsupported");
 }
 
-TEST(PackedMaterial, UnusedOnesAreLeftOut) {
+TEST(PackedMaterial, UnusedMaterialsAndImagesAreRemoved) {
   gltf::Materials several = one_material();
   several.materials.push_back({.name = "other"});
   several.images.insert(several.images.begin(), {.name = "unused", .bytes = "x"});
@@ -159,7 +159,7 @@ TEST(PackedMaterial, UnusedOnesAreLeftOut) {
   EXPECT_TRUE(used_materials({}).empty());
 }
 
-TEST(PackedMaterial, KeepsItsImagesToTheByteBehindTheLevels) {
+TEST(PackedMaterial, ImagesAreStoredUnchangedAfterTheLevels) {
   const test::PackedFixture made = textured_fixture();
   const std::string glb = write_packed(made.detail, {made.base_stream}, one_material());
   const gltf::MaterialMesh read = gltf::flatten_with_materials(glb, {});
@@ -171,7 +171,7 @@ TEST(PackedMaterial, KeepsItsImagesToTheByteBehindTheLevels) {
   EXPECT_EQ(binary.find("the image's bytes"), made.base_stream.size() + table_bytes + 160);
 }
 
-TEST(PackedMaterial, IsKeptWhereTheFileIsPlainDraco) {
+TEST(PackedMaterial, PlainDracoFilesKeepTheMaterial) {
   const FormattedMesh cube = textured_cube();
   gltf::MaterialMesh model{.mesh = cube, .materials = one_material()};
   model.materials.of_triangle.assign(cube.triangles.size(), 0);

@@ -10,7 +10,7 @@
 namespace papilio {
 namespace {
 
-TEST(Parallel, SmallWorkIsOnePart) {
+TEST(Parallel, NumberOfPartsFollowsTheWork) {
   EXPECT_EQ(parts_of(0, 8), 1U);
   EXPECT_EQ(parts_of(least_per_thread, 8), 1U);
   EXPECT_EQ(parts_of(2 * least_per_thread, 8), 2U);
@@ -18,7 +18,7 @@ TEST(Parallel, SmallWorkIsOnePart) {
   EXPECT_EQ(parts_of(100 * least_per_thread, 0), 1U);
 }
 
-TEST(Parallel, PartsCoverEverythingOnce) {
+TEST(Parallel, PartsCoverTheRangeOnce) {
   for (uint32_t count : {0U, 1U, 7U, 1000U, 4'000'000'000U})
     for (uint32_t parts : {1U, 2U, 3U, 7U}) {
       struct Range {
@@ -41,7 +41,7 @@ TEST(Parallel, PartsCoverEverythingOnce) {
     }
 }
 
-TEST(Parallel, ThrowsWhatTheLowestPartThrew) {
+TEST(Parallel, ExceptionOfTheLowestPartIsRethrown) {
   for (uint32_t failing = 0; failing < 3; ++failing) {
     int done = 0;
     std::mutex access;

@@ -92,7 +92,7 @@ TEST(Parameters, RepeatedFieldsOfAListAreOneList) {
   EXPECT_EQ(query_refusal({{"w", "0"}, {"w", "0"}}).detail, "w is given twice; give it once.");
 }
 
-TEST(Parameters, OmittedLevelsAreOpenWithAnErrorTarget) {
+TEST(Parameters, OmittedLevelsAreTenWithAnErrorTarget) {
   EXPECT_EQ(parse_query({}).options.levels, 2);
   EXPECT_EQ(parse_query({{"max_faces", "5000"}}).options.levels, 2);
   for (const QueryFields& error : {QueryFields{{"tolerance", "0.001"}}, {{"view.error_pixels", "0.5"}}}) {
@@ -134,10 +134,10 @@ TEST(Parameters, OmittedEyeAndTargetFrameTheMesh) {
   const View at = *options_for(parse_query({{"view.target", "10,20,30"}}), box).view;
   EXPECT_EQ(at.target, (Vec3d{10, 20, 30}));
   EXPECT_EQ(at.eye.x, 10);
-  EXPECT_GT(at.eye.z, framed.eye.z - 3) << "the whole box is in the picture from the side of it, too";
+  EXPECT_GT(at.eye.z, framed.eye.z - 3) << "the whole box is in the picture from the side, too";
 }
 
-TEST(Parameters, EveryRowRefusesMalformedAndOutOfRangeValues) {
+TEST(Parameters, MalformedAndOutOfRangeValuesAreRefusedByParameter) {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string name(info.name);
     if (info.type == ParameterType::choice || info.type == ParameterType::boolean) {
@@ -208,7 +208,7 @@ TEST(Parameters, DegenerateViewsAreRefusedByParameter) {
   EXPECT_EQ(query_refusal({{"view.up", "0,0,0"}}).parameter, "view.up");
 }
 
-TEST(Parameters, JsonOfTheWrongShapeIsRefused) {
+TEST(Parameters, MalformedAndMistypedJsonIsRefused) {
   EXPECT_EQ(json_refusal("").code, Code::bad_request);
   EXPECT_EQ(json_refusal("{\"levels\": 2").code, Code::bad_request);
   EXPECT_EQ(json_refusal("[1]").code, Code::bad_request);
@@ -240,7 +240,7 @@ TEST(Parameters, MarkdownAndJsonListEveryParameter) {
   }
 }
 
-TEST(Problem, TableIsInTheOrderOfItsCodesAndComplete) {
+TEST(Problem, TableHasEveryCodeInOrder) {
   size_t index = 0;
   for (const ProblemKind& kind : problem_kinds()) {
     EXPECT_EQ(static_cast<size_t>(kind.code), index++);

@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = Parking::Clock;
 
-/// Two connected sockets: one is parked, the other is the client's.
+/// Two connected sockets: the parked one and the client's.
 class Pair {
  public:
   Pair() { EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_.data()), 0); }
@@ -36,13 +36,13 @@ class Pair {
   std::array<int, 2> ends_{};
 };
 
-/// What became of a parked socket.
-struct Fate {
+/// Outcome of a parked socket.
+struct ParkingOutcome {
   std::atomic<int> resumed = 0;
   std::atomic<bool> destroyed = false;
 
   std::function<void()> watch() {
-    std::shared_ptr<Fate> owner(this, [](Fate* fate) { fate->destroyed = true; });
+    std::shared_ptr<ParkingOutcome> owner(this, [](ParkingOutcome* outcome) { outcome->destroyed = true; });
     return [this, owner] { ++resumed; };
   }
   void await_end() const {
@@ -50,9 +50,9 @@ struct Fate {
   }
 };
 
-TEST(Parking, ResumesOnceWhenBytesComeOrTheClientLeaves) {
+TEST(Parking, BytesOrADisconnectResumeASocketOnce) {
   const Pair speaker, leaver, silent;
-  Fate spoken, left, kept;
+  ParkingOutcome spoken, left, kept;
   Parking parking(8);
   const auto late = Clock::now() + 1h;
   parking.park(speaker.parked(), POLLIN, late, spoken.watch());
@@ -70,9 +70,9 @@ TEST(Parking, ResumesOnceWhenBytesComeOrTheClientLeaves) {
   EXPECT_EQ(kept.resumed, 0);
 }
 
-TEST(Parking, ResumesAtTheDeadline) {
+TEST(Parking, DeadlineResumesASocket) {
   const Pair later, sooner;
-  Fate first, second;
+  ParkingOutcome first, second;
   Parking parking(8);
   parking.park(later.parked(), POLLIN, Clock::now() + 1h, first.watch());
   parking.park(sooner.parked(), POLLIN, Clock::now() + 10ms, second.watch());
@@ -81,51 +81,51 @@ TEST(Parking, ResumesAtTheDeadline) {
   EXPECT_FALSE(first.destroyed);
 }
 
-TEST(Parking, WhenFullTheNextDeadlineGivesWay) {
+TEST(Parking, FullParkingDropsTheNextDeadline) {
   const std::array<Pair, 3> pairs;
-  std::array<Fate, 3> fates;
+  std::array<ParkingOutcome, 3> outcomes;
   Parking parking(2);
   const auto now = Clock::now();
-  parking.park(pairs[0].parked(), POLLIN, now + 2h, fates[0].watch());
-  parking.park(pairs[1].parked(), POLLIN, now + 1h, fates[1].watch());
-  parking.park(pairs[2].parked(), POLLIN, now + 3h, fates[2].watch());
-  EXPECT_TRUE(fates[1].destroyed);
-  EXPECT_EQ(fates[1].resumed, 0);
-  EXPECT_FALSE(fates[0].destroyed);
-  EXPECT_FALSE(fates[2].destroyed);
+  parking.park(pairs[0].parked(), POLLIN, now + 2h, outcomes[0].watch());
+  parking.park(pairs[1].parked(), POLLIN, now + 1h, outcomes[1].watch());
+  parking.park(pairs[2].parked(), POLLIN, now + 3h, outcomes[2].watch());
+  EXPECT_TRUE(outcomes[1].destroyed);
+  EXPECT_EQ(outcomes[1].resumed, 0);
+  EXPECT_FALSE(outcomes[0].destroyed);
+  EXPECT_FALSE(outcomes[2].destroyed);
 }
 
-TEST(Parking, ClosedItKeepsNothing) {
+TEST(Parking, ClosedParkingDropsSockets) {
   const Pair pair;
-  Fate fate;
+  ParkingOutcome outcome;
   Parking parking(2);
   parking.close();
-  parking.park(pair.parked(), POLLIN, Clock::now() + 1h, fate.watch());
-  EXPECT_TRUE(fate.destroyed);
-  EXPECT_EQ(fate.resumed, 0);
+  parking.park(pair.parked(), POLLIN, Clock::now() + 1h, outcome.watch());
+  EXPECT_TRUE(outcome.destroyed);
+  EXPECT_EQ(outcome.resumed, 0);
 }
 
-// Closing while the thread wakes up for something else: its call must not be lost.
-TEST(Parking, IsClosedWhateverItIsDoing) {
+// Closing while the thread handles another event must not be missed.
+TEST(Parking, CloseIsSafeAtAnyTime) {
   const std::array<Pair, 4> pairs;
   for (int i = 0; i < 5000; ++i) {
     Parking parking(pairs.size());
     auto deadline = Clock::now() + 2h;
-    for (const Pair& pair : pairs) parking.park(pair.parked(), POLLIN, deadline -= 1s, [] {});  // each wakes it
+    for (const Pair& pair : pairs) parking.park(pair.parked(), POLLIN, deadline -= 1s, [] {});  // each wakes the thread
     for (int wait = 0; wait < i % 20; ++wait) std::this_thread::yield();
     parking.close();
   }
 }
 
-TEST(Parking, TheSameSocketIsParkedAgainAndAgain) {
+TEST(Parking, SocketCanBeParkedRepeatedly) {
   Parking parking(2);
   const Pair pair;
-  pair.say();  // and nobody reads it
+  pair.say();  // never read
   for (int i = 0; i < 200; ++i) {
-    Fate fate;
-    parking.park(pair.parked(), POLLIN, Clock::now() + 1h, fate.watch());
-    fate.await_end();
-    ASSERT_EQ(fate.resumed, 1);
+    ParkingOutcome outcome;
+    parking.park(pair.parked(), POLLIN, Clock::now() + 1h, outcome.watch());
+    outcome.await_end();
+    ASSERT_EQ(outcome.resumed, 1);
   }
 }
 

@@ -20,14 +20,14 @@ std::vector<uint32_t> near(PointTree& tree, Vec3d a, Vec3d b, double distance) {
   return found;
 }
 
-TEST(PointTree, FindsWhatASearchOfAllFinds) {
+TEST(PointTree, TreeFindsAllPointsOfALinearSearch) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> coordinate(-1, 1);
   const auto point = [&] { return Vec3d{coordinate(random), coordinate(random), coordinate(random)}; };
   for (const size_t count : {0, 1, 8, 9, 100, 1000}) {
     std::vector<Vec3d> points(count);
     std::ranges::generate(points, point);
-    for (size_t i = 1; i < count; i += 3) points[i] = points[i - 1];  // some twice
+    for (size_t i = 1; i < count; i += 3) points[i] = points[i - 1];  // some repeated
     PointTree tree(points);
     for (int i = 0; i < 50; ++i) {
       const Vec3d a = point(), b = i % 3 == 0 ? a : i % 3 == 1 ? a + Vec3d{1, 0, 0} : point();
@@ -41,7 +41,7 @@ TEST(PointTree, FindsWhatASearchOfAllFinds) {
   }
 }
 
-TEST(PointTree, StopsWhenToldTo) {
+TEST(PointTree, VisitorStopsTheSearch) {
   PointTree tree(std::vector<Vec3d>(100));
   int visits = 0;
   tree.for_each_near({}, {}, 1, [&](uint32_t) { return ++visits < 7; });
@@ -49,7 +49,7 @@ TEST(PointTree, StopsWhenToldTo) {
 }
 
 TEST(PointTree, WorkIsBounded) {
-  PointTree tree(std::vector<Vec3d>(1000));  // all in one place
+  PointTree tree(std::vector<Vec3d>(1000));  // all equal
   size_t visits = 0;
   for (int i = 0; i < 100'000 && !tree.is_exhausted(); ++i) visits += near(tree, {}, {}, 1).size();
   EXPECT_TRUE(tree.is_exhausted());

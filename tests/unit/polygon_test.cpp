@@ -39,8 +39,8 @@ Vec3d area_vector(const Corners& corners) {
   return area;
 }
 
-/// Whether the triangles lie side by side in a plane polygon: all of its orientation, as large as it together, and
-/// every edge but its sides shared by two.
+/// Expects a tiling of a plane polygon: all triangles have its orientation, their areas add up to its area, and each
+/// inner edge has two triangles.
 void expect_tiling(const Corners& corners, const Buffer<Triangle>& triangles) {
   const Vec3d area = area_vector(corners);
   ASSERT_EQ(triangles.size(), corners.size() - 2);
@@ -63,7 +63,7 @@ void expect_tiling(const Corners& corners, const Buffer<Triangle>& triangles) {
   }
 }
 
-/// Corners from another first one, tilted out of every coordinate plane.
+/// Returns the corners from another first corner, tilted out of all coordinate planes.
 Corners tilted(Corners corners, size_t first = 0) {
   std::ranges::rotate(corners, corners.begin() + static_cast<ptrdiff_t>(first));
   for (Vec3f& p : corners) p = {0.5F * p.x - p.y + 100, 3 * p.x + p.y, 2 * p.y - 0.25F * p.x};
@@ -120,8 +120,8 @@ TEST(Polygon, CornerOnTheSideOfAQuadMakesNoFaceWithoutArea) {
   for (size_t first = 0; first < 4; ++first) expect_tiling(tilted(side, first), cut(tilted(side, first)));
 }
 
-TEST(Polygon, BentQuadIsCutWhereItFoldsLess) {
-  // By 81 degrees against 126, though the other diagonal has the larger smallest angle.
+TEST(Polygon, BentQuadIsCutAtTheSmallerFold) {
+  // A fold of 81 degrees instead of 126, though the other diagonal has the larger smallest angle.
   const Corners bent{{0, 0, 0}, {4, 0, 0}, {1, 2, 0}, {0, 1, 3}};
   EXPECT_THAT(cut(bent), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
   EXPECT_THAT(cut({bent[1], bent[2], bent[3], bent[0]}), ElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
@@ -133,7 +133,7 @@ TEST(Polygon, GridOfNearSquaresKeepsOneDirection) {
   EXPECT_THAT(cut({quad[1], quad[2], quad[3], quad[0]}), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Polygon, ConcaveQuadThatIsHardlyBentIsCutInside) {
+TEST(Polygon, SlightlyBentConcaveQuadIsCutInside) {
   const Corners dart{{0, 0, 0}, {4, 1, 0}, {1, 1, 0.05F}, {1, 4, 0}};
   for (size_t first = 0; first < 4; ++first) {
     Corners corners = dart;
@@ -152,13 +152,13 @@ TEST(Polygon, ConcavePolygonsAreTiled) {
   for (const size_t teeth : {1, 2, 30, 255}) expect_tiling(tilted(comb(teeth)), cut(tilted(comb(teeth))));
 }
 
-TEST(Polygon, TheOtherOrientationIsKept) {
+TEST(Polygon, ReversedOrientationIsKept) {
   Corners corners = comb(4);
   std::ranges::reverse(corners);
   expect_tiling(corners, cut(corners));
 }
 
-TEST(Polygon, HoleWithABridgeIsTiled) {
+TEST(Polygon, PolygonWithABridgedHoleIsTiled) {
   const Corners corners{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {0, 0, 0},
                         {3, 3, 0}, {3, 6, 0}, {6, 6, 0}, {6, 3, 0}, {3, 3, 0}};
   const Buffer<Triangle> triangles = cut(corners);
@@ -182,7 +182,7 @@ TEST(Polygon, CornersOnTheSidesMakeNoFacesWithoutArea) {
   expect_tiling(square, cut(square));
 }
 
-TEST(Polygon, CircleHasNoCornerWithAllTheFaces) {
+TEST(Polygon, CircleHasAtMostNineFacesPerCorner) {
   Corners circle;
   for (int i = 0; i < 32; ++i)
     circle.push_back(to_float({std::cos(i * std::numbers::pi / 16), std::sin(i * std::numbers::pi / 16), 0}));
@@ -194,7 +194,7 @@ TEST(Polygon, CircleHasNoCornerWithAllTheFaces) {
   EXPECT_LE(std::ranges::max(faces), 9);  // a fan has 30
 }
 
-TEST(Polygon, FanWhereThereIsNoTiling) {
+TEST(Polygon, PolygonWithoutATilingBecomesAFan) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(cut({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, -3, 0}, {0, 4, 0}}), fan(5)) << "crosses itself";
   EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}), fan(5)) << "no area";
@@ -205,7 +205,7 @@ TEST(Polygon, FanWhereThereIsNoTiling) {
   EXPECT_EQ(cut(comb(most_clipped_corners / 4)), fan(most_clipped_corners + 2)) << "too many corners";
 }
 
-TEST(Polygon, SizeDoesNotMatter) {
+TEST(Polygon, ResultDoesNotDependOnScale) {
   for (const float scale : {1e-30F, 1e-9F, 1e9F, 1e30F}) {
     Corners corners = comb(3);
     for (Vec3f& p : corners) p = scale * p;

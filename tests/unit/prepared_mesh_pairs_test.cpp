@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// What a request gives: its result, or what it is refused with.
+/// Outcome of a request: its result or its error.
 struct Answer {
   std::optional<Result> result;
   std::string refusal;
@@ -51,7 +51,7 @@ std::string first_difference(const Answer& stored, const Answer& cold) {
   return "";
 }
 
-/// How many requests are compared. Sanitizers take ten times as long for each.
+/// Number of requests compared. Each takes ten times as long with sanitizers.
 uint32_t pairs_asked_for() {
   if (const char* pairs = std::getenv("PAPILIO_PAIRS")) return static_cast<uint32_t>(std::stoul(pairs));
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
@@ -61,7 +61,7 @@ uint32_t pairs_asked_for() {
 #endif
 }
 
-TEST(PreparedMesh, AnswersDoNotDependOnEarlierRequests) {
+TEST(PreparedMesh, ResultsDoNotDependOnEarlierRequests) {
   constexpr uint32_t requests_of_one_mesh = 8;
   const uint32_t pairs = pairs_asked_for();
   uint32_t compared = 0;
@@ -80,8 +80,8 @@ TEST(PreparedMesh, AnswersDoNotDependOnEarlierRequests) {
   }
 }
 
-TEST(PreparedMesh, RoundingErrorsOfDeviationsDecideAlikeWhateverIsKnown) {
-  // Its quadrangles are flat but for rounding, and pixels so small that this shows.
+TEST(PreparedMesh, RoundingOfDeviationsDoesNotDependOnEarlierRequests) {
+  // Quadrangles are flat up to rounding, and pixels are small enough for rounding to matter.
   const Mesh coarse = build_mesh(torus(8, 8));
   Options rules;
   rules.crease_angle = 30;

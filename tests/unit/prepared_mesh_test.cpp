@@ -41,7 +41,7 @@ View random_view(std::mt19937& random, const Mesh& mesh) {
   return view;
 }
 
-/// Everything but the rules.
+/// Sets random options other than the rules.
 void ask_at_random(std::mt19937& random, const Mesh& mesh, Options& options) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -74,7 +74,7 @@ bool is_equal(const Mesh& a, const Mesh& b) {
   return ::testing::AssertionSuccess();
 }
 
-/// Asks for much, one after the other, of one object.
+/// Compares a sequence of requests of one prepared mesh with cold requests.
 void expect_cold_results(const Mesh& coarse, uint32_t seed, uint64_t budget) {
   std::mt19937 random(seed);
   Options options{.tension = static_cast<Tension>(random() % 3)};
@@ -95,7 +95,7 @@ void expect_cold_results(const Mesh& coarse, uint32_t seed, uint64_t budget) {
   }
 }
 
-TEST(PreparedMesh, GivesWhatAColdRequestGives) {
+TEST(PreparedMesh, ResultsEqualColdRequests) {
   for (const char* name : {"bunny600.obj", "cgal/rotor_small.off", "cgal/helmet.off"}) {
     const Mesh coarse = build_mesh(real_mesh(name));
     uint32_t seed = 0;
@@ -104,7 +104,7 @@ TEST(PreparedMesh, GivesWhatAColdRequestGives) {
   }
 }
 
-TEST(PreparedMesh, GivesWhatAColdRequestGivesOfAttributesAndOfWhatIsNotManifold) {
+TEST(PreparedMesh, AttributesAndNonManifoldMeshesEqualColdRequests) {
   const TriangleMesh book{{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 0}, {1, 0, 2}, {0, 1, 1}, {-1, -1, 1}},
                           {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {0, 1, 5}, {1, 2, 5}, {1, 0, 6}, {2, 1, 6}}};
   TriangleMesh charted = real_mesh("bunny600.obj");
@@ -116,8 +116,8 @@ TEST(PreparedMesh, GivesWhatAColdRequestGivesOfAttributesAndOfWhatIsNotManifold)
   }
 }
 
-TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereNothingIsSplit) {
-  // Edges near each other are much alike: which of them looks worst is decided by the last digits.
+TEST(PreparedMesh, ErrorEqualsColdRequestsIfNothingIsSplit) {
+  // Neighbouring edges have nearly equal errors: the last digits decide which is largest.
   const Mesh coarse = build_mesh(torus(100, 60));
   const PreparedMesh prepared(coarse, {}, plenty);
   for (int i = 0; i < 100; ++i) {
@@ -129,8 +129,8 @@ TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereNothingIsSplit) {
   }
 }
 
-TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereTheNextLevelSplitsOnlySome) {
-  // The largest deviation is then left where some of the faces beside are divided further, and others are not.
+TEST(PreparedMesh, ErrorEqualsColdRequestsIfALevelIsPartlySplit) {
+  // The largest deviation is then at an edge where only some neighbouring faces are divided.
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   const PreparedMesh prepared(coarse, {.tension = Tension::off}, plenty);
   for (int i = 0; i < 50; ++i) {
@@ -141,7 +141,7 @@ TEST(PreparedMesh, GivesTheErrorThatAColdRequestGivesWhereTheNextLevelSplitsOnly
   }
 }
 
-TEST(PreparedMesh, ServesSeveralThreadsAtOnce) {
+TEST(PreparedMesh, ConcurrentRequestsEqualColdRequests) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   for (uint64_t budget : {plenty, uint64_t{1'500'000}}) {
     const PreparedMesh prepared(coarse, {}, budget);
@@ -166,12 +166,12 @@ TEST(PreparedMesh, ServesSeveralThreadsAtOnce) {
   }
 }
 
-TEST(PreparedMesh, GrowsByWhatIsNewWithinItsBudget) {
+TEST(PreparedMesh, KeptLevelsGrowWithinTheBudget) {
   const Mesh coarse = build_mesh(real_mesh("elephant2000.obj"));
   const auto ask = [&](const PreparedMesh& prepared, double degrees) {
     Options options{.levels = 3, .view = view_from(coarse, degrees)};
     options.view->error_pixels = 1;
-    options.view->fov_y = 2;  // little of it: where much is needed, everything is made and kept
+    options.view->fov_y = 2;  // a small part: for a large part whole levels are built and kept
     (void)refine(prepared, options);
     return prepared.bytes();
   };
@@ -191,7 +191,7 @@ TEST(PreparedMesh, GrowsByWhatIsNewWithinItsBudget) {
   }
 }
 
-TEST(PreparedMesh, CancelledRequestsLeaveNothingHalfMade) {
+TEST(PreparedMesh, CancelledRequestLeavesTheMeshUnchanged) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   Options options{.levels = 3, .view = view_from(coarse, 0)};
   options.view->error_pixels = 0.5;
@@ -222,7 +222,7 @@ std::string refusal(const PreparedMesh& prepared, const Options& options) {
   return "";
 }
 
-TEST(PreparedMesh, LimitsCountWhatTheRequestNeedsNotWhatIsHeld) {
+TEST(PreparedMesh, MemoryLimitDoesNotCountHeldLevels) {
   const Mesh coarse = build_mesh(real_mesh("elephant2000.obj"));
   Options options{.levels = 3, .view = view_from(coarse, 0)};
   options.view->error_pixels = 1;
@@ -266,7 +266,7 @@ TriangleMesh torus_with_fins(std::mt19937& random) {
   return mesh;
 }
 
-TEST(PreparedMesh, GivesTheSameAtSharedEdgesWhereverTheLevelIsHeld) {
+TEST(PreparedMesh, SharedEdgesEqualColdRequestsInWholeLevels) {
   std::mt19937 random(7);
   for (int i = 0; i < 60; ++i) {
     const Mesh mesh = build_mesh(torus_with_fins(random));
@@ -276,7 +276,7 @@ TEST(PreparedMesh, GivesTheSameAtSharedEdgesWhereverTheLevelIsHeld) {
     options.view->error_pixels = 0.5 + 0.1 * i;
     if (i % 2 == 0) options.view->lights = {{1, 2, 3}};
     const PreparedMesh prepared(mesh, options, plenty);
-    (void)refine(prepared, Options{.levels = 3, .tolerance = 1e-4});  // has levels kept whole
+    (void)refine(prepared, Options{.levels = 3, .tolerance = 1e-4});  // whole levels are kept
     const Result warm = refine(prepared, options);
     const Result cold = refine(mesh, options);
     EXPECT_EQ(warm.mesh.topology.origin, cold.mesh.topology.origin);

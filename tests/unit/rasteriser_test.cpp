@@ -23,7 +23,7 @@ View front_view() {
   return view;
 }
 
-/// A square of side 2s at depth z, turned to the eye.
+/// A square of side 2s at depth z that faces the eye.
 void add_square(TriangleMesh& mesh, float s, float z) {
   const auto first = static_cast<uint32_t>(mesh.positions.size());
   for (Vec3f p : {Vec3f{-s, -s, z}, Vec3f{s, -s, z}, Vec3f{s, s, z}, Vec3f{-s, s, z}}) mesh.positions.push_back(p);
@@ -37,7 +37,7 @@ Mesh square(float s, float z) {
   return build_mesh(mesh);
 }
 
-/// The unit sphere, finely divided.
+/// The unit sphere in small faces.
 Mesh sphere() {
   Mesh mesh = build_mesh(icosahedron());
   for (int level = 0; level < 5; ++level) {
@@ -49,7 +49,7 @@ Mesh sphere() {
 
 double sum_of(const Image& image) { return std::accumulate(image.grey.begin(), image.grey.end(), 0.0); }
 
-TEST(Rasteriser, PlaneHasTheCosineOfTheLightForItsShadeAndTheBackgroundIsBlack) {
+TEST(Rasteriser, ShadeOfAPlaneIsTheCosineToTheLight) {
   View view = front_view();
   for (double angle : {0.0, 0.5, 1.0, 2.0}) {
     view.lights = {{0, 3 * std::sin(angle), 3 * std::cos(angle)}};
@@ -66,7 +66,7 @@ TEST(Rasteriser, PlaneHasTheCosineOfTheLightForItsShadeAndTheBackgroundIsBlack) 
 TEST(Rasteriser, SquareCoversTheAreaOfItsProjection) {
   View view = front_view();
   const double pixels = 80 / (2 * std::tan(std::numbers::pi / 8));  // at distance 1
-  const double tolerance = 1.4 * pixels / 8;                        // half a sample all round, for either square
+  const double tolerance = 1.4 * pixels / 8;                        // half a sample at each side of both squares
   EXPECT_NEAR(sum_of(render(square(0.7F, 0), view, 8)), std::pow(1.4 * pixels / 3, 2), tolerance);
   EXPECT_NEAR(sum_of(render(square(0.7F, 1), view, 8)), std::pow(1.4 * pixels / 2, 2), tolerance);
   view.projection = Projection::orthographic;
@@ -74,7 +74,7 @@ TEST(Rasteriser, SquareCoversTheAreaOfItsProjection) {
   EXPECT_NEAR(sum_of(render(square(9, 0), view)), 120 * 80, 1e-9) << "cut off at the picture's border";
 }
 
-TEST(Rasteriser, UpAndRightAreWhereTheyBelong) {
+TEST(Rasteriser, UpAndRightAreUpAndRight) {
   TriangleMesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
   const Image image = render(build_mesh(mesh), front_view());
   EXPECT_EQ(image.at(70, 30), 1);
@@ -82,7 +82,7 @@ TEST(Rasteriser, UpAndRightAreWhereTheyBelong) {
   EXPECT_EQ(image.at(50, 30), 0);
 }
 
-TEST(Rasteriser, SphereIsADiscWithTheShadeOfItsNormals) {
+TEST(Rasteriser, SphereIsADiscShadedByItsNormals) {
   View view = front_view();
   view.projection = Projection::orthographic;
   const double radius = 80 / (2 * std::tan(std::numbers::pi / 8)) / 3;
@@ -94,7 +94,7 @@ TEST(Rasteriser, SphereIsADiscWithTheShadeOfItsNormals) {
   EXPECT_EQ(image.at(60 - 10, 40), 0);
 }
 
-TEST(Rasteriser, SphereInPerspectiveShowsTheDiscOfItsTangentCone) {
+TEST(Rasteriser, SphereInPerspectiveIsTheDiscOfItsTangentCone) {
   View view = front_view();
   view.lights = {{0, 0, 1}, {1, 0, .1}, {-1, 0, .1}, {0, 1, .1}, {0, -1, .1}};  // white nearly everywhere
   const Image image = render(sphere(), view, 4);
@@ -103,10 +103,10 @@ TEST(Rasteriser, SphereInPerspectiveShowsTheDiscOfItsTangentCone) {
   EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 0.01 * covered);
 }
 
-TEST(Rasteriser, NearerFaceHidesFartherOneWhateverTheirOrder) {
+TEST(Rasteriser, NearerFaceHidesFartherInAnyOrder) {
   View view = front_view();
   view.lights = {{0, 0, 1}};
-  const float tilt = 1;  // the nearer square is turned from the light by 45 degrees
+  const float tilt = 1;  // the nearer square is tilted by 45 degrees from the light
   for (bool nearer_first : {true, false}) {
     TriangleMesh mesh;
     if (!nearer_first) add_square(mesh, 0.5F, 0);
@@ -123,7 +123,7 @@ TEST(Rasteriser, NearerFaceHidesFartherOneWhateverTheirOrder) {
   }
 }
 
-TEST(Rasteriser, LeavesOutWhatIsTurnedAwayOrReachesThroughTheNearPlane) {
+TEST(Rasteriser, BackFacesAndFacesAcrossTheNearPlaneAreSkipped) {
   View view = front_view();
   EXPECT_GT(sum_of(render(square(0.5F, 2.5F), view)), 0);
   view.near = 1;
@@ -134,7 +134,7 @@ TEST(Rasteriser, LeavesOutWhatIsTurnedAwayOrReachesThroughTheNearPlane) {
   EXPECT_EQ(sum_of(render(square(0.5F, 0), view)), 0);
 }
 
-TEST(Psnr, IsThatOfTheMeanSquaredDifference) {
+TEST(Psnr, PsnrEqualsItsDefinition) {
   const Image black{2, 2, {0, 0, 0, 0}};
   EXPECT_EQ(psnr(black, black), std::numeric_limits<double>::infinity());
   EXPECT_NEAR(psnr(black, {2, 2, {1, 1, 1, 1}}), 0, 1e-12);

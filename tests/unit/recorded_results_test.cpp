@@ -19,7 +19,7 @@
 #include "server/sha256.h"
 #include "tests/support/shapes.h"
 
-// What results were when the versions that caches go by were raised last: none may change without these.
+// Results recorded when the cache versions were last raised. Results may change only with these versions.
 
 namespace papilio::proto {
 namespace {
@@ -29,9 +29,9 @@ struct Recorded {
   std::string_view sha256;
 };
 
-/// Of the core's results: corners, positions, attributes, stop reason and errors. To record them anew, paste what the
-/// test prints, and raise `algorithm_version`.
-constexpr int recorded_algorithm_version = 5;
+/// Hashes of the core's results: corners, positions, attributes, stop reason and errors. To update, paste the lines
+/// that the test prints and raise `algorithm_version`.
+constexpr int recorded_algorithm_version = 10;
 constexpr Recorded core_results[]{
     {"", "ccac3db57fb768c9190f2ae1b76b57da7033f5a6743dd22d7dddb4e74c29573f"},
     {"levels=0", "8cb7f54c379ef6dfd444336df47ba422c0987c3ed708022c39b02b23fa8d95a7"},
@@ -41,8 +41,8 @@ constexpr Recorded core_results[]{
     {"levels=3&flatness=0.9,0.95&growth=2", "49a0ce79f92b3de5c31e870d4984f3f9dafa2eaa94b9840efdb7ef8197116ac4"},
     {"levels=3&flatness=0.8&crease_angle=40&tension=sharp",
      "2f54486142073141d2db8144f910aab1ee8bc85926478d5277930913b11d1579"},
-    {"levels=3&tolerance=0.002", "4eb2c867fcbbe1d296ad9a1be291ef44b8a676c9a1d73147f19c24ae8ce0813e"},
-    {"levels=4&max_faces=500", "1613548f9da6bf38f310dece859dbc7bf06e4337fa989998b6b92b0913f1bc09"},
+    {"levels=3&tolerance=0.002", "14b47be961c0104ccc129a0fb5614c43171ca0c1d43a3210950ddff103a01b6d"},
+    {"levels=4&max_faces=500", "3f75fd22fd0ee176ccf8a8429344a1e8ab3ce1544ed14682f8689f4fa2e3f8f7"},
     {"levels=2&scheme=in-place&flatness=0.9", "45a99bc77b2f81f32095d0fab08c5d2760087f14808e13737ef329f6c04fcd5d"},
     {"levels=2&scheme=in-place&tolerance=0.005&tension=off",
      "f2d58ff339f2f1ef4c1c2c6799be0a47115c83e5b48b2ee69e45361f7a08f051"},
@@ -50,14 +50,14 @@ constexpr Recorded core_results[]{
     {"levels=3&view.error_pixels=2&view.verify=false",
      "7e012c74173088dbfe40645f6ca8942adbde38a30c451152167a7f0f0691b9ae"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=40&flatness=0.95",
-     "8230f4cd3c580fa3c71f797dbedd2b94bac93bd788dd4d34e80a87af4f8461ba"},
+     "170f3b73b490b467c8285ab7ba7426c1f9ef722354e2447b385352922ded2acd"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=0&view.error_pixels=1&view.lights=1,2,3,-1,0,1",
      "977b3dda16c8e560d0dcf3c16cea755aa466968bf3171f5fa45f1f2695ca6de3"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=0&view.projection=orthographic&max_faces=400&tolerance=1e-4",
      "d88f038d709b273b309097346648d978c25c9d6934a0ef3c4622c4b850774764"},
 };
 
-/// Of the core's results for fans of 3 to 100 faces, closed and open.
+/// Hash of the core's results for closed and open fans of 3 to 100 faces.
 constexpr Recorded fan_results[]{
     {"levels=1", "255a322a57123b25d155ab1f7917187d9d0f09f121d22bb04351043b040b4714"},
     {"levels=1&tension=off", "65c772b7cd521a5de21f05d27aae5343e93912bf7c31b26a1e7965662e4e9e01"},
@@ -65,8 +65,8 @@ constexpr Recorded fan_results[]{
     {"levels=2", "13dc4e5a541b1eef37c3cbd90b5a4069bd4e62d29ed05f062926ff1205f3ff25"},
 };
 
-/// Of the bytes that the encoder makes of these results, without those that libdraco made. To record them anew, paste
-/// what the test prints, and raise `encoding_version`.
+/// Hashes of the encoder's bytes for these results, without bytes of libdraco. To update, paste the lines that the test
+/// prints and raise `encoding_version`.
 constexpr int recorded_encoding_version = 4;
 constexpr Recorded encoded_results[]{
     {"", "16363c250f754045d9df617246bab8c37723f4d5521475617a99f0077431cc2a"},
@@ -80,7 +80,7 @@ constexpr Recorded encoded_results[]{
     {"levels=3&flatness=0.9,0.95", "5368822d4f093d6bf66da176079ffb9971108f5d3520ec11d5f30f5b7ae07c9a"},
 };
 
-/// Coordinates are moved by sums and products of floats alone: the same on every machine.
+/// Moves coordinates by sums and products of floats: bit-identical on all machines.
 TriangleMesh jittered(TriangleMesh mesh, uint32_t seed) {
   std::mt19937 random(seed);
   const auto share = [&] { return static_cast<float>(random() >> 8U) * 0x1p-24F - 0.5F; };
@@ -92,7 +92,7 @@ TriangleMesh jittered(TriangleMesh mesh, uint32_t seed) {
   return mesh;
 }
 
-/// Two vertices over and under a ring, or one over an arc of a third of a turn.
+/// Two apexes over a ring, or one apex over an arc of a third of a turn.
 TriangleMesh spokes(uint32_t valence, bool is_closed) {
   TriangleMesh mesh;
   const uint32_t points = is_closed ? valence : valence + 1;
@@ -145,7 +145,7 @@ std::vector<TriangleMesh> fans() {
 
 template <class Number>
 void append(std::string& bytes, Number number) {
-  // The lowest byte first, whatever the machine does.
+  // Little endian on all machines.
   uint64_t bits = 0;
   if constexpr (std::is_floating_point_v<Number>)
     bits = std::bit_cast<uint64_t>(static_cast<double>(number));
@@ -169,7 +169,7 @@ std::string bytes_of(const Result& result) {
   return bytes;
 }
 
-/// Of "name=value&name=value".
+/// Parses "name=value&name=value".
 Parameters parameters_of(std::string_view request) {
   QueryFields fields;
   while (!request.empty()) {
@@ -202,7 +202,7 @@ std::string encoded_result(std::string_view request) {
   return server::sha256(bytes);
 }
 
-/// Compares, and on a difference says what to do, with the lines to paste.
+/// Compares hashes. On a difference, prints the instructions and the lines to paste.
 template <class ResultOf>
 void expect_recorded(std::span<const Recorded> recorded, int recorded_version, int version, const char* name,
                      const ResultOf& result_of) {
@@ -231,9 +231,9 @@ void expect_recorded_core_results() {
   expect_recorded(fan_results, recorded_algorithm_version, algorithm_version, "algorithm_version", of(some_fans));
 }
 
-TEST(RecordedResults, OfTheCoreChangeOnlyWithTheAlgorithmVersion) { expect_recorded_core_results(); }
+TEST(RecordedResults, CoreResultsChangeOnlyWithTheAlgorithmVersion) { expect_recorded_core_results(); }
 
-TEST(RecordedResults, EncodedChangeOnlyWithTheEncodingVersion) {
+TEST(RecordedResults, EncodedResultsChangeOnlyWithTheEncodingVersion) {
   expect_recorded(encoded_results, recorded_encoding_version, encoding_version, "encoding_version", encoded_result);
 }
 

@@ -40,12 +40,12 @@ void expect_part_of(const UniformHierarchy& uniform, const Mesh& coarse, const O
   EXPECT_GT(result.mesh.topology.face_count(), coarse.topology.face_count());
   EXPECT_LT(result.mesh.topology.face_count(), uniform.finest().topology.face_count());
   EXPECT_GE(smallest_angle(result.mesh), smallest_angle(uniform.finest()) / 3);
-  EXPECT_EQ(refine(coarse, options).mesh.triangles(), result.mesh.triangles()) << "levels seen or not";
+  EXPECT_EQ(refine(coarse, options).mesh.triangles(), result.mesh.triangles()) << "with or without a level callback";
 }
 
 class RedGreenOnRealMeshes : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
+TEST_P(RedGreenOnRealMeshes, VerticesAreBitIdenticalToUniform) {
   const Mesh coarse = build_mesh(real_mesh(GetParam()));
   for (Tension tension : {Tension::off, Tension::soft, Tension::sharp}) {
     Options options{.levels = 3, .tension = tension, .shape = Shape::plain};
@@ -63,7 +63,7 @@ TEST_P(RedGreenOnRealMeshes, IsPartOfTheUniformHierarchyToTheBit) {
   }
 }
 
-/// The positions of the first mesh that the second has too, looked up by bits.
+/// Returns the number of positions of the first mesh that the second has bit-identically.
 size_t count_common(const Mesh& a, const Mesh& b) {
   const auto less = [](Vec3f p, Vec3f q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
   Buffer<Vec3f> sorted = b.positions;
@@ -72,7 +72,7 @@ size_t count_common(const Mesh& a, const Mesh& b) {
       std::ranges::count_if(a.positions, [&](Vec3f p) { return std::ranges::binary_search(sorted, p, less); }));
 }
 
-TEST_P(RedGreenOnRealMeshes, TwoViewsAgreeWhereBothAreFine) {
+TEST_P(RedGreenOnRealMeshes, VerticesOfTwoViewsAreBitIdentical) {
   const Mesh coarse = build_mesh(real_mesh(GetParam()));
   Options options{.levels = 3, .view = view_of(coarse, {0, 0, 1})};
   const Mesh front = refine(coarse, options).mesh;
@@ -85,7 +85,7 @@ TEST_P(RedGreenOnRealMeshes, TwoViewsAgreeWhereBothAreFine) {
   EXPECT_LT(count_common(front, side), front.positions.size());
 }
 
-TEST(RedGreen, AnglesStayLarge) {
+TEST(RedGreen, TransitionFacesKeepAThirdOfTheSmallestAngle) {
   const std::vector<TriangleMesh> meshes{server::mug(), server::wheel(), real_mesh("cgal/pig.off"),
                                          real_mesh("cgal/fandisk.off"), real_mesh("cgal/knot.off")};
   for (const TriangleMesh& triangles : meshes) {
@@ -98,7 +98,7 @@ TEST(RedGreen, AnglesStayLarge) {
   }
 }
 
-TEST(RedGreen, ThreadsGiveTheSameBits) {
+TEST(RedGreen, ResultIsBitIdenticalForAnyThreads) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   const Options options{.levels = 3, .view = view_of(coarse, {0, 0, 1}), .tolerance = 1e-3};
   const TriangleMesh expected = refine(coarse, options).mesh.triangles();

@@ -20,8 +20,8 @@ using proto::Code;
 using proto::Problem;
 using Replies = std::vector<std::string>;
 
-/// A server that gives the replies of a script, one a command, connection after connection. It goes on to the next
-/// connection when the client has closed the one before.
+/// A server that sends scripted replies, one per command, over successive connections. The next connection is accepted
+/// once the client has closed the one before.
 class ScriptedRedis {
  public:
   explicit ScriptedRedis(std::vector<Replies> script) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -38,7 +38,7 @@ class ScriptedRedis {
     });
   }
   ~ScriptedRedis() {
-    ::shutdown(fd_, SHUT_RDWR);  // ends the wait for a connection
+    ::shutdown(fd_, SHUT_RDWR);  // unblocks accept
     thread_.join();
     ::close(fd_);
   }
@@ -48,7 +48,7 @@ class ScriptedRedis {
   [[nodiscard]] RedisAddress address() const {
     return *parse_redis_address("redis://127.0.0.1:" + std::to_string(port_));
   }
-  /// How many connections have been made so far.
+  /// Returns the number of connections so far.
   [[nodiscard]] int connections() const { return connections_; }
 
  private:
@@ -56,7 +56,7 @@ class ScriptedRedis {
     const int client = ::accept(fd_, nullptr, nullptr);
     if (client < 0) return;
     ++connections_;
-    std::array<char, 4096> command{};  // one comes in one piece: it is small, and its reply is waited for
+    std::array<char, 4096> command{};  // a command arrives in one read: it is small, and the client waits for its reply
     for (const std::string& reply : replies) {
       if (::recv(client, command.data(), command.size(), 0) <= 0) break;
       EXPECT_EQ(::send(client, reply.data(), reply.size(), MSG_NOSIGNAL), static_cast<ssize_t>(reply.size()));
@@ -87,16 +87,16 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ErrorsOfTheServer,
                                          "NOAUTH Authentication required.", "MISCONF cannot persist to disk",
                                          "ERR max number of clients reached", "SOMETHING of a later version"));
 
-TEST_P(ErrorsOfTheServer, DropTheConnectionAndAreAskedAgainOnANewOne) {
+TEST_P(ErrorsOfTheServer, CommandIsRepeatedOnANewConnection) {
   const ScriptedRedis redis({{is_absent, error_}, {is_there, is_absent}});
   RedisStore store(redis.address(), 1 << 20, 0);
   EXPECT_FALSE(store.contains("a"));
   EXPECT_TRUE(store.contains("a"));
-  EXPECT_FALSE(store.contains("a"));  // on the new one too
+  EXPECT_FALSE(store.contains("a"));  // on the new connection
   EXPECT_EQ(redis.connections(), 2);
 }
 
-TEST_P(ErrorsOfTheServer, AreAskedAgainOnceOnly) {
+TEST_P(ErrorsOfTheServer, CommandIsRepeatedOnlyOnce) {
   const ScriptedRedis redis({{is_absent, error_}, {error_}, {is_there}});
   RedisStore store(redis.address(), 1 << 20, 0);
   EXPECT_FALSE(store.contains("a"));
@@ -109,7 +109,7 @@ TEST_P(ErrorsOfTheServer, AreAskedAgainOnceOnly) {
   EXPECT_EQ(redis.connections(), 2);
 }
 
-TEST(RedisStore, AReplicaThatRefusesAWriteIsAskedFurtherQuestions) {
+TEST(RedisStore, ReplicaIsReadAfterARefusedWrite) {
   const ScriptedRedis redis({{is_there, "-READONLY replica\r\n"}, {"-READONLY replica\r\n"}, {is_there}});
   RedisStore store(redis.address(), 1 << 20, 0);
   EXPECT_TRUE(store.contains("a"));
@@ -117,7 +117,7 @@ TEST(RedisStore, AReplicaThatRefusesAWriteIsAskedFurtherQuestions) {
   EXPECT_TRUE(store.contains("a"));
 }
 
-TEST(RedisStore, ErrorsOfAKeyKeepTheConnection) {
+TEST(RedisStore, KeyErrorsKeepTheConnection) {
   const std::string mesh = "mesh";
   const ScriptedRedis redis({{"-WRONGTYPE of a list\r\n", "-WRONGTYPE of a list\r\n",
                               "$26\r\n# Memory\r\nused_memory:1000\r\n", "-OOM above maxmemory\r\n", is_there}});

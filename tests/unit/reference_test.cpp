@@ -17,12 +17,12 @@
 #include "tests/support/small_surfaces.h"
 #include "tests/support/two_sided_distance.h"
 
-// The core against the reference implementation, which decides and computes in double precision.
+// The core compared with the reference implementation, which is in double precision.
 
 namespace papilio::test {
 namespace {
 
-/// Shares of the largest coordinate. Single precision rounds by 6e-8, and some levels and sums add up.
+/// Tolerances as shares of the largest coordinate: errors of 6e-8 in single precision add up over levels and sums.
 constexpr double enough_margin = 5e-6, position_rounding = 4e-6;
 
 constexpr uint64_t most_faces = 1500;  ///< of a uniform result
@@ -40,13 +40,13 @@ Faces faces_of(const Mesh& mesh) {
   return faces;
 }
 
-/// Finds the vertices of a mesh by their places.
+/// Lookup of the vertices of a mesh by position.
 class VertexFinder {
  public:
   explicit VertexFinder(const Mesh& mesh) : mesh_(mesh) {
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) by_x_.emplace(mesh.positions[v].x, v);
   }
-  /// Returns the nearest vertex within a distance; V where there is none.
+  /// Returns the nearest vertex within a distance; V if there is none.
   [[nodiscard]] uint32_t find(Vec3d p, double most) const {
     auto nearest = static_cast<uint32_t>(mesh_.positions.size());
     for (auto at = by_x_.lower_bound(p.x - most); at != by_x_.end() && at->first <= p.x + most; ++at) {
@@ -80,7 +80,7 @@ std::string text_of(const Options& options) {
 
 double rounding_in(const Box& box) { return position_rounding * box.largest_coordinate(); }
 
-/// Whether the mesh has the faces of the reference, their corners within rounding.
+/// Returns whether the mesh has the faces of the reference, with corners equal up to rounding.
 bool has_faces(const Mesh& mesh, const reference::Outcome& expected, const Box& box) {
   const VertexFinder vertices(mesh);
   const auto find = [&](Vec3d p) { return vertices.find(p, rounding_in(box)); };
@@ -89,19 +89,19 @@ bool has_faces(const Mesh& mesh, const reference::Outcome& expected, const Box& 
   return mesh.topology.face_count() == expected.triangles.size() && faces_of(mesh) == faces;
 }
 
-/// Whether the core explores and splits more than the reference: until all is within a tolerance.
+/// Returns whether the core splits more than the reference, until the result is within a tolerance.
 bool is_repaired(const Options& options) {
   return options.scheme == Scheme::red_green && !options.view && options.flatness.empty() &&
          (options.tolerance > 0 || options.max_faces > 0);
 }
 
-/// Whether it does so until all that a view shows is near enough.
+/// Returns whether the core splits more than the reference, until the visible result is within the pixel error.
 bool is_verified(const Options& options) {
   return options.scheme == Scheme::red_green && options.view && options.flatness.empty() &&
          options.view->error_pixels > 0 && options.view->edge_pixels == 0 && options.view->lights.empty();
 }
 
-/// Whether the mesh has the vertices of the reference, within rounding.
+/// Returns whether the mesh has the vertices of the reference up to rounding.
 bool has_vertices(const Mesh& mesh, const reference::Outcome& expected, const Box& box) {
   const VertexFinder vertices(mesh);
   for (const auto& triangle : expected.triangles)
@@ -110,7 +110,7 @@ bool has_vertices(const Mesh& mesh, const reference::Outcome& expected, const Bo
   return true;
 }
 
-/// The reference's choice is where the repair begins; what ends it is measured.
+/// Checks a result with a tolerance: the repair starts from the reference's splits, and its distance is measured.
 void expect_repaired(const Result& result, const Mesh& coarse, const Options& options,
                      const reference::Outcome& expected) {
   const Box box = bounding_box(coarse.positions);
@@ -129,7 +129,7 @@ void expect_repaired(const Result& result, const Mesh& coarse, const Options& op
   EXPECT_LE(distance, sampling * options.tolerance * box.diagonal() + rounding_in(box));
 }
 
-/// What was verified is measured.
+/// Measures the distance of a verified result.
 void expect_verified(const Mesh& coarse, const Options& options) {
   const Result result = papilio::refine(coarse, options);
   Options uniform = options;
@@ -166,7 +166,10 @@ void expect_same(const Result& result, const reference::Outcome& expected, const
 class Comparison {
  public:
   void compare(const Mesh& mesh, const Options& options) {
-    const reference::Outcome expected = reference::refine(mesh, options);
+    Options by_error = options;
+    constexpr double share_chosen_by_error = 0.88;  // of the tolerance, in the core
+    if (is_repaired(options)) by_error.tolerance *= share_chosen_by_error;
+    const reference::Outcome expected = reference::refine(mesh, by_error);
     ++requests_;
     if (expected.is_disputed || !(expected.margin >= enough_margin)) return;
     SCOPED_TRACE(text_of(options));
@@ -185,7 +188,7 @@ class Comparison {
     const uint64_t made = expected.triangles.size();
     in_part_ += made > faces && made < faces << 2U * options.levels ? 1 : 0;
   }
-  /// Expects that single precision decides two thirds of the requests, and that many refine the mesh in part.
+  /// Expects that two thirds of the requests are decisive in single precision and that many refine part of the mesh.
   void expect_enough() const {
     EXPECT_GT(3 * compared_, 2 * requests_) << compared_ << " of " << requests_;
     EXPECT_GT(4 * in_part_, compared_) << in_part_ << " of " << compared_;
@@ -213,22 +216,22 @@ std::vector<TriangleMesh> jittered_meshes(std::mt19937& random, int count) {
   return meshes;
 }
 
-TEST(Reference, AgreesOnRandomMeshes) {
+TEST(Reference, RandomMeshesAreEqual) {
   std::mt19937 random(1);
   compare_all(random, jittered_meshes(random, 700), 4);
 }
 
-TEST(Reference, AgreesOnOtherRandomMeshes) {
+TEST(Reference, OtherRandomMeshesAreEqual) {
   std::mt19937 random(2);
   compare_all(random, jittered_meshes(random, 700), 4);
 }
 
-TEST(Reference, AgreesOnSmallSurfacesWithAnyHolesAndPinchedVertices) {
+TEST(Reference, SmallSurfacesWithHolesAndPinchedVerticesAreEqual) {
   std::mt19937 random(3);
   compare_all(random, small_surfaces(5), 30);
 }
 
-/// Three sheets with an edge in common.
+/// Three sheets that share an edge.
 TriangleMesh book() {
   return {{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 0}, {1, 0, 2}, {0, 1, 1}, {-1, -1, 1}},
           {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {0, 1, 5}, {1, 2, 5}, {1, 0, 6}, {2, 1, 6}}};
@@ -237,21 +240,21 @@ TriangleMesh book() {
 /// Two octahedra that touch at a vertex.
 TriangleMesh pinched() { return join(octahedron(), octahedron(), 2); }
 
-TEST(Reference, AgreesOnFixedMeshes) {
+TEST(Reference, FixedMeshesAreEqual) {
   std::mt19937 random(4);
   std::vector<TriangleMesh> meshes;
   for (const TriangleMesh& mesh : {icosahedron(), grid(4, 3), box({1, 2, 1}, {1, 2, 1}), book(), pinched()})
     for (double share : {0.01, 0.02, 0.03, 0.04}) {
       meshes.push_back(mesh);
-      // Moved by a function of the position, so that points in one place stay together.
+      // Moved by a function of the position, so that equal points stay equal.
       for (Vec3f& p : meshes.back().positions)
         p += to_float(share * Vec3d{std::sin(7 * p.y + 3 * p.z), std::sin(5 * p.z + 2 * p.x), std::sin(6 * p.x + p.y)});
     }
   compare_all(random, meshes, 40);
 }
 
-// Known faults of the core, where the reference is right. Each test fails once its fault is mended: then it is turned
-// into one that expects agreement, and its part of `Outcome::is_disputed` goes.
+// Known faults of the core. Each test fails once its fault is fixed. Then expect agreement and remove its case from
+// `Outcome::is_disputed`.
 
 /// Returns the number of a point of a grid.
 uint32_t point_at(const TriangleMesh& mesh, float x, float y) {
@@ -277,13 +280,13 @@ void expect_known_difference(const TriangleMesh& triangles, const Options& optio
   EXPECT_FALSE(has_faces(papilio::refine(mesh, options).mesh, expected, bounding_box(mesh.positions)));
 }
 
-TEST(Reference, CoreTakesTheKRuleAtADartOfSixFaces) {
+TEST(Reference, CoreUsesTheKRuleAtADartOfSixFaces) {
   expect_known_difference(sheet_of_two_folds(), {.levels = 1, .tension = Tension::off, .crease_angle = 55});
 }
 
 TEST(Reference, CoreFindsNoDartAtAPinchedVertex) {
   TriangleMesh mesh = sheet_of_two_folds();
-  // With the edge from (3, 3) to (2, 2) flipped the fold ends at (2, 3), which has seven faces.
+  // After the flip of the edge from (3, 3) to (2, 2) the fold ends at (2, 3), which has seven faces.
   const uint32_t a = point_at(mesh, 3, 3);
   const uint32_t b = point_at(mesh, 2, 2);
   const uint32_t end = point_at(mesh, 2, 3);
@@ -291,7 +294,7 @@ TEST(Reference, CoreFindsNoDartAtAPinchedVertex) {
            [&](const Triangle& t) { return std::ranges::count(t, a) == 1 && std::ranges::count(t, b) == 1; });
   mesh.triangles.push_back({b, point_at(mesh, 3, 2), end});
   mesh.triangles.push_back({a, end, point_at(mesh, 3, 2)});
-  // A face that touches the sheet there and nowhere else.
+  // A face that touches the sheet only at this vertex.
   const auto points = static_cast<uint32_t>(mesh.positions.size());
   mesh.positions.push_back({2, 3, 5});
   mesh.positions.push_back({1, 3, 5});
@@ -299,8 +302,8 @@ TEST(Reference, CoreFindsNoDartAtAPinchedVertex) {
   expect_known_difference(mesh, {.levels = 1, .tension = Tension::off, .crease_angle = 55});
 }
 
-TEST(Reference, CoreLeavesASliverAcrossASharedEdge) {
-  // Two faces wound against each other: dividing one splits the edge between them, and makes slivers of the other.
+TEST(Reference, CoreKeepsASliverAcrossASharedEdge) {
+  // Two faces of opposite winding: dividing one splits their edge and makes slivers of the other.
   const TriangleMesh mesh{
       {{1.75F, 0.5F, 0.75F}, {2.875F, 0.125F, 0}, {1.625F, 2.75F, 1.625F}, {-0.125F, -0.875F, 0.125F}},
       {{0, 1, 2}, {2, 0, 3}}};

@@ -27,8 +27,8 @@ Fault fault_of(const TriangleMesh& mesh, const Options& options, const Hooks& ho
   return Fault::no_faces;
 }
 
-/// Largest distance from a point of `a` to its nearest of `b`, through a grid of cells of size `cell`;
-/// infinite beyond it.
+/// Returns the largest distance from a point of `a` to the nearest point of `b`, found in a grid of cells of size
+/// `cell`; infinity if the neighbouring cells are empty.
 double one_sided_distance(const Buffer<Vec3d>& a, const Buffer<Vec3d>& b, double cell) {
   using Cell = std::array<int64_t, 3>;
   const auto cell_of = [&](Vec3d p) {
@@ -65,9 +65,9 @@ void expect_equal_to_openmesh(const TriangleMesh& mesh, int most_levels) {
   }
 }
 
-TEST(Refine, EqualsOpenMeshOnAClosedRealMesh) { expect_equal_to_openmesh(real_mesh("elephant2000.obj"), 3); }
-TEST(Refine, EqualsOpenMeshOnTheBunny) { expect_equal_to_openmesh(real_mesh("bunny600.obj"), 3); }
-TEST(Refine, EqualsOpenMeshOnShapes) {
+TEST(Refine, ClosedRealMeshEqualsOpenMesh) { expect_equal_to_openmesh(real_mesh("elephant2000.obj"), 3); }
+TEST(Refine, BunnyEqualsOpenMesh) { expect_equal_to_openmesh(real_mesh("bunny600.obj"), 3); }
+TEST(Refine, ShapesEqualOpenMesh) {
   expect_equal_to_openmesh(tetrahedron(), 3);
   expect_equal_to_openmesh(icosahedron(), 3);
   expect_equal_to_openmesh(cube(), 3);
@@ -75,7 +75,7 @@ TEST(Refine, EqualsOpenMeshOnShapes) {
   expect_equal_to_openmesh(bipyramid(12), 3);
 }
 
-TEST(Refine, EdgesMayBeLeftOut) {
+TEST(Refine, ResultWithoutEdgesHasEqualFaces) {
   const View view{.eye = {0, 0, 30}, .edge_pixels = 0, .error_pixels = 0.01};
   for (const Options& way :
        {Options{.levels = 2}, Options{.levels = 2, .w = 0.05}, Options{.levels = 0},
@@ -97,7 +97,7 @@ TEST(Refine, EdgesMayBeLeftOut) {
   }
 }
 
-TEST(Refine, ThreadsChangeNoBit) {
+TEST(Refine, ResultIsBitIdenticalForAnyThreads) {
   const View view{.eye = {0, 0, 30}, .edge_pixels = 0, .error_pixels = 1e-4};
   size_t large = 0;
   for (const TriangleMesh& mesh : {grid(30, 40), join(box({9, 9, 9}, {3, 2, 1}), torus(50, 20), 20)})
@@ -119,7 +119,7 @@ TEST(Refine, ThreadsChangeNoBit) {
   EXPECT_GT(large, 8U);
 }
 
-TEST(Refine, UniformLevelHasFourToTheLevelTimesTheFaces) {
+TEST(Refine, EachUniformLevelQuadruplesTheFaces) {
   const TriangleMesh bunny = real_mesh("bunny600.obj");
   for (int level = 0; level <= 4; ++level) {
     Options options;
@@ -132,7 +132,7 @@ TEST(Refine, UniformLevelHasFourToTheLevelTimesTheFaces) {
   }
 }
 
-TEST(Refine, AdaptiveBunnySavesFacesAndAViewSavesMore) {
+TEST(Refine, AdaptiveAndViewResultsHaveFewerFaces) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   Options options;
   options.flatness = {0.8, 0.9};
@@ -187,7 +187,7 @@ TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
     const EdgeCensus before = count_edges(coarse.triangles());
     int last_level = -1;
     const Hooks hooks{.on_level = [&](const Level& level) {
-      ASSERT_GT(level.level, last_level);  // levels without targets are left out
+      ASSERT_GT(level.level, last_level);  // levels without targets are not reported
       last_level = level.level;
       ASSERT_TRUE(is_consistent(level.mesh)) << "seed " << seed << " level " << level.level;
       ASSERT_EQ(level.mesh.topology.euler_characteristic(), coarse.topology.euler_characteristic());
@@ -209,7 +209,7 @@ TEST(Refine, RandomMeshesAndOptionsKeepEveryInvariant) {
   }
 }
 
-TEST(Refine, NonManifoldAndMisorientedMeshesStayWithoutCracks) {
+TEST(Refine, NonManifoldAndMisorientedMeshesHaveNoCracks) {
   TriangleMesh book{{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 0}, {1, 0, 2}, {0, 1, 1}, {-1, -1, 1}},
                     {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {0, 1, 5}, {1, 2, 5}, {1, 0, 6}, {2, 1, 6}}};
   const Result result = refine(build_mesh(book), {.levels = 3});
@@ -217,7 +217,7 @@ TEST(Refine, NonManifoldAndMisorientedMeshesStayWithoutCracks) {
   EXPECT_EQ(count_edges(result.mesh.triangles()).irregular, 16U);  // two shared edges, each in eight
 }
 
-TEST(Refine, LevelsWithoutTargetsAreLeftOutOfTheCallbacks) {
+TEST(Refine, LevelsWithoutTargetsAreNotReported) {
   std::vector<int> levels;
   const Result result =
       refine(build_mesh(icosahedron()), {.levels = 3, .scheme = Scheme::in_place, .flatness = {-1, 1, -1}},
@@ -231,7 +231,7 @@ TEST(Refine, LevelsWithoutTargetsAreLeftOutOfTheCallbacks) {
 }
 
 TEST(Refine, MoebiusStripIsRefinedWithoutACrack) {
-  // Seven quadrangles in a ring with half a turn: no orientation fits, so some edges are wound against each other.
+  // Seven quadrangles in a ring with half a turn: non-orientable, so some edges are misoriented.
   TriangleMesh strip;
   constexpr uint32_t n = 7;
   for (uint32_t i = 0; i < n; ++i) {
@@ -278,43 +278,43 @@ TEST(Refine, TriangleSoupsKeepTheirInvariants) {
   }
 }
 
-TEST(Refine, StopsWhenNothingIsLeftToSplit) {
+TEST(Refine, RefinementConvergesOnceNothingIsSplit) {
   Options options;
   options.levels = 10;
   options.flatness = {0.99};
   const Result result = refine(build_mesh(grid(2, 2)), {.levels = 10, .flatness = {-1}});
   EXPECT_EQ(result.stop_reason, StopReason::converged);
   EXPECT_EQ(result.levels, 0);
-  const Result sphere = refine(build_mesh(icosahedron()), options);  // ever flatter: converges before ten levels
+  const Result sphere = refine(build_mesh(icosahedron()), options);  // each level is flatter
   EXPECT_EQ(sphere.stop_reason, StopReason::converged);
   EXPECT_GT(sphere.levels, 1);
 }
 
-TEST(Refine, ThresholdsAreOneALevelAndTheLastRepeats) {
+TEST(Refine, LastThresholdAppliesToFurtherLevels) {
   const Mesh mesh = build_mesh(icosahedron());
   const auto faces = [&](std::vector<double> flatness, int levels) {
     return refine(mesh, {.levels = levels, .scheme = Scheme::in_place, .flatness = std::move(flatness)})
         .mesh.topology.face_count();
   };
   EXPECT_EQ(faces({-1, 1}, 1), 20U);
-  EXPECT_EQ(faces({-1, 1}, 2), 80U);  // nothing to do at level 1 does not end it: level 2 is finer
+  EXPECT_EQ(faces({-1, 1}, 2), 80U);  // a level without targets does not end refinement: level 2 is finer
   EXPECT_EQ(faces({-1, -1, 1, -1}, 4), 80U);
   EXPECT_EQ(faces({1, 1, 1}, 2), 320U);
   EXPECT_EQ(faces({1}, 3), faces({1, 1, 1}, 3));
 }
 
-TEST(Refine, LimitsAreHeldBeforeTheWork) {
+TEST(Refine, FaceLimitRefusesBeforeTheLevelIsBuilt) {
   Options options;
   options.levels = 10;
   options.face_limit = 1000;
   EXPECT_EQ(fault_of(icosahedron(), options), Fault::result_too_large);
-  options.flatness = {1};  // not known beforehand: found out level by level
+  options.flatness = {1};  // not predictable: checked level by level
   int levels = 0;
   EXPECT_EQ(fault_of(icosahedron(), options, {.on_level = [&](const Level&) { ++levels; }}), Fault::result_too_large);
   EXPECT_EQ(levels, 3);  // 20, 80, 320; 1280 is refused
 }
 
-TEST(Refine, SimplifiesWhatTheViewDoesNotShow) {
+TEST(Refine, HiddenFacesAreSimplified) {
   const Mesh bunny = build_mesh(real_mesh("bunny.obj"));
   const Box box = bounding_box(bunny.positions);
   View view;
@@ -337,14 +337,14 @@ TEST(Refine, SimplifiesWhatTheViewDoesNotShow) {
   EXPECT_EQ(fault_of(icosahedron(), {.simplify_hidden = true}), Fault::bad_option);  // nothing is hidden without a view
 }
 
-TEST(Refine, CancelsWithinOneStep) {
+TEST(Refine, CancellationStopsWithinOneStep) {
   int asked = 0;
   const Hooks hooks{.cancelled = [&] { return ++asked == 3; }};
   EXPECT_EQ(fault_of(icosahedron(), {.levels = 8}, hooks), Fault::cancelled);
   EXPECT_EQ(asked, 3);
 }
 
-TEST(Refine, CancelsBetweenAttemptsToSimplify) {
+TEST(Refine, CancellationStopsSimplification) {
   const Mesh fine = refine(build_mesh(torus(24, 12)), {.levels = 2}).mesh;
   Options options{.levels = 0, .view = View{.eye = {0, 0, 5}}};
   int asked = 0;
@@ -359,7 +359,7 @@ TEST(Refine, CancelsBetweenAttemptsToSimplify) {
   EXPECT_THROW((void)refine(fine, options, {.cancelled = [&] { return --left == 0; }}), Error);
 }
 
-TEST(Refine, RefusesOptionsOutOfRange) {
+TEST(Refine, OptionsOutOfRangeAreRefused) {
   EXPECT_EQ(fault_of(icosahedron(), {.levels = -1}), Fault::bad_option);
   EXPECT_EQ(fault_of(icosahedron(), {.levels = 11}), Fault::bad_option);
   EXPECT_EQ(fault_of(icosahedron(), {.flatness = {0.5, 1.5}}), Fault::bad_option);

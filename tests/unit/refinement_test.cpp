@@ -24,7 +24,7 @@ const std::string& coarse() {
   return bytes;
 }
 
-TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheResult) {
+TEST(Refinement, LevelsAreReportedCoarseFirstUpToTheResult) {
   const Parameters parameters = parse_query({{"levels", "3"}});
   std::vector<EncodedLevel> levels;
   Refinement refinement(coarse(), parameters, {});
@@ -41,7 +41,7 @@ TEST(Refinement, LevelsComeCoarseFirstAndTheLastIsTheResult) {
   EXPECT_EQ(Refinement(coarse(), parameters, {}).run().bytes, last.bytes);
 }
 
-TEST(Refinement, LevelIsHandedOverWhileTheNextIsRefined) {
+TEST(Refinement, LevelIsReportedWhileTheNextIsRefined) {
   std::atomic<int> steps = 0;
   std::vector<int> levels;
   const auto run = [&](int threads, const std::function<void()>& at_first) {

@@ -14,7 +14,7 @@ std::vector<uint32_t> one_by_one(const Buffer<uint8_t>& marks) {
   return numbers;
 }
 
-TEST(Marked, AreTheNumbersHoweverManyAndHoweverDense) {
+TEST(Marked, MarkedNumbersAreFoundAtAnyDensity) {
   std::mt19937 random(3);
   for (const size_t size : {0, 1, 3, 4, 5, 63, 64, 65, 127, 1000, 4099})
     for (const double share : {0.0, 0.001, 0.05, 0.07, 0.5, 0.97, 1.0})

@@ -17,8 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Whatever listens on a loopback port besides a Papilio server: answers one request with the bytes it was given, and
-/// closes the connection.
+/// A server on a loopback port that answers one request with the given bytes and closes the connection.
 class Stranger {
  public:
   explicit Stranger(std::string answer) : answer_(std::move(answer)), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -34,7 +33,7 @@ class Stranger {
     thread_ = std::thread([this] { answer_one(); });
   }
   ~Stranger() {
-    ::shutdown(listener_, SHUT_RDWR);  // wakes accept, where nobody came
+    ::shutdown(listener_, SHUT_RDWR);  // unblocks accept
     thread_.join();
     ::close(listener_);
   }
@@ -62,7 +61,7 @@ class Stranger {
   std::thread thread_;
 };
 
-/// What a call throws.
+/// Returns the exception of a call.
 template <class Call>
 ServerError server_error_of(Call call) {
   try {
@@ -74,13 +73,13 @@ ServerError server_error_of(Call call) {
   return {0, "", ""};
 }
 
-/// What `refine` says of an answer.
+/// Returns the error of `refine` for an answer.
 ServerError refinement_refused(const std::string& answer) {
   const Stranger stranger(answer);
   return server_error_of([&] { (void)Remote(stranger.url()).refine("a mesh", {}); });
 }
 
-/// The real service on a free loopback port, and a client of it.
+/// The service on a free loopback port, and a client.
 class RemoteTest : public ::testing::Test {
  protected:
   static server::HttpOptions options() {
@@ -113,7 +112,7 @@ class RemoteTest : public ::testing::Test {
   std::thread thread_;
 };
 
-TEST_F(RemoteTest, RefinesToTheSameBytesAndStatistics) {
+TEST_F(RemoteTest, RemoteResultEqualsTheLocal) {
   const proto::Parameters parameters = proto::parse_query({{"levels", "2"}});
   const proto::EncodedLevel there = Remote(url_ + "/").refine(coarse_, parameters);
   const proto::EncodedLevel here = proto::Refinement(coarse_, parameters, {}).run();
@@ -124,27 +123,27 @@ TEST_F(RemoteTest, RefinesToTheSameBytesAndStatistics) {
   EXPECT_GT(there.statistics.times.encode, 0);
 }
 
-TEST_F(RemoteTest, LevelsComeOneByOneAndTheLastIsTheAnswer) {
+TEST_F(RemoteTest, LevelsAreReceivedInOrderUpToTheResult) {
   const proto::Parameters parameters = proto::parse_query({{"levels", "2"}});
-  std::vector<proto::Part> parts;
-  Remote(url_).refine_levels(coarse_, parameters, [&](const proto::Part& part) { parts.push_back(part); });
+  std::vector<proto::BodyPart> parts;
+  Remote(url_).refine_levels(coarse_, parameters, [&](const proto::BodyPart& part) { parts.push_back(part); });
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_EQ(parts[0].header("Papilio-Faces"), "20");
   EXPECT_EQ(parts[2].body, Remote(url_).refine(coarse_, parameters).bytes);
   EXPECT_EQ(parts[3].header("Content-Type"), "application/json");
 }
 
-TEST_F(RemoteTest, RefusalsComeWithStatusCodeAndWords) {
+TEST_F(RemoteTest, RefusalsHaveStatusCodeAndMessage) {
   const auto refusal = [](auto call) { return server_error_of(call); };
-  const auto ignore = [](const proto::Part&) {};
+  const auto ignore = [](const proto::BodyPart&) {};
   const proto::Parameters large = proto::parse_query({{"levels", "6"}});
   EXPECT_EQ(refusal([&] { (void)Remote(url_).refine(coarse_, large); }).status(), 507);
   EXPECT_EQ(refusal([&] { Remote(url_).refine_levels(coarse_, large, ignore); }).code(), "result_too_large");
-  // Found out only once the stream has begun: its status is 200, the problem its last part.
+  // Detected after the stream has begun: the status is 200 and the last part is the problem.
   const proto::Parameters later = proto::parse_query({{"levels", "6"}, {"flatness", "1"}});
   int parts = 0;
   const ServerError midway =
-      refusal([&] { Remote(url_).refine_levels(coarse_, later, [&](const proto::Part&) { ++parts; }); });
+      refusal([&] { Remote(url_).refine_levels(coarse_, later, [&](const proto::BodyPart&) { ++parts; }); });
   EXPECT_EQ(midway.code(), "result_too_large");
   EXPECT_EQ(parts, 4);  // 20, 80, 320 and 1280 faces
   EXPECT_EQ(refusal([&] { (void)Remote(url_).refine("solid", large); }).code(), "mesh_not_draco");
@@ -155,12 +154,12 @@ TEST_F(RemoteTest, RefusalsComeWithStatusCodeAndWords) {
 const std::string ok = "HTTP/1.1 200 OK\r\n";
 const std::string draco_type = "Content-Type: application/x-draco\r\n";
 
-/// The last header field, and an empty line.
+/// Returns the last header field and an empty line.
 std::string length(size_t bytes) { return "Content-Length: " + std::to_string(bytes) + "\r\n\r\n"; }
 
 std::string icosahedron() { return test::encode_with_draco(test::icosahedron(), test::Method::edgebreaker); }
 
-TEST(Remote, AnAnswerThatIsNoMeshIsRefused) {
+TEST(Remote, AnswerWithoutAMeshIsRefused) {
   EXPECT_THAT(refinement_refused(ok + "Content-Type: text/html; charset=utf-8\r\n" + length(5) + "hello").what(),
               HasSubstr("answered with \"text/html\", not with application/x-draco. Is papilio-server running there"));
   EXPECT_THAT(refinement_refused(ok + length(5) + "hello").what(), HasSubstr("no Content-Type"));
@@ -176,7 +175,7 @@ TEST(Remote, AnAnswerThatIsNoMeshIsRefused) {
               HasSubstr("20 faces, but Papilio-Faces is \"80\""));
 }
 
-TEST(Remote, AnAnswerCutShortIsRefusedWhereverItEnds) {
+TEST(Remote, TruncatedAnswerIsRefusedAtAnySize) {
   const std::string mesh = icosahedron();
   const std::string head = ok + "Content-Type: Application/X-Draco;a=b\r\nPapilio-Faces: 20\r\n";
   const Stranger whole(head + length(mesh.size()) + mesh);
@@ -194,7 +193,7 @@ TEST(Remote, AnAnswerCutShortIsRefusedWhereverItEnds) {
                 HasSubstr("no whole Draco mesh"));
 }
 
-TEST(Remote, WordsOfAServerComeWithoutControlCharacters) {
+TEST(Remote, ServersMessagesHaveNoControlCharacters) {
   const std::string escape = "\x1b[2J\x1b]0;title\x07";
   const std::string problem = R"({"code": "\u001b[31m", "detail": "no\u001b[2J\nway\u202e", "request_id": "\u009b1"})";
   for (const std::string& answer :
@@ -209,7 +208,7 @@ TEST(Remote, WordsOfAServerComeWithoutControlCharacters) {
                "no\\x1b[2J\\x0away\\u202e (request \\x9b1)");
 }
 
-TEST(Remote, AnAnswerWithoutEndIsNotReadToItsEnd) {
+TEST(Remote, EndlessAnswerIsReadUpToTheLimit) {
   const std::string endless = "HTTP/1.1 500 No\r\nContent-Length: 900000000000\r\n\r\n" + std::string(100'000, 'x');
   EXPECT_THAT(refinement_refused(endless).what(), HasSubstr("more than 65536 bytes"));
   const Stranger stranger(endless);
@@ -217,7 +216,7 @@ TEST(Remote, AnAnswerWithoutEndIsNotReadToItsEnd) {
               HasSubstr("more than 65536 bytes"));
 }
 
-TEST(Remote, HealthIsTheWordOfAPapilioServerAlone) {
+TEST(Remote, HealthRequiresAPapilioServer) {
   for (const std::string body :
        {R"({"status": "alive"})", R"({"status": "\u001b[2Jalive"})", R"({"status": 1})", "alive", ""}) {
     const Stranger stranger(ok + "Content-Type: application/json\r\n" + length(body.size()) + body);

@@ -24,7 +24,7 @@ ResultCache::Result result(const std::string& bytes) {
   return std::make_shared<const proto::EncodedLevel>(proto::EncodedLevel{bytes, {}});
 }
 
-TEST(ResultCache, MakesOnceAndKeeps) {
+TEST(ResultCache, ResultIsComputedOnceAndCached) {
   ResultCache cache(enough, 8);
   int made = 0;
   const auto make = [&](const ResultCache::Question&) {
@@ -39,14 +39,14 @@ TEST(ResultCache, MakesOnceAndKeeps) {
   EXPECT_EQ(made, 2);
 }
 
-TEST(ResultCache, WithoutABudgetNothingIsKept) {
+TEST(ResultCache, CacheWithoutABudgetStoresNothing) {
   ResultCache cache(0, 8);
   const auto make = [&](const ResultCache::Question&) { return result("bytes"); };
   EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
   EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
 }
 
-TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
+TEST(ResultCache, ConcurrentRequestsShareOneComputation) {
   ResultCache cache(enough, 8);
   constexpr int others = 5;
   std::atomic<int> made = 0;
@@ -57,7 +57,7 @@ TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
     ++made;
     begun.count_down();
     while (asked < others) std::this_thread::yield();
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // they are at the door: let them in
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // lets them begin to wait
     return result("bytes");
   };
   std::jthread maker([&] { EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made); });
@@ -76,7 +76,7 @@ TEST(ResultCache, WhoeverAsksMeanwhileWaitsForTheOne) {
   EXPECT_GT(shared, 0);
 }
 
-TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
+TEST(ResultCache, ProblemReachesAllWaitersAndIsNotCached) {
   ResultCache cache(enough, 8);
   const auto fail = [](const ResultCache::Question&) -> ResultCache::Result {
     throw Problem(Code::result_too_large, "Ask for fewer levels, please.");
@@ -86,9 +86,8 @@ TEST(ResultCache, AProblemReachesAllAndIsNotKept) {
   EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::made);
 }
 
-/// The client of the one that makes the result goes away: the work stops when nobody waits, and goes on when somebody
-/// does.
-TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
+/// The client of the computing request leaves: the computation stops without waiters and continues with waiters.
+TEST(ResultCache, ComputationIsAbandonedOnlyWithoutWaiters) {
   ResultCache cache(enough, 8);
   const auto give_up = [](const ResultCache::Question& abandoned) -> ResultCache::Result {
     if (abandoned()) throw Problem(Code::cancelled, "The client went away.");
@@ -100,7 +99,7 @@ TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
   std::atomic<bool> joined = false;
   const auto wait_for_company = [&](const ResultCache::Question& abandoned) {
     begun.count_down();
-    while (abandoned()) std::this_thread::yield();  // until somebody waits
+    while (abandoned()) std::this_thread::yield();  // until a request waits
     return result("for the other");
   };
   std::jthread leaver([&] { (void)cache.get_or_make("b", wait_for_company, [] { return true; }); });
@@ -110,7 +109,7 @@ TEST(ResultCache, IsAbandonedOnlyWhenNobodyWaits) {
   EXPECT_EQ(answer.result->bytes, "for the other");
 }
 
-TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
+TEST(ResultCache, WaiterOfALeavingClientIsCancelled) {
   ResultCache cache(enough, 8);
   std::latch begun(1);
   std::latch end(1);
@@ -133,7 +132,7 @@ TEST(ResultCache, AWaiterWhoseClientGoesGivesUp) {
   end.count_down();
 }
 
-TEST(ResultCache, OnlySoManyMayWait) {
+TEST(ResultCache, WaitersAreBounded) {
   ResultCache cache(enough, 1);
   std::latch begun(1);
   std::latch end(1);
@@ -147,14 +146,14 @@ TEST(ResultCache, OnlySoManyMayWait) {
   std::atomic<bool> asked = false;
   std::jthread waiter(
       [&] { EXPECT_EQ(cache.get_or_make("a", make, [&] { return !(asked = true); }).source, Source::shared); });
-  while (!asked) std::this_thread::yield();  // its client is asked for while it waits
+  while (!asked) std::this_thread::yield();  // its client is polled while it waits
   EXPECT_THROW((void)cache.get_or_make("a", make, never_leaves), Problem);
   end.count_down();
   waiter.join();
   EXPECT_EQ(cache.get_or_make("a", make, never_leaves).source, Source::kept);
 }
 
-TEST(ResultCache, WhatLandsBetweenTwoLooksIsNotMadeAgain) {
+TEST(ResultCache, ResultCachedMeanwhileIsNotComputedAgain) {
   ResultCache cache(uint64_t{64} << 20, 8);
   constexpr int results = 20000;
   std::atomic<int> made = 0;
@@ -174,7 +173,7 @@ TEST(ResultCache, WhatLandsBetweenTwoLooksIsNotMadeAgain) {
   EXPECT_EQ(made, results);
 }
 
-TEST(ResultCache, WhenTheMakerGivesUpAWaiterMakesIt) {
+TEST(ResultCache, WaiterComputesAfterTheFirstRequestIsCancelled) {
   ResultCache cache(enough, 8);
   std::latch begun(1);
   std::atomic<bool> waits = false;

@@ -38,7 +38,7 @@ TEST_F(RoutesTest, SegmentsInBracesStandForAnyText) {
     EXPECT_EQ(pattern(path), "none") << path;
 }
 
-TEST_F(RoutesTest, TheBracesThemselvesAreText) {
+TEST_F(RoutesTest, BracesInAPathAreLiteral) {
   EXPECT_EQ(pattern("/a/{id}"), "/a/{id}");
   EXPECT_EQ(routes_.find("GET", "/a/{id}").parameters, (Fields{{"id", "{id}"}}));
 }
@@ -50,13 +50,13 @@ TEST_F(RoutesTest, AllowedListsEachPathsMethods) {
   EXPECT_EQ(routes_.find("OPTIONS", "/a/17").route->options.access, Access::open);
 }
 
-TEST(ByteBudget, IsSharedAndGivenBack) {
+TEST(ByteBudget, SharesAreBoundedAndReturned) {
   ByteBudget budget(100);
   {
     ByteBudget::Share one(budget);
     ByteBudget::Share two(budget);
     EXPECT_TRUE(one.grow_to(60));
-    EXPECT_TRUE(one.grow_to(40)) << "never shrinks";
+    EXPECT_TRUE(one.grow_to(40)) << "a smaller size is accepted";
     EXPECT_FALSE(two.grow_to(41));
     EXPECT_TRUE(two.grow_to(40));
     EXPECT_FALSE(one.grow_to(61));

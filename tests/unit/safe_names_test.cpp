@@ -29,7 +29,7 @@ TEST(SafeNames, MaterialNamesFitOnALine) {
   EXPECT_EQ(safe_material_name(""), "");
 }
 
-TEST(SafeNames, NamesAreNumberedWhereTheyAreTaken) {
+TEST(SafeNames, TakenNamesAreNumbered) {
   UniqueNames files(UniqueNames::Kind::file);
   EXPECT_EQ(files.add("a", ".png"), "a.png");
   EXPECT_EQ(files.add("A", ".png"), "A_2.png");

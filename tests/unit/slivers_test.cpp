@@ -16,7 +16,7 @@
 #include "tests/support/invariants.h"
 #include "tests/support/shapes.h"
 
-// Slivers of an original, as isosurfaces have them: removed before it is simplified.
+// Removal of slivers, as isosurfaces have them, before an original is simplified.
 
 namespace papilio {
 namespace {
@@ -26,7 +26,7 @@ uint32_t add_point(TriangleMesh& mesh, Vec3f place) {
   return static_cast<uint32_t>(mesh.positions.size() - 1);
 }
 
-/// Puts a tiny triangle beside the first corner of every `period`-th face, and a flat one at its opposite side.
+/// Inserts a tiny triangle at the first corner of every `period`-th face and a flat one at its opposite side.
 TriangleMesh with_slivers(const TriangleMesh& mesh, uint32_t period, float size) {
   TriangleMesh made = mesh;
   made.triangles.clear();
@@ -49,7 +49,7 @@ TriangleMesh with_slivers(const TriangleMesh& mesh, uint32_t period, float size)
   return made;
 }
 
-/// Shortest edge and least height of a face.
+/// Returns the smallest edge length or height of all faces.
 double least_size(const TriangleMesh& mesh) {
   double least = 1e9;
   for (const Triangle& t : mesh.triangles) {
@@ -61,12 +61,12 @@ double least_size(const TriangleMesh& mesh) {
   return least;
 }
 
-TEST(Slivers, ARegularMeshStaysAsItIs) {
+TEST(Slivers, RegularMeshIsUnchanged) {
   for (const TriangleMesh& mesh : {test::bumpy_sphere(3), test::torus(60, 30), test::grid(9, 7)})
     EXPECT_EQ(remove_slivers(build_mesh(mesh), 1e-2).triangles(), build_mesh(mesh).triangles());
 }
 
-TEST(Slivers, AreRemovedAndNothingMovesFarther) {
+TEST(Slivers, SliversAreRemovedWithinTheDistance) {
   constexpr double distance = 1e-3;
   const TriangleMesh thin = with_slivers(test::bumpy_sphere(3), 7, 1e-4F);
   ASSERT_LT(least_size(thin), 1e-4);
@@ -78,16 +78,16 @@ TEST(Slivers, AreRemovedAndNothingMovesFarther) {
   EXPECT_LE(vertex_distance(SurfaceTree(thin), SurfaceTree(made.triangles())), distance);
 }
 
-TEST(Slivers, LargerThanTheDistanceStay) {
+TEST(Slivers, SliversLargerThanTheDistanceAreKept) {
   const Mesh thin = build_mesh(with_slivers(test::bumpy_sphere(3), 7, 1e-3F));
   EXPECT_EQ(remove_slivers(thin, 1e-7).triangles(), thin.triangles());
 }
 
-TEST(Slivers, AtABoundaryGo) {
+TEST(Slivers, SliversAtBoundariesAreRemoved) {
   TriangleMesh sheet = test::grid(4, 4);
   const auto [a, b, c] = sheet.triangles[0];
   for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
-    // A flat face at each side of the first one that is on the boundary.
+    // A flat face at each boundary side of the first face.
     const Vec3f middle = 0.5F * (sheet.positions[from] + sheet.positions[to]);
     if (middle.x > 0 && middle.y > 0) continue;
     const Vec3f out{middle.x > 0 ? 0 : -1e-5F, middle.y > 0 ? 0 : -1e-5F, 0};
@@ -99,9 +99,9 @@ TEST(Slivers, AtABoundaryGo) {
   EXPECT_EQ(made.topology.euler_characteristic(), 1);
 }
 
-TEST(Slivers, SeamsStaySeams) {
+TEST(Slivers, SeamsAreKept) {
   TriangleMesh sphere = with_slivers(test::bumpy_sphere(3), 5, 1e-4F);
-  // Two charts, each with points of its own where x changes its sign.
+  // Two charts with separate points where x changes its sign.
   Attribute chart{.components = 1, .values = {}};
   TriangleMesh charts{.positions = {}, .triangles = {}};
   std::array<std::vector<uint32_t>, 2> number;
@@ -133,7 +133,7 @@ TEST(Slivers, SeamsStaySeams) {
   }
 }
 
-TEST(Pack, AnOriginalWithSliversHasLevels) {
+TEST(Pack, OriginalWithSliversHasLevels) {
   const proto::detail::Packed packed =
       proto::detail::pack(with_slivers(test::bumpy_sphere(4), 5, 2e-6F), {.rms = 1e-3});
   ASSERT_TRUE(packed.model) << packed.reason;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// The mesh with a group for each face: points of its own for each corner.
+/// Returns the mesh with a group per face and a separate point per corner.
 TriangleMesh with_groups(const TriangleMesh& mesh, const std::vector<double>& groups) {
   TriangleMesh out;
   Attribute attribute;
@@ -29,7 +29,7 @@ TriangleMesh with_groups(const TriangleMesh& mesh, const std::vector<double>& gr
   return out;
 }
 
-/// 1 for the faces of an octahedron above the plane z = 0, 2 for those below.
+/// Groups of an octahedron: 1 for faces above the plane z = 0, 2 for faces below.
 std::vector<double> halves(const TriangleMesh& octahedron) {
   std::vector<double> groups;
   for (const Triangle& t : octahedron.triangles) {
@@ -51,7 +51,7 @@ TEST(SmoothingGroups, EdgesBetweenGroupsAreMarked) {
   EXPECT_EQ(marked(with_groups(octahedron(), halves(octahedron())), {.tension = Tension::off}), 4U);
 }
 
-TEST(SmoothingGroups, FacesThatAreOffAreSharpAllRound) {
+TEST(SmoothingGroups, FacesOfGroupZeroHaveThreeSharpEdges) {
   std::vector<double> groups(20, 3);
   groups[7] = 0;
   EXPECT_EQ(marked(with_groups(icosahedron(), groups)), 3U);
@@ -60,25 +60,25 @@ TEST(SmoothingGroups, FacesThatAreOffAreSharpAllRound) {
   EXPECT_EQ(marked(with_groups(icosahedron(), groups)), 30U);
 }
 
-TEST(SmoothingGroups, OneGroupForAllSaysNothing) {
+TEST(SmoothingGroups, OneGroupForAllMarksNothing) {
   for (const double group : {0., 1., 7.})
     EXPECT_EQ(marked(with_groups(icosahedron(), std::vector<double>(20, group))), 0U);
 }
 
-TEST(SmoothingGroups, AComponentOfOneGroupSaysNothing) {
+TEST(SmoothingGroups, ComponentOfOneGroupMarksNothing) {
   const TriangleMesh two = join(octahedron(), octahedron(), 9);
   std::vector<double> groups = halves(octahedron());
-  groups.resize(16, 0);  // the second one is off
+  groups.resize(16, 0);  // the second octahedron has group 0
   EXPECT_EQ(marked(with_groups(two, groups)), 4U);
 }
 
-TEST(SmoothingGroups, OtherAttributesSayNothing) {
+TEST(SmoothingGroups, OtherAttributesMarkNothing) {
   TriangleMesh mesh = with_groups(octahedron(), halves(octahedron()));
   mesh.attributes[0].is_smoothing_group = false;
   EXPECT_EQ(marked(mesh), 0U);
 }
 
-TEST(SmoothingGroups, AnAngleGivenByHandGoesBefore) {
+TEST(SmoothingGroups, CreaseAngleOverridesGroups) {
   const Mesh mesh = build_mesh(with_groups(octahedron(), halves(octahedron())));
   EXPECT_EQ(shape_of(mesh, {.crease_angle = 175}).creases, 0U);
   EXPECT_EQ(shape_of(mesh, {.crease_angle = 175}).marked, 0U);
@@ -97,7 +97,7 @@ TEST(SmoothingGroups, LevelsInheritTheMarksAndTheGroups) {
         EXPECT_EQ(group, fine.attributes.attributes[0].values[fine.attributes.point[3 * Topology::face(h)]]);
         EXPECT_TRUE(group == 1 || group == 2);
       }
-      // What comes out says the same when it is sent again.
+      // The output has equal marks when it is refined again.
       EXPECT_EQ(shape_of(fine).marked, 4U * 8);
     }
 }

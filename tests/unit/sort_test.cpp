@@ -44,7 +44,7 @@ Numbers sorted_in_small(Numbers numbers, int splits) {
 
 class SmallSort : public testing::TestWithParam<int> {};  // splits before heapsort
 
-TEST_P(SmallSort, SortsRandomNumbersAsTheLibraryDoes) {
+TEST_P(SmallSort, RandomNumbersAreSorted) {
   for (const size_t count : {0U, 1U, 2U, 3U, 15U, 16U, 17U, 18U, 100U, 1000U, 20000U})
     for (const uint32_t bound : {1U, 2U, 10U, UINT32_MAX}) {
       const Numbers numbers = random_numbers(count, bound, static_cast<uint32_t>(count) + bound);
@@ -52,7 +52,7 @@ TEST_P(SmallSort, SortsRandomNumbersAsTheLibraryDoes) {
     }
 }
 
-TEST_P(SmallSort, SortsNumbersInOrderAndBackwardsAsTheLibraryDoes) {
+TEST_P(SmallSort, OrderedAndReversedNumbersAreSorted) {
   Numbers numbers = sorted_by_library(random_numbers(5000, 4000, 7));
   EXPECT_EQ(sorted_in_small(numbers, GetParam()), numbers);
   Numbers backwards(numbers.rbegin(), numbers.rend());
@@ -63,7 +63,7 @@ TEST_P(SmallSort, SortsNumbersInOrderAndBackwardsAsTheLibraryDoes) {
 
 INSTANTIATE_TEST_SUITE_P(Splits, SmallSort, testing::Values(0, 3, 64));
 
-TEST(Sort, SortsArraysByACallersOrder) {
+TEST(Sort, ArraysAreSortedByACustomOrder) {
   std::vector<std::array<uint32_t, 3>> ours(1000);
   std::mt19937 random(3);
   for (auto& one : ours) one = {static_cast<uint32_t>(random() % 5), static_cast<uint32_t>(random() % 5), 0};
@@ -75,7 +75,7 @@ TEST(Sort, SortsArraysByACallersOrder) {
   EXPECT_EQ(ours, library);
 }
 
-TEST(Sort, ComparesOfTheOrderOfNLogNTimesAtWorst) {
+TEST(Sort, ComparisonsAreBoundedByNLogN) {
   for (const Numbers& input :
        {numbers_that_split_badly(20000), Numbers(40000, 5), random_numbers(40000, UINT32_MAX, 1)}) {
     Numbers numbers = input;

@@ -14,14 +14,13 @@ namespace {
 
 using namespace test;
 
-Mesh split_at_midpoints(Mesh mesh, const EdgeMarks& marks) {
-  const SplitPlan plan(marks);
+Mesh split_at_midpoints(Mesh mesh, const Marks& marks) {
   for (uint32_t e = 0; e < marks.size(); ++e) {
     if (marks[e] == 0) continue;
     const uint32_t h = mesh.topology.half_edge[e];
     mesh.positions.push_back(0.5F * (mesh.positions[mesh.topology.origin[h]] + mesh.positions[mesh.topology.tip(h)]));
   }
-  mesh.topology = split(mesh.topology, plan, mesh.positions, mesh.attributes);
+  mesh.topology = split(mesh.topology, marks, mesh.positions, mesh.attributes);
   return mesh;
 }
 
@@ -50,7 +49,7 @@ TEST(SplitPattern, EveryPatternTilesItsTriangle) {
         const auto [i, j, k] = pattern.corner[c];
         used.insert({i, j, k});
         const double part = cross(position(j) - position(i), position(k) - position(i)).z / 2;
-        EXPECT_GT(part, 0) << mask;  // orientation kept, no overlap since the sum is the whole
+        EXPECT_GT(part, 0) << mask;  // orientation is kept; no overlap, since the areas add up
         total += part;
       }
       EXPECT_DOUBLE_EQ(total, area(triangle)) << mask;
@@ -62,7 +61,7 @@ TEST(SplitPattern, EveryPatternTilesItsTriangle) {
 TEST(Split, AllEdgesGiveFourTimesTheFaces) {
   Mesh mesh = build_mesh(icosahedron());
   for (uint32_t level = 1; level <= 4; ++level) {
-    mesh = split_at_midpoints(std::move(mesh), EdgeMarks(mesh.topology.edge_count(), 1));
+    mesh = split_at_midpoints(std::move(mesh), Marks(mesh.topology.edge_count(), 1));
     ASSERT_EQ(mesh.topology.face_count(), 20U << (2 * level));
     ASSERT_EQ(mesh.topology.edge_count(), 30U << (2 * level));
     ASSERT_TRUE(is_consistent(mesh));
@@ -75,10 +74,10 @@ TEST(Split, RandomTargetsKeepEveryInvariant) {
     Mesh mesh = build_mesh(random_manifold(random));
     const int64_t euler = mesh.topology.euler_characteristic();
     for (int level = 0; level < 3; ++level) {
-      EdgeMarks marks(mesh.topology.edge_count());
+      Marks marks(mesh.topology.edge_count());
       const uint32_t density = 1 + random() % 4;
       for (uint8_t& mark : marks) mark = random() % 4 < density ? 1 : 0;
-      const uint64_t expected = count_children(mesh.topology, SplitPlan(marks));
+      const uint64_t expected = count_children(mesh.topology, marks);
       mesh = split_at_midpoints(std::move(mesh), marks);
       ASSERT_EQ(mesh.topology.face_count(), expected);
       ASSERT_TRUE(is_consistent(mesh)) << "seed " << seed << " level " << level;
@@ -91,24 +90,24 @@ TEST(Split, SharedEdgesStayShared) {
   Mesh book =
       build_mesh({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}});
   for (int level = 0; level < 3; ++level) {
-    book = split_at_midpoints(std::move(book), EdgeMarks(book.topology.edge_count(), 1));
+    book = split_at_midpoints(std::move(book), Marks(book.topology.edge_count(), 1));
     ASSERT_TRUE(is_consistent(book));
   }
   EXPECT_EQ(count_edges(book.triangles()).irregular, 8U);
 }
 
 TEST(Split, TwoTargetsAreCutAlongTheShorterDiagonal) {
-  // Edges 0-1 and 1-2 are targets; the diagonals run from vertex 0 to the middle of 1-2 and from vertex 2 to
-  // that of 0-1.
+  // Edges 0-1 and 1-2 are targets. The diagonals run from vertex 0 to the midpoint of 1-2 and from vertex 2 to the
+  // midpoint of 0-1.
   const auto far_corner = [](Vec3f two) {
     Mesh mesh = build_mesh({{{0, 0, 0}, {4, 0, 0}, two}, {{0, 1, 2}}});
-    EdgeMarks marks(3, 0);
+    Marks marks(3, 0);
     marks[mesh.topology.edge[0]] = marks[mesh.topology.edge[1]] = 1;
     mesh = split_at_midpoints(std::move(mesh), marks);
     std::array<int, 3> uses{};
     for (uint32_t v : mesh.topology.origin)
       if (v < 3) ++uses[v];
-    return uses[0] == 2 ? 0 : 2;  // the old vertex that the diagonal leaves is in two children
+    return uses[0] == 2 ? 0 : 2;  // the coarse vertex at the diagonal is in two children
   };
   EXPECT_EQ(far_corner({0, 3, 0}), 0);   // squared lengths: 6.25 from vertex 0, 13 from vertex 2
   EXPECT_EQ(far_corner({2, 1, 0}), 2);   // 9.25 and 1

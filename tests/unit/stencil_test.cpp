@@ -14,7 +14,7 @@ constexpr double tolerance = 1e-13;
 
 double sum(const std::vector<double>& weights) { return std::accumulate(weights.begin(), weights.end(), 0.0); }
 
-/// The explicit weights of a spoke of a vertex on a curve: the centre, then c_0..c_K.
+/// Returns the explicit weights of a spoke of a vertex on a curve: the centre, then c_0..c_K.
 std::vector<double> curve_weights(uint32_t triangles, uint32_t spoke) {
   const CurveRule rules(triangles);
   const CurveSpoke rule = rules.spoke(spoke);
@@ -57,7 +57,7 @@ TEST(Stencil, InteriorRowsSumToOneAndReproduceLinearFunctions) {
   EXPECT_EQ(interior(2).centre + sum(interior(2).ring), 1);
 }
 
-TEST(Stencil, SixIsItsOwnCase) {
+TEST(Stencil, GeneralFormulaDiffersAtValenceSix) {
   const Interior rule = interior(regular_valence);
   EXPECT_GT(std::abs(rule.centre - Regular<double>(0).end), 0.1);
 }
@@ -81,7 +81,7 @@ TEST(Stencil, CurveVertexRowsSumToOneAndReproduceLinearFunctions) {
   }
 }
 
-TEST(Stencil, CurveVertexRowsKeepTheirDigitsAtHugeValence) {
+TEST(Stencil, CurveVertexRowsAreAccurateAtHugeValence) {
   for (uint32_t k : {10'000U, 1'000'000U}) {
     for (uint32_t i : {1U, k / 3, k - 1}) EXPECT_NEAR(sum(curve_weights(k, i)), 1, 1e-8) << k << ' ' << i;
   }

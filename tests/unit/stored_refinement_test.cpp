@@ -52,7 +52,7 @@ void expect_equal(const EncodedLevel& a, const EncodedLevel& b) {
   EXPECT_EQ(a.statistics.error_pixels, b.statistics.error_pixels);
 }
 
-TEST(StoredRefinement, BytesEqualThoseOfAStream) {
+TEST(StoredRefinement, BytesEqualAStreamsResult) {
   for (const char* name : {"bunny600.obj", "elephant2000.obj"}) {
     const std::string draco = real_draco(name);
     for (uint64_t budget : {ample_bytes, uint64_t{2'000'000}}) {
@@ -109,7 +109,7 @@ TEST(StoredRefinement, BytesDoNotDependOnEarlierRequests) {
   EXPECT_GT(answered, 600);
 }
 
-TEST(StoredRefinement, ThreadsShareOneMesh) {
+TEST(StoredRefinement, ConcurrentRequestsEqualSeparateRequests) {
   const std::string draco = real_draco("bunny600.obj");
   const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, ample_bytes);
   const std::vector<QueryFields> fields = all_requests();
@@ -141,7 +141,7 @@ TEST(StoredRefinement, RulesShareTheBudget) {
   EXPECT_LT(after(one, {"off", "soft", "sharp", "off", "off"}), 2 * one);
 }
 
-TEST(StoredRefinement, RefusalsEqualThoseOfAStream) {
+TEST(StoredRefinement, RefusalsEqualAStreams) {
   const std::string draco = write_draco_exact(icosahedron());
   const auto stored = std::make_shared<const SharedMesh>(draco, Limits{}, ample_bytes);
   EXPECT_THROW(Refinement(stored, parse_query({{"levels", "10"}}), {.max_output_faces = 1000}), Problem);

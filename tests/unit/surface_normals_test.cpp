@@ -27,7 +27,7 @@ Vec3d normal_of_face(const Mesh& mesh, uint32_t f) {
   return 1 / length(n) * n;
 }
 
-/// The cosine of the largest angle between a corner's normal and its face's.
+/// Returns the cosine of the largest angle between a corner's normal and its face's.
 double least_agreement(const Mesh& mesh, size_t attribute = 0) {
   double least = 1;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
@@ -35,7 +35,7 @@ double least_agreement(const Mesh& mesh, size_t attribute = 0) {
   return least;
 }
 
-/// A sphere whose points have the normals that `of` gives for a place.
+/// A sphere whose points have the normals `of(position)`.
 template <class Of>
 Mesh sphere_with_normals(const Of& of) {
   TriangleMesh sphere = icosahedron();
@@ -48,7 +48,7 @@ Mesh sphere_with_normals(const Of& of) {
   return build_mesh(sphere);
 }
 
-TEST(SurfaceNormals, AreOnePerVertexWithoutCreases) {
+TEST(SurfaceNormals, SmoothMeshHasOneNormalPerVertex) {
   Mesh mesh = refine(build_mesh(torus(24, 16)), {.levels = 1}).mesh;
   add_normals(mesh);
   EXPECT_EQ(mesh.attributes.point_count, mesh.topology.vertex_count);
@@ -58,7 +58,7 @@ TEST(SurfaceNormals, AreOnePerVertexWithoutCreases) {
     ASSERT_LT(length(normal_at(mesh, 0, h) - to_double(smooth[mesh.topology.origin[h]])), 1e-6);
 }
 
-TEST(SurfaceNormals, AreApartAtCreases) {
+TEST(SurfaceNormals, NormalsAreSplitAtCreases) {
   for (const Options& options : {Options{.levels = 2}, Options{.levels = 2, .flatness = {0.9}}}) {
     Mesh mesh = refine(build_mesh(box({2, 2, 2}, {1, 1, 1})), options).mesh;
     add_normals(mesh);
@@ -67,7 +67,7 @@ TEST(SurfaceNormals, AreApartAtCreases) {
   }
 }
 
-TEST(SurfaceNormals, DivideThePointsOfOtherAttributes) {
+TEST(SurfaceNormals, SplitNormalsKeepOtherAttributes) {
   TriangleMesh shape = cube();
   Attribute numbers;
   for (size_t p = 0; p < shape.positions.size(); ++p) numbers.values.push_back(static_cast<double>(p));
@@ -83,9 +83,9 @@ TEST(SurfaceNormals, DivideThePointsOfOtherAttributes) {
               before.attributes.attributes[0].values[before.attributes.point[h]]);
 }
 
-TEST(SurfaceNormals, RenewedOnesAreThoseOfTheSurface) {
+TEST(SurfaceNormals, RenewedNormalsFollowTheSurface) {
   const Mesh coarse = sphere_with_normals([](Vec3d p) {
-    const Vec3d wrong = p + Vec3d{0.4, 0.1, -0.3};  // as files have them, after edits
+    const Vec3d wrong = p + Vec3d{0.4, 0.1, -0.3};  // inaccurate, as in edited files
     return 1 / length(wrong) * wrong;
   });
   Mesh fine = refine(coarse, {.levels = 3}).mesh;
@@ -95,15 +95,15 @@ TEST(SurfaceNormals, RenewedOnesAreThoseOfTheSurface) {
   EXPECT_EQ(fine.attributes.point_count, fine.topology.vertex_count);
 }
 
-TEST(SurfaceNormals, RenewedOnesKeepTheirSide) {
+TEST(SurfaceNormals, RenewedNormalsKeepTheirSide) {
   Mesh fine = refine(sphere_with_normals([](Vec3d p) { return -1 / length(p) * p; }), {.levels = 2}).mesh;
   renew_normals(fine, 0);
   for (uint32_t h = 0; h < fine.topology.half_edge_count(); ++h)
     ASSERT_LT(dot(normal_at(fine, 0, h), normal_of_face(fine, h / 3)), -0.9);
 }
 
-/// Each triangle with points of its own, whose normals rounding has made different.
-TEST(SurfaceNormals, RenewedOnesAreOneWhereTheInputsDifferByRounding) {
+/// Each triangle has separate points, whose normals differ by rounding.
+TEST(SurfaceNormals, RenewedNormalsAreMergedIfInputsDifferByRounding) {
   const TriangleMesh shape = torus(12, 8);
   const Buffer<Vec3f> smooth = vertex_normals(build_mesh(shape));
   std::mt19937 random(1);
@@ -130,8 +130,8 @@ TEST(SurfaceNormals, RenewedOnesAreOneWhereTheInputsDifferByRounding) {
   }
 }
 
-// Points that are apart for their texture alone have one normal; those with normals of their own stay apart.
-TEST(SurfaceNormals, RenewedOnesAreSplitWhereTheInputsAre) {
+// Points that differ only in texture coordinates get one normal; points of different normals stay apart.
+TEST(SurfaceNormals, RenewedNormalsAreSplitWhereTheInputsAre) {
   TriangleMesh shape = cube();
   TriangleMesh apart;
   Attribute flat{.components = 3, .unit_length = true, .values = {}};
@@ -174,7 +174,7 @@ TEST(SurfaceNormals, RenewedOnesAreSplitWhereTheInputsAre) {
   EXPECT_EQ(count_at_first_vertex(of_smooth), 1U);
 }
 
-TEST(SurfaceNormals, AreInTheAnswer) {
+TEST(SurfaceNormals, AnswerHasNormalsIfRequestedOrGiven) {
   using namespace proto;
   const auto asking = [](int levels, bool normals) {
     Parameters parameters;
@@ -200,7 +200,7 @@ TEST(SurfaceNormals, AreInTheAnswer) {
     EXPECT_EQ(fine.format, format);
     EXPECT_GT(least_agreement(build_mesh(fine)), std::cos(0.25));
     const FormattedMesh same = read_draco(Refinement(own, asking(0, asked), {}).run().bytes, {});
-    EXPECT_LT(least_agreement(build_mesh(same)), 0.85) << "the author's own";
+    EXPECT_LT(least_agreement(build_mesh(same)), 0.85) << "level 0 keeps the given normals";
   }
 }
 

@@ -28,7 +28,7 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-/// A square below the x axis, and above it one of `parts` strips side by side: their corners lie on its upper side.
+/// A square below the x axis, and above it `parts` strips whose corners lie on the square's upper side.
 TriangleMesh wall(uint32_t parts) {
   TriangleMesh mesh{{{0, -1, 0}, {1, -1, 0}, {1, 0, 0}, {0, 0, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   for (uint32_t i = 0; i <= parts; ++i)
@@ -59,7 +59,7 @@ TEST(TJunctions, VerticesOnASideAreInserted) {
   }
 }
 
-TEST(TJunctions, TheCrackIsClosedInRefinements) {
+TEST(TJunctions, RefinementHasNoCrack) {
   const Result result = refine(build_mesh(wall(3), nullptr, rounding_gap), {.levels = 3, .edges = true});
   uint32_t boundary = 0;
   for (const EdgeKind kind : result.mesh.topology.kind) boundary += kind == EdgeKind::boundary ? 1 : 0;
@@ -68,7 +68,7 @@ TEST(TJunctions, TheCrackIsClosedInRefinements) {
 }
 
 TEST(TJunctions, VerticesOnAllThreeSidesAreInserted) {
-  // A large triangle among smaller ones that share none of its sides whole.
+  // A large triangle among smaller ones along its sides.
   TriangleMesh mesh{{{0, 0, 0}, {6, 0, 0}, {0, 6, 0}}, {{0, 1, 2}}};
   const auto flap = [&](Vec3f a, Vec3f b, Vec3f out) {  // three faces along the side from b to a
     const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -89,7 +89,7 @@ TEST(TJunctions, VerticesOnAllThreeSidesAreInserted) {
   EXPECT_EQ(built.topology.euler_characteristic(), 1);
 }
 
-TEST(TJunctions, EndsThatAreOffByRoundingCloseToo) {
+TEST(TJunctions, EndsWithinRoundingAreJoined) {
   TriangleMesh mesh = wall(3);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> noise(-2e-7F, 2e-7F);
@@ -103,8 +103,8 @@ TEST(TJunctions, EndsThatAreOffByRoundingCloseToo) {
   EXPECT_EQ(built.topology.euler_characteristic(), 1);
 }
 
-TEST(TJunctions, BoundariesThatOnlyTouchAreLeftAlone) {
-  // A triangle whose tip stands on the side of a square, from outside.
+TEST(TJunctions, BoundariesThatOnlyTouchAreUnchanged) {
+  // A triangle whose tip touches the side of a square from outside.
   TriangleMesh mesh = wall(1);
   mesh.triangles.resize(2);
   for (const Vec3f p : {Vec3f{0.5F, 0, 0}, {0.8F, 1, 0}, {0.2F, 1, 0}}) mesh.positions.push_back(p);
@@ -116,7 +116,7 @@ TEST(TJunctions, BoundariesThatOnlyTouchAreLeftAlone) {
   EXPECT_EQ(defects(found), 0U);
 }
 
-TEST(TJunctions, BoundariesThatRunAlikeAreLeftAlone) {
+TEST(TJunctions, BoundariesOfEqualDirectionAreUnchanged) {
   TriangleMesh mesh = wall(2);
   for (size_t t = 2; t < mesh.triangles.size(); ++t) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   BuildReport found;
@@ -124,7 +124,7 @@ TEST(TJunctions, BoundariesThatRunAlikeAreLeftAlone) {
   EXPECT_EQ(found.t_junctions, 0U);
 }
 
-TEST(TJunctions, FacesThinnerThanTheGapStayWhole) {
+TEST(TJunctions, FacesThinnerThanTheGapAreNotDivided) {
   TriangleMesh mesh = wall(2);
   mesh.positions[0].y = mesh.positions[1].y = -1e-7F;  // the square is a sliver
   BuildReport exact, found;
@@ -137,7 +137,7 @@ TEST(TJunctions, FacesThinnerThanTheGapStayWhole) {
   }
 }
 
-TEST(TJunctions, AttributesAreThoseOfTheDividedFacesChart) {
+TEST(TJunctions, InsertedPointsHaveTheDividedFacesChart) {
   TriangleMesh mesh = wall(2);
   Attribute texture{.components = 2, .values = {}};
   for (size_t p = 0; p < mesh.positions.size(); ++p) {
@@ -161,7 +161,7 @@ TEST(TJunctions, AttributesAreThoseOfTheDividedFacesChart) {
   EXPECT_EQ(build_mesh(mesh, nullptr, rounding_gap).attributes.point_count, 8U);
 }
 
-TEST(TJunctions, NothingChangesWithoutThem) {
+TEST(TJunctions, MeshesWithoutTJunctionsAreUnchanged) {
   for (const TriangleMesh& shape :
        {grid(6, 5), fan(7, false), square_ring(24, 0.6F, 1, 0.5F), join(grid(2, 2), grid(2, 2), 9)}) {
     BuildReport found;
@@ -172,8 +172,8 @@ TEST(TJunctions, NothingChangesWithoutThem) {
   }
 }
 
-TEST(TJunctions, CrowdsTakeBoundedWork) {
-  // Faces with one side each on one line, most of which have thousands of the others' corners on them.
+TEST(TJunctions, CrowdedLinesTakeBoundedWork) {
+  // Faces with one side on a common line; most sides contain thousands of other faces' corners.
   std::mt19937 random(1);
   TriangleMesh mesh;
   for (uint32_t i = 0; i < 20'000; ++i) {
@@ -190,7 +190,7 @@ TEST(TJunctions, CrowdsTakeBoundedWork) {
   EXPECT_LE(built.topology.face_count(), 4 * mesh.triangles.size());
 }
 
-TEST(TJunctions, RandomSurfacesNeverGetWorse) {
+TEST(TJunctions, RandomSurfacesNeverGainDefects) {
   std::mt19937 random(11);
   const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
   uint32_t inserted = 0;

@@ -37,7 +37,7 @@ TEST(Tension, HingeFactorFallsFromSixtyToNinetyDegrees) {
   EXPECT_GT(hinge_factor(0.3), hinge_factor(0.2));
 }
 
-/// How far the refined surface reaches beyond the box of the mesh, as a share of `size`.
+/// Returns the overshoot of the refined surface beyond the box of the mesh, as a share of `size`.
 double overshoot(const TriangleMesh& triangles, Tension tension, double size) {
   const Mesh coarse = build_mesh(triangles);
   const Box before = bounding_box(coarse.positions);
@@ -48,14 +48,14 @@ double overshoot(const TriangleMesh& triangles, Tension tension, double size) {
   return std::max({low.x, low.y, low.z, high.x, high.y, high.z}) / size;
 }
 
-/// `soft` is known to within `rounding`, half of its last digit.
+/// Expects these overshoots; `soft` within `rounding`, half of its last digit.
 void expect_overshoots(const TriangleMesh& mesh, double size, double plain, double soft, double rounding = 5e-4) {
   EXPECT_NEAR(overshoot(mesh, Tension::off, size), plain, 5e-4);
   EXPECT_NEAR(overshoot(mesh, Tension::soft, size), soft, rounding);
   EXPECT_LE(overshoot(mesh, Tension::sharp, size), 1e-6);
 }
 
-TEST(Tension, TableOfOvershoots) {
+TEST(Tension, OvershootsEqualTheTable) {
   {
     SCOPED_TRACE("cube");
     expect_overshoots(cube(), 1, 0.175, 0.086);
@@ -74,7 +74,7 @@ TEST(Tension, TableOfOvershoots) {
   }
 }
 
-TEST(Tension, SmoothShapesAreUntouched) {
+TEST(Tension, SmoothShapesEqualThePlainScheme) {
   for (const TriangleMesh& shape : {icosahedron(), torus(12, 8)}) {
     const Mesh coarse = build_mesh(shape);
     const Mesh plain = refine(coarse, {.levels = 3, .tension = Tension::off}).mesh;
@@ -87,21 +87,20 @@ TEST(Tension, SmoothShapesAreUntouched) {
 }
 
 TEST(Tension, TetrahedronStaysFlat) {
-  // Its exterior angles are 109 degrees: every factor is 0, and every vertex a midpoint.
+  // Exterior angles are 109 degrees: all factors are 0 and all new vertices are midpoints.
   const Mesh coarse = build_mesh(tetrahedron());
   const TensionField field = tension_field(coarse, face_normals(coarse), Tension::soft);
   const Buffer<Vec3d> positions = in_double(coarse);
-  const auto made = butterfly<double>(coarse.topology, positions, everything(coarse), 0, &field);
+  const auto made = new_vertices(coarse.topology, positions, {.tension = &field});
   for (uint32_t e = 0; e < made.size(); ++e) EXPECT_LE(length(made[e] - ends_of(coarse, e, positions).middle()), 1e-15);
 }
 
-/// Calls `check(edge, plain, tensed)` for each edge inside the surface that the bound leaves alone, every factor
-/// being 1.
+/// Calls `check(edge, plain, tensed)`, with all factors 1, for each inner edge within the bound.
 template <class Check>
 void with_all_factors_one(const Mesh& mesh, const Buffer<Vec3d>& positions, const Check& check) {
   const TensionField ones{.factor = Buffer<float>(mesh.topology.edge_count(), 1)};
-  const auto plain = butterfly<double>(mesh.topology, positions, everything(mesh));
-  const auto tensed = butterfly<double>(mesh.topology, positions, everything(mesh), 0, &ones);
+  const auto plain = new_vertices(mesh.topology, positions);
+  const auto tensed = new_vertices(mesh.topology, positions, {.tension = &ones});
   for (uint32_t e = 0; e < plain.size(); ++e) {
     if (mesh.topology.kind[e] != EdgeKind::smooth) continue;
     const Ends ends = ends_of(mesh, e, positions);
@@ -109,7 +108,7 @@ void with_all_factors_one(const Mesh& mesh, const Buffer<Vec3d>& positions, cons
   }
 }
 
-TEST(Tension, EqualsThePlainSchemeWhereEveryFactorIsOne) {
+TEST(Tension, FactorsOfOneEqualThePlainScheme) {
   const auto expect_equal = [](uint32_t e, Vec3d plain, Vec3d tensed) {
     ASSERT_LE(length(plain - tensed), 1e-12 * (1 + length(plain))) << e;
   };
@@ -126,13 +125,12 @@ TEST(Tension, EqualsThePlainSchemeWhereEveryFactorIsOne) {
   with_all_factors_one(bunny, in_double(bunny), expect_equal);
 }
 
-TEST(Tension, IrregularVerticesAmongWholeHingesHaveThePlainBits) {
+TEST(Tension, IrregularVerticesAtFactorsOfOneAreBitIdenticalToPlain) {
   const Mesh mesh = refine(build_mesh(icosahedron()), {.levels = 1, .tension = Tension::off}).mesh;
   const TensionField field = tension_field(mesh, face_normals(mesh), Tension::soft);
   ASSERT_TRUE(std::ranges::all_of(field.factor, [](float factor) { return factor == 1; }));
-  const SplitPlan plan = everything(mesh);
-  const Buffer<Vec3f> plain = butterfly(mesh.topology, mesh.positions, plan);
-  const Buffer<Vec3f> tensed = butterfly(mesh.topology, mesh.positions, plan, 0.0F, &field);
+  const Buffer<Vec3f> plain = new_vertices(mesh.topology, mesh.positions);
+  const Buffer<Vec3f> tensed = new_vertices(mesh.topology, mesh.positions, {.tension = &field});
   int spokes = 0;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
     if (mesh.topology.origin[h] >= 12) continue;  // the icosahedron's vertices, of valence 5
@@ -142,7 +140,7 @@ TEST(Tension, IrregularVerticesAmongWholeHingesHaveThePlainBits) {
   EXPECT_EQ(spokes, 60);
 }
 
-TEST(Tension, IsAffineInvariantForGivenFactors) {
+TEST(Tension, SchemeIsAffineInvariantForGivenFactors) {
   const Mesh mesh = build_mesh(real_mesh("bunny600.obj"));
   const TensionField field = tension_field(mesh, face_normals(mesh), Tension::soft);
   ASSERT_LT(*std::ranges::min_element(field.factor), 0.5F);
@@ -152,13 +150,13 @@ TEST(Tension, IsAffineInvariantForGivenFactors) {
   const Buffer<Vec3d> before = in_double(mesh);
   Buffer<Vec3d> after = before;
   std::ranges::transform(after, after.begin(), map);
-  const auto q_before = butterfly<double>(mesh.topology, before, everything(mesh), 0, &field);
-  const auto q_after = butterfly<double>(mesh.topology, after, everything(mesh), 0, &field);
+  const auto q_before = new_vertices(mesh.topology, before, {.tension = &field});
+  const auto q_after = new_vertices(mesh.topology, after, {.tension = &field});
   uint32_t compared = 0;
   for (uint32_t e = 0; e < q_before.size(); ++e) {
     const Ends there = ends_of(mesh, e, before);
     const Ends here = ends_of(mesh, e, after);
-    const double bound = 0.999 * tension_bound;  // the bound is on lengths, which no affine map keeps
+    const double bound = 0.999 * tension_bound;  // lengths, and so the bound, are not affine-invariant
     if (length(q_before[e] - there.middle()) > bound * there.size()) continue;
     if (length(q_after[e] - here.middle()) > bound * here.size()) continue;
     ASSERT_LE(length(map(q_before[e]) - q_after[e]), 1e-12 * (1 + length(q_after[e]))) << e;
@@ -167,14 +165,14 @@ TEST(Tension, IsAffineInvariantForGivenFactors) {
   EXPECT_GT(compared, q_before.size() / 2);
 }
 
-TEST(Tension, NothingGoesFurtherThanTheBound) {
+TEST(Tension, MovesAreWithinTheBound) {
   for (uint32_t seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     const Mesh mesh = build_mesh(random_manifold(random));
     const Buffer<Vec3d> positions = in_double(mesh);
     for (Tension tension : {Tension::soft, Tension::sharp}) {
       const TensionField field = tension_field(mesh, face_normals(mesh), tension);
-      const auto made = butterfly<double>(mesh.topology, positions, everything(mesh), 1.0 / 64, &field);
+      const auto made = new_vertices(mesh.topology, positions, {.w = 1.0 / 64, .tension = &field});
       for (uint32_t e = 0; e < made.size(); ++e) {
         const Ends ends = ends_of(mesh, e, positions);
         ASSERT_LE(length(made[e] - ends.middle()), (tension_bound + 1e-12) * ends.size()) << seed;
@@ -189,18 +187,18 @@ TEST(Tension, BothHalfEdgesGiveTheSameBits) {
     Mesh mesh = build_mesh(random_manifold(random));
     for (Tension tension : {Tension::soft, Tension::sharp}) {
       const TensionField field = tension_field(mesh, face_normals(mesh), tension);
-      const auto before = butterfly(mesh.topology, mesh.positions, everything(mesh), 0.01F, &field);
+      const auto before = new_vertices(mesh.topology, mesh.positions, {.w = 0.01F, .tension = &field});
       Mesh turned = mesh;
       for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e)
         if (const uint32_t t = mesh.topology.twin[mesh.topology.half_edge[e]]; t != none)
           turned.topology.half_edge[e] = t;
-      ASSERT_EQ(butterfly(turned.topology, turned.positions, everything(turned), 0.01F, &field), before) << seed;
+      ASSERT_EQ(new_vertices(turned.topology, turned.positions, {.w = 0.01F, .tension = &field}), before) << seed;
     }
   }
 }
 
-TEST(Tension, SharpEdgesFollowTheirFeature) {
-  // The rim of a drum with 24 corners: its circle comes out round, not a polygon.
+TEST(Tension, SharpEdgesOfADrumBecomeACircle) {
+  // The rim of a drum with 24 corners becomes a circle, not a polygon.
   const Mesh drum = build_mesh(square_ring(24, 0.6F, 1, 0.5F));
   const Mesh sharp = refine(drum, {.levels = 3, .tension = Tension::sharp, .shape = Shape::plain}).mesh;
   const Mesh soft = refine(drum, {.levels = 3, .tension = Tension::soft, .shape = Shape::plain}).mesh;

@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ThreadPool, DoesAllWorkOnAsManyThreadsAsMayBe) {
+TEST(ThreadPool, AllWorkRunsOnAtMostTheGivenThreads) {
   std::mutex mutex;
   std::set<std::thread::id> threads;
   std::atomic<int> running = 0;
@@ -39,7 +39,7 @@ TEST(ThreadPool, DoesAllWorkOnAsManyThreadsAsMayBe) {
   EXPECT_LE(threads.size(), 4U);
 }
 
-TEST(ThreadPool, SaysWhenWorkWaits) {
+TEST(ThreadPool, WaitingWorkIsReported) {
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
   std::atomic<int> begun = 0;
@@ -51,7 +51,7 @@ TEST(ThreadPool, SaysWhenWorkWaits) {
   EXPECT_FALSE(pool.has_waiting());
   pool.enqueue(wait);
   pool.enqueue(wait);
-  EXPECT_FALSE(pool.has_waiting()) << "a thread begins for each";
+  EXPECT_FALSE(pool.has_waiting()) << "each has a thread";
   while (begun < 2) std::this_thread::yield();
   pool.enqueue(wait);
   EXPECT_TRUE(pool.has_waiting());
@@ -60,7 +60,7 @@ TEST(ThreadPool, SaysWhenWorkWaits) {
   EXPECT_FALSE(pool.has_waiting());
 }
 
-TEST(ThreadPool, ThreadsEndWhenThereIsNoWorkAndBeginAgain) {
+TEST(ThreadPool, IdleThreadsEndAndRestartOnDemand) {
   std::atomic<int> ended = 0;
   struct Last {
     std::atomic<int>* count = nullptr;
@@ -85,7 +85,7 @@ TEST(ThreadPool, ThreadsEndWhenThereIsNoWorkAndBeginAgain) {
   }
   EXPECT_EQ(begun, 6);
   pool.shutdown();
-  EXPECT_GE(ended, 5) << "the one that stays ends with the pool";
+  EXPECT_GE(ended, 5) << "the last thread ends with the pool";
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "tests/support/http_fixture.h"
 #include "tests/support/tls_client.h"
 
-// The same server over TLS: what it answers, and that every bound of a plain connection holds.
+// The server over TLS: answers, and the limits of plain connections.
 
 namespace papilio::server {
 namespace {
@@ -48,7 +48,7 @@ std::string refusal(const std::string& certificate, const std::string& key) {
   return "was not refused";
 }
 
-TEST_F(TlsTest, FilesThatCannotBeUsedAreRefusedByName) {
+TEST_F(TlsTest, UnusableFilesAreRefusedByName) {
   const std::string missing = folder_ / "missing";
   EXPECT_EQ(refusal(missing, options_.tls_key).find("--tls-cert " + missing), 0U);
   EXPECT_EQ(refusal(options_.tls_cert, missing).find("--tls-key " + missing), 0U);
@@ -60,7 +60,7 @@ TEST_F(TlsTest, FilesThatCannotBeUsedAreRefusedByName) {
   EXPECT_NE(mismatch.find("mismatch"), std::string::npos) << mismatch;
 }
 
-TEST_F(TlsTest, LargeBodiesGoBothWaysUnchanged) {
+TEST_F(TlsTest, LargeBodiesAreEchoedUnchanged) {
   options_.max_body_bytes = 64 << 20;
   start();
   std::mt19937_64 random(1);
@@ -81,7 +81,7 @@ TEST_F(TlsTest, LargeBodiesGoBothWaysUnchanged) {
   }
   EXPECT_TRUE(answer == large);
   ASSERT_TRUE(client.send(get("/hello")));
-  EXPECT_NE(client.receive_until("hello GET").find("200 OK"), std::string::npos) << "the connection stays";
+  EXPECT_NE(client.receive_until("hello GET").find("200 OK"), std::string::npos) << "the connection is kept";
 }
 
 TEST_F(TlsTest, OnlyHttp11IsChosen) {
@@ -101,11 +101,11 @@ TEST_F(TlsTest, SmallPiecesOfAStreamShareRecords) {
   ASSERT_TRUE(client.send(get("/stream")));
   const int before = client.records();
   EXPECT_NE(client.receive_until("0\r\n\r\n").find("4\r\ntwo \r\n"), std::string::npos);
-  // The head, a chunk for each of three words, and the last chunk; and in TLS 1.3 the handshake's tail looks like data.
+  // The head, three chunks and the last chunk; with TLS 1.3 also the end of the handshake, which looks like data.
   EXPECT_LE(client.records() - before, 5 + 4);
 }
 
-TEST_F(TlsTest, PipelinedRequestsOutliveTheQuestionWhetherTheClientIsGone) {
+TEST_F(TlsTest, PipelinedRequestsSurviveTheDisconnectCheck) {
   start();
   TlsClient client(port_);
   ASSERT_TRUE(client.send(get("/stream") + get("/stream") + post("/echo", "the end")));
@@ -114,7 +114,7 @@ TEST_F(TlsTest, PipelinedRequestsOutliveTheQuestionWhetherTheClientIsGone) {
   EXPECT_EQ(finished(3).size(), 3U);
 }
 
-TEST_F(TlsTest, EachWayOfLeavingIsSeen) {
+TEST_F(TlsTest, EachKindOfDisconnectIsDetected) {
   start();
   for (const char* way : {"close_notify", "close", "reset"}) {
     SCOPED_TRACE(way);
@@ -134,7 +134,7 @@ TEST_F(TlsTest, EachWayOfLeavingIsSeen) {
   }
 }
 
-TEST_F(TlsTest, TheServerEndsWithACloseNotify) {
+TEST_F(TlsTest, ServerEndsWithACloseNotify) {
   options_.idle_seconds = 1;
   start();
   TlsClient idle(port_);
@@ -159,7 +159,7 @@ TEST_F(TlsTest, SilentAndDrippingHandshakesAreCut) {
     std::thread dripping([&] {
       while (!done && client.send_raw("x")) std::this_thread::sleep_for(20ms);
     });
-    EXPECT_EQ(common_name(), "first") << "others are served";
+    EXPECT_EQ(common_name(), "first") << "other clients are served";
     char byte = 0;
     EXPECT_LE(::recv(client.fd(), &byte, 1, 0), 0);
     EXPECT_NE(errno, EAGAIN);
@@ -169,7 +169,7 @@ TEST_F(TlsTest, SilentAndDrippingHandshakesAreCut) {
   EXPECT_EQ(finished(0).size(), 0U) << "a handshake is no request";
 }
 
-TEST_F(TlsTest, PlainHttpIsClosedAtOnceWithoutAnAnswer) {
+TEST_F(TlsTest, PlainHttpIsClosedWithoutAnAnswer) {
   options_.idle_seconds = 600;
   start();
   Client client(port_);
@@ -178,7 +178,7 @@ TEST_F(TlsTest, PlainHttpIsClosedAtOnceWithoutAnAnswer) {
   EXPECT_EQ(common_name(), "first");
 }
 
-TEST_F(TlsTest, RecordsWithoutDataDoNotOutlastTheDeadlines) {
+TEST_F(TlsTest, EmptyRecordsDoNotExtendTheDeadlines) {
   options_.read_seconds = 1;
   options_.idle_seconds = 1;
   start();
@@ -203,7 +203,7 @@ TEST_F(TlsTest, SlowBodyIsCutWithAnAnswer) {
   EXPECT_TRUE(client.at_proper_end());
 }
 
-TEST_F(TlsTest, ClientThatDoesNotReadIsCutAndOneThatReadsSlowlyIsServed) {
+TEST_F(TlsTest, SlowReaderIsServedUntilItStopsReading) {
   options_.write_seconds = 1;
   start();
   TlsClient slow(port_, 4096);
@@ -217,7 +217,7 @@ TEST_F(TlsTest, ClientThatDoesNotReadIsCutAndOneThatReadsSlowlyIsServed) {
   EXPECT_EQ(finished(1).at(0).code, "not_sent");
 }
 
-TEST_F(TlsTest, SteadySlowReaderGetsTheWholeAnswer) {
+TEST_F(TlsTest, SteadySlowReaderReceivesTheWholeAnswer) {
   options_.write_seconds = 1;
   start();
   TlsClient slow(port_, 2048);
@@ -231,7 +231,7 @@ TEST_F(TlsTest, SteadySlowReaderGetsTheWholeAnswer) {
   EXPECT_EQ(finished(1).at(0).code, "");
 }
 
-TEST_F(TlsTest, HandshakesThatStallHoldNoThread) {
+TEST_F(TlsTest, StalledHandshakesHoldNoThread) {
   options_.idle_seconds = 600;
   options_.threads = 1;
   start();
@@ -252,12 +252,12 @@ TEST_F(TlsTest, StopCutsHandshakesAndRequests) {
   EXPECT_TRUE(saw_gone_);
 }
 
-TEST_F(TlsTest, ReloadGivesNewConnectionsTheNewCertificateAndKeepsTheOldForABadOne) {
+TEST_F(TlsTest, ReloadAffectsOnlyNewConnectionsAndValidCertificates) {
   start();
   TlsClient old(port_);
   ASSERT_TRUE(old.handshake());
   write_certificate(options_.tls_cert, options_.tls_key, "second");
-  EXPECT_EQ(common_name(), "first") << "until it is told";
+  EXPECT_EQ(common_name(), "first") << "until the reload";
   server_->reload_certificate();
   EXPECT_EQ(common_name(), "second");
   std::ofstream(options_.tls_cert) << "no certificate";
@@ -267,7 +267,7 @@ TEST_F(TlsTest, ReloadGivesNewConnectionsTheNewCertificateAndKeepsTheOldForABadO
   EXPECT_TRUE(old.receive_until("hello GET").ends_with("hello GET")) << "a connection outlives its certificate";
 }
 
-TEST_F(TlsTest, ReloadsWhileConnectionsAreMade) {
+TEST_F(TlsTest, ReloadsDuringHandshakesAreSafe) {
   start();
   std::atomic<bool> done = false;
   std::thread reloading([&] {

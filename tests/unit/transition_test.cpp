@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// In degrees, by the law of cosines.
+/// Returns the smallest angle of a face in degrees, by the law of cosines.
 double smallest_angle_of(const Mesh& mesh, uint32_t face) {
   const auto corner = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * face + i % 3]]); };
   double smallest = 180;
@@ -26,7 +26,7 @@ double smallest_angle_of(const Mesh& mesh, uint32_t face) {
   return smallest;
 }
 
-TEST(SmallestAngle, IsThatOfAllFacesWhateverTheirSize) {
+TEST(SmallestAngle, AngleEqualsTheSmallestOfAllFacesAtAnyScale) {
   std::mt19937 random(13);
   for (int i = 0; i < 400; ++i) {
     const float size = std::pow(10.0F, std::uniform_real_distribution<float>(-14, 14)(random));

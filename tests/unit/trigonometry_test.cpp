@@ -9,7 +9,7 @@
 
 #include "tests/support/rounding.h"
 
-// Against the standard library's long double, and by values that are known.
+// Compared with the standard library's long double and with exact values.
 
 namespace papilio {
 namespace {
@@ -39,15 +39,15 @@ TEST(Trigonometry, QuartersAndSixthsOfATurnAreExact) {
   EXPECT_EQ(arc_cosine(0), std::numbers::pi / 2);
 }
 
-TEST(Trigonometry, OfTurnsIsRoundedToTheNearestAlmostAlways) {
+TEST(Trigonometry, ErrorsForTurnsAreBelow55HundredthsOfAnUlp) {
   int wrong = 0;
   int count = 0;
   for (uint64_t whole = 1; whole <= 400; ++whole)
     for (uint64_t part = 0; part < 2 * whole; ++part) {
-      if (8 * part % whole == 0) continue;  // exact ones, which pi as a long double is not close enough for
+      if (8 * part % whole == 0) continue;  // exact results: pi as a long double is too inaccurate
       const long double angle = 2 * pi * static_cast<long double>(part) / static_cast<long double>(whole);
       const SineCosine found = sine_and_cosine_of_turn(part, whole);
-      // Near a quarter of a turn the long double's own angle is what is wrong.
+      // Near a quarter of a turn the long double's angle is inaccurate.
       ASSERT_NEAR(found.sine, std::sin(angle), 3e-16) << part << " of " << whole;
       ASSERT_NEAR(found.cosine, std::cos(angle), 3e-16) << part << " of " << whole;
       if (8 * part >= whole) continue;
@@ -60,7 +60,7 @@ TEST(Trigonometry, OfTurnsIsRoundedToTheNearestAlmostAlways) {
   EXPECT_LT(wrong, count / 100);
 }
 
-TEST(Trigonometry, IsSymmetricToTheBit) {
+TEST(Trigonometry, SymmetricTurnsAreBitIdentical) {
   for (uint64_t whole = 1; whole <= 100; ++whole) {
     const std::vector<SineCosine> all = sines_and_cosines_of_turn(whole, whole);
     for (uint64_t part = 0; part <= whole; ++part) {
@@ -74,7 +74,7 @@ TEST(Trigonometry, IsSymmetricToTheBit) {
   }
 }
 
-TEST(Trigonometry, OfDegreesIsRoundedToTheNearestAlmostAlways) {
+TEST(Trigonometry, ErrorsForDegreesAreBelowSixTenthsOfAnUlp) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> degrees(0, 180);
   for (int i = 0; i < 20000; ++i) {
@@ -91,7 +91,7 @@ TEST(Trigonometry, OfDegreesIsRoundedToTheNearestAlmostAlways) {
   }
 }
 
-TEST(Trigonometry, ArcCosineIsWithinAUnitInTheLastPlace) {
+TEST(Trigonometry, ArcCosineIsWithinOneUlp) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> share(0, 1);
   for (int i = 0; i < 20000; ++i) {

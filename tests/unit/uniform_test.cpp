@@ -10,9 +10,9 @@
 #include "core/mesh/crease.h"
 #include "core/mesh/normals.h"
 #include "core/rules/butterfly.h"
+#include "core/rules/family_butterfly.h"
 #include "core/rules/features.h"
 #include "core/rules/tension.h"
-#include "core/rules/uniform_butterfly.h"
 #include "core/schemes/uniform_error.h"
 #include "core/split/split.h"
 #include "core/split/split_in_four.h"
@@ -20,15 +20,14 @@
 #include "tests/support/shapes.h"
 #include "tests/support/whole_split.h"
 
-// Uniform levels are made by formula, face by face; the same levels made edge by edge, by a plan that splits
-// everything, must be the same to the bit.
+// Uniform levels are computed per face. They are bit-identical to levels computed per edge.
 
 namespace papilio {
 namespace {
 
 using namespace test;
 
-/// Three sheets that meet in one line, and two that touch in one point.
+/// Three sheets that share a line, and two that touch at a point.
 TriangleMesh shared_and_pinched() {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5F}, {-1, 1, 0.5F}, {-1, -1, 0.5F},
@@ -37,7 +36,7 @@ TriangleMesh shared_and_pinched() {
   return mesh;
 }
 
-/// Many shapes, their vertices shaken so that no two weights may be mixed up unseen.
+/// Many shapes with jittered vertices, so that confused weights change results.
 std::vector<Mesh> shaken_meshes() {
   std::vector<TriangleMesh> shapes{tetrahedron(),
                                    icosahedron(),
@@ -77,13 +76,12 @@ void expect_same(const Topology& one, const Topology& other) {
   for (uint32_t e = 0; e < one.edge_count(); ++e) ASSERT_EQ(one.edge[one.half_edge[e]], e);
 }
 
-TEST(SplitInFour, IsTheSplitOfEverything) {
+TEST(SplitInFour, ResultEqualsSplittingEveryEdge) {
   for (Mesh& mesh : shaken_meshes())
     for (int level = 0; level < 3; ++level) {
-      const SplitPlan plan = everything(mesh);
       Buffer<Vec3f> positions = mesh.positions;
-      positions.resize(positions.size() + plan.count(), Vec3f{});
-      const Topology expected = split(mesh.topology, plan, positions, mesh.attributes);
+      positions.resize(positions.size() + mesh.topology.edge_count(), Vec3f{});
+      const Topology expected = split(mesh.topology, Marks(mesh.topology.edge_count(), 1), positions, mesh.attributes);
       const Topology made = split_in_four(mesh.topology);
       expect_same(made, expected);
       const Topology last = split_last_in_four(mesh.topology);
@@ -102,7 +100,7 @@ TEST(SplitInFour, IsTheSplitOfEverything) {
     }
 }
 
-TEST(SplitInFour, HalvesLieAtTheirEnds) {
+TEST(SplitInFour, HalvesOfAnEdgeStartAtItsEndAndMiddle) {
   const Mesh mesh = build_mesh(torus(5, 4));
   const Topology finer = split_in_four(mesh.topology);
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
@@ -114,7 +112,7 @@ TEST(SplitInFour, HalvesLieAtTheirEnds) {
   }
 }
 
-TEST(Features, DescendAsTheyWouldBeFound) {
+TEST(Features, DescendedFeaturesEqualSearchedOnes) {
   for (Mesh& mesh : shaken_meshes()) {
     Features features = find_features(mesh.topology);
     for (int level = 1; level <= 3; ++level) {
@@ -132,132 +130,49 @@ TEST(Features, DescendAsTheyWouldBeFound) {
   }
 }
 
-TEST(UniformButterfly, HasTheBitsOfTheRulesEdgeByEdge) {
-  for (Mesh& mesh : shaken_meshes())
-    for (const Tension tension : {Tension::off, Tension::soft, Tension::sharp}) {
-      Mesh level = mesh;
-      Features features = find_features(level.topology);
-      for (int k = 0; k < 3; ++k) {
-        std::optional<TensionField> field;
-        if (tension != Tension::off) field = tension_field(level, face_normals(level), tension);
-        const TensionField* const used = field ? &*field : nullptr;
-        const Buffer<Vec3f> expected = butterfly(level.topology, level.positions, everything(level), 0.0F, used);
-        const uint32_t vertices = level.topology.vertex_count;
-        level.positions.resize(vertices + expected.size());
-        uniform_butterfly(level.topology, features, level.positions.data(), &level.positions[vertices], used);
-        for (size_t e = 0; e < expected.size(); ++e)
-          ASSERT_EQ(level.positions[vertices + e], expected[e]) << "level " << k << ", edge " << e;
-        descend(features, vertices);
-        level.topology = split_in_four(level.topology);
-      }
-    }
-}
-
-/// A level of a mesh, and the connectivity of the level above.
+/// A level of a mesh with the connectivity of the level above.
 struct WholeLevel {
   Topology parents;
   Mesh mesh;
   Features features{};
 };
 
-/// Makes it of a mesh or of such a level; its positions are those of the plain scheme.
+/// Computes the next level of a mesh or a level by the plain scheme.
 WholeLevel next_level(const Mesh& mesh, Features features) {
   WholeLevel below{.parents = mesh.topology, .mesh = {split_in_four(mesh.topology), mesh.positions}};
   below.mesh.positions.resize(below.mesh.topology.vertex_count);
-  uniform_butterfly(mesh.topology, features, mesh.positions.data(), &below.mesh.positions[mesh.topology.vertex_count]);
+  butterfly(mesh.topology, features, mesh.positions.data(), &below.mesh.positions[mesh.topology.vertex_count]);
   descend(features, mesh.topology.vertex_count);
   below.features = std::move(features);
   return below;
 }
 
-TEST(UniformButterfly, IsTheSameFromTheLevelAbove) {
-  int without_the_level = 0;
+TEST(Butterfly, VerticesFromTheLevelAboveAreBitIdentical) {
+  int compared = 0;
   for (const Mesh& mesh : shaken_meshes()) {
-    WholeLevel level = next_level(mesh, find_features(mesh.topology));
-    for (int k = 1; k < 3; ++k) {
-      const Topology& topology = level.mesh.topology;
+    Features features = find_features(mesh.topology);
+    if (!features.are_rings()) continue;
+    WholeLevel level = next_level(mesh, features);
+    for (int k = 0; k < 2; ++k) {
       const Vec3f* positions = level.mesh.positions.data();
-      Buffer<Vec3f> expected(topology.edge_count());
-      uniform_butterfly(topology, level.features, positions, expected.data());
-      Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
-      uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data());
+      Buffer<Vec3f> expected(level.mesh.topology.edge_count());
+      butterfly(level.mesh.topology, level.features, positions, expected.data());
+      Buffer<Vec3f> made(expected.size());
+      butterfly_below(level.parents, features, positions, made.data());
       EXPECT_EQ(made, expected);
-      if (level.features.are_rings()) {
-        ++without_the_level;
-        made.assign(made.size(), Vec3f{});
-        uniform_butterfly_below(level.parents, nullptr, level.features, positions, made.data());
-        EXPECT_EQ(made, expected);
-      }
+      ++compared;
+      features = level.features;
       level = next_level(level.mesh, level.features);
     }
   }
-  EXPECT_GT(without_the_level, 20);
+  EXPECT_GT(compared, 20);
 }
 
-TEST(UniformButterfly, OfSomeFacesKnowsTheEdgesBetweenThem) {
-  std::mt19937 random(3);
-  size_t known = 0;
-  for (const Mesh& mesh : shaken_meshes()) {
-    const WholeLevel level = next_level(mesh, find_features(mesh.topology));
-    const Topology& topology = level.mesh.topology;
-    const Vec3f* positions = level.mesh.positions.data();
-    Buffer<Vec3f> expected(topology.edge_count());
-    uniform_butterfly(topology, level.features, positions, expected.data());
-    Buffer<uint8_t> is_asked_of(mesh.topology.face_count());
-    for (uint8_t& is_asked : is_asked_of) is_asked = random() % 4 != 0 ? 1 : 0;
-    const Buffer<uint32_t> asked_of = marked(is_asked_of);
-    Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
-    uniform_butterfly_below(level.parents, &topology, level.features, positions, made.data(), 1, &asked_of);
-    EdgeMarks is_asked(topology.edge_count(), 1);
-    for (uint32_t h = 0; h < topology.half_edge_count(); ++h)
-      if (is_asked_of[h / 12] == 0) is_asked[topology.edge[h]] = 0;
-    for (uint32_t e = 0; e < topology.edge_count(); ++e) {
-      if (is_asked[e] == 0) continue;
-      ASSERT_EQ(made[e], expected[e]);
-      ++known;
-    }
-  }
-  EXPECT_GT(known, 1000U);
-}
-
-TEST(UniformButterfly, IsTheSameFromTheLevelAboveWhereFacesAreMissing) {
-  std::mt19937 random(5);
-  size_t known = 0;
-  for (const Mesh& mesh : shaken_meshes()) {
-    const Options options{.tension = Tension::off};
-    HierarchyLevel level = coarsest_level(mesh);
-    for (int k = 1; k < 4; ++k) {
-      level.trial = try_split(level.mesh, options);
-      Buffer<uint8_t> red(level.mesh.topology.face_count());
-      for (uint32_t f = 0; f < red.size(); ++f) red[f] = level.red.empty() || level.red[level.parent_of(f)] != 0;
-      for (uint8_t& is_red : red) is_red &= random() % 16 == 0 ? 1 : 0;
-      LevelBelow below = refine_level(level, red);
-      if (below.level.is_whole || below.level.mesh.topology.face_count() == 0) break;
-      level = std::move(below.level);
-      const Topology& topology = level.mesh.topology;
-      for (uint32_t h : level.features.curve_half_edges)
-        ASSERT_NE(topology.kind[topology.edge[h]], EdgeKind::cut);  // a crease of which one face is held
-      const Vec3f* positions = level.mesh.positions.data();
-      Buffer<Vec3f> expected(topology.edge_count());
-      uniform_butterfly(topology, level.features, positions, expected.data());
-      Buffer<Vec3f> made(topology.edge_count(), Vec3f{});
-      uniform_butterfly_below(below.parents, &topology, level.features, positions, made.data());
-      const EdgeMarks are_complete = complete_edges(level);
-      for (uint32_t e = 0; e < made.size(); ++e) {
-        if (are_complete[e] == 0) continue;
-        ASSERT_EQ(made[e], expected[e]);
-        ++known;
-      }
-    }
-  }
-  EXPECT_GT(known, 10000U);
-}
-
-TEST(UniformError, IsTheLargestDeviation) {
+TEST(UniformError, ErrorIsTheLargestDeviation) {
   for (const Mesh& mesh : shaken_meshes()) {
     const WholeLevel level = next_level(mesh, find_features(mesh.topology));
     Buffer<Vec3f> made(level.mesh.topology.edge_count());
-    uniform_butterfly(level.mesh.topology, level.features, level.mesh.positions.data(), made.data());
+    butterfly(level.mesh.topology, level.features, level.mesh.positions.data(), made.data());
     double largest = 0;
     for (uint32_t e = 0; e < level.mesh.topology.edge_count(); ++e)
       largest = std::max(largest, deviation(level.mesh, e, made[e]));
@@ -277,8 +192,8 @@ void expect_same_result(const Result& one, const Result& other) {
   EXPECT_EQ(one.error, other.error);
 }
 
-// A level in between is left out where nobody sees it; with edges, or with a hook, it is made.
-TEST(Uniform, LeavingALevelOutChangesNothing) {
+// An intermediate level is skipped without edges and hooks.
+TEST(Uniform, SkippedLevelDoesNotChangeTheResult) {
   std::vector<Mesh> meshes = shaken_meshes();
   meshes.push_back(build_mesh(torus(120, 100)));  // enough for two threads
   for (const Mesh& mesh : meshes)
@@ -296,7 +211,7 @@ TEST(Uniform, LeavingALevelOutChangesNothing) {
     }
 }
 
-TEST(MeasureError, LeftOutChangesNothingElse) {
+TEST(MeasureError, ResultDoesNotDependOnTheOption) {
   const Mesh mesh = build_mesh(torus(9, 7));
   const View view{.eye = {4, 1, 1}, .error_pixels = 2};
   for (const Options& measured :

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Corners of its own for each face, moved by up to `noise` in each coordinate.
+/// Returns the mesh with separate corners per face, moved by up to `noise` in each coordinate.
 TriangleMesh torn(const TriangleMesh& mesh, float noise, uint32_t seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> move(-noise, noise);
@@ -29,7 +29,7 @@ TriangleMesh torn(const TriangleMesh& mesh, float noise, uint32_t seed = 1) {
 
 double diagonal_of(const TriangleMesh& mesh) { return bounding_box(mesh.positions).diagonal(); }
 
-TEST(WeldGaps, TornSurfacesCloseAgain) {
+TEST(WeldGaps, TornSurfacesAreClosed) {
   for (const TriangleMesh& shape : {icosahedron(), cube(), torus(24, 16), box({4, 4, 1}, {1, 1, 0.1F})})
     for (uint32_t seed = 0; seed < 5; ++seed) {
       const TriangleMesh soup = torn(shape, static_cast<float>(2e-7 * diagonal_of(shape)), seed);
@@ -46,7 +46,7 @@ TEST(WeldGaps, TornSurfacesCloseAgain) {
     }
 }
 
-TEST(WeldGaps, WithoutAGapNothingIsWelded) {
+TEST(WeldGaps, ZeroGapWeldsNothing) {
   const TriangleMesh soup = torn(icosahedron(), 1e-4F);
   EXPECT_EQ(build_mesh(soup, nullptr, rounding_gap).topology.vertex_count, build_mesh(soup).topology.vertex_count);
   for (const TriangleMesh& shape : {grid(6, 5), fan(7, false), cube(), square_ring(24, 0.6F, 1, 0.5F)}) {
@@ -61,7 +61,7 @@ TEST(WeldGaps, WithoutAGapNothingIsWelded) {
   }
 }
 
-/// Triangles anywhere, most of them with corners close to others.
+/// Random triangles, most with corners close to others.
 TriangleMesh random_triangles(std::mt19937& random) {
   const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
   TriangleMesh mesh;
@@ -80,7 +80,7 @@ TriangleMesh two_squares(float apart) {
           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
 }
 
-TEST(WeldGaps, TheVertexNamedFirstStays) {
+TEST(WeldGaps, LowestNumberedVertexIsKept) {
   BuildReport found;
   const Mesh mesh = build_mesh(two_squares(1e-6F), &found, rounding_gap);
   EXPECT_EQ(found.near_duplicates, 2U);
@@ -89,7 +89,7 @@ TEST(WeldGaps, TheVertexNamedFirstStays) {
   for (const Vec3f p : {Vec3f{1, 0, 0}, Vec3f{1, 1, 0}}) EXPECT_EQ(std::ranges::count(mesh.positions, p), 1);
 }
 
-TEST(WeldGaps, TheGapIsAShareOfTheDiagonal) {
+TEST(WeldGaps, GapScalesWithTheDiagonal) {
   for (const float scale : {1e-6F, 1.F, 1e6F})
     for (const auto& [apart, welded] : {std::pair{1e-6F, 2U}, {4e-6F, 0U}}) {
       TriangleMesh mesh = two_squares(apart);
@@ -100,15 +100,15 @@ TEST(WeldGaps, TheGapIsAShareOfTheDiagonal) {
     }
 }
 
-TEST(WeldGaps, VerticesThatOnlyTouchStayApart) {
+TEST(WeldGaps, VerticesWithoutACommonEdgeStayApart) {
   TriangleMesh mesh = two_squares(0);
-  for (uint32_t p : {4, 5, 6, 7}) mesh.positions[p] += Vec3f{1e-6F, 1 + 1e-6F, 0};  // corner at corner
+  for (uint32_t p : {4, 5, 6, 7}) mesh.positions[p] += Vec3f{1e-6F, 1 + 1e-6F, 0};  // touching at one corner
   BuildReport found;
   EXPECT_EQ(build_mesh(mesh, &found, rounding_gap).topology.vertex_count, 8U);
   EXPECT_EQ(found.pinched_vertices, 0U);
 }
 
-TEST(WeldGaps, EdgesThatRunAlikeStayApart) {
+TEST(WeldGaps, EdgesOfEqualDirectionStayApart) {
   TriangleMesh mesh = two_squares(1e-6F);
   std::swap(mesh.triangles[2][0], mesh.triangles[2][1]);  // the second square faces down
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
@@ -117,7 +117,7 @@ TEST(WeldGaps, EdgesThatRunAlikeStayApart) {
   EXPECT_EQ(found.misoriented_edges, 0U);
 }
 
-TEST(WeldGaps, AThirdSheetStaysApart) {
+TEST(WeldGaps, ThirdSheetStaysApart) {
   TriangleMesh mesh = two_squares(1e-6F);
   for (const Vec3f p : {Vec3f{1, 0, 1e-6F}, {1, 1, 1e-6F}, {1, 0, 1}}) mesh.positions.push_back(p);
   mesh.triangles.push_back({9, 8, 10});
@@ -128,7 +128,7 @@ TEST(WeldGaps, AThirdSheetStaysApart) {
 }
 
 TEST(WeldGaps, ThinFacesKeepTheirCornersAndTheirSide) {
-  // A strip narrower than the gap between two squares: its long sides close with them, not with each other.
+  // A strip narrower than the gap between two squares: its long sides are welded to the squares, not to each other.
   const float w = 5e-7F;
   TriangleMesh mesh{
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1 + 2 * w, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1 + 2 * w, 1, 0}},
@@ -138,7 +138,7 @@ TEST(WeldGaps, ThinFacesKeepTheirCornersAndTheirSide) {
   EXPECT_EQ(built.topology.face_count(), 6U);
   EXPECT_EQ(found.near_duplicates, 0U);
   std::mt19937 random(3);
-  for (int i = 0; i < 60; ++i) {  // whatever is welded, nothing gets worse
+  for (int i = 0; i < 60; ++i) {  // welding adds no defects
     const TriangleMesh soup = random_triangles(random);
     for (const double gap : {1e-3, 1e-2, 0.1, 0.5}) {
       BuildReport exact, close;
@@ -165,8 +165,8 @@ TEST(WeldGaps, ChartsOfWeldedVerticesStayApart) {
   EXPECT_EQ(build_mesh(mesh, nullptr, rounding_gap).attributes.point_count, 6U);
 }
 
-TEST(WeldGaps, CrowdsTakeBoundedTime) {
-  // Nearly all vertices within the gap of each other: what is not looked at stays as it is.
+TEST(WeldGaps, CrowdedVerticesTakeBoundedTime) {
+  // Nearly all vertices are within the gap of each other: vertices beyond the work limit are unchanged.
   TriangleMesh crowd = torn(grid(120, 120), 1e-4F);
   for (Vec3f& p : crowd.positions) p = 1e-9F * p;
   crowd.positions.push_back({1, 1, 1});

@@ -7,7 +7,7 @@ namespace {
 
 constexpr uint64_t faces = 600;
 
-TEST(Work, UniformWorkIsKnown) {
+TEST(Work, UniformWorkIsExact) {
   for (int levels = 0; levels <= 6; ++levels) {
     Options options;
     options.levels = levels;
@@ -17,7 +17,7 @@ TEST(Work, UniformWorkIsKnown) {
   }
 }
 
-TEST(Work, CriteriaMayTakeAllFacesButSeldomDo) {
+TEST(Work, AdaptiveWorkHasAnExpectedValueAndABound) {
   Options options;
   options.levels = 8;
   options.tolerance = 0.001;
@@ -26,7 +26,7 @@ TEST(Work, CriteriaMayTakeAllFacesButSeldomDo) {
   EXPECT_GT(work.most, 50 * small_work);
 }
 
-TEST(Work, LimitsBoundIt) {
+TEST(Work, LimitsBoundTheWork) {
   Options options;
   options.levels = 8;
   options.max_faces = 5000;
@@ -38,13 +38,13 @@ TEST(Work, LimitsBoundIt) {
             predicted_work(faces, options, {.max_output_faces = 20'000}).most);
 }
 
-TEST(Work, AUniformResultThatWillBeRefusedIsNoWork) {
+TEST(Work, RefusedUniformResultIsNoWork) {
   Options options;
   options.levels = 8;
   EXPECT_LE(predicted_work(faces, options, {}).most, small_work);
 }
 
-TEST(Work, LargeMeshesAreLargeWorkUnrefined) {
+TEST(Work, UnrefinedLargeMeshIsLargeWork) {
   Options options;
   options.levels = 0;
   EXPECT_GT(predicted_work(2'000'000, options, {}).expected, small_work);

@@ -2,11 +2,11 @@
 
 namespace papilio {
 
-/// Raised by whoever changes any bit of any result of refine(). Caches of results depend on it. A test holds it against
-/// recorded results (tests/unit/recorded_results_test.cpp).
-inline constexpr int algorithm_version = 5;
+/// Version of the results of refine(): increment it when any bit of any result changes. Caches of results depend on it.
+/// A test checks it against recorded results (tests/unit/recorded_results_test.cpp).
+inline constexpr int algorithm_version = 10;
 
-/// Of the simplifier library behind `simplify_hidden`: other versions may give other meshes.
+/// Returns the version of the simplifier library behind `simplify_hidden`: its versions may differ in their results.
 [[nodiscard]] int simplifier_version();
 
 }  // namespace papilio

@@ -11,21 +11,21 @@
 
 namespace papilio {
 
-/// Returns a block of at least so many bytes, aligned to 64. Thread-safe. Throws std::bad_alloc.
+/// Returns a block of at least `bytes` bytes, aligned to 64. Thread-safe. Throws std::bad_alloc.
 [[nodiscard]] void* take_block(size_t bytes);
-/// Takes a block back, with the number of bytes it was taken for. It is kept for later calls of take_block().
+/// Takes a block back; `bytes` is the argument of its take_block(). Keeps it for later calls of take_block().
 void give_block(void* block, size_t bytes) noexcept;
 
-/// Upper bound of the bytes kept for later.
+/// Upper bound of the bytes in spare blocks: blocks kept for later calls of take_block().
 inline constexpr size_t spare_limit = size_t{2} << 30;
-/// Bytes kept for later now.
+/// Returns the bytes in spare blocks now.
 [[nodiscard]] size_t spare_bytes() noexcept;
-/// Returns bytes kept for later to the system, until at most so many are kept.
+/// Returns spare blocks to the system until at most `most_kept` bytes are kept.
 void release_spare_blocks(size_t most_kept = 0) noexcept;
 
-/// A vector of trivially copyable elements, for the long arrays that meshes are made of. Its memory comes from
-/// take_block(): the system provides fresh pages slowly, so blocks are kept and reused. Iterators and references are
-/// invalidated as those of std::vector. Not thread-safe, but distinct objects are independent.
+/// Vector of trivially copyable elements, for the long arrays of meshes. Its memory comes from take_block(): the system
+/// provides fresh pages slowly, so blocks are reused. Invalidates iterators and references as std::vector does. Not
+/// thread-safe, but distinct objects are independent.
 template <class T>
 class Buffer {
  public:
@@ -39,11 +39,11 @@ class Buffer {
   using iterator = T*;
   using const_iterator = const T*;
 
-  /// Bytes behind the last element that may be read, whatever they hold.
+  /// Bytes behind the last element that may be read; their values are unspecified.
   static constexpr size_t readable_behind_end = 16;
 
   Buffer() = default;
-  /// Of `count` zeros.
+  /// Holds `count` zeros.
   explicit Buffer(size_t count) { resize(count); }
   Buffer(size_t count, const T& value) { assign(count, value); }
   Buffer(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
@@ -65,7 +65,7 @@ class Buffer {
     swap(taken);
     return *this;
   }
-  /// Of no elements: gives the memory back, which clear() keeps.
+  /// Assigns the values. `= {}` returns the memory, which clear() keeps.
   Buffer& operator=(std::initializer_list<T> values) {
     if (values.size() == 0) Buffer().swap(*this);
     assign(values.begin(), values.end());
@@ -98,12 +98,12 @@ class Buffer {
   [[nodiscard]] const T& back() const { return end_[-1]; }
 
   void push_back(const T& value) {
-    const T copy = value;  // which may be an element of this
+    const T copy = value;  // `value` may be an element of this
     if (end_ == limit_) move_to(larger_by(1));
     *end_++ = copy;
   }
   void pop_back() { --end_; }
-  /// Inserts elements of elsewhere before `at`; returns where the first of them is.
+  /// Inserts elements before `at`; they must not be elements of this. Returns the position of the first.
   template <std::forward_iterator Iterator>
   T* insert(const T* at, Iterator first, Iterator last) {
     const auto before = static_cast<size_t>(at - begin_);
@@ -118,32 +118,32 @@ class Buffer {
   void reserve(size_t count) {
     if (count > capacity()) move_to(count);
   }
-  /// New elements are zero.
+  /// Changes the size; new elements are zero.
   void resize(size_t count) { resize(count, T{}); }
   void resize(size_t count, const T& value) {
-    const T copy = value;  // which may be an element of this
+    const T copy = value;  // `value` may be an element of this
     const size_t old = size();
     resize_for_overwrite(count);
     if (count > old) std::fill(begin_ + old, end_, copy);
   }
-  /// New elements must be written before they are read.
+  /// Changes the size; new elements must be written before they are read.
   void resize_for_overwrite(size_t count) {
     if (count > capacity()) move_to(larger_by(count - size()));
     end_ = begin_ + count;
   }
   void assign(size_t count, const T& value) {
-    const T copy = value;  // which may be an element of this
+    const T copy = value;  // `value` may be an element of this
     set_size(count);
     std::fill(begin_, end_, copy);
   }
-  /// The elements are of elsewhere.
+  /// Assigns a range, which must not be part of this.
   template <std::forward_iterator Iterator>
   void assign(Iterator first, Iterator last) {
     set_size(static_cast<size_t>(std::distance(first, last)));
     std::copy(first, last, begin_);
   }
   void assign(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
-  /// Leaves the capacity as it is.
+  /// Removes all elements; keeps the capacity.
   void clear() { end_ = begin_; }
 
   void swap(Buffer& other) noexcept {
@@ -152,7 +152,7 @@ class Buffer {
     std::swap(limit_, other.limit_);
   }
   friend void swap(Buffer& a, Buffer& b) noexcept { a.swap(b); }
-  /// Removes the elements of which `is_unwanted` is true; returns how many these were.
+  /// Removes the elements for which `is_unwanted` is true; returns their number.
   template <class IsUnwanted>
   friend size_t erase_if(Buffer& buffer, const IsUnwanted& is_unwanted) {
     const size_t old = buffer.size();
@@ -174,7 +174,7 @@ class Buffer {
     if (begin_ != nullptr) give_block(begin_, bytes_of(capacity()));
   }
 
-  /// A capacity for so many more elements, by which repeated growth costs linear time.
+  /// Returns a capacity for `more` further elements; at least doubles the size, so that repeated growth is linear.
   [[nodiscard]] size_t larger_by(size_t more) const { return size() + std::max(size(), more); }
   void move_to(size_t new_capacity) {
     T* const block = take(new_capacity);
@@ -184,7 +184,7 @@ class Buffer {
     end_ = end;
     limit_ = block + new_capacity;
   }
-  /// Old elements are lost.
+  /// Changes the size; all elements must be written afterwards.
   void set_size(size_t count) {
     if (count > capacity()) {
       T* const block = take(count);

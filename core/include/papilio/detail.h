@@ -17,95 +17,97 @@
 
 namespace papilio {
 
-/// Most levels of detail.
+/// Upper bound of the levels of detail.
 inline constexpr int most_detail_levels = 10;
 
 /// Coarse mesh that levels refine.
 struct DetailBase {
-  /// Manifold; edges with one face are boundaries. Attributes may be, in this order: texture coordinates, of two
-  /// components; colours, of three, 0..255; the numbers of parts, of one component: those of materials, say, the same
-  /// at the corners of each face. All may have seams.
+  /// Manifold triangles; edges with one face are boundaries. Optional attributes, in this order: texture coordinates
+  /// (2 components); colours (3 components, 0..255); part numbers (1 component, equal at all corners of a face), for
+  /// example of materials. All may have seams.
   TriangleMesh triangles;
-  std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty: there are none
+  std::vector<uint8_t> curves{};  ///< coded creases, and corners of creases and boundaries; empty if there are none
 
   friend bool operator==(const DetailBase&, const DetailBase&) = default;
 };
 
-/// How an original's own normals are split, and with them those that its levels are shaded by.
+/// Places where the normals of an original, and so of its levels, are split.
 enum class NormalStyle : uint8_t {
-  absent,   ///< the original has none
+  absent,   ///< original without normals
   smooth,   ///< nowhere: one normal a vertex
-  creased,  ///< at creases of the base
-  faceted,  ///< at most edges: the normals of the faces
+  creased,  ///< creases of the base
+  faceted,  ///< most edges: normals of faces
 };
 
 /// Residuals of texture coordinates and colours on one level.
 struct TexcoordStream {
-  /// Quantization step, in the unit of texture coordinates; of colours 2048 times that; 0: there are no residuals.
+  /// Quantization step, in the unit of texture coordinates; for colours, 2048 times this value. 0: no residuals.
   float step = 0;
   std::vector<uint8_t> bytes{};  ///< entropy-coded residuals
 };
 
-/// What is known of a piece before it is there, in the mesh's unit. The surface is that of the last level below the
+/// Bounds of a piece, known before its bytes, in the mesh's unit. They hold for the last level's surface below the
 /// piece's faces of the base.
 struct PieceBounds {
-  float largest_move = 0;   ///< upper bound of how far residuals move a vertex
-  Vec3f centre{};           ///< of a sphere that holds the surface
-  float radius = 0;         ///< of that
-  Vec3f axis{};             ///< unit length: of a cone of the normals of the surface's faces
-  float least_cosine = -1;  ///< lower bound of the cosine of their angles with it
+  float largest_move = 0;   ///< upper bound of the distance by which residuals move a vertex
+  Vec3f centre{};           ///< centre of a sphere that contains the surface
+  float radius = 0;         ///< radius of the sphere
+  Vec3f axis{};             ///< axis of a cone that contains the normals of the surface's faces; unit length
+  float least_cosine = -1;  ///< lower bound of the cosine between a normal and the axis
 
   friend bool operator==(const PieceBounds&, const PieceBounds&) = default;
 };
 
-/// A part of a level that is coded by itself. Pieces take the faces of the base in the order of a space-filling curve,
-/// about as many each, and have the edges below those.
+/// Independently coded part of a level. Pieces divide the faces of the base, in the order of a space-filling curve,
+/// into runs of about equal length. A piece has the level's edges below its faces.
 struct DetailPiece {
-  uint32_t bytes = 0;           ///< of its residuals, among those of its level
-  uint32_t texcoord_bytes = 0;  ///< likewise, of those of texture coordinates
-  bool is_missing = false;      ///< without bytes: its vertices, and those of pieces that need it, are the smooth ones
+  uint32_t bytes = 0;           ///< length of its residuals in `DetailStream::bytes`
+  uint32_t texcoord_bytes = 0;  ///< length of its residuals in `TexcoordStream::bytes`
+  /// Whether its bytes are absent. Then its vertices, and those of pieces that depend on it, are predicted only.
+  bool is_missing = false;
   PieceBounds bounds{};
 
   friend bool operator==(const DetailPiece&, const DetailPiece&) = default;
 };
 
-/// Most pieces of a level.
+/// Upper bound of the pieces of a level.
 inline constexpr uint32_t most_detail_pieces = 65535;
 
 /// Residuals of one level.
 struct DetailStream {
   float step = 0;              ///< quantization step, in the mesh's unit; > 0
-  std::vector<uint8_t> bytes;  ///< entropy-coded residuals: of each piece in the order of the edges that are split
-  TexcoordStream texcoords{};  ///< where the base has texture coordinates or colours
-  /// In the order of their bytes, at most as many as the base has faces; empty: all is one piece.
+  std::vector<uint8_t> bytes;  ///< entropy-coded residuals, piece by piece, each in the order of the split edges
+  TexcoordStream texcoords{};  ///< residuals of texture coordinates and colours, if the base has any
+  /// Pieces in the order of their bytes, at most as many as the base has faces; empty: one piece.
   std::vector<DetailPiece> pieces{};
 };
 
-/// What a decoder of the levels up to one has, compared with the original.
+/// Distances between the original and the levels decoded so far, as shares of the original's diagonal.
 struct DetailReach {
-  double rms = 0;      ///< root mean square distance, the larger of both directions; share of the original's diagonal
-  double largest = 0;  ///< largest distance of either direction; share of the original's diagonal
+  double rms = 0;      ///< root mean square distance, the larger of both directions
+  double largest = 0;  ///< largest distance of either direction
 };
 
-/// Returns the mesh of the base and all streams: faces of the base times 4 to the power of the number of streams, with
-/// the texture coordinates and colours of the base. Each face of the base is as many faces in a row, which are of its
-/// part. `base` must be manifold. Any bytes are decoded to some mesh. The same bits on every processor, and of each
-/// vertex whose piece can be decoded whatever other pieces are there (decodable_pieces()). Throws `Error`: bad_option
-/// (no step, too many levels, other attributes, pieces that are not those of the bytes), not_finite, result_too_large
-/// beyond `face_limit`, cancelled, and what build_mesh() throws. O(result).
+/// Decodes base and streams to a mesh with the attributes of the base. `base` must be manifold. Each face of the base
+/// becomes 4^n consecutive faces of its part, where n is the number of streams. Any bytes are decoded to some mesh.
+///
+/// The result is bit-identical on every processor. A vertex of a decodable piece (decodable_pieces()) does not depend
+/// on which other pieces are present. Throws `Error`: bad_option (no step, too many levels, other attributes, pieces
+/// that do not match the bytes), not_finite, result_too_large (beyond `face_limit`), cancelled, and errors of
+/// build_mesh(). O(result).
 [[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
                                          uint64_t face_limit = face_count_limit,
                                          const std::function<bool()>& cancelled = {});
 
-/// Returns the mesh that decode_detail() returns, with its edges. Its boundaries and creases come from the base's
-/// curves. Throws as decode_detail().
+/// Returns the mesh of decode_detail() with edges. Its boundaries and creases come from the base's curves. Throws as
+/// decode_detail().
 [[nodiscard]] Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels,
                                       uint64_t face_limit = face_count_limit,
                                       const std::function<bool()>& cancelled = {});
 
-/// Returns [level][piece] whether decode_detail() decodes each piece: those that are there, if all of the level before
-/// are decoded that lie at a vertex of the base at which the piece has a face, and the first one of its level and of
-/// those before. Throws as decode_detail().
+/// Returns [level][piece] whether decode_detail() decodes the piece. Three conditions hold: its bytes are present; the
+/// first piece of its level and of each level before is decoded; and so is each piece of the level before with a face
+/// at a vertex of one of the piece's faces of the base. Throws as decode_detail().
 [[nodiscard]] std::vector<std::vector<uint8_t>> decodable_pieces(const DetailBase& base,
                                                                  std::span<const DetailStream> levels);
 
@@ -122,123 +124,126 @@ class Detail {
   Detail& operator=(const Detail&) = delete;
   virtual ~Detail() = default;
 
-  /// Whether the mesh is the base, to the bit, with its numbers of vertices and faces.
+  /// Returns whether the mesh is the base, to the bit, with vertices and faces in the base's order.
   [[nodiscard]] virtual bool fits(const Mesh& mesh) const = 0;
-  /// The connectivity of the base, with its curves.
+  /// Returns the connectivity of the base, with its curves.
   [[nodiscard]] virtual const Topology& base() const = 0;
   [[nodiscard]] virtual int level_count() const = 0;
-  /// Returns the positions of the vertices on the edges of the mesh that `level` levels give, 0 <= level <
-  /// level_count(), in the order of its edges. They stay there as long as the detail. Throws `Error`: not_finite,
+  /// Returns the positions of the new vertices on the edges of the mesh after `level` levels, in the order of its
+  /// edges; 0 <= level < level_count(). The span is valid for the lifetime of the detail. Throws `Error`: not_finite,
   /// cancelled, out_of_memory.
   [[nodiscard]] virtual std::span<const Vec3f> new_vertices(int level,
                                                             const std::function<bool()>& cancelled = {}) const = 0;
-  /// Returns the texture coordinates of the points on the half-edges of the mesh that `level` levels give, two numbers
-  /// a half-edge: those of its edge's new vertex in its face. Empty where the detail has none. As long as
-  /// new_vertices(), and throws as that.
+  /// Returns [H] the texture coordinates of the new vertex on each half-edge of the mesh after `level` levels, in the
+  /// half-edge's face. Empty if the detail has none. Lifetime and errors as of new_vertices().
   [[nodiscard]] virtual std::span<const Texcoord> new_texcoords(int level,
                                                                 const std::function<bool()>& cancelled = {}) const {
     (void)level;
     (void)cancelled;
     return {};
   }
-  /// Returns the colours of those points, as new_texcoords().
+  /// Returns [H] the colour of the new vertex on each half-edge, as new_texcoords().
   [[nodiscard]] virtual std::span<const Colour> new_colours(int level,
                                                             const std::function<bool()>& cancelled = {}) const {
     (void)level;
     (void)cancelled;
     return {};
   }
-  /// Upper bound of the distance from the new vertices to their edges. Throws as new_vertices().
+  /// Returns an upper bound of the distance from the new vertices to their edges. Throws as new_vertices().
   [[nodiscard]] virtual double largest_move(int level, const std::function<bool()>& cancelled = {}) const = 0;
-  /// Bytes in memory now.
+  /// Returns the bytes in memory now.
   [[nodiscard]] virtual uint64_t bytes() const = 0;
 };
 
-/// What decode_detail() takes.
+/// Arguments of decode_detail().
 struct DetailSource {
   DetailBase base;
   std::vector<DetailStream> levels;
 };
 
-/// Returns the levels that decode_detail() makes, decoded when they are first asked for. Throws `Error`: bad_option,
-/// bad_surface, result_too_large (beyond `face_count_limit`), and what build_mesh() throws. O(base).
+/// Returns the levels of decode_detail(), each decoded on first use. Throws `Error`: bad_option, bad_surface,
+/// result_too_large (beyond `face_count_limit`), and errors of build_mesh(). O(base).
 [[nodiscard]] std::shared_ptr<const Detail> stream_detail(DetailSource source);
 
-/// Marks the creases and corners of an original, as encode_detail() does: edges that form clean curves and are hard,
-/// where its normals are split, or sharp where the normals do not say otherwise. Takes the normals from it, an
-/// attribute of three components (`Attribute::unit_length`), and returns their style. Faces, edges and vertices stay.
-/// The mesh must have its edges. O(F log F).
+/// Marks the creases and corners of an original, as encode_detail() does. Creases are clean curves of edges at which
+/// normals are split, or of sharp edges where normals do not contradict. Removes the normals, an attribute with 3
+/// components (`Attribute::unit_length`), and returns their style. Keeps faces, edges and vertices. The mesh must have
+/// edges. O(F log F).
 NormalStyle mark_detail_curves(Mesh& mesh);
 
-/// Whether normals of a style are computed on levels: those of a faceted original are its faces'.
+/// Returns whether levels have vertex normals in a style. A faceted original is shaded by face normals.
 [[nodiscard]] constexpr bool has_detail_normals(NormalStyle style) {
   return style == NormalStyle::smooth || style == NormalStyle::creased;
 }
-/// Adds normals in a style as the last attribute of a mesh: means of the faces' normals weighted by angles, at creases
-/// one for each side, or one a vertex. Without effect unless has_detail_normals(). Smooth ones unmark the
-/// creases. Returns whether any were added. The mesh must have its edges. O(H log H).
+/// Adds normals in a style as the last attribute: angle-weighted means of face normals, one a vertex, or one for each
+/// side of a crease. `smooth` unmarks the creases. Does nothing unless has_detail_normals(). Returns whether normals
+/// were added. The mesh must have edges. O(H log H).
 bool add_detail_normals(Mesh& mesh, NormalStyle style);
 
-/// Base as its decoder has it.
+/// Decoded base.
 struct CodedBase {
   TriangleMesh triangles;
-  uint64_t bytes = 0;  ///< of its code
+  uint64_t bytes = 0;  ///< length of its code
 };
-/// Codes and decodes a base: for the encoder, which needs what decoders will have. Vertices and faces may change their
-/// order, positions move by less than half the distance between any two.
+/// Function that codes and decodes a base, so that the encoder predicts from the decoder's values. Vertices and faces
+/// may be reordered. Positions move by less than half the distance between any two.
 using BaseCoder = std::function<CodedBase(const TriangleMesh&)>;
 
 struct DetailOptions {
-  double rms = 1e-4;  ///< wanted RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
-  /// Of texture coordinates on the last level, whose largest error at vertices is 3/4 of it; > 0. On a subdivided duck
-  /// the RMS error of the whole is then a texel of a texture of 2048 by 2048. That of colours is 2048 times as large.
+  double rms = 1e-4;  ///< target RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
+  /// Quantization step of texture coordinates on the last level; > 0. The largest error at vertices is 3/4 of it. On a
+  /// subdivided duck, the RMS error is then one texel of a 2048 x 2048 texture. The step of colours is 2048 times this.
   double texcoord_step = 1.0 / 512;
-  uint64_t face_limit = 8'000'000;            ///< faces of the last level
-  uint64_t piece_bytes = 16'384;              ///< of a piece of a level, about; > 0
-  std::function<bool()> cancelled{};          ///< asked between steps; true stops with `Fault::cancelled`
+  uint64_t face_limit = 8'000'000;            ///< upper bound of the faces of the last level
+  uint64_t piece_bytes = 16'384;              ///< approximate length of a piece of a level; > 0
+  std::function<bool()> cancelled{};          ///< polled between steps; true stops with `Fault::cancelled`
   std::function<void(double)> on_progress{};  ///< share done, 0..1
 };
 
 struct EncodedDetail {
-  DetailBase base;  ///< as decoded; decode_detail() takes it as it is
+  DetailBase base;  ///< decoded base, ready for decode_detail()
   std::vector<DetailStream> levels;
-  std::vector<DetailReach> reach;  ///< [levels + 1] of the base alone, with the first level, and so on
-  uint32_t folds = 0;              ///< faces of the last level turned against the original where they lie
-  uint32_t parted = 0;             ///< vertices at which the original touches itself, which were parted
-  uint64_t bytes = 0;              ///< of base, curves and streams
-  uint64_t texcoord_bytes = 0;     ///< of the streams of texture coordinates
-  NormalStyle normals{};           ///< of the original
+  std::vector<DetailReach> reach;  ///< [levels + 1] distances of the base alone, with the first level, and so on
+  uint32_t folds = 0;              ///< faces of the last level that face against the original
+  uint32_t parted = 0;             ///< vertices at which the original touches itself, which were separated
+  uint64_t bytes = 0;              ///< length of base, curves and streams
+  uint64_t texcoord_bytes = 0;     ///< length of the streams of texture coordinates
+  NormalStyle normals{};           ///< style of the original's normals
 };
 
-/// Encodes an original without attributes, or with those that a base may have, whose seams become seams of the base,
-/// and with normals, whose style alone is kept. Boundaries become curves of the base, and so do the creases of
-/// mark_detail_curves(). Where the surface touches itself, or more than two faces share an edge, it is parted, by at
-/// most a tenth of the wanted distance; slivers so small are removed. The number of base faces, of levels and the steps
-/// are those, of the ones tried, that take the fewest bytes for the wanted distance; where it is not reached they come
-/// nearest to it (`reach`). Throws `Error`: bad_option, bad_surface (cannot be parted, or its base cannot be coded),
-/// cancelled, out_of_memory, and what build_mesh() throws.
+/// Encodes an original. Its attributes may be those of `DetailBase::triangles`, whose seams become seams of the base,
+/// and normals, of which only the style is kept. Boundaries and the creases of mark_detail_curves() become curves of
+/// the base.
+///
+/// Where the surface touches itself, or more than two faces share an edge, it is separated, by at most a tenth of the
+/// target distance. Slivers smaller than that are removed. Several numbers of base faces, numbers of levels and steps
+/// are tried; the result takes the fewest bytes at the target distance. If none reaches it, the result is the nearest
+/// (`reach`).
+///
+/// Throws `Error`: bad_option, bad_surface (it cannot be separated, or its base cannot be coded), cancelled,
+/// out_of_memory, and errors of build_mesh().
 [[nodiscard]] EncodedDetail encode_detail(const TriangleMesh& original, const DetailOptions& options,
                                           const BaseCoder& code_base);
 
 struct SimplifyOptions {
-  double rms = 1e-4;                  ///< RMS distance at most, a share of the diagonal as above; 1e-6..0.1
-  double largest = 1;                 ///< largest distance at most, a share of the diagonal; > 0
-  std::function<bool()> cancelled{};  ///< asked between steps; true stops with `Fault::cancelled`
+  double rms = 1e-4;                  ///< upper bound of the RMS distance, a share of the diagonal; 1e-6..0.1
+  double largest = 1;                 ///< upper bound of the largest distance, a share of the diagonal; > 0
+  std::function<bool()> cancelled{};  ///< polled between steps; true stops with `Fault::cancelled`
 };
 
-/// Mesh without levels, as its decoder has it.
+/// Decoded mesh without levels.
 struct SimplifiedDetail {
   TriangleMesh triangles;
   DetailReach reach;
-  uint64_t bytes = 0;     ///< of its code
-  int position_bits = 0;  ///< of a coordinate
+  uint64_t bytes = 0;     ///< length of its code
+  int position_bits = 0;  ///< bits of a coordinate
 };
-/// Codes and decodes a mesh with so many bits of a coordinate.
+/// Function that codes and decodes a mesh; its second argument is the number of bits of a coordinate.
 using MeshCoder = std::function<CodedBase(const TriangleMesh&, int)>;
 
-/// Simplifies an original without its attributes to what its levels compete with: the fewest faces and bits, of those
-/// tried, that leave the wanted distances, by quadrics with optimal placement. Nothing where none do. Throws `Error`:
-/// bad_option, cancelled, out_of_memory, and what build_mesh() throws.
+/// Simplifies an original, without its attributes, as the alternative to levels: by quadrics with optimal placement.
+/// Returns the candidate with the fewest bytes within both bounds; nothing if none is. Throws `Error`:
+/// bad_option, cancelled, out_of_memory, and errors of build_mesh().
 [[nodiscard]] std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original,
                                                               const SimplifyOptions& options, const MeshCoder& code);
 

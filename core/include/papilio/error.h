@@ -5,20 +5,19 @@
 
 namespace papilio {
 
-/// Why the core refuses or gives up. Closed list: everything the core throws on purpose is an `Error` with
-/// one of these.
+/// Cause of an `Error`. Closed list: every exception that the core throws on purpose is an `Error` with one of these.
 enum class Fault {
   index_out_of_range,  ///< a triangle names a vertex that does not exist
   not_finite,          ///< a coordinate is NaN or infinite
-  no_faces,            ///< nothing is left once degenerate and repeated faces are dropped
-  bad_option,          ///< an option outside its documented range
-  bad_surface,         ///< the surface is not of the kind that the operation needs
-  result_too_large,    ///< a level would pass the limit on faces
+  no_faces,            ///< all faces are degenerate or repeated
+  bad_option,          ///< an option is outside its documented range
+  bad_surface,         ///< the surface is not of the kind that the operation requires
+  result_too_large,    ///< a level would exceed the limit on faces or memory
   cancelled,           ///< the caller asked to stop
   out_of_memory,       ///< an allocation failed
 };
 
-/// A refusal of the core: `what()` says in plain words what is wrong and what to do about it.
+/// Exception of the core: `what()` states in plain words what is wrong and what to do.
 class Error : public std::runtime_error {
  public:
   /// `option` names the option at fault for `Fault::bad_option` (as in `Options`), else it is empty.

@@ -8,31 +8,31 @@
 
 namespace papilio {
 
-/// A coarse mesh that is refined more than once. Positions of the red-green scheme depend on the mesh and on the rules
-/// (tension, shape, w, crease angle), not on the view nor on any criterion: what requests needed of the hierarchy is
-/// kept, and the next one, from another view say, costs the selection and the output.
+/// Coarse mesh to be refined more than once. Positions of the red-green scheme depend on the mesh and the rules
+/// (tension, shape, w, crease angle), not on view or criteria. So the levels that a request computes are kept, and a
+/// later request, for example from another view, costs selection and output only.
 ///
-/// What is kept grows by what each request needs in addition, up to a budget; what does not fit in is made for the one
-/// request, and where it would fit alone it takes the place of what was kept. Any number of threads may use one object
-/// at once. None waits for another: each works on what was kept when it began.
+/// Kept levels grow with each request, up to a budget. Levels that exceed it serve one request; if they fit without the
+/// kept ones, they replace them. Any number of threads may use one object at once without waiting: each works on the
+/// levels that were kept when it began.
 class PreparedMesh {
  public:
-  /// Of `rules` only tension, shape, w and crease_angle are looked at. What cutting the coarse edges gives is computed
-  /// here, and held whatever the budget; it bounds, in bytes, all that is held. Throws `Error` bad_option,
-  /// out_of_memory.
+  /// Prepares the mesh for the tension, shape, w and crease_angle of `rules`; its other options have no effect.
+  /// `byte_budget` is the upper bound of all kept bytes. The split of the coarse edges is computed here and kept beyond
+  /// any budget. Throws `Error` bad_option, out_of_memory.
   PreparedMesh(Mesh coarse, const Options& rules, uint64_t byte_budget);
   PreparedMesh(const PreparedMesh&) = delete;
   PreparedMesh& operator=(const PreparedMesh&) = delete;
   ~PreparedMesh();
 
-  /// With its creases marked.
+  /// Returns the coarse mesh with its creases marked.
   [[nodiscard]] const Mesh& coarse() const;
-  /// Whether the options have the rules that it was prepared for.
+  /// Returns whether the options have the rules that the mesh was prepared for.
   [[nodiscard]] bool suits(const Options& options) const;
-  /// What it takes in memory now.
+  /// Returns the bytes in memory now.
   [[nodiscard]] uint64_t bytes() const;
 
-  /// Known to the library alone.
+  /// Private to the library.
   class State;
   [[nodiscard]] const State& state() const { return *state_; }
 

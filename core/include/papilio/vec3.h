@@ -4,7 +4,7 @@
 
 namespace papilio {
 
-/// Three coordinates. `Real` is float in the product and double where a test checks the arithmetic itself.
+/// Vector of three coordinates. `Real` is float in the product, and double where a test checks the arithmetic itself.
 template <class Real>
 struct Vec3T {
   Real x{}, y{}, z{};

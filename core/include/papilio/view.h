@@ -9,7 +9,7 @@ namespace papilio {
 
 enum class Projection { perspective, orthographic };
 
-/// Where the mesh is seen from, in its own coordinates.
+/// View of the mesh, in its own coordinates.
 struct View {
   Vec3d eye{0, 0, 3};
   Vec3d target{0, 0, 0};
@@ -17,28 +17,28 @@ struct View {
   double fov_y = 45;                          ///< vertical field of view in degrees, 0 < fov_y < 180
   std::array<double, 2> viewport{1280, 720};  ///< width and height in pixels
   double near = 0;          ///< distance of the near plane; 0: a thousandth of the distance from eye to target
-  double edge_pixels = 10;  ///< an edge that looks shorter than this stays whole; 0 turns the criterion off
-  /// Edges are split only where the surface would move by at least this many pixels, as large as the move looks from
-  /// its distance, whichever way it goes; 0 turns the criterion off.
+  double edge_pixels = 10;  ///< lower bound of a split edge's length in screen pixels; 0 turns the criterion off
+  /// Lower bound of the surface's move at a split edge, in screen pixels at its distance, in whichever direction it
+  /// moves. 0 turns the criterion off.
   double error_pixels = 0;
-  /// Whether results by error_pixels alone, without lights and `edge_pixels`, are compared with the uniform surface,
-  /// and refined further until nothing that the picture shows is further from it than so many pixels. Takes most of the
-  /// time.
+  /// Whether results by `error_pixels` alone, without lights or `edge_pixels`, are compared with the uniform surface.
+  /// They are refined further until nothing visible is more than `error_pixels` from it. Takes most of the time.
   bool verify = true;
-  /// Whether backs are shown too, as those of open surfaces seldom are: then no face is turned away.
+  /// Whether faces are visible from behind, as in open surfaces: then no face is culled as turned away.
   bool two_sided = false;
-  /// Directions towards lights far away. With them the deviation in pixels is weighed by how much the shading changes
-  /// over the edge and by whether it is on the silhouette (lighting.h).
+  /// Directions towards distant lights. With lights, the deviation in pixels is weighted by the change of shading over
+  /// the edge, and by whether the edge is on the silhouette (lighting.h).
   std::vector<Vec3d> lights{};
-  /// Orthographic: parallel rays; the height seen is what the perspective view sees at the target's distance.
+  /// Projection. Orthographic rays are parallel; the height seen equals the perspective view's at the target's
+  /// distance.
   Projection projection = Projection::perspective;
 };
 
 struct Box;
 
-/// Returns the eye from which all of the box is in the picture of a viewer that looks at `view.target`: from +z, or
-/// from -y where `view.up` points along z. Uses everything of `view` but the eye. Where the view defines no picture,
-/// returns a point at which `Camera` names the reason.
+/// Returns the eye from which a viewer of `view.target` sees all of the box: from +z, or from -y if `view.up` points
+/// along z. Uses all of `view` but the eye. If the view defines no picture, returns a point at which `Camera` reports
+/// why.
 [[nodiscard]] Vec3d framing_eye(const View& view, const Box& box);
 
 }  // namespace papilio

@@ -1,0 +1,372 @@
+#include "hierarchy/leaf_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "split/split_pattern.h"
+
+namespace papilio {
+namespace {
+
+constexpr double share_of_sum = 0.25;  ///< of a move and its rest: what levels that are not explored add
+constexpr double share_of_rest = 0.5;  ///< of a move: all further ones add up to a third where the surface is smooth
+constexpr double along_diagonal = 2;  ///< a transition face's diagonal may be further away than the whole face would be
+constexpr uint32_t leaves_between_polls = 1024;
+constexpr double quiet = 0.36;  ///< share of the squared limit below which a line is sampled no further
+
+}  // namespace
+
+Buffer<LevelFace> LeafComparison::far_faces(NearFaces& near, uint32_t first, uint32_t last) {
+  begin_with(1);
+  stops_at_limit_ = true;
+  Buffer<LevelFace> far;
+  visit_leaves(first, last, [&](const LevelFace& leaf) {
+    uint8_t& is_near = near[leaf.level][leaf.face];
+    if (is_near != 0 || is_surely_near(leaf)) return;
+    compare(leaf);
+    if (is_far_)
+      far.push_back(leaf);
+    else
+      is_near = 1;
+  });
+  return far;
+}
+
+bool LeafComparison::exceeds(double share, uint32_t first, uint32_t last) {
+  begin_with(share);
+  stops_at_limit_ = true;
+  is_far_ = false;
+  visit_leaves(first, last, [&](const LevelFace& leaf) {
+    if (!is_far_ && !is_surely_near(leaf)) compare(leaf);
+  });
+  return is_far_;
+}
+
+double LeafComparison::largest_share(double known, uint32_t first, uint32_t last) {
+  begin_with(known);
+  visit_leaves(first, last, [&](const LevelFace& leaf) {
+    if (!is_surely_near(leaf)) compare(leaf);
+  });
+  return has_grown_ ? std::sqrt(squared_share_) : known;
+}
+
+double LeafComparison::largest_bound(uint32_t first, uint32_t last) {
+  double most = 0;
+  visit_leaves(first, last, [&](const LevelFace& leaf) { most = std::max(most, bound_at(leaf) / allowed_.at(leaf)); });
+  return most;
+}
+
+void LeafComparison::begin_with(double share) {
+  squared_share_ = limit_ = share * share;
+  allowed_here_ = 1;
+  has_grown_ = false;
+}
+
+/// Sets the limit to the allowed distance at a leaf.
+void LeafComparison::go_to(const LevelFace& leaf) {
+  leaf_ = leaf;
+  is_far_ = false;
+  prisms_.clear();
+  const double allowed = allowed_.at(leaf);
+  if (allowed == allowed_here_ || allowed == AllowedDistance::any) return;
+  limit_ = squared_share_ * allowed * allowed;
+  allowed_here_ = allowed;
+}
+
+template <class Visit>
+void LeafComparison::visit_leaves(uint32_t first, uint32_t last, const Visit& visit) {
+  for (FaceId f = first; f < last; ++f) visit_leaves({0, f}, visit);
+}
+
+template <class Visit>
+void LeafComparison::visit_leaves(const LevelFace& face, const Visit& visit) {
+  const auto [k, f] = face;
+  if (!result_.is_divided(k, f)) {
+    if (++visited_ % leaves_between_polls == 0 && progress_ != nullptr) progress_->poll();
+    visit(face);
+    return;
+  }
+  const uint32_t child = result_.first_child(k, f);
+  for (uint32_t c = 0; c < 4; ++c) visit_leaves({k + 1, child + c}, visit);
+}
+
+/// Upper bound of the distance at a leaf.
+double LeafComparison::bound_at(const LevelFace& leaf) const {
+  const double sum = sums_[leaf.level][leaf.face];
+  return result_.choice(leaf.level).split_mask(leaf.face) == 0 ? sum : along_diagonal * sum;
+}
+
+bool LeafComparison::is_surely_near(const LevelFace& leaf) const {
+  const double bound = bound_at(leaf) * (allowed_here_ / allowed_.at(leaf));
+  return bound * bound <= limit_;
+}
+
+void LeafComparison::compare(const LevelFace& leaf) {
+  go_to(leaf);
+  const auto [k, f] = leaf;
+  const unsigned mask = result_.choice(k).split_mask(f);
+  const Corners corner = result_.corners(k, f);
+  const Corners made = result_.new_vertices(k, f, corner);
+  Corners middle = middles_of(corner);
+  for (uint32_t i = 0; i < 3; ++i)
+    if ((mask >> i & 1U) != 0) middle[i] = made[i];
+  compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle, .off = {}},
+          patches_over_leaf(corner, made, middle));
+}
+
+/// Returns the leaf's pieces as patches over its children.
+Patches LeafComparison::patches_over_leaf(const Corners& corner, const Corners& made, const Corners& middle) {
+  const auto [k, f] = leaf_;
+  const unsigned mask = result_.choice(k).split_mask(f);
+  Patches below = patches_over(corner, middle, sides_to_compare());
+  const auto add_ridge_inside = [&](uint32_t child) {
+    below[child].ridges |= 1U << inner_side[child];
+    below[3].ridges |= 1U << side_of_middle_child[child];
+  };
+  const uint32_t i = first_target[mask];
+  const uint32_t opposite = (i + 2) % 3;
+  if (mask == 7) {
+    for (uint32_t child = 0; child < 3; ++child) add_ridge_inside(child);
+  } else if (has_two_targets(mask)) {
+    add_ridge_inside((i + 1) % 3);
+    if (result_.has_second_diagonal(k, f, mask))
+      bend_along(below, opposite, made[i], corner[opposite]);
+    else
+      bend_along(below, i, made[(i + 1) % 3], corner[i]);
+  } else if (mask != 0) {
+    bend_along(below, opposite, made[i], corner[opposite]);
+  }
+  return below;
+}
+
+/// Returns the leaf's sides to compare, by bits. A side between two leaves belongs to the finer one, below which as
+/// much was explored; to both where the other is not compared.
+unsigned LeafComparison::sides_to_compare() {
+  const auto [k, f] = leaf_;
+  const Topology& mesh = result_.topology(k);
+  unsigned sides = 0;
+  for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
+    result_.find_beside(leaf_, h % 3, beside_);
+    const bool is_own =
+        beside_.empty() || beside_[0].level < k || (beside_[0].level == k && mesh.half_edge[mesh.edge[h]] == h);
+    const auto is_left_out = [&](const LevelFace& beside) { return is_surely_near(beside); };
+    if (is_own || std::ranges::any_of(beside_, is_left_out)) sides |= 1U << h % 3;
+  }
+  return sides;
+}
+
+void LeafComparison::compare_below(uint32_t k, FaceId f, const Patch& patch, const Distances& off) {
+  const Corners corner = result_.corners(k, f);
+  const Corners made = result_.new_vertices(k, f, corner);
+  const Corners middle = patch.middles();
+  compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle, .off = off},
+          patches_below(patch, middle));
+}
+
+void LeafComparison::compare(const Face& face, const Patches& below) {
+  const auto [k, f] = LevelFace{face.level, face.face};
+  rest_ = largest_sum_below(k, f);
+  const double settled = enough() > 0 ? enough() : limit_;
+  rest_ = 0;
+  Distances made;
+  for (uint32_t i = 0; i < 3; ++i) {
+    made[i] = squared_distance_to_result(face.made[i], face.middle[i], settled);
+    note(made[i]);
+  }
+  const std::array<Corners, 4> children = children_of(face.corner, face.made);
+  if (result_.has_children(k, f)) return compare_children(face, children, made, below);
+  const bool is_explored = k + 1 >= level_count_;
+  if (stops_at_limit_ && !is_explored) rest_ = share_of_sum * sums_[k][f];
+  for (uint32_t c = 0; c < 4; ++c) compare_patch({k, f, children[c]}, below[c]);
+  if (!is_explored && !stops_at_limit_) add_rest(face, below);
+}
+
+/// Descends into those children below which a distance may matter.
+void LeafComparison::compare_children(const Face& face, const std::array<Corners, 4>& children, const Distances& made,
+                                      const Patches& below) {
+  const auto& off = face.off;
+  const std::array<Distances, 4> of_children{
+      {{off[0], made[0], made[2]}, {made[0], off[1], made[1]}, {made[2], made[1], off[2]}, made}};
+  const uint32_t level = face.level + 1;
+  const uint32_t child = result_.first_child(face.level, face.face);
+  for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
+    rest_ = sums_[level][child + c];
+    if (!is_settled({face.level, face.face, children[c]}, below[c], std::ranges::max(of_children[c])))
+      compare_below(level, child + c, below[c], of_children[c]);
+  }
+}
+
+/// Returns whether no distance below a child can matter: child and patch are near enough for moves up to `rest_`. `off`
+/// is the largest squared distance of the child's corners from the result.
+bool LeafComparison::is_settled(const Child& child, const Patch& patch, double off) {
+  if (enough() == 0 || matters(off)) return false;
+  is_probe_ = true;
+  compare_patch(child, patch);
+  is_probe_ = false;
+  return !std::exchange(is_far_, false);
+}
+
+/// Compares a patch with the surface at a child, at points where the distance may be largest.
+void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
+  if (is_far_ || is_surely_near(child, patch)) return;
+  const auto distance_at = [&](Vec3d point) {
+    // In a probe, the moves below the face under the point count, which is not the child if the point is beside it.
+    double squared = is_probe_ ? squared_height_above(child.corner, point)
+                               : squared_distance(point, {child.corner[0], child.corner[1], child.corner[2]});
+    if (matters(squared)) squared = squared_distance_to_surface(child, point);
+    note(squared);
+    return squared;
+  };
+  // Samples on both sides of the furthest sample so far, ever closer to it.
+  const auto compare_line = [&](Vec3d from, Vec3d to) {
+    double furthest = 0.5;
+    double most = distance_at(middle_of(from, to));
+    if (most < quiet * enough()) return;
+    for (const double step : {0.25, 0.125, 0.0625})
+      for (const double share : {furthest - step, furthest + step}) {
+        const double squared = distance_at(from + share * (to - from));
+        if (squared <= most) continue;
+        most = squared;
+        furthest = share;
+      }
+  };
+  (void)distance_at(1.0 / 3 * (patch.corner[0] + patch.corner[1] + patch.corner[2]));
+  for (uint32_t i = 0; i < 3; ++i) {
+    if ((patch.ridges >> i & 1U) == 0) continue;
+    (void)distance_at(patch.corner[i]);
+    compare_line(patch.corner[i], patch.corner[(i + 1) % 3]);
+  }
+  if (patch.bent_side == none) return;
+  (void)distance_at(patch.bend);
+  (void)distance_at(patch.opposite_bend());
+  compare_line(patch.bend, patch.opposite_bend());
+}
+
+/// Returns whether a patch is near enough to the surface at a child, without looking for nearest points: its points are
+/// compared with those of the same barycentric coordinates. An offset along the child's plane counts by the largest
+/// turn of the surface there.
+bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
+  if (!matters(largest_squared_distance(patch, child.corner))) return true;
+  const Corners& corner = child.corner;
+  const Vec3d area = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const double size = length(area);
+  if (!(size > 0)) return false;
+  const Vec3d normal = 1 / size * area;
+  double height = 0, squared_offset = 0;
+  const auto add = [&](Vec3d point, Vec3d at) {
+    height = std::max(height, std::abs(dot(point - at, normal)));
+    squared_offset = std::max(squared_offset, squared_norm(point - at));
+  };
+  for (uint32_t i = 0; i < 3; ++i) add(patch.corner[i], corner[i]);
+  if (const uint32_t i = patch.bent_side; i != none) add(patch.bend, middle_of(corner[i], corner[(i + 1) % 3]));
+  if (squared_offset > size) return false;  // beyond the faces beside
+  const auto [k, f] = LevelFace{child.level, child.parent};
+  const Topology& mesh = result_.topology(k);
+  const Buffer<Vec3f>& normals = result_.level(k).trial.normals;
+  double squared_turn = squared_norm(to_double(normals[f]) - normal);
+  for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
+    const EdgeId e = mesh.edge[h];
+    if (mesh.kind[e] != EdgeKind::smooth || result_.choice(k).region.has_edge[e] == 0) return false;
+    const FaceId beside = Topology::face(mesh.twin[h]);
+    squared_turn = std::max(squared_turn, squared_norm(to_double(normals[beside]) - normal));
+    if (is_probe_) rest_ = std::max(rest_, largest_sum_below(k, beside));
+  }
+  const double distance = height + std::sqrt(squared_turn * squared_offset);
+  return !matters(distance * distance);
+}
+
+/// Adds what levels that were not explored may contribute to the distances at a face.
+void LeafComparison::add_rest(const Face& face, const Patches& below) {
+  const Corners place{below[0].corner[0], below[1].corner[1], below[2].corner[2]};
+  const double apart = std::sqrt(
+      std::max(largest_squared_distance(face.corner, place), largest_squared_distance(face.made, face.middle)));
+  const double offset = std::sqrt(largest_squared_distance(face.made, middles_of(face.corner)));
+  const auto may_matter = [&](double distance, double rest) { return matters((distance + rest) * (distance + rest)); };
+  if (!may_matter(apart, share_of_rest * offset)) return;
+  double most = 0;
+  for (uint32_t i = 0; i < 3; ++i) most = std::max(most, squared_move(face.level, 3 * face.face + i, face.made[i]));
+  const double rest = share_of_rest * std::sqrt(most);
+  const double enough = std::max(0.0, std::sqrt(limit_) - rest);
+  const auto add = [&](Vec3d vertex, Vec3d at) {
+    if (!may_matter(length(vertex - at), rest)) return;
+    const double distance = std::sqrt(result_.squared_distance_from(leaf_, vertex, enough * enough));
+    note((distance + rest) * (distance + rest));
+  };
+  for (uint32_t i = 0; i < 3; ++i) {
+    add(face.corner[i], place[i]);
+    add(face.made[i], face.middle[i]);
+  }
+}
+
+/// Returns the largest sum of moves below the children of a face; 0 where none are held.
+double LeafComparison::largest_sum_below(uint32_t k, FaceId f) const {
+  return result_.has_children(k, f) ? std::ranges::max(std::span(&sums_[k + 1][result_.first_child(k, f)], 4)) : 0;
+}
+
+/// Returns the squared distance of a new vertex from the result; where that is at most `enough`, an upper bound which
+/// is at most `enough` too. `place`: of the vertex in the result.
+double LeafComparison::squared_distance_to_result(Vec3d made, Vec3d place, double enough) {
+  const double apart = squared_norm(made - place);
+  if (apart <= enough) return apart;
+  return has_near(made, enough) ? enough : result_.squared_distance_from(leaf_, made, enough);
+}
+
+/// Returns the squared distance of a point of the result from the surface; in a probe from the level of the child's
+/// siblings, and raises `rest_` to what is below the nearest one.
+double LeafComparison::squared_distance_to_surface(const Child& child, Vec3d point) {
+  const auto [k, f] = LevelFace{child.level, child.parent};
+  if (!is_probe_) return surface_.squared_distance({k, f}, leaf_.level, point, enough());
+  const FaceId nearest = surface_.walk_towards(k, f, point);
+  rest_ = std::max(rest_, largest_sum_below(k, nearest));
+  return surface_.squared_distance_to_new_faces(k, nearest, point, enough());
+}
+
+/// Returns how far the surface moves where the edge of a half-edge is split, squared: the new vertex from the faces
+/// before, or the middle of the edge from those after.
+double LeafComparison::squared_move(uint32_t k, HalfEdgeId h, Vec3d made) const {
+  const Topology& mesh = result_.topology(k);
+  const auto at = [&](VertexId v) { return to_double(result_.level(k).mesh.positions[v]); };
+  const Vec3d a = at(mesh.origin[h]);
+  const Vec3d b = at(mesh.tip(h));
+  const Vec3d middle = middle_of(a, b);
+  double before = squared_norm(made - middle);
+  double after = before;
+  const auto add_face = [&](uint32_t half_edge) {
+    const Vec3d apex = at(mesh.apex(half_edge));
+    before = std::min(before, squared_distance(made, {a, b, apex}));
+    after = std::min({after, squared_distance(middle, {a, made, apex}), squared_distance(middle, {made, b, apex})});
+  };
+  add_face(h);
+  if (mesh.twin[h] != none) add_face(mesh.twin[h]);
+  return std::max(before, after);
+}
+
+/// Returns whether the vertex is above or below a piece of the leaf, no further than the root of `squared`.
+bool LeafComparison::has_near(Vec3d vertex, double squared) {
+  if (prisms_.empty()) {
+    result_.find_pieces(leaf_, pieces_);
+    for (const TriangleCorners& piece : pieces_) prisms_.emplace_back(piece);
+  }
+  return std::ranges::any_of(prisms_, [&](const Prism& prism) { return prism.has_near(vertex, squared); });
+}
+
+/// Returns the largest squared distance that does not matter.
+double LeafComparison::enough() const {
+  if (rest_ == 0) return limit_;
+  const double left = std::max(0.0, std::sqrt(limit_) - rest_);
+  return left * left;
+}
+
+void LeafComparison::note(double squared) {
+  if (!matters(squared)) return;
+  if (stops_at_limit_ || is_probe_) {
+    is_far_ = true;
+  } else {
+    limit_ = squared;
+    squared_share_ = squared / (allowed_here_ * allowed_here_);
+    has_grown_ = true;
+  }
+}
+
+}  // namespace papilio

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/allowed_distance.h"
+#include "hierarchy/level_choice.h"
+#include "hierarchy/level_surface.h"
+#include "hierarchy/patch.h"
+#include "hierarchy/prism.h"
+#include "hierarchy/progress.h"
+#include "hierarchy/result_surface.h"
+
+namespace papilio {
+
+/// Faces of each level that were found to be near enough. [level][F]
+using NearFaces = std::vector<Buffer<uint8_t>>;
+
+/// Compares a result with the uniform surface at one leaf, an undivided face, after the other. Below a leaf it descends
+/// through the levels, until the sums of the moves further down show that nothing there can matter. Not for threads to
+/// share.
+class LeafComparison {
+ public:
+  /// All references must outlive this. `most_cosine`: see transition.h. `sums` of moves: see sums_below(). Of
+  /// `level_count` levels some may not be explored. `progress` is polled for cancellation; null: never.
+  LeafComparison(std::span<const LevelChoice> levels, double most_cosine, const std::vector<Buffer<float>>& sums,
+                 int level_count, const AllowedDistance& allowed, const Progress* progress)
+      : result_(levels, most_cosine),
+        sums_(sums),
+        level_count_(static_cast<uint32_t>(level_count)),
+        allowed_(allowed),
+        progress_(progress) {}
+
+  /// Returns the leaves below the coarse faces [first, last), of those not marked in `near`, at which the distance
+  /// exceeds the allowed one. Marks the others.
+  [[nodiscard]] Buffer<LevelFace> far_faces(NearFaces& near, uint32_t first, uint32_t last);
+  /// Returns whether the distance exceeds a share of the allowed one anywhere below the coarse faces [first, last).
+  [[nodiscard]] bool exceeds(double share, uint32_t first, uint32_t last);
+  /// Returns the largest share of the allowed distance below the coarse faces [first, last), or `known` if that is
+  /// larger.
+  [[nodiscard]] double largest_share(double known, uint32_t first, uint32_t last);
+  /// Returns an upper bound of largest_share(): the largest sum of moves.
+  [[nodiscard]] double largest_bound(uint32_t first, uint32_t last);
+
+ private:
+  using Distances = std::array<double, 3>;  ///< from a face's corners, or its new vertices, to the result; squared
+
+  /// A leaf, or a face below one.
+  struct Face {
+    uint32_t level;
+    FaceId face;
+    const Corners& corner;  ///< of the surface
+    const Corners& made;    ///< new vertices of the surface
+    const Corners& middle;  ///< their places in the result
+    Distances off;          ///< upper bounds of the corners' distances
+  };
+  /// A child of a face of a level, which itself may not be held.
+  struct Child {
+    uint32_t level;
+    FaceId parent;
+    const Corners& corner;
+  };
+
+  void begin_with(double share);
+  void go_to(const LevelFace& leaf);
+  template <class Visit>
+  void visit_leaves(uint32_t first, uint32_t last, const Visit& visit);
+  template <class Visit>
+  void visit_leaves(const LevelFace& face, const Visit& visit);
+
+  [[nodiscard]] double bound_at(const LevelFace& leaf) const;
+  [[nodiscard]] bool is_surely_near(const LevelFace& leaf) const;
+
+  void compare(const LevelFace& leaf);
+  [[nodiscard]] Patches patches_over_leaf(const Corners& corner, const Corners& made, const Corners& middle);
+  [[nodiscard]] unsigned sides_to_compare();
+  void compare_below(uint32_t k, FaceId f, const Patch& patch, const Distances& off);
+  void compare(const Face& face, const Patches& below);
+  void compare_children(const Face& face, const std::array<Corners, 4>& children, const Distances& made,
+                        const Patches& below);
+  void compare_patch(const Child& child, const Patch& patch);
+  void add_rest(const Face& face, const Patches& below);
+
+  [[nodiscard]] bool is_settled(const Child& child, const Patch& patch, double off);
+  [[nodiscard]] bool is_surely_near(const Child& child, const Patch& patch);
+  [[nodiscard]] double largest_sum_below(uint32_t k, FaceId f) const;
+  [[nodiscard]] double squared_distance_to_result(Vec3d made, Vec3d place, double enough);
+  [[nodiscard]] double squared_distance_to_surface(const Child& child, Vec3d point);
+  [[nodiscard]] double squared_move(uint32_t k, HalfEdgeId h, Vec3d made) const;
+  [[nodiscard]] bool has_near(Vec3d vertex, double squared);
+
+  /// Returns whether a squared distance, with `rest_` added to its root, exceeds the limit.
+  [[nodiscard]] bool matters(double squared) const { return !is_far_ && squared > enough(); }
+  [[nodiscard]] double enough() const;
+  void note(double squared);
+
+  ResultSurface result_;
+  LevelSurface surface_{result_};
+  const std::vector<Buffer<float>>& sums_;
+  uint32_t level_count_;
+  const AllowedDistance& allowed_;
+  const Progress* progress_;
+  uint32_t visited_ = 0;                 ///< leaves
+  double squared_share_ = 0;             ///< share of the allowed distance above which distances matter
+  double allowed_here_ = 1;              ///< distance, at the leaf at hand
+  double limit_ = 0;                     ///< squared distance above which one matters at the leaf at hand
+  bool has_grown_ = false;               ///< whether a distance raised squared_share_
+  double rest_ = 0;                      ///< upper bound of what levels further down add at the face at hand
+  bool stops_at_limit_ = false;          ///< a distance above the limit ends the comparison of a leaf
+  bool is_probe_ = false;                ///< one above the limit leads further down
+  LevelFace leaf_{};                     ///< at hand
+  bool is_far_ = false;                  ///< a distance above the limit was found
+  std::vector<TriangleCorners> pieces_;  ///< of the leaf
+  std::vector<Prism> prisms_;            ///< of `pieces_`; empty until they are used
+  std::vector<LevelFace> beside_;
+};
+
+}  // namespace papilio
