@@ -9,10 +9,10 @@ namespace papilio::server {
 namespace {
 
 struct MediaRange {
-  std::string type;  ///< in lower case, without parameters
+  std::string type;  ///< type in lower case, without parameters
   double quality = 1;
 
-  /// 3: this very type, 2: its family, 1: anything, 0: no match.
+  /// Returns the precision of a match: 3 by type, 2 by family, 1 by */*, 0 for no match.
   [[nodiscard]] int precision_for(const std::string& offered) const {
     if (type == offered) return 3;
     if (type == offered.substr(0, offered.find('/')) + "/*") return 2;
@@ -66,7 +66,7 @@ std::optional<std::string> negotiate(std::string_view accept, const std::vector<
       precision = range.precision_for(type);
       quality = range.quality;
     }
-    // Between equal qualities a type that is named beats one that is only covered.
+    // At equal quality, the more precise match wins.
     if (quality > best_quality || (quality > 0 && quality == best_quality && precision > best_precision)) {
       best = type;
       best_quality = quality;

@@ -7,12 +7,11 @@
 
 namespace papilio::server {
 
-/// Content negotiation (RFC 9110, section 12.5.1): which of `offered` media types, in our order of
-/// preference, the client's `Accept` likes best; nothing when it takes none. An empty `Accept` takes the
-/// first.
+/// Negotiates the content type (RFC 9110, section 12.5.1): returns the media type of highest quality in `Accept`, of
+/// `offered` in the server's order of preference; nothing if none is acceptable. An empty `Accept` selects the first.
 [[nodiscard]] std::optional<std::string> negotiate(std::string_view accept, const std::vector<std::string>& offered);
 
-/// Whether `Accept-Encoding` takes gzip (RFC 9110, section 12.5.3). An empty one is taken to mean: as it is.
+/// Returns whether `Accept-Encoding` accepts gzip (RFC 9110, section 12.5.3); false if it is empty.
 [[nodiscard]] bool accepts_gzip(std::string_view accept_encoding);
 
 }  // namespace papilio::server

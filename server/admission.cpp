@@ -51,7 +51,7 @@ void Admission::yield(Slot& slot, const Question& client_gone) {
     join_queue(slot);
     dispatch();
   }
-  (void)wait_for_turn(slot, lock, client_gone);  // who asked is told by `client_gone` itself
+  (void)wait_for_turn(slot, lock, client_gone);  // the caller polls `client_gone` itself
 }
 
 bool Admission::wait_for_turn(Slot& slot, std::unique_lock<std::mutex>& lock, const Question& client_gone) {

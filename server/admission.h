@@ -14,75 +14,76 @@
 #include "proto/problem.h"
 #include "server/work.h"
 
-// Which request computes next. The policy has four parts:
+// Admission of requests to computing slots. The policy has four parts:
 //
-// 1. Slots. A fixed number of requests compute at once, and one more where its work is expected to be small: the
-//    express slot. So a small request never waits for a large one to end.
-// 2. Order. The client with the least work so far goes first: start-time fair queuing of predicted work (Goyal, Vin,
-//    Cheng, "Start-time Fair Queueing", SIGCOMM 1996). Among the requests of one client, and of equal clients, the one
-//    with the least work goes first. Requests age: one is passed over by later ones only until these were given as
-//    much work as its own. So none starves.
-// 3. Yielding. Work can be larger than expected. A request that has used up its time on the express slot gives the slot
-//    back between two steps, keeps what it has made, and waits for another slot with the large ones.
-// 4. Places. Large requests may take half of the waiting places, the other half is for small ones. When there is no
-//    place left, the latest request of the client with the most waiting ones is refused.
+// 1. Slots. A fixed number of requests compute at once. One more, on the express slot, is a request of small predicted
+//    work. So a small request never waits for a large one to end.
+// 2. Order. The client with the least work so far has priority: start-time fair queuing of predicted work (Goyal, Vin,
+//    Cheng, "Start-time Fair Queueing", SIGCOMM 1996). Among requests of one client, and of equal clients, the one with
+//    the least work has priority. Requests age: later ones overtake a request only until they have received as much
+//    work as its own. So none starves.
+// 3. Yielding. Work can exceed its prediction. A request that has used up its time on the express slot returns it
+// between
+//    two steps, keeps its progress, and waits for another slot with the large requests.
+// 4. Places. Large requests may take half of the waiting places; the other half is for small ones. When all places are
+//    taken, the latest request of the client with the most waiting requests is refused.
 
 namespace papilio::server {
 
-/// Lets a fixed number of requests compute at once, and bounds how many wait. Threads may share it.
+/// Scheduler of a fixed number of concurrent computations, with a bounded queue. Thread-safe.
 class Admission {
  public:
   using Question = std::function<bool()>;
   static constexpr std::chrono::milliseconds default_express_time{100};
 
-  /// `slots` > 0 requests compute at once, besides one on the express slot; up to `queue` wait. Work that is not
-  /// certain to be small gives the express slot back after `express_time`.
+  /// Admits `slots` > 0 concurrent requests, and one more on the express slot; up to `queue` wait. Work that is not
+  /// certain to be small returns the express slot after `express_time`.
   Admission(int slots, int queue, std::chrono::milliseconds express_time = default_express_time);
 
   class Slot;
 
-  /// Waits for a slot. `client`: whose share of the slots the request takes. Throws `Problem`: busy when there is no
-  /// place to wait, or the place is taken away; cancelled when `client_gone` says so while waiting (asked ten times a
-  /// second) or once the slot is there.
+  /// Waits for a slot. The request counts in the share of `client`. Throws `Problem`: busy if there is no place to
+  /// wait, or if the place is withdrawn; cancelled if `client_gone` is true while waiting (polled ten times a second)
+  /// or when the slot is granted.
   [[nodiscard]] std::shared_ptr<Slot> enter(const std::string& client, Work work, const Question& client_gone);
 
-  /// Requests on slots, the express slot included.
+  /// Returns the number of requests on slots, including the express slot.
   [[nodiscard]] int computing() const;
-  /// Requests without a slot, those that gave one back included.
+  /// Returns the number of requests without a slot, including those that returned one.
   [[nodiscard]] int waiting() const;
-  /// No request that came now would be let in, however small.
+  /// Returns whether any further request would be refused, even a small one.
   [[nodiscard]] bool full() const;
-  /// Throws `Problem` busy when the client's request would be refused, however small: to be called before a body is
-  /// read that would only be held for nothing.
+  /// Throws `Problem` busy if any request of the client would be refused, even a small one. Called before a body is
+  /// read.
   void refuse_when_full(const std::string& client) const;
 
-  /// The most requests that may have given the express slot back at once.
+  /// Returns the upper bound of the requests that have returned the express slot at any time.
   [[nodiscard]] static int most_paused(int queue) { return (queue + 1) / 2; }
 
  private:
   enum class Lane { none, ordinary, express };
-  /// What a client was given, in units of work. It exists while the client has requests, or more than others had.
+  /// Work granted to a client. It exists while the client has requests, or has received more work than others.
   struct Account {
     uint64_t next_start = 0;  ///< start tag of the next request
-    int requests = 0;         ///< that wait or compute
+    int requests = 0;         ///< requests that wait or compute
     int waiting = 0;
   };
   using Accounts = std::map<std::string, Account>;
   using Queue = std::list<Slot*>;
 
-  // With the mutex held, all but `yield` and `release`. None allocates, but for the words of a refusal.
+  // All functions but `yield` and `release` require the mutex. None allocates, except for the message of a refusal.
 
-  /// Gives free slots to waiting requests.
+  /// Grants free slots to waiting requests.
   void dispatch();
-  /// Null when none waits.
+  /// Returns the waiting request of highest priority; null if there is none.
   [[nodiscard]] Slot* first_waiting(bool small_only) const;
   void grant(Slot& slot, Lane lane);
   void join_queue(Slot& slot);
-  /// Does nothing when the slot is not in the queue.
+  /// Removes the slot from the queue, if it is in it.
   void leave_queue(Slot& slot);
-  /// Refuses one waiting request when the newcomer, which may be that one, is one too many.
+  /// Refuses one waiting request, perhaps the newcomer, if the newcomer exceeds the places.
   void refuse_latest(const Slot& newcomer);
-  /// Waits until the slot is granted or refused. False when the client went away first; it has then left the queue.
+  /// Waits until the slot is granted or refused. Returns false, with the slot removed, if the client left first.
   bool wait_for_turn(Slot& slot, std::unique_lock<std::mutex>& lock, const Question& client_gone);
   void forget_settled_accounts();
   [[nodiscard]] uint64_t start_of(const Account& account) const;
@@ -98,18 +99,18 @@ class Admission {
   const int slots_;
   const int queue_;
   const std::chrono::milliseconds express_time_;
-  mutable std::mutex mutex_;  ///< guards all below, and what the slots have but their lane
+  mutable std::mutex mutex_;  ///< guards the fields that follow, and the fields of slots except their lane
   std::condition_variable changed_;
   int ordinary_ = 0;  ///< ordinary slots in use
   int express_ = 0;   ///< 1 while the express slot is in use
   int large_ = 0;     ///< large requests in the queue
-  Queue waiting_;     ///< in the order in which they came
+  Queue waiting_;     ///< waiting requests in order of arrival
   Accounts accounts_;
-  uint64_t virtual_time_ = 0;  ///< start tag of the request that was given an ordinary slot last
-  uint64_t given_ = 0;         ///< all work that was given a slot
+  uint64_t virtual_time_ = 0;  ///< start tag of the request that was last granted an ordinary slot
+  uint64_t given_ = 0;         ///< total work that was granted a slot
 };
 
-/// A request's right to compute, given back when it is destroyed.
+/// Right of a request to compute. The destructor returns it.
 class Admission::Slot {
  public:
   Slot(Admission& admission, Work work) : admission_(admission), work_(work) {}
@@ -117,8 +118,8 @@ class Admission::Slot {
   Slot(const Slot&) = delete;
   Slot& operator=(const Slot&) = delete;
 
-  /// To be called often, between steps of the work: returns at once unless the express slot must be given back, and
-  /// then once there is another slot, or the client went away. Any thread may call it. Throws `Problem` busy when there
+  /// Yields if necessary; call it often, between steps of the work. Returns at once, unless the express slot must be
+  /// returned: then after another slot is granted, or the client has left. Thread-safe. Throws `Problem` busy if there
   /// is no place to wait.
   void take_turn(const Question& client_gone);
 
@@ -128,14 +129,14 @@ class Admission::Slot {
 
   Admission& admission_;
   Work work_;
-  Accounts::iterator account_{};  ///< once `is_counted_`
+  Accounts::iterator account_{};  ///< account of the client; valid if `is_counted_`
   bool is_counted_ = false;
   std::atomic<Lane> lane_ = Lane::none;
-  std::chrono::steady_clock::time_point since_;  ///< when the lane was granted
+  std::chrono::steady_clock::time_point since_;  ///< time at which the lane was granted
   bool is_refused_ = false;
-  bool is_paused_ = false;  ///< has computed before
-  uint64_t rank_ = 0;       ///< the least goes first
-  Queue node_{this};        ///< its place in the queue, here while it does not wait
+  bool is_paused_ = false;  ///< whether it has computed before
+  uint64_t rank_ = 0;       ///< rank in the queue; the lowest has priority
+  Queue node_{this};        ///< node of the queue, kept here while the request does not wait
   Queue::iterator place_ = node_.begin();
 };
 

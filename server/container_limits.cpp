@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr uint64_t unlimited_bytes = 1ULL << 60;  ///< version 1 says "no limit" with a number beyond this
+constexpr uint64_t unlimited_bytes = 1ULL << 60;  ///< lower bound of the numbers that mean "no limit" in version 1
 
-/// The first words of a file, up to two; none when it cannot be read.
+/// Returns the first words of a file, up to two; none if it cannot be read.
 std::vector<std::string> words_of(const fs::path& file) {
   std::ifstream in(file);
   std::vector<std::string> words;
@@ -61,8 +61,8 @@ void lower(std::optional<T>& least, const std::optional<T>& limit) {
 ContainerLimits container_limits(const fs::path& groups, const fs::path& membership) {
   ContainerLimits limits;
   std::ifstream in(membership);
-  // A line is NUMBER:CONTROLLERS:PATH; version 2's has no controllers. Inside a container the path may be the host's,
-  // and lead nowhere: its group is then the root of what is mounted.
+  // A line is NUMBER:CONTROLLERS:PATH, without controllers in version 2. Inside a container, the path may be the host's
+  // and not exist: its group is then the root of the mount.
   for (std::string line; std::getline(in, line);) {
     const size_t first = line.find(':');
     const size_t second = first == std::string::npos ? first : line.find(':', first + 1);

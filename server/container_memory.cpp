@@ -14,10 +14,10 @@ namespace papilio::server {
 namespace {
 
 std::mutex mutex;
-uint64_t bound = 0;        ///< guarded by mutex; 0: there is none
-uint64_t stack_count = 0;  ///< guarded by mutex; their number
+uint64_t bound = 0;        ///< limit without stacks, guarded by mutex; 0: no limit
+uint64_t stack_count = 0;  ///< number of stacks, guarded by mutex
 
-/// With the mutex held.
+/// Applies the limit, with the mutex held.
 bool apply() {
   rlimit limit{};
   ::getrlimit(RLIMIT_DATA, &limit);

@@ -4,13 +4,13 @@
 
 namespace papilio::server {
 
-/// Bounds what this process writes to (RLIMIT_DATA) by the memory of the container it is in, less a sixteenth for what
-/// the kernel holds for it: a mesh too large for it then fails for itself (std::bad_alloc), before the container is
-/// killed. Not under a sanitizer. Throws std::runtime_error when it cannot be applied.
+/// Limits the writable memory of this process (RLIMIT_DATA) to the container's memory less a sixteenth, which the
+/// kernel uses on its behalf. A mesh that is too large then fails alone (std::bad_alloc) before the container is
+/// killed. Has no effect under a sanitizer. Throws std::runtime_error if the limit cannot be applied.
 void bound_by_container(uint64_t container_bytes);
 
-/// The stack of a thread: space that counts as written to, though next to nothing of it is. The bound, where there is
-/// one, is larger by it while this lives.
+/// Stack of a thread, which counts as writable memory although little of it is used. While this exists, the limit, if
+/// any, is raised by it.
 class StackSpace {
  public:
   StackSpace();

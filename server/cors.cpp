@@ -21,7 +21,7 @@ bool is_origin(const std::string& text) {
                          text.find_first_of("/ ?#,", mark + 3) == std::string::npos);
 }
 
-/// To the list in the header of that name, which caches go by.
+/// Adds a field to the header `Vary`.
 void add_to_vary(Response& response, const std::string& field) {
   for (auto& [name, value] : response.headers) {
     if (!same_ignoring_case(name, "Vary")) continue;

@@ -7,14 +7,14 @@
 
 namespace papilio::server {
 
-/// Cross-origin requests of browsers (the Fetch standard's CORS protocol). Off while no origin is allowed.
+/// Cross-origin requests of browsers (CORS protocol of the Fetch standard). Off if no origin is allowed.
 class Cors {
  public:
-  /// `origins`: "https://example.org", or "*" for all of them. Throws std::runtime_error for what is no origin.
+  /// Allows `origins`: "https://example.org", or "*" for all. Throws std::runtime_error for an invalid origin.
   explicit Cors(std::vector<std::string> origins);
 
-  /// Adds what a page of an allowed origin needs to be shown the answer, and to the answer of an OPTIONS request what
-  /// it needs to send the real one.
+  /// Adds the headers that permit a page of an allowed origin to read the answer; and in the answer to OPTIONS, those
+  /// that permit it to send the actual request.
   void decorate(const Request& request, Response& response) const;
 
  private:

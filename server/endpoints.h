@@ -10,32 +10,32 @@
 
 namespace papilio::server {
 
-/// What a request to an endpoint carries.
+/// Body of a request to an endpoint.
 enum class Input { none, mesh, mesh_or_form, parameters };
-/// What it is answered.
+/// Body of an answer.
 enum class Output { refined, mesh, description, info, health, metrics, openapi, page, asset, sample, nothing };
 
-/// One row of the table of endpoints: routes, access and the OpenAPI document are made from it.
+/// Row of the table of endpoints, which defines routes, access and the OpenAPI document.
 struct Endpoint {
   std::string_view method;
-  std::string_view path;  ///< with `{id}` for a mesh's id, `{name}` for a file's or a sample's name
-  std::string_view name;  ///< OpenAPI's operationId
+  std::string_view path;  ///< path with `{id}` for a mesh's id, `{name}` for the name of a file or sample
+  std::string_view name;  ///< operationId of OpenAPI
   std::string_view summary;
   Access access;
   WhileDraining while_draining;
-  bool parameters;  ///< takes the parameters of a refinement in its query
+  bool parameters;  ///< whether its query takes the parameters of a refinement
   Input input;
   Output output;
-  std::vector<proto::Code> problems;  ///< besides those that any request can end in
+  std::vector<proto::Code> problems;  ///< problems besides common_problems()
   Response (*answer)(Engine&, Request&);
 };
 
-/// All of them. HEAD follows GET, and OPTIONS answers everywhere.
+/// Returns all endpoints. HEAD follows GET, and OPTIONS is supported by all paths.
 [[nodiscard]] std::span<const Endpoint> endpoints();
-/// The refusals that any endpoint may answer with.
+/// Returns the problems that any endpoint may answer with.
 [[nodiscard]] std::span<const proto::Code> common_problems();
 
-/// Adds every endpoint of the table. The engine must outlive the server, and is asked nothing after it.
+/// Adds every endpoint of the table. The engine must outlive the server.
 void add_endpoints(HttpServer& server, Engine& engine);
 
 }  // namespace papilio::server

@@ -18,7 +18,7 @@ using proto::gltf::SharedScene;
 
 namespace {
 
-constexpr uint64_t face_count_bytes = 4ULL << 20;  ///< some 10,000 counts
+constexpr uint64_t face_count_bytes = 4ULL << 20;  ///< budget of about 10,000 counts
 
 }  // namespace
 
@@ -46,7 +46,7 @@ proto::RefinementHooks Engine::sharing(proto::RefinementHooks hooks, Admission::
     slot.take_turn(abandoned);
     return abandoned();
   };
-  hooks.threads = 1 + std::max(0, options_.slots - admission_.computing());  // its own slot's and those of free ones
+  hooks.threads = 1 + std::max(0, options_.slots - admission_.computing());  // threads of its own slot and of free ones
   return hooks;
 }
 
@@ -123,7 +123,7 @@ std::shared_ptr<const Shared> Engine::decoded(const std::string& id) {
     count_again(id);
     return std::get<std::shared_ptr<const Shared>>(*known);
   }
-  // One mesh may have a quarter of the cache, so that a few large ones are kept beside each other.
+  // One mesh may take a quarter of the cache, so that several large ones fit.
   const uint64_t budget = options_.mesh_cache_bytes / 4;
   std::shared_ptr<const Shared> made;
   if constexpr (std::is_same_v<Shared, SharedScene>)

@@ -23,25 +23,26 @@
 
 namespace papilio::server {
 
-/// How the service's parts are sized.
+/// Sizes of the service's parts.
 struct EngineOptions {
   proto::Limits limits;
-  uint64_t max_body_bytes = 64u << 20;       ///< told in /v1/info; the HTTP server holds to it
-  int slots = 0;                             ///< requests computed at once; 0: one a core
-  int queue = 16;                            ///< requests that may wait for a slot
+  uint64_t max_body_bytes = 64u << 20;       ///< limit of bodies, for /v1/info; the HTTP server enforces it
+  int slots = 0;                             ///< number of concurrent computations; 0: one per core
+  int queue = 16;                            ///< upper bound of requests that wait for a slot
   StoreOptions store;                        ///
-  uint64_t result_cache_bytes = 256u << 20;  ///< results of stored meshes
-  uint64_t mesh_cache_bytes = 512u << 20;    ///< stored meshes, decoded and partly refined
-  int cache_seconds = 86400;                 ///< how long others may cache a result
+  uint64_t result_cache_bytes = 256u << 20;  ///< budget of cached results of stored meshes
+  uint64_t mesh_cache_bytes = 512u << 20;    ///< budget of cached stored meshes, decoded and partly refined
+  int cache_seconds = 86400;                 ///< max-age of results in caches of others
   std::string web;                           ///< folder of the viewer; empty: none
   std::string samples;                       ///< folder of further samples; empty: none
-  bool keyed = false;                        ///< keys are asked for, so that nobody else may keep what is answered
+  bool keyed = false;  ///< whether keys are required, so that shared caches must not store answers
 };
 
-/// What the routes share: the work and what it is kept in. Threads may share it.
+/// Shared state of the routes: admission, store and caches. Thread-safe.
 class Engine {
  public:
-  /// Throws std::runtime_error, naming the setting, where the store, a sample or the viewer cannot be used.
+  /// Opens store, samples and viewer. Throws std::runtime_error, with the setting's name, if one of them cannot be
+  /// used.
   explicit Engine(const EngineOptions& options);
 
   [[nodiscard]] const EngineOptions& options() const { return options_; }
@@ -53,48 +54,50 @@ class Engine {
   [[nodiscard]] const Page& page() const { return page_; }
   [[nodiscard]] const proto::Limits& limits() const { return options_.limits; }
 
-  /// Waits for a slot for the request's client; throws as `Admission::enter`.
+  /// Waits for a slot for the request's client. Throws as Admission::enter().
   [[nodiscard]] std::shared_ptr<Admission::Slot> enter(const Request& request, Work work,
                                                        const std::function<bool()>& abandoned);
-  /// Runs a refinement to its end, on the threads of free slots too, and counts it. Between steps it takes turns with
-  /// other requests (`Slot::take_turn`). Throws `Problem`.
+  /// Runs a refinement to its end, also on threads of free slots, and counts it. Yields to other requests between steps
+  /// (`Slot::take_turn`). Throws `Problem`.
   [[nodiscard]] proto::EncodedLevel run(proto::Refinement& refinement, proto::RefinementHooks hooks,
                                         Admission::Slot& slot);
-  /// The same for a scene.
+  /// Runs a refinement of a scene to its end, as `run` does for a mesh.
   [[nodiscard]] proto::EncodedLevel run(proto::gltf::SceneRefinement& refinement, proto::RefinementHooks hooks,
                                         Admission::Slot& slot);
-  /// Work of refining a .glb scene that has the faces which its JSON declares. Throws `Problem`.
+  /// Predicts the work of refining a .glb scene, from the faces that its JSON declares. Throws `Problem`.
   [[nodiscard]] Work work_of_scene(std::string_view glb, const Options& options) const;
-  /// Work of refining a mesh that has the faces which the Draco stream declares. Throws `Problem` where the stream is
-  /// refused by its header.
+  /// Predicts the work of refining a mesh, from the faces that its Draco header declares. Throws `Problem` if the
+  /// header is refused.
   [[nodiscard]] Work work_of(std::string_view draco, const Options& options) const;
-  /// Whether a stored mesh is a scene. Throws `Problem` mesh_not_found.
+  /// Returns whether a stored mesh is a scene. Throws `Problem` mesh_not_found.
   [[nodiscard]] bool is_scene(const std::string& id);
-  /// Work of refining a stored mesh or scene. Throws `Problem`, mesh_not_found too.
+  /// Predicts the work of refining a stored mesh or scene. Throws `Problem`, including mesh_not_found.
   [[nodiscard]] Work work_of_stored(const std::string& id, const Options& options);
-  /// The refinement of a stored mesh, ready to run; to be called with a slot. Throws `Problem`, mesh_not_found too.
+  /// Returns the refinement of a stored mesh, ready to run. Requires a slot. Throws `Problem`, including
+  /// mesh_not_found.
   [[nodiscard]] std::unique_ptr<proto::Refinement> mesh_refinement_of(const std::string& id,
                                                                       const proto::Parameters& parameters);
-  /// The same of a stored scene.
+  /// Returns the refinement of a stored scene, ready to run. Requires a slot. Throws `Problem`, including
+  /// mesh_not_found.
   [[nodiscard]] std::unique_ptr<proto::gltf::SceneRefinement> scene_refinement_of(const std::string& id,
                                                                                   const proto::Parameters& parameters);
-  /// The bytes of a stored mesh or scene; never null. Throws `Problem` mesh_not_found.
+  /// Returns the bytes of a stored mesh or scene; never null. Throws `Problem` mesh_not_found.
   [[nodiscard]] MeshStore::Bytes stored_bytes(const std::string& id);
-  /// A stored mesh or scene that has been refined takes more memory than before.
+  /// Updates the cached size of a stored mesh or scene, which grows with each refinement.
   void count_again(const std::string& id);
   [[nodiscard]] std::string metrics_text();
-  /// What metrics say of the memory that the HTTP server holds. To be called before it runs.
+  /// Sets the source of the metrics of the HTTP server's memory. Call before it runs.
   void observe_held_bytes(std::function<HeldBytes()> held) { held_ = std::move(held); }
 
  private:
   using Decoded =
       std::variant<std::shared_ptr<const proto::SharedMesh>, std::shared_ptr<const proto::gltf::SharedScene>>;
-  /// Lets a refinement take turns with other requests, and use the threads of free slots.
+  /// Returns hooks with which a refinement yields to other requests, and uses the threads of free slots.
   [[nodiscard]] proto::RefinementHooks sharing(proto::RefinementHooks hooks, Admission::Slot& slot) const;
   template <class AnyRefinement>
   [[nodiscard]] proto::EncodedLevel run_any(AnyRefinement& refinement, proto::RefinementHooks hooks,
                                             Admission::Slot& slot);
-  /// A stored mesh or scene, decoded; `Shared` is its kind.
+  /// Returns a stored mesh or scene, decoded; `Shared` is its type.
   template <class Shared>
   [[nodiscard]] std::shared_ptr<const Shared> decoded(const std::string& id);
 
@@ -103,8 +106,8 @@ class Engine {
   std::unique_ptr<MeshStore> store_;
   ResultCache results_;
   Lru<const Decoded> meshes_;
-  Lru<const uint64_t> face_counts_;  ///< of stored meshes, so that work is predicted without reading one
-  Lru<const bool> are_scenes_;       ///< whether stored meshes are scenes, likewise
+  Lru<const uint64_t> face_counts_;  ///< faces of stored meshes, to predict work without reading them
+  Lru<const bool> are_scenes_;       ///< kinds of stored meshes, to avoid reading them
   Metrics metrics_;
   std::function<HeldBytes()> held_ = [] { return HeldBytes{}; };
   const Samples samples_;

@@ -12,11 +12,11 @@ namespace {
 
 constexpr size_t piece_bytes = 64 << 10;
 
-/// A regular file that is open to be read; else errno has the reason.
+/// Regular file opened for reading; after a failure, errno has the reason.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file)
-      : fd_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // a pipe of that name must not hold us up
+      : fd_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // O_NONBLOCK: a pipe must not block
     struct stat status {};
     if (fd_ < 0 || ::fstat(fd_, &status) != 0) return;
     is_regular_ = S_ISREG(status.st_mode);
@@ -33,7 +33,7 @@ class OpenFile {
 
   [[nodiscard]] bool is_open() const { return is_regular_; }
   [[nodiscard]] size_t size() const { return size_; }
-  /// Reads as many bytes as there are left, at most `size`; negative with errno.
+  /// Reads the remaining bytes, at most `size`. Returns their number; negative with errno.
   [[nodiscard]] ssize_t read(char* bytes, size_t size) const {
     size_t total = 0;
     while (total < size) {

@@ -11,12 +11,12 @@
 namespace papilio::server {
 namespace {
 
-constexpr int largest_block = 32 << 20;    ///< what is larger comes from the system each time; glibc's most
-constexpr int kept_at_end = 64 << 20;      ///< of each arena; as much as glibc itself would come to keep
-constexpr int most_calls = 5;              ///< that give nothing back while requests are done
-constexpr size_t block_bytes = 128 << 10;  ///< large enough for glibc to look at the arena's end when it is freed
+constexpr int largest_block = 32 << 20;    ///< upper bound of blocks in arenas, glibc's maximum; larger ones are mapped
+constexpr int kept_at_end = 64 << 20;      ///< bytes retained at the end of each arena, as glibc itself would
+constexpr int most_calls = 5;              ///< upper bound of calls without a return while requests are done
+constexpr size_t block_bytes = 128 << 10;  ///< size at which glibc trims the arena's end when a block is freed
 
-/// Where memory is short: gives back what is kept for later, and lets `new` try again.
+/// Releases the core's spare blocks when memory is short, so that `new` can try again.
 void give_up_spares() {
   if (spare_bytes() == 0) throw std::bad_alloc();
   release_spare_blocks();
@@ -31,21 +31,21 @@ void set_up_heap(int slots) {
   mallopt(M_TRIM_THRESHOLD, kept_at_end);
 }
 
-// malloc_trim gives back what is free within arenas, but the free end of the main one only. That of another goes when
-// something of that arena is freed, by whomever; so each thread leaves a block.
+// malloc_trim returns free memory within arenas, but the free end of the main arena only. The end of another arena is
+// returned when a block of that arena is freed, on any thread; so each thread leaves a block.
 
 void FreeMemory::count_request() {
-  thread_local uint64_t left_in = 0;  // the round; a thread works for one server
+  thread_local uint64_t left_in = 0;  // round of the last block; a thread works for one server
   const std::lock_guard lock(mutex_);
   ++done_;
   if (left_in == round_) return;
   left_in = round_;
   try {
     std::vector<char> block;
-    block.reserve(block_bytes);  // not written to: it takes no memory but its first page
+    block.reserve(block_bytes);  // not written to: only its first page takes memory
     blocks_.push_back(std::move(block));
   } catch (const std::bad_alloc&) {
-    // The end of this arena is then given back in another round.
+    // The end of this arena is returned in another round.
   }
 }
 

@@ -26,8 +26,8 @@ constexpr size_t shortest_key = 16;
   throw std::runtime_error("keys: " + file.string() + ":" + std::to_string(line) + ": " + why);
 }
 
-/// Whether a secret in lower case is meant as a digest: it begins with "sha256" or "sha-256", or with the name of
-/// another algorithm and a colon or an equals sign.
+/// Returns whether a secret looks like a digest: it starts, in any case, with "sha256" or "sha-256", or with the name
+/// of another algorithm and a colon or an equals sign.
 bool is_meant_as_digest(std::string secret) {
   std::erase_if(secret, [](char c) { return c == '-' || c == '_'; });
   if (secret.starts_with("sha256")) return true;
@@ -35,7 +35,7 @@ bool is_meant_as_digest(std::string secret) {
   return algorithm.size() < secret.size() && std::ranges::find(other_digests, algorithm) != other_digests.end();
 }
 
-/// The key of `Authorization: Bearer KEY`, "" when there is none.
+/// Returns the key of `Authorization: Bearer KEY`, "" if there is none.
 std::string presented(const Request& request) {
   constexpr std::string_view scheme = "bearer ";
   const std::string value = request.header("Authorization");
@@ -96,15 +96,15 @@ std::string Keys::authorize(const Request& request, Access access) const {
   if (access == Access::open) return {};
   const std::string key = presented(request);
   if (key.empty())
-    throw Problem(Code::unauthorized, "A key is needed here. Send it as -H 'Authorization: Bearer KEY'.");
+    throw Problem(Code::unauthorized, "An access key is required. Send it as -H 'Authorization: Bearer KEY'.");
   const std::string digest = sha256(key);
   const std::shared_ptr<const List> keys = list();
   const Key* found = nullptr;
   for (const Key& known : *keys)
     if (CRYPTO_memcmp(known.digest.data(), digest.data(), digest.size()) == 0) found = &known;
-  if (found == nullptr) throw Problem(Code::unauthorized, "This key is not known here. Ask the operator for one.");
+  if (found == nullptr) throw Problem(Code::unauthorized, "The access key is unknown. Request one from the operator.");
   if (access == Access::manage && !found->manages)
-    throw Problem(Code::forbidden, "This key may not do this. It takes one with the right to manage.");
+    throw Problem(Code::forbidden, "The access key lacks the right to manage, which this request requires.");
   return found->name;
 }
 

@@ -11,24 +11,24 @@
 
 namespace papilio::server {
 
-/// The keys that clients show as `Authorization: Bearer KEY`. Any thread may use it.
+/// Access keys that clients send as `Authorization: Bearer KEY`. Thread-safe.
 ///
-/// A file has one key a line: a name for the log, the key or `sha256:` and the SHA-256 of the key in hexadecimal, and
-/// `manage` where the key may also delete meshes and read the metrics. The case of `sha256:` and of the digits does not
-/// matter; what looks like another digest is refused. Empty lines and lines that begin with # are passed over. Several
-/// keys are valid at once, so that one can be changed for another without a pause.
+/// A file has one key per line: a name for the log, the key or `sha256:` and its SHA-256 in hexadecimal, and `manage`
+/// if the key may also delete meshes and read metrics. The case of `sha256:` and of the digits is ignored; other
+/// digests are refused. Empty lines and lines that start with # are skipped. Several keys may be valid at once, so that
+/// a key can be replaced without interruption.
 ///
 ///     viewer   3f9a...
 ///     operator sha256:9b74c989...   manage
 class Keys {
  public:
-  /// Throws std::runtime_error, naming the file and the line.
+  /// Reads the file. Throws std::runtime_error with the file and the line.
   explicit Keys(std::filesystem::path file);
 
-  /// Reads the file again; throws as the constructor does, and the keys stay as they were.
+  /// Reloads the file. Throws as the constructor; the old keys then stay in use.
   void reload();
-  /// The name of the request's key. Throws `Problem`: unauthorized when there is none or it is not known, forbidden
-  /// when it does not have the right that is asked for. Every key is compared, each in constant time.
+  /// Returns the name of the request's key. Throws `Problem`: unauthorized without a key or for an unknown one,
+  /// forbidden if it lacks the right. Compares all keys, each in constant time.
   [[nodiscard]] std::string authorize(const Request& request, Access access) const;
   [[nodiscard]] size_t size() const;
 
@@ -44,7 +44,7 @@ class Keys {
 
   const std::filesystem::path file_;
   mutable std::mutex mutex_;
-  std::shared_ptr<const List> list_;  ///< guarded by mutex_
+  std::shared_ptr<const List> list_;  ///< keys; the pointer is guarded by mutex_
 };
 
 }  // namespace papilio::server

@@ -12,9 +12,9 @@
 namespace papilio::server {
 namespace {
 
-LogFormat format_in_use = LogFormat::text;  // set once, before there are threads
+LogFormat format_in_use = LogFormat::text;  // set once, before any thread is started
 
-/// A quoted value in which nothing can be taken for the next field.
+/// Returns a quoted value that cannot be confused with the next field.
 std::string in_quotes(std::string_view text) {
   constexpr size_t longest = 400;
   std::string out = "\"";
@@ -44,7 +44,7 @@ std::string as_text(std::string_view event, const std::vector<Fact>& facts) {
   return line;
 }
 
-/// The members that follow the time and level which spdlog's pattern writes.
+/// Returns the members that follow time and level of spdlog's pattern.
 std::string as_json(std::string_view event, const std::vector<Fact>& facts) {
   nlohmann::ordered_json document{{"msg", event}};
   for (const Fact& fact : facts) {

@@ -11,11 +11,11 @@ namespace papilio::server {
 
 enum class LogFormat { text, json };
 
-/// Sends spdlog's default logger to standard error, at this level ("debug", "info", "warning", "error", "off"), as
-/// key=value or with one JSON object a line.
+/// Directs spdlog's default logger to standard error, at `level` ("debug", "info", "warning", "error", "off"), as
+/// key=value or as one JSON object per line.
 void start_log(const std::string& level, LogFormat format);
 
-/// One line about something other than a request, such as "start", with its facts.
+/// Name and value in a line of the log about an event other than a request, such as "start".
 struct Fact {
   Fact(std::string_view fact, std::string text) : name(fact), value(std::move(text)) {}
   template <class Number>
@@ -27,13 +27,12 @@ struct Fact {
   bool is_number = false;
 
  private:
-  static std::string number_text(double number);  ///< to a thousandth
+  static std::string number_text(double number);  ///< formats with three decimal places
 };
 void log_event(std::string_view level, std::string_view event, const std::vector<Fact>& facts);
 
-/// One structured line a request: id, method, path, status, milliseconds, bytes in and out, remote address, the key's
-/// name and the trace id where there are any, and what went wrong. Successful health questions are logged at debug
-/// level only.
+/// Logs one structured line per request: id, method, path, status, milliseconds, bytes in and out, remote address, name
+/// of the key and trace id if any, and the problem. Successful health checks are logged at debug level only.
 void log_request(const Finished& request);
 
 }  // namespace papilio::server

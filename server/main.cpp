@@ -25,27 +25,27 @@ using namespace papilio::server;
 
 namespace {
 
-/// Signals that only `sigtimedwait` is to see: blocked in every thread.
+/// Blocks signals in every thread, so that only `sigtimedwait` receives them. Returns them.
 sigset_t block_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // a client or a store that goes away shows in the result of a call
+  std::signal(SIGPIPE, SIG_IGN);  // a lost client or store shows in the result of a call
   return signals;
 }
 
-/// Lets the process open as many files as it may: each silent connection takes one.
+/// Raises the limit of open files to its maximum: each silent connection takes one.
 void raise_descriptor_limit() {
   constexpr rlim_t most = 65536;
   rlimit limit{};
   ::getrlimit(RLIMIT_NOFILE, &limit);
   limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, most));
-  ::setrlimit(RLIMIT_NOFILE, &limit);  // what is refused stays as it was
+  ::setrlimit(RLIMIT_NOFILE, &limit);  // a refusal keeps the old limit
 }
 
-/// From then on a second SIGTERM or SIGINT ends the program at once. SIGHUP stays blocked: a reload that comes while
-/// the last requests are answered must not cut them short.
+/// Unblocks SIGTERM and SIGINT, so that a second one ends the program at once. SIGHUP stays blocked: a reload must not
+/// cut the last requests.
 void unblock_end_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -53,7 +53,7 @@ void unblock_end_signals() {
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
 
-/// Reads a part of the configuration again; what cannot be read stays as it was.
+/// Reloads a part of the configuration; keeps the old one if it cannot be read.
 void reload(std::string_view what, const std::function<void()>& read) {
   try {
     read();
@@ -63,7 +63,7 @@ void reload(std::string_view what, const std::function<void()>& read) {
   }
 }
 
-/// Returns the signal that is to end the program. Calls `while_waiting` every second.
+/// Waits for the signal that ends the program, and returns it. Calls `while_waiting` every second.
 int wait_for_end(const sigset_t& signals, const Config& config, HttpServer& server, Keys* keys,
                  const std::function<void()>& while_waiting) {
   for (;;) {
@@ -86,7 +86,7 @@ int serve(const Config& config) {
   limit_address_space(config);
   if (config.max_memory_bytes == 0 && config.container_memory_bytes > 0)
     bound_by_container(config.container_memory_bytes);
-  set_up_heap(config.engine.slots + 1);  // the express slot
+  set_up_heap(config.engine.slots + 1);  // includes the express slot
   const auto keys = config.keys.empty() ? nullptr : std::make_unique<Keys>(config.keys);
   const Cors cors(config.cors_origins);
   Engine engine(config.engine);
@@ -123,7 +123,7 @@ int serve(const Config& config) {
              {"samples", engine.samples().all().size()},
              {"keys", keys ? keys->size() : 0}});
 
-  const int held_by_work = 2 * (config.engine.slots + config.engine.queue) + 1;  // the express slot
+  const int held_by_work = 2 * (config.engine.slots + config.engine.queue) + 1;  // includes the express slot
   if (held_by_work >= http.threads)
     log_event(
         "warning", "settings",

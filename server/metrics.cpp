@@ -38,7 +38,7 @@ Family<Gauge>& gauges(Registry& registry, const std::string& name, const std::st
   return BuildGauge().Name(name).Help(help).Register(registry);
 }
 
-/// Clients may send any token as a method; only these are told apart.
+/// Returns the label of a method. Clients may send any token; methods outside a closed list share one label.
 std::string method_label(const std::string& method) {
   constexpr std::array<std::string_view, 7> known{"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"};
   return std::ranges::find(known, method) == known.end() ? "other" : method;
@@ -76,7 +76,7 @@ struct Metrics::Families {
   Gauge& computing = gauges(registry, "papilio_slots_busy", "Requests that compute now").Add({});
   Gauge& waiting =
       gauges(registry, "papilio_queue_length", "Requests that wait for a slot, or for another one").Add({});
-  // Of a store that does not know (Redis) there is no figure, rather than a 0.
+  // A store of unknown contents (Redis) has no value, rather than 0.
   Family<Gauge>& meshes = gauges(registry, "papilio_store_meshes", "Meshes in the store, where it knows");
   Family<Gauge>& mesh_bytes = gauges(registry, "papilio_store_bytes", "Bytes of the meshes in the store");
   Gauge& memory = gauges(registry, "process_resident_memory_bytes", "Memory of this process").Add({});

@@ -10,7 +10,7 @@
 
 namespace papilio::server {
 
-/// What is read at the moment of the question.
+/// Values read at the time of a scrape.
 struct Gauges {
   int slots = 0, computing = 0, waiting = 0;
   uint64_t result_cache_bytes = 0, mesh_cache_bytes = 0;
@@ -18,8 +18,8 @@ struct Gauges {
   std::optional<uint64_t> store_meshes{}, store_bytes{};
 };
 
-/// Counters and histograms for Prometheus. Labels take few values each: routes as they were added, methods and codes
-/// of closed lists. Any thread may use it.
+/// Counters and histograms for Prometheus. Labels have few values each: paths of routes, methods and codes of closed
+/// lists. Thread-safe.
 class Metrics {
  public:
   Metrics();
@@ -29,17 +29,17 @@ class Metrics {
 
   enum class Cache { results, meshes };
   void count_request(const Finished& request);
-  /// One that came after the answer's status was sent.
+  /// Counts a problem that arose after the answer's status was sent.
   void count_problem(const std::string& code);
-  /// One refinement carried out, to its end.
+  /// Counts a completed refinement.
   void count_refinement(uint64_t faces_in, const proto::Statistics& made);
   void count_lookup(Cache cache, bool hit);
-  /// A result that was made once for several requests.
+  /// Counts a request that shared the computation of another.
   void count_shared();
-  /// In seconds.
+  /// Records a wait for a slot, in seconds.
   void observe_wait(double waited);
 
-  /// The exposition format, version 0.0.4.
+  /// Returns the metrics in the exposition format, version 0.0.4.
   [[nodiscard]] std::string text(const Gauges& now);
 
  private:

@@ -31,8 +31,8 @@ ordered_json headers() {
           {"Papilio-Error",
            header("number",
                   "Largest deviation left, as a share of the coarse mesh's diagonal, the grid of the answer "
-                  "included; with tolerance or max_faces and no view it bounds the distance from the uniform "
-                  "result of the same levels")},
+                  "included; with tolerance or max_faces, in the red-green scheme without view or flatness, it "
+                  "bounds the distance from the uniform result of the same levels")},
           {"Papilio-Error-Pixels", header("number", "The same in pixels of the view")},
           {"Papilio-Unreached", header("string", "Targets that were not reached, and what to do")},
           {"Papilio-Shape", header("string", "What the mesh was taken for, and how many creases were kept or marked")},
@@ -145,7 +145,7 @@ void add_successes(const Endpoint& endpoint, ordered_json& answers) {
   }
 }
 
-/// Problems by their status, each with the codes that it stands for.
+/// Adds the answers of problems: one for each status, with its codes.
 void add_problems(const Endpoint& endpoint, ordered_json& answers) {
   std::map<int, std::string> by_status;
   std::vector<proto::Code> codes = endpoint.problems;
@@ -171,7 +171,7 @@ void add_problems(const Endpoint& endpoint, ordered_json& answers) {
 ordered_json request_body(Input input) {
   ordered_json types;
   if (input == Input::parameters) types = content({json_type}, reference_to("schemas/Parameters"));
-  // Client generators look at the first type, and know of this one that it is bytes.
+  // Client generators use the first type, and treat this one as bytes.
   if (input == Input::mesh || input == Input::mesh_or_form)
     types = content({bytes_type, draco_type, scene_type}, binary());
   if (input == Input::mesh_or_form)

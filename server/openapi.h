@@ -7,9 +7,9 @@
 
 namespace papilio::server {
 
-/// The OpenAPI 3.1 document of the service, made from the tables of endpoints, parameters, problems and limits.
+/// Returns the OpenAPI 3.1 document of the service, made from the tables of endpoints, parameters, problems and limits.
 [[nodiscard]] std::string openapi_json(const EngineOptions& options);
-/// GET /openapi.json.
+/// Answers GET /openapi.json.
 [[nodiscard]] Response openapi_route(Engine& engine, Request& request);
 
 }  // namespace papilio::server

@@ -16,7 +16,7 @@ ordered_json reference_to(const std::string& component) { return {{"$ref", "#/co
 
 namespace {
 
-/// An integer where it is one: JSON tells 3 from 3.0.
+/// Returns a number, as an integer if it is whole: JSON distinguishes 3 from 3.0.
 ordered_json number(double value) {
   return value == static_cast<double>(static_cast<int64_t>(value)) ? ordered_json(static_cast<int64_t>(value))
                                                                    : ordered_json(value);
@@ -39,7 +39,7 @@ std::string parameter_description(const ParameterInfo& info) {
   return text + ".";
 }
 
-/// The parameters as one JSON object, dots being levels.
+/// Returns the schema of the parameters as one JSON object, nested at dots.
 ordered_json parameters_schema() {
   ordered_json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", ordered_json::object()}};
   for (const ParameterInfo& info : proto::parameter_table()) {

@@ -8,13 +8,13 @@
 
 namespace papilio::server {
 
-/// A reference to one of the document's components, as "schemas/Problem".
+/// Returns a reference to one of the document's components, such as "schemas/Problem".
 [[nodiscard]] nlohmann::ordered_json reference_to(const std::string& component);
-/// "view.eye" is "view_eye" among the components, whose names have no dots by custom.
+/// Returns the component name of a parameter, without dots: "view_eye" for "view.eye".
 [[nodiscard]] std::string component_name(std::string_view parameter);
-/// The parameters of a refinement as those of a query: components by name.
+/// Returns the parameters of a refinement as query parameters: components by name.
 [[nodiscard]] nlohmann::ordered_json openapi_parameters();
-/// All schemas by name; among them the parameters as one JSON object, dots being levels.
+/// Returns all schemas by name, including the parameters as one JSON object, nested at dots.
 [[nodiscard]] nlohmann::ordered_json openapi_schemas(const EngineOptions& options);
 
 }  // namespace papilio::server

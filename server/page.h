@@ -7,32 +7,32 @@
 
 namespace papilio::server {
 
-/// A file of the viewer.
+/// File of the viewer.
 struct PageFile {
   std::string content_type;
-  std::string entity_tag;  ///< strong, quotes included
+  std::string entity_tag;  ///< strong entity tag with its quotes
   std::shared_ptr<const std::string> bytes;
-  std::shared_ptr<const std::string> gzipped;  ///< the same in gzip; null where that is not there
+  std::shared_ptr<const std::string> gzipped;  ///< bytes in gzip; null if there are none
 };
 
-/// The viewer (client/web) as Vite built it, in memory, never changed: threads may share one object.
+/// Viewer (client/web) as built by Vite, in memory. Immutable and thread-safe.
 class Page {
  public:
-  /// `folder` has index.html and assets/*, and x.gz beside what is to be sent compressed too. Empty: there is no page.
-  /// Throws std::runtime_error where index.html or another file cannot be read.
+  /// Reads `folder`: index.html and assets/*, with x.gz beside files that are also sent compressed. Empty: no page.
+  /// Throws std::runtime_error if index.html or another file cannot be read.
   explicit Page(const std::string& folder);
 
-  /// Null where there is no page.
+  /// Returns index.html; null without a page.
   [[nodiscard]] const PageFile* index() const;
-  /// `name`: of a file in assets. Null where there is none.
+  /// Returns a file in assets; null if there is none.
   [[nodiscard]] const PageFile* asset(std::string_view name) const;
 
  private:
-  std::map<std::string, PageFile, std::less<>> files_;  ///< by their paths in the folder
+  std::map<std::string, PageFile, std::less<>> files_;  ///< files by path in the folder
 };
 
-/// Where the page is when the operator does not say: `web` beside this program (as built), or ../share/papilio/web (as
-/// installed); empty where it is in neither.
+/// Returns the default folder of the page: `web` beside this program (as built), or ../share/papilio/web (as
+/// installed); empty if neither exists.
 [[nodiscard]] std::string default_page_folder();
 
 }  // namespace papilio::server

@@ -7,8 +7,8 @@
 namespace papilio::server {
 namespace {
 
-constexpr uint64_t per_coarse_face = 16;    ///< decoding and checking one
-constexpr uint64_t per_adaptive_face = 16;  ///< selecting, refining and encoding one
+constexpr uint64_t per_coarse_face = 16;    ///< work of decoding and checking a face
+constexpr uint64_t per_adaptive_face = 16;  ///< work of selecting, refining and encoding a face
 constexpr uint64_t usual_growth = 16;       ///< faces of an adaptive result for one coarse face
 
 bool is_uniform(Options options) {
@@ -25,7 +25,8 @@ Work predicted_work(uint64_t coarse_faces, const Options& options, const proto::
   uint64_t uniform = coarse_faces;
   for (int level = 0; level < options.levels; ++level) uniform *= 4;
   if (is_uniform(options)) {
-    const uint64_t work = uniform <= limits.max_output_faces ? decoding + uniform : decoding;  // more is refused
+    const uint64_t work =
+        uniform <= limits.max_output_faces ? decoding + uniform : decoding;  // larger results are refused
     return {work, work};
   }
   uint64_t most = std::min(uniform, limits.max_output_faces);

@@ -9,17 +9,17 @@
 
 namespace papilio::server {
 
-/// Values under text keys, up to a number of bytes; what was used longest ago gives way. Values are shared, so that one
-/// that gives way lives on with those who use it. Any thread may use it.
+/// Cache of values by text key, bounded in bytes; least recently used values are evicted. Values are shared, so that an
+/// evicted one stays valid for its users. Thread-safe.
 template <class Value>
 class Lru {
  public:
-  /// What an entry takes besides its value: nodes, key, counters.
+  /// Bytes of an entry besides its value: nodes, key, counters.
   static constexpr uint64_t entry_bytes = 256;
 
   explicit Lru(uint64_t budget) : budget_(budget) {}
 
-  /// Null when there is none; else it is now the one used last.
+  /// Returns the value and marks it most recently used; null if there is none.
   std::shared_ptr<Value> get(const std::string& key) {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find(key);
@@ -28,21 +28,21 @@ class Lru {
     return found->second.value;
   }
 
-  /// Keeps the value, or takes note of its new size; one that is larger than the whole budget is not kept. True when
-  /// it is new.
+  /// Stores the value, or updates its size; a value larger than the budget is not stored. Returns whether the key is
+  /// new.
   bool put(const std::string& key, std::shared_ptr<Value> value, uint64_t bytes) {
     const std::lock_guard lock(mutex_);
     const bool is_new = !drop(key);
     if (bytes + entry_bytes > budget_) return is_new;
     std::list<std::string> place{key};
     entries_.emplace(key, Entry{std::move(value), bytes + entry_bytes, place.begin()});
-    order_.splice(order_.begin(), place);  // last, since it cannot fail: both or neither have the key
+    order_.splice(order_.begin(), place);  // last, as it cannot fail: both lists have the key, or neither
     bytes_ += bytes + entry_bytes;
     while (bytes_ > budget_) drop(order_.back());
     return is_new;
   }
 
-  /// True when it was there.
+  /// Removes the value. Returns whether there was one.
   bool remove(const std::string& key) {
     const std::lock_guard lock(mutex_);
     return drop(key);
@@ -69,7 +69,7 @@ class Lru {
     std::list<std::string>::iterator place;
   };
 
-  /// The key may be the one in `order_`.
+  /// Drops an entry. The key may refer to the string in `order_`.
   bool drop(const std::string& key) {
     const auto found = entries_.find(key);
     if (found == entries_.end()) return false;
@@ -81,7 +81,7 @@ class Lru {
 
   const uint64_t budget_;
   mutable std::mutex mutex_;
-  std::list<std::string> order_;  ///< the one used last first
+  std::list<std::string> order_;  ///< keys, most recently used first
   std::unordered_map<std::string, Entry> entries_;
   uint64_t bytes_ = 0;
 };

@@ -27,7 +27,7 @@ std::shared_ptr<ResultCache::Flight> ResultCache::join(const std::string& key, b
   if (first) return flights_.emplace(key, std::make_shared<Flight>()).first->second;
   if (waiting_ >= most_waiting_)
     throw Problem(Code::busy,
-                  "Too many requests wait for results in the making. Try again after the time in "
+                  "Too many requests are waiting for pending results. Try again after the time in "
                   "Retry-After.");
   ++waiting_;
   ++found->second->waiting;
@@ -46,7 +46,7 @@ ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& fl
   Source source = Source::kept;
   std::exception_ptr failure;
   try {
-    result = kept_.get(key);  // another flight may have landed between the caller's look there and this one's start
+    result = kept_.get(key);  // another flight may have ended between the caller's look-up and this start
     if (result == nullptr) {
       source = Source::made;
       result = make(abandoned);
@@ -67,7 +67,7 @@ ResultCache::Answer ResultCache::make_for_all(const std::string& key, Flight& fl
   return {std::move(result), source};
 }
 
-/// Null when the one who made it gave up: then it is to be made anew.
+// Returns null if the computing request gave up: the result must then be computed again.
 ResultCache::Result ResultCache::wait_for(const std::shared_ptr<Flight>& flight, const Question& client_gone) {
   std::unique_lock lock(mutex_);
   while (!landed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return flight->done; })) {

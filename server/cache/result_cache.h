@@ -13,42 +13,42 @@
 
 namespace papilio::server {
 
-/// Results under their entity tags, up to a number of bytes. What is asked for while it is being made is made once:
-/// whoever comes later waits for it. Any thread may use it.
+/// Cache of results by entity tag, bounded in bytes. Concurrent requests for one result share its computation: later
+/// ones wait for it. Thread-safe.
 class ResultCache {
  public:
   using Result = std::shared_ptr<const proto::EncodedLevel>;
   using Question = std::function<bool()>;
 
-  /// At most `most_waiting` requests wait for results that others make: each holds a connection's thread.
+  /// Bounds the requests that wait for results of others by `most_waiting`, as each occupies a connection's thread.
   ResultCache(uint64_t budget, int most_waiting) : kept_(budget), most_waiting_(most_waiting) {}
 
-  /// How an answer was come by.
+  /// Source of an answer.
   enum class Source {
-    kept,    ///< from the cache
-    shared,  ///< from another request that was making it
-    made,    ///< by this one
+    kept,    ///< the cache
+    shared,  ///< the computation of another request
+    made,    ///< the computation of this request
   };
   struct Answer {
     Result result;
     Source source;
   };
 
-  /// `make` is given a question to ask between its steps: whether nobody waits for the result any more. What it throws
-  /// reaches everybody who waits. Throws `Problem` cancelled when `client_gone` (asked ten times a second) says so
-  /// while waiting.
+  /// Returns the cached result, or waits for another request's computation, or calls `make`. `make` polls `abandoned`
+  /// between its steps, which is true if no request waits for the result any more. Its exceptions reach all waiting
+  /// requests. Throws `Problem` cancelled if `client_gone` is true while waiting (polled ten times a second).
   [[nodiscard]] Answer get_or_make(const std::string& key, const std::function<Result(const Question& abandoned)>& make,
                                    const Question& client_gone);
 
-  /// Null when it is not kept.
+  /// Returns the cached result; null if there is none.
   [[nodiscard]] Result get(const std::string& key) { return kept_.get(key); }
   [[nodiscard]] uint64_t bytes() const { return kept_.bytes(); }
   [[nodiscard]] uint64_t size() const { return kept_.size(); }
 
  private:
-  /// One result in the making.
+  /// Computation of one result.
   struct Flight {
-    int waiting = 0;  ///< requests besides the one that makes it
+    int waiting = 0;  ///< number of waiting requests
     bool done = false;
     Result result;
     std::exception_ptr failure;
@@ -63,8 +63,8 @@ class ResultCache {
   const int most_waiting_;
   std::mutex mutex_;
   std::condition_variable landed_;
-  std::map<std::string, std::shared_ptr<Flight>> flights_;  ///< guarded by mutex_, as are the flights
-  int waiting_ = 0;                                         ///< guarded by mutex_: for all flights together
+  std::map<std::string, std::shared_ptr<Flight>> flights_;  ///< computations, guarded by mutex_, as are their fields
+  int waiting_ = 0;                                         ///< waiting requests of all flights, guarded by mutex_
 };
 
 }  // namespace papilio::server

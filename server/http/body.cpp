@@ -22,7 +22,7 @@ Problem too_large(uint64_t limit) {
 
 Problem damaged_chunks() { return {Code::bad_request, "The body's chunked encoding is damaged."}; }
 
-/// Decimal digits and nothing else; a number past 64 bits is the largest one.
+/// Parses a text of decimal digits only; a number beyond 64 bits becomes the largest one.
 bool parse_number(std::string_view text, uint64_t& number) {
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, number);
@@ -35,7 +35,7 @@ bool parse_number(std::string_view text, uint64_t& number) {
 Framing framing_of(const Head& head) {
   const size_t hosts = head.count("Host");
   if (hosts > 1 || (hosts == 0 && head.minor_version == 1))
-    throw Problem(Code::bad_request, "A request has one Host header.");
+    throw Problem(Code::bad_request, "Exactly one Host header is required.");
   const std::string host = head.field("Host");
   if (!host.empty() && !is_authority(host))
     throw Problem(Code::bad_request, "Host is " + proto::quote(host) + ", which is not valid. Send HOST or HOST:PORT.");
@@ -43,10 +43,10 @@ Framing framing_of(const Head& head) {
   const size_t encodings = head.count("Transfer-Encoding");
   if (lengths + encodings == 0) return {};
   if (lengths + encodings > 1)
-    throw Problem(Code::bad_request, "A request has one Content-Length or one Transfer-Encoding, not several.");
+    throw Problem(Code::bad_request, "A request can have only one Content-Length or Transfer-Encoding header.");
   if (encodings == 1) {
     if (head.minor_version == 0 || !same_ignoring_case(head.field("Transfer-Encoding"), "chunked"))
-      throw Problem(Code::bad_request, "The only Transfer-Encoding read here is `chunked`, in HTTP/1.1.");
+      throw Problem(Code::bad_request, "Unsupported Transfer-Encoding. Use `chunked`, with HTTP/1.1.");
     return {Framing::Kind::chunked};
   }
   Framing framing{Framing::Kind::length};
@@ -60,8 +60,7 @@ void refuse_unreadable(const Head& head, const Framing& framing, uint64_t limit)
   const bool has_length = head.count("Content-Length") + head.count("Transfer-Encoding") > 0;
   if (!has_length && (head.method == "POST" || head.method == "PUT" || head.method == "PATCH"))
     throw Problem(Code::length_required, "Send Content-Length, or Transfer-Encoding: chunked.");
-  if (head.count("Range") > 0)
-    throw Problem(Code::range_not_supported, "Answers are sent whole; leave the Range header out.");
+  if (head.count("Range") > 0) throw Problem(Code::range_not_supported, "Omit the Range header.");
   for (const auto& [name, value] : head.fields)
     if (same_ignoring_case(name, "Content-Encoding") && !same_ignoring_case(value, "identity"))
       throw Problem(Code::unsupported_encoding, "Send the body as it is, without Content-Encoding.");
@@ -93,12 +92,12 @@ void BodyReader::read_exactly(uint64_t count, std::string& bytes) {
   }
 }
 
-/// In steps, so that the counter that all requests share is seldom touched.
+// Grows the share in steps, as all requests contend for its counter.
 void BodyReader::hold(uint64_t bytes) {
   constexpr uint64_t step = 256 << 10;
   if (held_ != nullptr && !held_->grow_to(std::min((bytes + step - 1) / step * step, limit_)))
     throw Problem(Code::busy,
-                  "The bodies of all requests together take too much memory. Try again after the time in "
+                  "The bodies of all requests together exceed the memory limit. Try again after the time in "
                   "Retry-After.");
 }
 

@@ -9,24 +9,24 @@
 
 namespace papilio::server {
 
-/// How a request's body is delimited.
+/// Delimitation of a request's body.
 struct Framing {
   enum class Kind { none, length, chunked };
   Kind kind = Kind::none;
-  uint64_t length = 0;  ///< for Kind::length
+  uint64_t length = 0;  ///< bytes, for Kind::length
 };
 
-/// Reads `Content-Length` and `Transfer-Encoding`. Throws bad_request when there is more than one answer, for
-/// then a proxy and this server could disagree on where the next request begins.
+/// Reads `Content-Length` and `Transfer-Encoding`. Throws `Problem` bad_request if they are ambiguous: a proxy and this
+/// server could disagree on the begin of the next request.
 [[nodiscard]] Framing framing_of(const Head& head);
 
-/// Refuses, from the head alone, a body that will not be read: no length, too long, encoded; and a Range.
+/// Refuses, by the head alone, a body without a length, too long or encoded; and a Range. Throws `Problem`.
 void refuse_unreadable(const Head& head, const Framing& framing, uint64_t limit);
 
-/// Reads one request's body from its connection.
+/// Reader of one request's body from its connection.
 class BodyReader {
  public:
-  /// `held` (null: none) is asked for as much memory as has arrived.
+  /// Starts at the body. `held`, unless null, grows by the received bytes.
   BodyReader(Connection& connection, const Framing& framing, uint64_t limit, ByteBudget::Share* held = nullptr)
       : connection_(connection),
         framing_(framing),
@@ -34,10 +34,10 @@ class BodyReader {
         held_(held),
         complete_(framing.kind == Framing::Kind::none) {}
 
-  /// Throws body_too_large as soon as the limit is passed, bad_request when the chunking is damaged or the
-  /// body ends early, request_timeout when it stalls, busy when all bodies together are too large.
+  /// Reads the body. Throws `Problem`: body_too_large as soon as the limit is exceeded, bad_request for damaged chunks
+  /// or an early end, request_timeout if it stalls, busy if all bodies together are too large.
   std::string read();
-  /// True when nothing of this body is left in the connection: only then may another request be read from it.
+  /// Returns whether the body is completely read; only then may another request be read from the connection.
   [[nodiscard]] bool complete() const { return complete_; }
 
  private:

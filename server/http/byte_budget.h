@@ -6,12 +6,12 @@
 
 namespace papilio::server {
 
-/// Bytes that all requests together may hold. Any thread may use it.
+/// Budget of bytes that all requests together may hold. Thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(uint64_t bytes) : bytes_(static_cast<int64_t>(bytes)), left_(bytes_) {}
 
-  /// A share of the budget that grows, and is given back when it is destroyed.
+  /// Growing share of the budget. The destructor returns it.
   class Share {
    public:
     explicit Share(ByteBudget& budget) : budget_(budget) {}
@@ -19,7 +19,7 @@ class ByteBudget {
     Share(const Share&) = delete;
     Share& operator=(const Share&) = delete;
 
-    /// False when the budget does not allow so many bytes in all; the share is then what it was.
+    /// Grows the share to `bytes`. Returns false, with the share unchanged, if the budget does not suffice.
     [[nodiscard]] bool grow_to(uint64_t bytes) {
       const int64_t more = static_cast<int64_t>(bytes) - held_;
       if (more <= 0) return true;
@@ -38,7 +38,7 @@ class ByteBudget {
     int64_t held_ = 0;
   };
 
-  /// What all shares hold; more for a moment while one is refused.
+  /// Returns the bytes of all shares; briefly more while one is refused.
   [[nodiscard]] uint64_t held() const { return static_cast<uint64_t>(bytes_ - left_); }
 
  private:

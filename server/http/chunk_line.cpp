@@ -10,7 +10,7 @@
 namespace papilio::server {
 namespace {
 
-/// Takes what a chunk line consists of off its front.
+/// Scanner of the elements of a chunk line.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : rest_(text) {}
@@ -22,7 +22,7 @@ class Scanner {
     rest_.remove_prefix(1);
     return true;
   }
-  /// Spaces and tabs.
+  /// Skips spaces and tabs.
   void skip_blanks() { rest_.remove_prefix(std::min(rest_.size(), rest_.find_first_not_of(" \t"))); }
   bool take_number(uint64_t& number) {
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number, 16);

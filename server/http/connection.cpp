@@ -37,7 +37,7 @@ std::string peer_address(int fd) {
   return ::inet_ntop(address.ss_family, number, text.data(), text.size()) ? text.data() : "";
 }
 
-/// Bytes that were written to the socket, and that the client's system has not acknowledged.
+/// Returns the bytes written to the socket that the client's system has not acknowledged.
 int unacknowledged_bytes(int fd) {
   int bytes = 0;
   ::ioctl(fd, SIOCOUTQ, &bytes);
@@ -52,8 +52,8 @@ Connection::Connection(std::unique_ptr<Transport> transport, std::chrono::second
       read_wait_(read_wait),
       write_wait_(write_wait),
       remote_address_(peer_address(transport_->fd())) {
-  // The socket is writable again once little is left unsent, not once a third of a buffer of megabytes is free: so a
-  // client that reads slowly is told from one that does not read.
+  // The socket becomes writable when little is left unsent, not when a third of a buffer of megabytes is free. This
+  // tells a slow client from one that does not read.
   const int unsent = 64 << 10;
   ::setsockopt(transport_->fd(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
 }
@@ -112,7 +112,7 @@ Connection::Gathered Connection::gather_head(size_t limit, Clock::duration patie
 }
 
 Connection::HeadState Connection::scan_head(size_t limit) {
-  // An empty line before the request is a client's slip after the last body; RFC 9112 asks to pass over it.
+  // Skips one empty line before the request: some clients send it after a body (RFC 9112, section 2.2).
   if (!has_empty_line_ && buffered().starts_with("\r\n")) {
     begin_ += 2;
     has_empty_line_ = true;
@@ -138,7 +138,7 @@ std::string Connection::take_head(size_t limit) {
       throw Problem(Code::bad_request, "Every line of a request's head must end in CR LF.");
     case HeadState::too_large:
       throw Problem(Code::headers_too_large,
-                    "The request line and the header fields may have " + std::to_string(limit) + " bytes together.");
+                    "The request line and the header fields exceed " + std::to_string(limit) + " bytes together.");
     default:
       throw Problem(Code::request_timeout,
                     "The request's head did not arrive in " + std::to_string(read_wait_.count()) + " seconds.");
@@ -184,8 +184,8 @@ bool Connection::write(std::string_view bytes, bool more) {
   return !broken_;
 }
 
-/// A socket counts as writable only once tens of kilobytes were taken. A slow client takes them in smaller pieces,
-/// which show in what it has acknowledged.
+// A socket becomes writable only after tens of kilobytes were taken. Progress of a slow client shows in the
+// acknowledged bytes.
 bool Connection::wait_to_write(short events) const {
   auto deadline = Clock::now() + write_wait_;
   for (int unacknowledged = unacknowledged_bytes(transport_->fd());;) {

@@ -25,7 +25,7 @@ bool Exchange::may_keep_alive() const {
 void Exchange::set_client(const std::string& name) {
   client_ = name.empty() ? remote_address() : name;
   if (!name.empty() || std::ranges::find(options_.trusted_proxies, client_) == options_.trusted_proxies.end()) return;
-  // Each proxy appends the address that it was asked from: only the last one is the trusted proxy's own word.
+  // Each proxy appends the address of its client: only the last one comes from the trusted proxy.
   const std::string forwarded = head_.field("X-Forwarded-For");
   const std::string_view last = trimmed(std::string_view(forwarded).substr(forwarded.rfind(',') + 1));
   if (!last.empty()) client_ = last;
@@ -45,7 +45,7 @@ std::string Exchange::content_type() const {
 Body Exchange::read_body() {
   if (body_taken_) throw std::logic_error("a request's body was read twice");
   body_taken_ = true;
-  // Asked for only now, so that a handler which refuses saves the client the upload.
+  // Requested only now, so that a refusal by the handler saves the upload.
   const bool client_waits = head_.minor_version == 1 && head_.lists("Expect", "100-continue");
   if (client_waits && !body_->complete() && !connection_.has_buffered())
     connection_.write("HTTP/1.1 100 Continue\r\n\r\n");

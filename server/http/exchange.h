@@ -11,24 +11,24 @@
 
 namespace papilio::server {
 
-/// One request on its connection, as the handlers see it.
+/// One request on its connection, in the form for handlers.
 class Exchange final : public Request {
  public:
-  /// `held`: what its body takes of the memory for all bodies.
+  /// Starts without a head. `held`: budget of all bodies.
   Exchange(Connection& connection, const HttpOptions& options, ByteBudget& held)
       : connection_(connection), options_(options), held_(held) {}
 
-  /// Takes the head, which is ready, from the connection and parses it. Throws `Problem`.
+  /// Takes the ready head from the connection and parses it. Throws `Problem`.
   void receive();
-  /// Refuses a body that would not be read. Throws `Problem`.
+  /// Throws `Problem` for a body that would not be read.
   void refuse_unreadable() const;
-  /// True when the next bytes of the connection begin another request, and the client wants to send one.
-  /// False for as long as any of this one's are left: they would be executed as a request.
+  /// Returns whether another request may follow: the client keeps the connection, and no byte of this request is left,
+  /// which would be executed as a request.
   [[nodiscard]] bool may_keep_alive() const;
   [[nodiscard]] const Head& head() const { return head_; }
-  /// The body's memory is free again.
+  /// Returns the body's share of the budget.
   void release_body() { held_.give_back(); }
-  /// Without a name the client is known by its address.
+  /// Sets the client's name; an empty one stands for its address.
   void set_client(const std::string& name);
   void set_path_parameters(Fields parameters) { path_parameters_ = std::move(parameters); }
 
@@ -53,7 +53,7 @@ class Exchange final : public Request {
   std::string id_;
   std::string client_;
   Framing framing_;
-  std::optional<BodyReader> body_;  ///< empty until the framing is known
+  std::optional<BodyReader> body_;  ///< reader; empty until the framing is known
   bool body_taken_ = false;
 };
 

@@ -18,7 +18,7 @@ constexpr std::string_view end_of_line = "\r\n";
 
 Problem damaged(const std::string& how) { return {Code::bad_request, "The form is damaged: " + how + "."}; }
 
-/// Takes a token or a quoted string off the front of `text`.
+/// Consumes a token or a quoted string at the begin of `text`.
 std::string take_value(std::string_view& text) {
   std::string value;
   if (!text.starts_with('"')) {
@@ -35,7 +35,7 @@ std::string take_value(std::string_view& text) {
   return value;
 }
 
-/// The parameter of a value such as `form-data; name="mesh"; filename=a`.
+/// Returns a parameter of a value such as `form-data; name="mesh"; filename=a`.
 std::optional<std::string> parameter(std::string_view text, std::string_view wanted) {
   text.remove_prefix(std::min(text.size(), text.find(';')));
   while (!text.empty()) {
@@ -64,7 +64,7 @@ std::string boundary_of(std::string_view content_type) {
   return boundary;
 }
 
-/// Takes the part's header fields and their empty line off the front of `text`.
+/// Consumes the part's header fields and their empty line at the begin of `text`.
 FormPart take_part_head(std::string_view& text) {
   FormPart part;
   size_t taken = 0;
@@ -85,7 +85,7 @@ FormPart take_part_head(std::string_view& text) {
   return part;
 }
 
-/// Takes what follows a boundary off the front of `text`; false at the closing one.
+/// Consumes the rest of a boundary's line at the begin of `text`. Returns false at the closing boundary.
 bool take_boundary_end(std::string_view& text) {
   if (text.starts_with("--")) return false;
   text.remove_prefix(std::min(text.size(), text.find_first_not_of(" \t")));

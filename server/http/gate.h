@@ -6,16 +6,16 @@
 
 namespace papilio::server {
 
-/// Counts the requests being answered and, once closed, lets no further one in. Any thread may use it.
+/// Counter of running requests that, once closed, admits no more. Thread-safe.
 class Gate {
  public:
-  /// False once closed; else the request counts as running until `leave`.
+  /// Counts a running request until leave(). Returns false if the gate is closed.
   bool enter();
   void leave();
   void close();
   [[nodiscard]] bool closed() const;
   [[nodiscard]] int running() const;
-  /// True when nothing runs, false when the time was over first.
+  /// Waits until no request runs. Returns false after `longest`.
   bool wait_until_empty(std::chrono::seconds longest);
 
  private:

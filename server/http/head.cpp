@@ -17,8 +17,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// The part of the target that begins with the path: the whole target, or what follows the authority of
-/// "http://host:port/path".
+/// Returns the target from its path on: the whole target, or the part after the authority of "http://host:port/path".
 std::string_view without_origin(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!same_ignoring_case(target.substr(0, scheme.size()), scheme)) continue;
@@ -53,7 +52,7 @@ void parse_request_line(std::string_view line, Head& head) {
     throw Problem(Code::bad_request, "The first line is not an HTTP request line.");
   const std::string_view version = line.substr(second + 1);
   if (version != "HTTP/1.1" && version != "HTTP/1.0")
-    throw Problem(Code::bad_request, "Only HTTP/1.1 and HTTP/1.0 are spoken here.");
+    throw Problem(Code::bad_request, "Unsupported HTTP version. Use HTTP/1.1 or HTTP/1.0.");
   head.minor_version = version.back() - '0';
   head.method = line.substr(0, first);
   head.target = line.substr(first + 1, second - first - 1);

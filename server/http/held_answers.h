@@ -9,28 +9,27 @@
 
 namespace papilio::server {
 
-/// Memory of the answers that are being sent. A client may take its time over an answer, but not over memory that
-/// others need: where all answers together pass the budget, those that have been sent longest are cut. Any thread may
-/// use it.
+/// Memory of the answers being sent. A client may read slowly, but not at the cost of others: if all answers together
+/// exceed the budget, the oldest are cut. Thread-safe.
 class HeldAnswers {
  public:
   explicit HeldAnswers(uint64_t budget) : budget_(budget) {}
   HeldAnswers(const HeldAnswers&) = delete;
   HeldAnswers& operator=(const HeldAnswers&) = delete;
 
-  /// What the answer on one connection holds, until it is destroyed.
+  /// Memory of the answer on one connection, until it is destroyed.
   class Share {
    public:
-    /// The connection must outlive the share.
+    /// Starts without memory. The connection must outlive the share.
     Share(HeldAnswers& all, const Connection& connection);
     ~Share();
     Share(const Share&) = delete;
     Share& operator=(const Share&) = delete;
 
-    /// The answer holds so many bytes from now on, in place of what it held. Several answers may hold the same
-    /// `object`, which counts once; null: nobody else holds it. May cut other answers.
+    /// Sets the bytes that the answer holds. An `object` held by several answers counts once; null: not shared. May cut
+    /// other answers.
     void hold(uint64_t bytes, const void* object = nullptr);
-    /// Whether the answer was cut to make room for others.
+    /// Returns whether the answer was cut to make room for others.
     [[nodiscard]] bool is_cut() const;
 
    private:
@@ -43,17 +42,17 @@ class HeldAnswers {
     bool is_cut_ = false;
   };
 
-  /// What all answers hold now, those that are cut excepted.
+  /// Returns the bytes that all answers hold, except cut ones.
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  // With the mutex held.
+  /// Subtracts a share's bytes, with the mutex held.
   void discount(const Share& share);
   void cut_oldest_but(const Share& newest);
 
   const uint64_t budget_;
-  mutable std::mutex mutex_;  ///< guards all below, and what the shares have
-  std::list<Share*> shares_;  ///< the oldest first
+  mutable std::mutex mutex_;  ///< guards the fields that follow, and the fields of shares
+  std::list<Share*> shares_;  ///< shares, the oldest first
   std::map<const void*, int> holders_;
   uint64_t bytes_ = 0;
 };

@@ -24,18 +24,18 @@ struct HttpServer::Impl {
     try {
       go_on(std::make_shared<Client>(*this, tls ? tls->transport(fd) : plain_transport(fd)));
     } catch (...) {
-      // Out of memory outside of a handler: this connection is lost, its thread goes on to the next.
+      // Out of memory outside a handler: this connection is lost, and its thread serves the next.
     }
   }
 
   struct Client;
-  /// Serves the client for as long as it has requests, and no other waits for the thread.
+  /// Serves the client while it has requests and no other client waits for the thread.
   void go_on(const std::shared_ptr<Client>& client) {
     const auto later = [this, client] {
       try {
         go_on(client);
       } catch (...) {
-        // As above.
+        // Out of memory: the connection is lost.
       }
     };
     while (!listener.closed()) {
@@ -55,7 +55,7 @@ struct HttpServer::Impl {
     for (Connection* connection : connections) connection->abort();
   }
 
-  /// A connection that `stop` cuts, for as long as this lives.
+  /// Registration of a connection that stop() cuts, during its lifetime.
   class Listed {
    public:
     Listed(Impl& impl, Connection& connection) : impl_(impl), connection_(connection) {
@@ -89,7 +89,7 @@ struct HttpServer::Impl {
   Routes routes;
   Gate gate;
   std::mutex mutex;
-  std::set<Connection*> connections;  ///< guarded by mutex: all that are open
+  std::set<Connection*> connections;  ///< open connections, guarded by mutex
   Listener listener;
 };
 

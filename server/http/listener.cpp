@@ -16,13 +16,15 @@
 namespace papilio::server {
 namespace {
 
-/// cpp-httplib's own is 5, compiled into the library: a burst of clients would wait for retransmissions.
+/// Backlog of the socket. cpp-httplib's is 5, compiled into the library: a burst of clients would wait for
+/// retransmissions.
 constexpr int backlog = 1024;
 
-/// Longer than a client takes between two connections, shorter than the time after which memory is given back.
+/// Idle time after which a thread ends: longer than a client's pause between two connections, and shorter than the time
+/// after which memory is returned.
 constexpr std::chrono::milliseconds idle_thread{1000};
 
-/// Our thread pool, as the library wants it, and the sockets that need no thread now.
+/// Adapter of the thread pool and the parked sockets for cpp-httplib.
 class TaskQueue : public httplib::TaskQueue {
  public:
   TaskQueue(size_t threads, size_t most_parked, std::atomic<TaskQueue*>& known)
@@ -38,7 +40,7 @@ class TaskQueue : public httplib::TaskQueue {
     return Enqueued(true);
   }
   void shutdown() override {
-    parking_.close();  // it must not resume anything in a pool that is shut down
+    parking_.close();  // first, as it must not resume work in a pool that is shut down
     pool_.shutdown();
   }
 
@@ -54,7 +56,7 @@ class TaskQueue : public httplib::TaskQueue {
   std::atomic<TaskQueue*>& known_;
 };
 
-/// As many as descriptors are left beside those of connections that are served, of stores and of files.
+/// Returns the number of file descriptors left beside those of served connections, stores and files.
 size_t most_parked(size_t threads) {
   constexpr size_t most = 4096, least = 16, others = 64;
   rlimit limit{};
@@ -63,7 +65,8 @@ size_t most_parked(size_t threads) {
   return std::clamp(descriptors > threads + others ? descriptors - threads - others : 0, least, most);
 }
 
-/// The library's default sets SO_REUSEPORT, with which two servers share a port without a word.
+/// Sets the options of the socket. The library's default sets SO_REUSEPORT, with which two servers silently share a
+/// port.
 void set_listening_options(int fd) {
   const int yes = 1;
   ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -78,7 +81,7 @@ class Listener::Server : public httplib::Server {
       return new TaskQueue(static_cast<size_t>(threads), most_parked(static_cast<size_t>(threads)), tasks_);
     };
     set_socket_options(set_listening_options);
-    // Accepted sockets inherit it. Without it a small answer waits 40 ms for the client's delayed
+    // Accepted sockets inherit TCP_NODELAY. Otherwise a small answer would wait 40 ms for the client's delayed
     // acknowledgement.
     set_tcp_nodelay(true);
   }
@@ -105,8 +108,8 @@ class Listener::Server : public httplib::Server {
     throw std::runtime_error("connections can no longer be accepted");
   }
 
-  // The library's stop() does nothing before listening has begun, and closes the socket's number under the
-  // accepting thread. Here the number stays taken until the end, and `shutdown` wakes that thread.
+  // The library's stop() has no effect before listening has begun, and closes the descriptor under the accepting
+  // thread. Here the descriptor stays open until the end, and `shutdown` wakes that thread.
   void stop_listening() {
     closed_ = true;
     if (svr_sock_.exchange(INVALID_SOCKET) != INVALID_SOCKET) ::shutdown(fd_, SHUT_RDWR);
@@ -130,7 +133,7 @@ class Listener::Server : public httplib::Server {
 
   const std::function<void(int)> serve_;
   std::atomic<socket_t> fd_ = INVALID_SOCKET;
-  std::atomic<TaskQueue*> tasks_ = nullptr;  ///< the library makes it and deletes it
+  std::atomic<TaskQueue*> tasks_ = nullptr;  ///< task queue, owned by the library
   std::atomic<bool> closed_ = false;
 };
 

@@ -8,28 +8,26 @@
 
 namespace papilio::server {
 
-/// Listens, accepts, and hands each connection to one of a bounded number of threads. The only place that knows
-/// cpp-httplib: of it only the listening socket and the accepting loop are used. A request is never shown to it; see
-/// head.h and body.h for why.
+/// Listener that accepts connections and passes each to one of a bounded number of threads. Only this uses cpp-httplib:
+/// its listening socket and accepting loop, but none of its parsers (head.h, body.h).
 class Listener {
  public:
-  /// `serve` is called with each accepted socket, which it owns, on one of at most `threads` threads.
+  /// Calls `serve` with each accepted socket, which it owns, on one of at most `threads` threads.
   Listener(int threads, std::function<void(int fd)> serve);
   ~Listener();
 
-  /// Returns the port. Throws std::runtime_error, naming host and port.
+  /// Listens; returns the port. Throws std::runtime_error with host and port.
   int open(const std::string& host, int port);
-  /// Accepts until `close`; returns when every `serve` has. Throws std::runtime_error when accepting fails.
+  /// Accepts until close(); returns when every call of `serve` has. Throws std::runtime_error if accepting fails.
   void run();
-  /// Takes no further connections, whether `run` was called yet or not. Any thread may call it, any number of
-  /// times.
+  /// Stops accepting, before or after run() was called. Thread-safe and idempotent.
   void close();
   [[nodiscard]] bool closed() const;
-  /// True while a connection waits for a thread.
+  /// Returns whether a connection waits for a thread.
   [[nodiscard]] bool others_wait() const;
-  /// Runs the work on one of the threads, after what waits already. To be called from one of them.
+  /// Runs the work on one of the threads, after waiting work. Call on one of the threads.
   void enqueue(std::function<void()> work);
-  /// Runs `resume` on one of the threads once the socket is ready (`Parking::park`). To be called from one of them.
+  /// Runs `resume` on one of the threads once the socket is ready (`Parking::park`). Call on one of the threads.
   void park(int fd, short events, Parking::Clock::time_point deadline, std::function<void()> resume);
 
  private:

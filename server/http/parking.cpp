@@ -20,7 +20,7 @@ int checked(int result, const char* what) {
   return result;
 }
 
-/// A socket for which there is no memory is lost, the others are not.
+/// Calls `resume`. Out of memory, only this socket is lost.
 void call(const std::function<void()>& resume) {
   try {
     resume();
@@ -52,7 +52,7 @@ Parking::~Parking() {
 }
 
 void Parking::park(int fd, short events, Clock::time_point deadline, std::function<void()> resume) {
-  std::function<void()> given_way;  // destroyed once the lock is given back, as `resume` is
+  std::function<void()> given_way;  // destroyed after the lock is released, as is `resume`
   const std::lock_guard lock(mutex_);
   if (closed_) return;
   if (parked_.size() >= most_) given_way = take_locked(deadlines_.begin()->second);
@@ -85,8 +85,7 @@ void Parking::close() {
 
 void Parking::run() {
   std::array<epoll_event, 64> events{};
-  // Whoever wakes this up has written before what it is to see, closed or a deadline, and each turn looks for both
-  // after it has taken the calls.
+  // A waker first writes `closed` or a deadline. Each turn checks both after it has read the wake-ups.
   while (const std::optional<int> wait = milliseconds_to_wait()) {
     const int count = ::epoll_wait(epoll_, events.data(), events.size(), *wait);
     for (int i = 0; i < count; ++i) {

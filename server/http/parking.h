@@ -12,22 +12,22 @@
 
 namespace papilio::server {
 
-/// Sockets whose clients have nothing to say yet: each costs a descriptor, and no thread. Any thread may use it.
+/// Sockets of silent clients: each takes a descriptor, but no thread. Thread-safe.
 class Parking {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Room for `most` > 0 sockets. Throws std::system_error when the system has no means for it.
+  /// Provides room for `most` > 0 sockets. Throws std::system_error if the system lacks resources.
   explicit Parking(size_t most);
   ~Parking();
   Parking(const Parking&) = delete;
   Parking& operator=(const Parking&) = delete;
 
-  /// Calls `resume` once, from a thread of its own, when the socket is ready for `events` (of poll) or has failed, or
-  /// when the deadline has passed. `resume` owns the socket: it is destroyed without a call when the parking is closed
-  /// or full. When it is full the socket with the next deadline gives way.
+  /// Calls `resume` once, on the parking's thread, when the socket is ready for `events` (of poll), has failed, or the
+  /// deadline has passed. `resume` owns the socket; it is destroyed without a call when the parking is closed. When the
+  /// parking is full, the socket with the next deadline is dropped.
   void park(int fd, short events, Clock::time_point deadline, std::function<void()> resume);
-  /// Destroys what is parked, now and from now on.
+  /// Destroys parked sockets, and those parked later.
   void close();
 
  private:
@@ -38,19 +38,19 @@ class Parking {
   };
 
   void run();
-  /// Until the next deadline, -1 for no end; nothing once it is closed.
+  /// Returns the milliseconds until the next deadline, -1 without one; nothing once closed.
   [[nodiscard]] std::optional<int> milliseconds_to_wait();
-  /// Takes one out, with its deadline passed by now; empty when there is none, or it is closed, as is the next.
+  /// Takes out a socket whose deadline has passed; empty if there is none, or if the parking is closed.
   [[nodiscard]] std::function<void()> take_overdue();
   [[nodiscard]] std::function<void()> take(uint64_t id);
-  /// With the mutex held; empty when there is none.
+  /// Takes out a socket, with the mutex held; empty if there is none.
   [[nodiscard]] std::function<void()> take_locked(uint64_t id);
   void wake() const;
 
   const size_t most_;
   const int epoll_;
-  const int wake_;    ///< an eventfd
-  std::mutex mutex_;  ///< guards all below
+  const int wake_;    ///< eventfd that wakes the thread
+  std::mutex mutex_;  ///< guards the fields that follow
   std::map<uint64_t, Parked> parked_;
   std::set<std::pair<Clock::time_point, uint64_t>> deadlines_;
   uint64_t next_id_ = 1;

@@ -82,7 +82,7 @@ std::string date() {
   std::tm utc{};
   gmtime_r(&now, &utc);
   std::array<char, 40> text{};
-  // In the C locale, which this program never leaves.
+  // The program always uses the C locale.
   return {text.data(), std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc)};
 }
 
@@ -96,7 +96,7 @@ bool is_of_the_connection(std::string_view name) {
   return std::ranges::any_of(names, [&](std::string_view n) { return same_ignoring_case(n, name); });
 }
 
-/// A line break within a value would begin a header line of somebody else's making.
+/// Appends a header field. Replaces line breaks in a value, which would start another header line.
 void add_field(std::string& head, std::string_view name, std::string_view value) {
   if (!is_token(name)) return;
   head += name;
@@ -150,7 +150,7 @@ class ConnectionSink final : public Sink {
 
   void hold(uint64_t bytes) override { held_.hold(bytes); }
 
-  /// The client was seen to be gone while the stream was written: it has not got all of it.
+  /// Returns whether the client was gone before the whole stream was written.
   [[nodiscard]] bool lost() const { return lost_; }
 
  private:
@@ -191,7 +191,7 @@ bool send_reply(Connection& connection, const Response& response, const Delivery
   try {
     response.stream(sink);
   } catch (...) {
-    return false;  // without its last chunk the answer shows itself as cut short
+    return false;  // without its last chunk, the answer is recognizably cut
   }
   return !sink.lost() && (!delivery.chunked || connection.write("0\r\n\r\n"));
 }

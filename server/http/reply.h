@@ -8,19 +8,19 @@
 
 namespace papilio::server {
 
-/// What the request's side decides about the form of its answer.
+/// Form of an answer, as decided by the request.
 struct Delivery {
   std::string request_id;
-  bool head_only = false;   ///< answering HEAD
-  bool chunked = true;      ///< the client knows chunked encoding; without it a stream ends with the connection
-  bool keep_alive = false;  ///< another request may follow on this connection
+  bool head_only = false;   ///< whether HEAD is answered
+  bool chunked = true;      ///< whether the client supports chunked encoding; else a stream ends with the connection
+  bool keep_alive = false;  ///< whether another request may follow on this connection
 };
 
-/// The answer to an error.
+/// Returns the answer for an error.
 [[nodiscard]] Response problem_response(const proto::Problem& problem, const std::string& request_id);
 
-/// Sends the whole answer, whose memory counts in `held` meanwhile. False when the client did not get all of it; the
-/// connection is then of no further use.
+/// Sends the whole answer; meanwhile its memory counts in `held`. Returns false if the client did not receive all of
+/// it; the connection must then be closed.
 [[nodiscard]] bool send_reply(Connection& connection, const Response& response, const Delivery& delivery,
                               HeldAnswers::Share& held);
 

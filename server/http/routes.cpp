@@ -9,7 +9,7 @@ using proto::Problem;
 
 namespace {
 
-/// Takes the first segment, and its slash, off the path.
+/// Consumes the first segment of the path and its slash.
 std::string_view take_segment(std::string_view& path) {
   path.remove_prefix(1);
   const std::string_view segment = path.substr(0, path.find('/'));
@@ -54,7 +54,7 @@ Routes::Paths::const_iterator Routes::find_path(const std::string& path, Fields&
 RouteMatch Routes::find(const std::string& method, const std::string& path) const {
   RouteMatch match;
   const auto found = find_path(path, match.parameters);
-  if (found == routes_.end()) throw Problem(Code::not_found, "There is nothing at this path.");
+  if (found == routes_.end()) throw Problem(Code::not_found, "No resource exists at this path.");
   const auto route = found->second.find(method);
   if (route == found->second.end()) throw Problem(Code::method_not_allowed, "This path takes " + allowed(path) + ".");
   match.route = &route->second;

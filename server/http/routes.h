@@ -12,26 +12,26 @@ struct Route {
   RouteOptions options;
 };
 
-/// The route of one request.
+/// Route of one request.
 struct RouteMatch {
   const Route* route = nullptr;
-  std::string pattern;  ///< the path as it was added
-  Fields parameters{};  ///< what stands in the places of its `{name}` segments
+  std::string pattern;  ///< path of the route
+  Fields parameters{};  ///< values of its `{name}` segments
 };
 
-/// Which handler answers what. Filled before the server runs, then read by all threads.
+/// Table of routes. Filled before the server runs, then read by all threads.
 class Routes {
  public:
   Routes() = default;
   Routes(const Routes&) = delete;
   Routes& operator=(const Routes&) = delete;
 
-  /// A segment `{name}` of the path matches any segment that is not empty; paths without one are preferred.
+  /// Adds a route. A segment `{name}` of the path matches any non-empty segment; paths without one have priority.
   void add(const std::string& method, const std::string& path, Handler handler, const RouteOptions& options);
-  /// HEAD is answered by GET's handler, OPTIONS by a list of the path's methods unless a handler of its own
-  /// was added. Throws not_found or method_not_allowed.
+  /// Finds the route of a request. HEAD uses GET's handler; OPTIONS without a handler lists the path's methods. Throws
+  /// `Problem` not_found or method_not_allowed.
   [[nodiscard]] RouteMatch find(const std::string& method, const std::string& path) const;
-  /// The value of `Allow` for a path: "GET, HEAD, OPTIONS".
+  /// Returns the value of `Allow` for a path: "GET, HEAD, OPTIONS".
   [[nodiscard]] std::string allowed(const std::string& path) const;
 
  private:
@@ -39,7 +39,7 @@ class Routes {
   using Paths = std::map<std::string, Methods>;
   [[nodiscard]] Paths::const_iterator find_path(const std::string& path, Fields& parameters) const;
 
-  Paths routes_;  ///< path, then method
+  Paths routes_;  ///< [path][method]
 };
 
 }  // namespace papilio::server

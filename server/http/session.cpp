@@ -13,11 +13,9 @@ namespace {
 using proto::Code;
 using proto::Problem;
 
-Problem internal() {
-  return {Code::internal, "The server failed on this request; its log tells more under the request id."};
-}
+Problem internal() { return {Code::internal, "An internal error occurred. The log lists it under the request id."}; }
 
-/// The trace id of a `traceparent` (W3C Trace Context, version 00), "" when it is not one.
+/// Returns the trace id of a `traceparent` (W3C Trace Context, version 00), "" if it is invalid.
 std::string trace_id(const std::string& traceparent) {
   const auto is_hex = [](std::string_view text) {
     return text.find_first_not_of("0123456789abcdef") == std::string_view::npos &&
@@ -30,11 +28,11 @@ std::string trace_id(const std::string& traceparent) {
   return valid ? std::string(text.substr(3, 32)) : "";
 }
 
-/// A thread stays with a connection so long before it serves others: the next request of a busy client, and the first
-/// one of a new client, come sooner.
+/// Time for which a thread waits on a connection before it serves others: the next request of a busy client, and the
+/// first of a new one, arrive sooner.
 constexpr std::chrono::milliseconds short_wait{5};
 
-/// A request counts as running from its complete head until its answer is sent and logged.
+/// Count of a running request, from its complete head until its answer is sent and logged.
 class Pass {
  public:
   explicit Pass(Gate& gate) : gate_(gate), entered_(gate.enter()) {}
@@ -98,7 +96,7 @@ bool Session::answer_one(bool last) {
     exchange.set_path_parameters(std::move(match.parameters));
     const RouteOptions& route = match.route->options;
     if (!pass->entered() && route.while_draining == WhileDraining::refuse)
-      throw Problem(Code::draining, "This server is shutting down; ask another one.");
+      throw Problem(Code::draining, "The server is shutting down. Use another server.");
     if (options_.authorize) finished.client = options_.authorize(exchange, route.access);
     exchange.set_client(finished.client);
     exchange.refuse_unreadable();

@@ -13,24 +13,24 @@
 
 namespace papilio::server {
 
-/// The requests of one connection, one after the other. It is used by one thread at a time.
+/// Session on one connection: its requests, one after the other. Used by one thread at a time.
 class Session {
  public:
   Session(std::unique_ptr<Transport> transport, const HttpOptions& options, ByteBudget& held, HeldAnswers& answers,
           const Routes& routes, Gate& gate, const Listener& listener);
 
-  /// What the session goes on with.
+  /// Next event of the session.
   struct Next {
     enum class What { request, bytes, nothing };
     What what;
-    short wait_for = 0;  ///< for `bytes`: what the socket must be ready for
+    short wait_for = 0;  ///< for `bytes`: events that the socket must be ready for
   };
-  /// Answers one request when its head is there, or comes at once. Holds the thread for no client that is silent.
+  /// Answers one request if its head is complete or arrives at once. Does not block for a silent client.
   Next run();
   [[nodiscard]] Connection& connection() { return connection_; }
 
  private:
-  /// Returns whether another request may follow.
+  /// Answers one request. Returns whether another may follow.
   bool answer_one(bool last);
   [[nodiscard]] Response refusal(const Exchange& exchange, const proto::Problem& problem, Finished& finished) const;
 

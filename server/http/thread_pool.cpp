@@ -32,7 +32,7 @@ void ThreadPool::enqueue(std::function<void()> work) {
     if (work_.size() > free_ && threads_.size() < most_) {
       try {
         begin_thread();
-      } catch (const std::system_error&) {  // it waits for one of those that there are
+      } catch (const std::system_error&) {  // work waits for an existing thread
       } catch (const std::bad_alloc&) {
       }
     }

@@ -13,45 +13,44 @@
 
 namespace papilio::server {
 
-/// Threads that begin when there is work for them and end when there has been none for a while. With a fixed number of
-/// them each comes to hold, in malloc's cache for its thread, small pieces from everywhere: pages which then cannot go
-/// back to the system.
+/// Pool of threads that start on demand and end when idle. Threads of a fixed number would retain small blocks from
+/// everywhere in malloc's thread caches, whose pages could not return to the system.
 class ThreadPool {
  public:
-  /// At most `most` > 0 threads at once. The first begins here and stays, so that work is done though no further one
-  /// can begin. Throws std::system_error when it cannot.
+  /// Runs at most `most` > 0 threads. Starts a permanent one, so that work is done even if no further thread can start.
+  /// Throws std::system_error if it cannot start.
   ThreadPool(size_t most, std::chrono::milliseconds idle_time);
   ~ThreadPool() { shutdown(); }
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// `work` must not throw.
+  /// Queues work, which must not throw.
   void enqueue(std::function<void()> work);
-  /// True while there is work that has to wait for a thread to be done with another.
+  /// Returns whether work waits for a thread.
   [[nodiscard]] bool has_waiting() const { return waiting_; }
-  /// Returns when all work is done. None may be added afterwards.
+  /// Waits until all work is done. No work may be added afterwards.
   void shutdown();
 
  private:
   struct Thread {
-    StackSpace stack;  ///< until it is joined
+    StackSpace stack;  ///< stack, until the thread is joined
     std::thread thread;
   };
   using Threads = std::list<Thread>;
 
-  void begin_thread();  ///< with the mutex held
+  void begin_thread();  ///< requires the mutex
   void run(Threads::iterator self, bool stays);
-  void count_waiting() { waiting_ = work_.size() > free_; }  ///< with the mutex held
+  void count_waiting() { waiting_ = work_.size() > free_; }  ///< requires the mutex
 
   const size_t most_;
   const std::chrono::milliseconds idle_time_;
   std::atomic<bool> waiting_ = false;
-  std::mutex mutex_;  ///< guards all below
+  std::mutex mutex_;  ///< guards the fields that follow
   std::condition_variable changed_;
   std::deque<std::function<void()>> work_;
   size_t free_ = 0;  ///< threads that wait for work, or are about to
   Threads threads_;
-  Threads ended_;  ///< to be joined
+  Threads ended_;  ///< threads to be joined
   bool closed_ = false;
 };
 

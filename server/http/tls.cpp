@@ -12,7 +12,7 @@
 namespace papilio::server {
 namespace {
 
-/// OpenSSL's words for the first thing that went wrong, and forgets them all.
+/// Returns OpenSSL's message for its first error, and clears its queue of errors.
 std::string reason() {
   const unsigned long error = ERR_get_error();
   std::array<char, 256> text{};
@@ -22,7 +22,7 @@ std::string reason() {
   return words == nullptr ? text.data() : words;
 }
 
-/// Of the protocols that a client offers, HTTP/1.1; a client that offers only others is refused.
+/// Selects HTTP/1.1 of the protocols that a client offers; refuses a client that offers only others.
 int choose_protocol(SSL* /*ssl*/, const unsigned char** chosen, unsigned char* chosen_size,
                     const unsigned char* offered, unsigned offered_size, void* /*unused*/) {
   constexpr std::string_view own = "\x08http/1.1";
@@ -33,7 +33,7 @@ int choose_protocol(SSL* /*ssl*/, const unsigned char** chosen, unsigned char* c
   return outcome == OPENSSL_NPN_NEGOTIATED ? SSL_TLSEXT_ERR_OK : SSL_TLSEXT_ERR_ALERT_FATAL;
 }
 
-/// Instead of asking on the terminal.
+/// Refuses a key with a passphrase, in place of OpenSSL's prompt on the terminal.
 int no_passphrase(char* /*into*/, int /*size*/, int /*writing*/, void* /*unused*/) { return -1; }
 
 std::shared_ptr<SSL_CTX> make_context(const std::string& certificate_file, const std::string& key_file) {
@@ -42,11 +42,11 @@ std::shared_ptr<SSL_CTX> make_context(const std::string& certificate_file, const
   if (!context) throw std::bad_alloc();
   SSL_CTX* const c = context.get();
   SSL_CTX_set_min_proto_version(c, TLS1_2_VERSION);
-  // With TLS 1.2 too, only what keeps recorded traffic secret when the key leaks, and authenticates what it encrypts.
+  // With TLS 1.2, only ciphers with forward secrecy and authenticated encryption.
   SSL_CTX_set_cipher_list(c, "ECDHE+AESGCM:ECDHE+CHACHA20");
   SSL_CTX_set_options(
       c, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION | SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_PRIORITIZE_CHACHA);
-  SSL_CTX_set_session_cache_mode(c, SSL_SESS_CACHE_OFF);  // tickets need none, and get a new key with each reload
+  SSL_CTX_set_session_cache_mode(c, SSL_SESS_CACHE_OFF);  // tickets need no cache, and get a new key with each reload
   // Without AUTO_RETRY a read ends after each record, so that a flood of records without data cannot outlast deadlines.
   SSL_CTX_clear_mode(c, SSL_MODE_AUTO_RETRY);
   SSL_CTX_set_mode(c, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);

@@ -12,18 +12,18 @@ using SSL_CTX = struct ssl_ctx_st;
 
 namespace papilio::server {
 
-/// A server's certificate and key. Any thread may use it.
+/// Certificate and key of a server. Thread-safe.
 class TlsContext {
  public:
-  /// PEM files: the certificate followed by its intermediates, and its key without a passphrase. Throws
-  /// std::runtime_error, naming the setting and the file.
+  /// Reads PEM files: the certificate followed by its intermediates, and its key without a passphrase. Throws
+  /// std::runtime_error with the setting's name and the file.
   TlsContext(std::string certificate_file, std::string key_file);
 
-  /// Reads both files anew: connections made from then on get the new certificate, others keep theirs. Throws
-  /// like the constructor; the old ones then stay in use.
+  /// Reloads both files: new connections get the new certificate, others keep theirs. Throws as the constructor; the
+  /// old ones then stay in use.
   void reload();
-  /// The server's side of a new connection. The handshake takes place within its first reads, so what bounds these
-  /// bounds it as well.
+  /// Returns the server's side of a new connection. The handshake takes place within its first reads, and shares their
+  /// bound.
   [[nodiscard]] std::unique_ptr<Transport> transport(int fd) const;
 
  private:
@@ -32,7 +32,7 @@ class TlsContext {
   const std::string certificate_file_;
   const std::string key_file_;
   mutable std::mutex mutex_;
-  std::shared_ptr<SSL_CTX> context_;  ///< guarded by mutex_; what it points to is never changed
+  std::shared_ptr<SSL_CTX> context_;  ///< immutable context; the pointer is guarded by mutex_
 };
 
 }  // namespace papilio::server

@@ -15,11 +15,11 @@ namespace {
 constexpr size_t record_bytes = SSL3_RT_MAX_PLAIN_LENGTH;
 constexpr size_t most_bytes_a_write = 16 * record_bytes;
 
-// A socket for OpenSSL. Its own would raise SIGPIPE, and wait unless the socket were told not to.
+// Socket BIO for OpenSSL. Its own would raise SIGPIPE, and block on a blocking socket.
 
 int fd_of(BIO* bio) { return static_cast<Transport*>(BIO_get_data(bio))->fd(); }
 
-/// A step as the result of a BIO's call: a count, 0 at the end, -1 when it must be tried again.
+/// Converts a step to the result of a BIO's call: a count, 0 at the end, -1 if it must be repeated.
 int result_of(BIO* bio, const Transport::Step& step, int retry_flag) {
   BIO_clear_retry_flags(bio);
   if (step.bytes > 0 || step.wait_for == 0) return static_cast<int>(step.bytes);

@@ -9,17 +9,17 @@
 
 namespace papilio::server {
 
-/// The server's side of one TLS connection.
+/// Server's side of one TLS connection.
 class TlsTransport final : public Transport {
  public:
-  /// Throws std::bad_alloc.
+  /// Takes the socket. Throws std::bad_alloc.
   TlsTransport(int fd, SSL_CTX* context);
   ~TlsTransport() override;
 
   Step read(char* into, size_t size) override;
-  /// What is written with `more` is kept, up to a record's size, and encrypted together with what follows.
+  /// Writes bytes. With `more`, up to a record's size is kept and encrypted together with later bytes.
   Step write(std::string_view bytes, bool more) override;
-  /// Besides the socket's end, the client's close_notify counts, unless data that nobody has read yet came before it.
+  /// Returns whether the socket is closed, or the client's close_notify has arrived without unread data before it.
   bool peer_gone() override;
   Step end_writing() override;
 
@@ -27,14 +27,14 @@ class TlsTransport final : public Transport {
   struct Free {
     void operator()(SSL* ssl) const { SSL_free(ssl); }
   };
-  /// The step that OpenSSL's result means.
+  /// Converts OpenSSL's result to a step.
   Step step_of(int result, size_t bytes);
   Step send_close_notify();
 
   std::unique_ptr<SSL, Free> ssl_;
-  std::string kept_;         ///< written with `more`, and what is sent in the same record
-  size_t kept_of_call_ = 0;  ///< of it, the bytes of a call that is still to report them
-  bool failed_ = false;      ///< OpenSSL allows no further call
+  std::string kept_;         ///< bytes written with `more`, and later bytes of the same record
+  size_t kept_of_call_ = 0;  ///< bytes of `kept_` that a repeated call has to report
+  bool failed_ = false;      ///< whether OpenSSL permits no further call
 };
 
 }  // namespace papilio::server

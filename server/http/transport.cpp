@@ -25,7 +25,7 @@ class PlainTransport final : public Transport {
   }
 };
 
-/// The step that a system call's result means; it is called again after an interruption.
+/// Makes a system call, repeats it after an interruption, and converts its result to a step.
 template <class Call>
 Transport::Step step_of(const Call& call, short wait_for) {
   for (;;) {

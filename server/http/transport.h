@@ -5,14 +5,14 @@
 
 namespace papilio::server {
 
-/// The bytes of one socket, plain or encrypted; owns the socket. No call waits: each says what it got done, or what
-/// it would have to wait for. Used by one thread, but for `fd`.
+/// Bytes of one socket, plain or encrypted; owns the socket. No call blocks: each returns its progress, or the event to
+/// wait for. Used by one thread, except fd().
 class Transport {
  public:
-  /// What a call came to.
+  /// Result of a call.
   struct Step {
-    size_t bytes = 0;    ///< moved; when there are any, `wait_for` has no meaning
-    short wait_for = 0;  ///< POLLIN or POLLOUT: call again once the socket is ready; 0: the connection is at its end
+    size_t bytes = 0;    ///< transferred bytes; unless 0, `wait_for` is meaningless
+    short wait_for = 0;  ///< POLLIN or POLLOUT: call again once the socket is ready; 0: the connection has ended
   };
 
   explicit Transport(int fd) : fd_(fd) {}
@@ -23,13 +23,13 @@ class Transport {
   [[nodiscard]] int fd() const { return fd_; }
 
   virtual Step read(char* into, size_t size) = 0;
-  /// After a step without bytes the next call must be given the same ones. `more`: what follows comes at once, and may
-  /// share a packet with this; a write without `more` must follow.
+  /// Writes bytes. After a step without bytes, the next call must pass equal bytes. `more`: further bytes follow at
+  /// once, and may share a packet; a write without `more` must follow.
   virtual Step write(std::string_view bytes, bool more) = 0;
-  /// True once the client has closed its side (a half-close counts) or the connection is lost. What it had sent before
-  /// can still be read.
+  /// Returns whether the client has closed its side (a half-close counts) or the connection is lost. Bytes that it sent
+  /// before can still be read.
   [[nodiscard]] virtual bool peer_gone() = 0;
-  /// Tells the client that nothing more will be written. To be called again while the step says what to wait for.
+  /// Announces the end of writing to the client. Call again while the step has an event to wait for.
   virtual Step end_writing() = 0;
 
  private:
@@ -38,7 +38,7 @@ class Transport {
 
 [[nodiscard]] std::unique_ptr<Transport> plain_transport(int fd);
 
-// The system's calls as `Step`s: without waiting, and without SIGPIPE.
+// System calls as `Step`s: non-blocking, and without SIGPIPE.
 
 [[nodiscard]] Transport::Step receive_some(int fd, char* into, size_t size);
 [[nodiscard]] Transport::Step send_some(int fd, std::string_view bytes, bool more);

@@ -14,18 +14,18 @@
 namespace papilio::server {
 namespace {
 
+using proto::BodyPart;
 using proto::Code;
 using proto::EncodedLevel;
-using proto::Part;
 using proto::Problem;
 
-/// The way of the parts from the thread that makes them to the one that sends them.
+/// Queue of parts between the thread that makes them and the one that sends them.
 class Outbox {
  public:
-  /// The sink is told how much is held here.
+  /// Reports the held bytes to the sink.
   explicit Outbox(Sink& sink) : sink_(sink) {}
 
-  void put(Part part) {
+  void put(BodyPart part) {
     const std::lock_guard lock(mutex_);
     bytes_ += part.body.size();
     parts_.push_back(std::move(part));
@@ -37,13 +37,13 @@ class Outbox {
     closed_ = true;
     changed_.notify_one();
   }
-  /// Nothing when none has come in `longest`, or none will come. What was taken before is no longer held.
-  std::optional<Part> take(std::chrono::milliseconds longest) {
+  /// Takes a part; nothing if none arrives within `longest`, or none is left. Releases the part taken before.
+  std::optional<BodyPart> take(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
     if (taken_ > 0) sink_.hold(bytes_ -= std::exchange(taken_, 0));
     changed_.wait_for(lock, longest, [&] { return !parts_.empty() || closed_; });
     if (parts_.empty()) return std::nullopt;
-    Part part = std::move(parts_.front());
+    BodyPart part = std::move(parts_.front());
     taken_ = part.body.size();
     parts_.pop_front();
     return part;
@@ -57,19 +57,19 @@ class Outbox {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Sink& sink_;
-  std::deque<Part> parts_;
-  uint64_t bytes_ = 0;  ///< of the parts, and of the one that was taken last
+  std::deque<BodyPart> parts_;
+  uint64_t bytes_ = 0;  ///< bytes of the parts, and of the part taken last
   uint64_t taken_ = 0;
   bool closed_ = false;
 };
 
-Part level_part(const EncodedLevel& level, const std::string& type) {
-  Part part{{{"Content-Type", type}}, level.bytes};
+BodyPart level_part(const EncodedLevel& level, const std::string& type) {
+  BodyPart part{{{"Content-Type", type}}, level.bytes};
   for (auto& header : proto::statistics_headers(level.statistics)) part.headers.push_back(std::move(header));
   return part;
 }
 
-/// The status is sent, and was a good one: the log and the metrics get to know here what went wrong since.
+/// Reports a problem to log and metrics, as the status, a success, was already sent.
 void report(Engine& engine, const std::string& request_id, Code code, const std::string& detail) {
   const proto::ProblemKind& kind = proto::problem_kind(code);
   engine.metrics().count_problem(std::string(kind.name));
@@ -77,8 +77,8 @@ void report(Engine& engine, const std::string& request_id, Code code, const std:
             {{"id", request_id}, {"code", std::string(kind.name)}, {"detail", detail}});
 }
 
-/// Makes all parts of the stream, the last one a problem where it cannot be carried on. Throws only when there is no
-/// memory for that.
+/// Makes all parts of the stream; after a failure, the last part is a problem. Throws only if there is no memory for
+/// it.
 void make_parts(Engine& engine, const RunRefinement& run, const std::string& type, const std::string& request_id,
                 Admission::Slot& slot, const std::function<bool()>& abandoned, Outbox& outbox) {
   const auto fail = [&](const Problem& problem) {
@@ -90,12 +90,12 @@ void make_parts(Engine& engine, const RunRefinement& run, const std::string& typ
         slot);
     outbox.put({{{"Content-Type", json_type}}, proto::statistics_json(last.statistics)});
   } catch (const Problem& problem) {
-    if (problem.code() == Code::cancelled) return;  // nobody reads it, and the one who sends says so
+    if (problem.code() == Code::cancelled) return;  // there is no reader, and the sender reports it
     report(engine, request_id, problem.code(), problem.what());
     fail(problem);
   } catch (const std::exception& error) {
     report(engine, request_id, Code::internal, error.what());
-    fail(Problem(Code::internal, "Something failed inside the server. The request id finds it in the log."));
+    fail(Problem(Code::internal, "An internal error occurred. The log lists it under the request id."));
   }
 }
 
@@ -110,7 +110,7 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
   response.content_type = writer.content_type();
   response.headers = {{"Vary", "Accept"},
                       {"Cache-Control", "no-store"},
-                      {"X-Accel-Buffering", "no"}};  // a proxy is to pass each level on as it comes
+                      {"X-Accel-Buffering", "no"}};  // a proxy must pass on each level at once
   response.stream = [&engine, &request, writer, type, slot = std::move(slot),
                      run = std::move(run)](Sink& sink) mutable {
     Outbox outbox(sink);
@@ -128,7 +128,7 @@ Response level_stream(Engine& engine, Request& request, std::shared_ptr<Admissio
       outbox.close();
     });
     while (!outbox.finished()) {
-      const std::optional<Part> part = outbox.take(check_interval);
+      const std::optional<BodyPart> part = outbox.take(check_interval);
       gone = gone || request.client_gone() || (part && !sink.write(writer.part(*part)));
     }
     if (gone) throw Problem(Code::cancelled, "The client went away.");

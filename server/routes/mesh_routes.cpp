@@ -30,7 +30,7 @@ Problem no_such_mesh() {
 
 std::string path_of(const std::string& id) { return "/v1/meshes/" + id; }
 
-/// What everybody may keep for ever: content under its own hash.
+/// Returns the value of Cache-Control. `immutable`: the content is addressed by its hash.
 std::string cache_control(const Engine& engine, int seconds, bool immutable) {
   return std::string(engine.options().keyed ? "private" : "public") + ", max-age=" + std::to_string(seconds) +
          (immutable ? ", immutable" : "");
@@ -74,7 +74,7 @@ Work work_of_bytes(const Engine& engine, const std::string& mesh) {
   return proto::gltf::is_glb(mesh) ? engine.work_of_scene(mesh, options) : engine.work_of(mesh, options);
 }
 
-/// Describes a mesh or a scene. To be called with a slot.
+/// Describes a mesh or a scene. Requires a slot.
 std::string description_of(const Engine& engine, const std::string& id, const std::string& mesh) {
   if (proto::gltf::is_glb(mesh)) return scene_description(id, mesh, engine.limits());
   return description(id, mesh.size(), Refinement(mesh, unrefined(), engine.limits()));
@@ -119,7 +119,7 @@ Response store_mesh(Engine& engine, Request& request) {
   engine.admission().refuse_when_full(request.client());
   const std::string mesh = request.read_body().bytes;
   if (type == scene_type && !proto::gltf::is_glb(mesh))
-    throw Problem(Code::mesh_not_gltf, "The body is no .glb file. Scenes are stored as .glb files alone.");
+    throw Problem(Code::mesh_not_gltf, "The body is not a .glb file. Only .glb scenes can be stored.");
   const std::string id = sha256(mesh);
   std::string described;
   {
@@ -143,7 +143,7 @@ Response stored_mesh(Engine& engine, Request& request) {
   if (!type)
     throw Problem(Code::not_acceptable, "Accept is " + proto::quote(accept) + ", but the mesh is " + own_type +
                                             " or application/octet-stream, and its description application/json.");
-  // By the type too: two representations never share a tag. The description depends on who makes it, the bytes do not.
+  // Two representations never share a tag. The description depends on the server's version, the bytes do not.
   const bool describes = type == json_type;
   const std::string tag = describes ? entity_tag(id, unrefined(), *type + " " PAPILIO_VERSION)
                                     : '"' + id.substr(0, 32) + (type == own_type ? "\"" : "-b\"");
@@ -185,7 +185,7 @@ Parameters read_parameters(Request& request) {
   return proto::parse_json(request.read_body().bytes);
 }
 
-/// Answers from the cache go on while the store is away.
+/// Returns whether a mesh is stored. While the store is unavailable, a cached result suffices.
 bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
   try {
     return engine.store().contains(id);
@@ -195,12 +195,12 @@ bool is_stored(Engine& engine, const std::string& id, const std::string& key) {
   }
 }
 
-/// Whether a stored mesh is answered as a scene, or a scene as a mesh.
+/// Returns whether a stored mesh is answered as a scene, or a scene as a mesh.
 bool changes_kind(Engine& engine, const std::string& id, const std::string& type) {
   return type == (engine.is_scene(id) ? draco_type : scene_type);
 }
 
-/// The refinement of a stored mesh or scene, ready to run. `type`: of the answer.
+/// Returns the refinement of a stored mesh or scene, ready to run. `type`: type of the answer.
 RunRefinement run_of_stored(Engine& engine, const std::string& id, const Parameters& parameters,
                             const std::string& type) {
   const bool changes = changes_kind(engine, id, type);
@@ -219,7 +219,7 @@ RunRefinement run_of_stored(Engine& engine, const std::string& id, const Paramet
 
 ResultCache::Answer find_or_make(Engine& engine, const Request& request, const std::string& id,
                                  const Parameters& parameters, const std::string& type) {
-  // The bytes of a kind are the same whatever their type is called.
+  // Equal kinds have equal bytes under any name of their type.
   const std::string key = entity_tag(id, parameters, changes_kind(engine, id, type) ? type : "");
   const auto make = [&](const std::function<bool()>& abandoned) {
     const auto slot = engine.enter(request, engine.work_of_stored(id, parameters.options), abandoned);

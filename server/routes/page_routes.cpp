@@ -13,8 +13,8 @@ using proto::Problem;
 
 namespace {
 
-/// The page runs its own scripts and Draco's decoder (WebAssembly, in a worker made from a blob), asks this server
-/// alone, and is in no other page's frame. Blobs and data: textures in .glb files.
+/// Policy of the page: it runs its own scripts and Draco's decoder (WebAssembly, in a worker made from a blob),
+/// connects to this server only, and cannot be framed. Textures in .glb files are blobs and data URIs.
 constexpr const char* content_security_policy =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "
     "connect-src 'self' blob: data:; img-src 'self' data: blob:; style-src 'self'; base-uri 'none'; "

@@ -3,15 +3,16 @@
 #include "server/engine.h"
 #include "server/http/http.h"
 
-// The viewer, and the meshes to try it with.
+// Routes of the viewer and of its sample meshes.
 
 namespace papilio::server {
 
-/// GET /: the page, asked for anew each time (ETag, 304). Throws `Problem` not_found where there is none.
+/// Answers GET / with the page, to be revalidated each time (ETag, 304). Throws `Problem` not_found without a page.
 [[nodiscard]] Response page_route(Engine& engine, Request& request);
-/// GET /assets/{name}: what the page consists of, under names that change with the content: to be kept for ever.
+/// Answers GET /assets/{name} with a file of the page. Names change with the content, so that caches may keep it
+/// forever.
 [[nodiscard]] Response asset_route(Engine& engine, Request& request);
-/// GET /v1/samples/{name}: a sample's Draco bytes.
+/// Answers GET /v1/samples/{name} with a sample's Draco bytes.
 [[nodiscard]] Response sample_route(Engine& engine, Request& request);
 
 }  // namespace papilio::server

@@ -9,16 +9,16 @@
 
 namespace papilio::server {
 
-/// GET /v1/info: version, limits, schemes, parameters, samples.
+/// Answers GET /v1/info: version, limits, schemes, parameters, samples.
 [[nodiscard]] Response info_route(Engine& engine, Request& request);
-/// GET /health: touches no lock of the work, so it answers whatever is going on.
+/// Answers GET /health. Takes no lock of the work, so that it always answers.
 [[nodiscard]] Response health_route(Engine& engine, Request& request);
-/// GET /ready: throws `Problem` not_ready while no further request would be let in.
+/// Answers GET /ready. Throws `Problem` not_ready while no further request would be admitted.
 [[nodiscard]] Response ready_route(Engine& engine, Request& request);
-/// GET /metrics: for Prometheus.
+/// Answers GET /metrics, for Prometheus.
 [[nodiscard]] Response metrics_route(Engine& engine, Request& request);
 
-/// What the operator has set, by the names of its settings: {"max_body_bytes": ..., ...}. For /v1/info and OpenAPI.
+/// Limit set by the operator, with the name of its setting, for /v1/info and OpenAPI.
 struct NamedLimit {
   std::string_view name;
   uint64_t value;

@@ -25,13 +25,13 @@ void add_quad(TriangleMesh& mesh, const Quad& q) {
   mesh.triangles.push_back({q[0], q[2], q[3]});
 }
 
-/// The four quadrangles that join two rings corner to corner. Both rings run counter-clockwise seen from beyond `to`.
+/// Adds the four quadrangles between two rings. Both rings run counter-clockwise seen from beyond `to`.
 void add_tube(TriangleMesh& mesh, const Quad& from, const Quad& to) {
   for (uint32_t k = 0; k < 4; ++k) add_quad(mesh, {from[k], from[(k + 1) % 4], to[(k + 1) % 4], to[k]});
 }
 
-/// A closed surface of revolution about z. The profile runs from the lower pole to the upper, both left out of
-/// `rings`, with the outside on its right. `is_hole(band, sector)` leaves out quadrangles; band i lies above ring i.
+/// Closed surface of revolution about z. The profile runs from the lower pole to the upper, both not in `rings`, with
+/// the outside on its right. is_hole(band, sector) omits quadrangles; band i lies above ring i.
 class Lathe {
  public:
   Lathe(TriangleMesh& mesh, uint32_t sectors, double first_pole, const std::vector<ProfilePoint>& rings,
@@ -40,7 +40,7 @@ class Lathe {
     first_ = static_cast<uint32_t>(mesh.positions.size());
     for (const ProfilePoint& ring : rings) {
       for (uint32_t sector = 0; sector < sectors; ++sector) {
-        // The middle of sector 0 looks along x.
+        // The middle of sector 0 faces along x.
         const auto [sine, cosine] = sine_and_cosine_of_turn(2 * (sector + sectors) - 1, 2 * sectors);
         add_vertex(mesh, {ring.radius * cosine, ring.radius * sine, ring.height});
       }
@@ -71,7 +71,7 @@ class Lathe {
   uint32_t sectors_, rings_, first_ = 0, first_pole_ = 0, last_pole_ = 0;
 };
 
-/// A closed tyre round z: `sectors` rings of `sides` corners each.
+/// Adds a closed tyre round z: `sectors` rings of `sides` corners each.
 void add_tyre(TriangleMesh& mesh, double radius, double tube, uint32_t sectors, uint32_t sides) {
   const auto first = static_cast<uint32_t>(mesh.positions.size());
   for (uint32_t sector = 0; sector < sectors; ++sector) {
@@ -88,8 +88,8 @@ void add_tyre(TriangleMesh& mesh, double radius, double tube, uint32_t sectors, 
       add_quad(mesh, {at(sector, side), at(sector + 1, side), at(sector + 1, side + 1), at(sector, side + 1)});
 }
 
-/// A handle in the plane y = 0: ten sections of four corners on half an ellipse round (x, 0, z), from the upper hole in
-/// the wall to the lower.
+/// Adds a handle in the plane y = 0: ten sections of four corners on half an ellipse round (x, 0, z), from the upper
+/// hole in the wall to the lower.
 void add_handle(TriangleMesh& mesh, const Quad& upper_hole, const Quad& lower_hole) {
   constexpr double x = 3.8;
   constexpr double z = 4.8;
@@ -109,11 +109,11 @@ void add_handle(TriangleMesh& mesh, const Quad& upper_hole, const Quad& lower_ho
     add_tube(mesh, previous, section);
     previous = section;
   }
-  // What was the handle's upper side arrives at the lower edge of the lower hole.
+  // The handle's upper side ends at the lower edge of the lower hole.
   add_tube(mesh, previous, {lower_hole[3], lower_hole[2], lower_hole[1], lower_hole[0]});
 }
 
-/// A box along a direction in the plane z = 0, between two distances from the axis.
+/// Adds a box along a direction in the plane z = 0, between two distances from the axis.
 void add_spoke(TriangleMesh& mesh, SineCosine direction, double from, double to, double half_width) {
   const Vec3d along{direction.cosine, direction.sine, 0};
   const Vec3d across{-along.y, along.x, 0};

@@ -2,18 +2,18 @@
 
 #include "papilio/mesh.h"
 
-// The server's own samples, made by program: a knot that is round once it is refined, and stand-ins for the models of
-// the paper's Table 1, which cannot be found, with the same counts and topology. Lengths in centimetres, z up. Closed,
-// wound counter-clockwise seen from outside, no two positions equal.
+// Generated samples of the server: a knot, and substitutes for the unavailable models of the paper's Table 1, with
+// equal counts and topology. Lengths are in centimetres, z is up. Surfaces are closed and counter-clockwise seen from
+// outside, without repeated positions.
 
 namespace papilio::server {
 
-/// A tube along a trefoil knot: 216 vertices, 432 faces, Euler characteristic 0.
+/// Returns a tube along a trefoil knot: 216 vertices, 432 faces, Euler characteristic 0.
 [[nodiscard]] TriangleMesh knot();
-/// A mug with a handle: 172 vertices, 344 faces, Euler characteristic 0.
+/// Returns a mug with a handle: 172 vertices, 344 faces, Euler characteristic 0.
 [[nodiscard]] TriangleMesh mug();
-/// A spoked wheel: tyre, hub and eight spokes, ten closed parts that reach into each other as the parts of such models
-/// do; the axle along z. 163 vertices, 290 faces, Euler characteristic 18.
+/// Returns a spoked wheel with its axle along z: tyre, hub and eight spokes, ten closed parts that intersect as in such
+/// models. 163 vertices, 290 faces, Euler characteristic 18.
 [[nodiscard]] TriangleMesh wheel();
 
 }  // namespace papilio::server

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// From z up, as the mug is, to y up, as most viewers have it.
+/// Rotates from z up, as in models.h, to y up, as in most viewers.
 TriangleMesh upright(TriangleMesh mesh) {
   for (Vec3f& p : mesh.positions) p = {p.x, p.z, -p.y};
   return mesh;

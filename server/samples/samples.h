@@ -11,24 +11,23 @@
 
 namespace papilio::server {
 
-/// A mesh that the server has for trying things out.
+/// Sample mesh of the server.
 struct Sample {
-  std::string name;  ///< 1 to 64 of [A-Za-z0-9._-]
+  std::string name;  ///< name: 1 to 64 of [A-Za-z0-9._-]
   uint64_t vertices = 0, faces = 0;
   std::shared_ptr<const std::string> draco;
 };
 
-/// All of them: two that are made by program (models.h), and the operator's own. Held in memory, never changed: threads
-/// may share one object.
+/// Generated samples (models.h) and the operator's own, in memory. Immutable and thread-safe.
 class Samples {
  public:
-  /// `folder`: its .drc files become samples under their names without .drc; empty: none. Throws std::runtime_error,
-  /// naming the file, where one is no mesh that this server would refine, or has a name that no sample can have.
+  /// Reads the .drc files of `folder` as samples under their names without .drc; empty: none. Throws
+  /// std::runtime_error, with the file, for a mesh that this server would refuse, or an invalid name.
   Samples(const std::string& folder, const proto::Limits& limits);
 
-  /// The generated ones first, then the others by their names.
+  /// Returns all samples: the generated ones first, then the others by name.
   [[nodiscard]] std::span<const Sample> all() const { return samples_; }
-  /// Null where there is none of this name.
+  /// Returns the sample of a name; null if there is none.
   [[nodiscard]] const Sample* find(std::string_view name) const;
 
  private:

@@ -26,9 +26,9 @@ using proto::Problem;
 namespace {
 
 constexpr std::chrono::minutes count_interval{1};
-constexpr int most_counts = 3;  ///< while meshes come and go; at the last they wait
+constexpr int most_counts = 3;  ///< upper bound of recounts while meshes change; changes wait for the last one
 
-/// The operator's log has the reason, the client only what concerns it.
+/// Logs the reason for the operator, and returns the problem for the client.
 Problem unavailable(const fs::path& path, const std::string& reason) {
   log_event("error", "store", {{"path", path.string()}, {"reason", reason}});
   return {Code::store_unavailable,
@@ -38,7 +38,7 @@ Problem unavailable(const fs::path& path, const std::string& reason) {
 
 Problem unavailable(const fs::path& path) { return unavailable(path, std::strerror(errno)); }
 
-/// Waits until the disk has the names in a folder.
+/// Waits until the names in a folder are on the disk.
 bool sync_folder(const fs::path& folder) {
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool is_synced = fd >= 0 && ::fsync(fd) == 0;
@@ -71,7 +71,7 @@ DirectoryStore::DirectoryStore(fs::path directory, uint64_t budget, std::chrono:
 
 void DirectoryStore::sweep_at_intervals(const std::stop_token& stop, std::chrono::milliseconds interval) {
   std::mutex mutex;
-  std::condition_variable_any stopping;  // nobody else notifies: the stop itself does
+  std::condition_variable_any stopping;  // notified only by the stop request
   std::unique_lock lock(mutex);
   while (!stopping.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
     try {
@@ -139,7 +139,7 @@ MeshStore::Bytes DirectoryStore::get(const std::string& id) {
     return nullptr;
   }
   if (sha256(*bytes) == id) return bytes;
-  // It stays: another server may be replacing it at this moment, and what it has put must not be removed.
+  // The file stays: another server may be replacing it now, and its mesh must not be removed.
   log_event("error", "store",
             {{"path", file.string()}, {"reason", "the content is not what the name says; send the mesh again"}});
   return nullptr;

@@ -12,15 +12,16 @@
 
 namespace papilio::server {
 
-/// Keeps each mesh in a file of its own, DIRECTORY/ab/abcd....drc. A file gets its name once it is written and synced,
-/// so that a mesh is there whole or not at all, whatever ends the process. Several servers may share the directory. A
-/// file whose content is not what its name says, or a folder in its place, is an absent mesh to `get`; `put` replaces
-/// it. Files of other names are left alone. A directory that cannot be read is store_unavailable, not an absence.
+/// Store of each mesh in a file, DIRECTORY/ab/abcd....drc. A file is named once it is written and synced, so that a
+/// mesh is stored completely or not at all, however the process ends. Several servers may share the directory.
+///
+/// A file whose content does not match its name, or a folder in its place, is an absent mesh to get(); put() replaces
+/// it. Files of other names are ignored. An unreadable directory is store_unavailable, not an absence.
 class DirectoryStore final : public MeshStore {
  public:
   static constexpr std::chrono::minutes default_sweep_interval{10};
 
-  /// Makes the directory if need be. Removes what interrupted writes have left, now and once an interval. Throws
+  /// Creates the directory if necessary. Removes files of interrupted writes, now and once per interval. Throws
   /// std::runtime_error.
   DirectoryStore(std::filesystem::path directory, uint64_t budget,
                  std::chrono::milliseconds sweep_interval = default_sweep_interval);
@@ -33,16 +34,16 @@ class DirectoryStore final : public MeshStore {
   [[nodiscard]] std::optional<Usage> usage() override;
 
  private:
-  /// The size of the file of a mesh; none where there is no file. Throws `Problem` where that cannot be told.
+  /// Returns the size of a mesh's file; nothing if there is none. Throws `Problem` if that is unknown.
   [[nodiscard]] static std::optional<uint64_t> size_of(const std::filesystem::path& file);
-  /// Throws std::filesystem::filesystem_error where the directory cannot be read.
+  /// Counts the files. Throws std::filesystem::filesystem_error if the directory cannot be read.
   void count_files();
-  /// False when there is no room, or the count is too old to know.
+  /// Reserves bytes. Returns false if there is no room, or the count is outdated.
   [[nodiscard]] bool reserve(uint64_t bytes);
-  /// Until a stop is requested.
+  /// Removes files of interrupted writes once per interval, until a stop is requested.
   void sweep_at_intervals(const std::stop_token& stop, std::chrono::milliseconds interval);
 
-  /// Room for a mesh while it is written, so that meshes written at once cannot pass the budget together. Throws
+  /// Reservation for a mesh while it is written, so that concurrent writes together cannot exceed the budget. Throws
   /// `Problem` store_full.
   class Room {
    public:
@@ -50,7 +51,7 @@ class DirectoryStore final : public MeshStore {
     ~Room();
     Room(const Room&) = delete;
     Room& operator=(const Room&) = delete;
-    /// It is the caller's from now on: how much it is.
+    /// Passes the reservation to the caller. Returns its bytes.
     [[nodiscard]] uint64_t give_up() { return std::exchange(bytes_, 0); }
 
    private:
@@ -59,20 +60,20 @@ class DirectoryStore final : public MeshStore {
   };
 
   void write(const std::filesystem::path& file, std::string_view bytes, Room& room);
-  /// Gives the written file its name and counts it; false with errno.
+  /// Names the written file and counts it. Returns false with errno.
   bool publish(NewFile& written, const std::filesystem::path& file, uint64_t bytes, Room& room);
 
   StoreFiles files_;
   NewFile::Until until_ = NewFile::Until::part;
   const uint64_t budget_;
   std::mutex mutex_;
-  /// Guarded by mutex_. Others may write into the directory too: it is counted anew once a minute, and before a
-  /// refusal.
+  /// Usage, guarded by mutex_. Other servers may write into the directory too: it is recounted once a minute, and
+  /// before a refusal.
   Usage usage_;
-  uint64_t changes_ = 0;        ///< guarded by mutex_: meshes put and removed so far, their files with them
-  uint64_t being_written_ = 0;  ///< guarded by mutex_
+  uint64_t changes_ = 0;        ///< number of meshes added and removed with their files, guarded by mutex_
+  uint64_t being_written_ = 0;  ///< reserved bytes, guarded by mutex_
   std::chrono::steady_clock::time_point counted_;
-  std::jthread sweeper_;  ///< last: it uses the others
+  std::jthread sweeper_;  ///< last member, as it uses the others
 };
 
 }  // namespace papilio::server

@@ -32,7 +32,7 @@ std::vector<std::string> host_addresses(const std::string& host, std::chrono::mi
   std::array<unsigned char, sizeof(in6_addr)> binary{};
   if (inet_pton(AF_INET, host.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, host.c_str(), binary.data()) == 1)
     return {host};
-  // The reason crosses as text: an exception that two threads hold is freed by whichever lets it go last.
+  // The reason is passed as text: an exception shared by two threads would be freed by the last of them.
   using Answer = std::variant<std::vector<std::string>, std::string>;
   std::packaged_task<Answer()> task([host, resolver = std::move(resolver)]() -> Answer {
     try {

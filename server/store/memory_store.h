@@ -5,7 +5,7 @@
 
 namespace papilio::server {
 
-/// Keeps meshes in memory; when the budget is used up, those used longest ago are forgotten.
+/// Store of meshes in memory. Least recently used meshes are evicted beyond the budget.
 class MemoryStore final : public MeshStore {
  public:
   explicit MemoryStore(uint64_t budget) : meshes_(budget) {}

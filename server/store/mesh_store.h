@@ -8,26 +8,26 @@
 
 namespace papilio::server {
 
-/// Where uploaded meshes are kept, each under the SHA-256 of its bytes. Any thread may use it. All of it throws
-/// `Problem`: store_unavailable when the store does not answer; `put` also store_full.
+/// Store of uploaded meshes, each under the SHA-256 of its bytes. Thread-safe. All functions throw `Problem`:
+/// store_unavailable if the store does not answer; put() also store_full.
 class MeshStore {
  public:
   using Bytes = std::shared_ptr<const std::string>;
 
   virtual ~MeshStore() = default;
-  /// Once this has returned the mesh is kept as well as the store can keep it. What is there already is verified, and
-  /// replaced when it is damaged. True when the mesh was not there, or was damaged.
+  /// Stores a mesh; on return, it is as durable as the store permits. Verifies a present mesh, and replaces it if
+  /// damaged. Returns true if the mesh was absent or damaged.
   virtual bool put(const std::string& id, std::string_view bytes) = 0;
-  /// Counts as using it.
+  /// Returns whether a mesh is present. Counts as a use.
   virtual bool contains(const std::string& id) = 0;
-  /// Null when there is none, or when it is damaged: the bytes have the SHA-256 that is asked for, always.
+  /// Returns the bytes of a mesh, whose SHA-256 is verified; null if it is absent or damaged.
   virtual Bytes get(const std::string& id) = 0;
-  /// True when it was there.
+  /// Removes a mesh. Returns whether it was present.
   virtual bool remove(const std::string& id) = 0;
-  /// "memory", "directory" or "redis".
+  /// Returns "memory", "directory" or "redis".
   [[nodiscard]] virtual std::string_view kind() const = 0;
 
-  /// What it holds, where it knows.
+  /// Contents of the store, if known.
   struct Usage {
     uint64_t meshes = 0, bytes = 0;
   };
@@ -39,16 +39,16 @@ class MeshStore {
   MeshStore& operator=(const MeshStore&) = default;
 };
 
-/// How a store is set up.
+/// Options of a store.
 struct StoreOptions {
-  /// "memory", "directory:PATH", or "redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE]", or "redis+unix:PATH".
+  /// Address: "memory", "directory:PATH", "redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE]" or "redis+unix:PATH".
   std::string address = "memory";
-  uint64_t bytes = 256u << 20;  ///< memory: what was used longest ago gives way; the others refuse more (store_full)
-  int seconds = 0;              ///< Redis: meshes not used for so long go; 0: never
+  uint64_t bytes = 256u << 20;  ///< budget; beyond it, memory evicts least recently used meshes, and others refuse
+  int seconds = 0;              ///< Redis: time after which unused meshes expire; 0: never
 };
 
-/// Throws std::runtime_error, in words for the operator, when the address cannot be understood or the directory not
-/// be used. A Redis that does not answer is no error: it may come later.
+/// Opens a store. Throws std::runtime_error, with a message for the operator, for an invalid address or an unusable
+/// directory. A Redis that does not answer is no error: it may start later.
 [[nodiscard]] std::unique_ptr<MeshStore> open_store(const StoreOptions& options);
 
 }  // namespace papilio::server

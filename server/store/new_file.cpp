@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view part_extension = ".part";
-constexpr std::chrono::minutes longest_write{10};  ///< earlier versions hold no lock while they write
+constexpr std::chrono::minutes longest_write{10};  ///< bound of a write without a lock, as in earlier versions
 constexpr mode_t mode = 0640;
 
-/// "1234-5678.part"
+/// Returns a name such as "1234-5678.part" in a folder.
 fs::path part_in(const fs::path& folder) {
   std::random_device random;
   return folder / (std::to_string(::getpid()) + "-" + std::to_string(random()) + std::string(part_extension));
@@ -32,7 +32,7 @@ bool is_part(const fs::path& file) {
          stem.find_first_not_of("0123456789-") == std::string::npos;
 }
 
-/// The name under which a file without a name can be reached.
+/// Returns the path of an unnamed file.
 std::string descriptor_path(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
 
 }  // namespace
@@ -46,7 +46,7 @@ NewFile::NewFile(fs::path folder, Until until) : folder_(std::move(folder)) {
   fd_ = ::open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
   if (fd_ < 0) return;
   part_ = part;
-  (void)::flock(fd_, LOCK_EX | LOCK_NB);  // where there are no locks, `longest_write` alone decides
+  (void)::flock(fd_, LOCK_EX | LOCK_NB);  // without locks, only `longest_write` decides
 }
 
 NewFile::~NewFile() {

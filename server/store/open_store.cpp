@@ -14,7 +14,7 @@ std::unique_ptr<MeshStore> open_store(const StoreOptions& options) {
     return std::make_unique<DirectoryStore>(address.substr(directory.size()), options.bytes);
   if (const auto redis = parse_redis_address(address))
     return std::make_unique<RedisStore>(*redis, options.bytes, options.seconds);
-  // The address is not repeated: it may hold a password.
+  // The address is not repeated: it may contain a password.
   throw std::runtime_error(
       "--store (PAPILIO_STORE) takes memory, directory:PATH, redis://[USER:PASSWORD@]HOST[:PORT][/DATABASE] (USER and "
       "PASSWORD percent-encoded) or redis+unix:PATH");

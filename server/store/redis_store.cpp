@@ -22,8 +22,8 @@ namespace {
 
 constexpr timeval longest_wait{2, 0};
 constexpr std::chrono::seconds away_interval{1};
-constexpr size_t most_addresses = 2;             ///< of a name
-constexpr std::chrono::seconds longest_try{12};  ///< to look up, connect (twice), authenticate, select and ask
+constexpr size_t most_addresses = 2;             ///< upper bound of the addresses tried for a name
+constexpr std::chrono::seconds longest_try{12};  ///< time to look up, connect (twice), authenticate, select and ask
 
 Problem no_answer() {
   return {Code::store_unavailable,
@@ -31,7 +31,7 @@ Problem no_answer() {
           "POST /v1/refine works without it."};
 }
 
-/// The operator's log has the reason.
+/// Logs the reason for the operator, and returns the problem for the client.
 Problem redis_unavailable(std::string_view reason) {
   log_event("error", "store", {{"kind", "redis"}, {"reason", std::string(reason)}});
   return no_answer();
@@ -48,13 +48,14 @@ bool has_error(const redisReply& reply, std::string_view kind) {
   return reply.type == REDIS_REPLY_ERROR && std::string_view(reply.str, reply.len).starts_with(kind);
 }
 
-/// Whether the reply is one to the question, be it a refusal: errors of the key (WRONGTYPE) and of its value (OOM) are.
-/// Every other error is about the server or the connection (READONLY, LOADING, NOAUTH, MOVED, too many clients ...).
+/// Returns whether the reply answers the command, perhaps by a refusal: errors of the key (WRONGTYPE) and of its value
+/// (OOM) do. All other errors concern the server or the connection (READONLY, LOADING, NOAUTH, MOVED, too many
+/// clients).
 bool is_answer(const redisReply& reply) {
   return reply.type != REDIS_REPLY_ERROR || has_error(reply, "WRONGTYPE") || has_error(reply, "OOM");
 }
 
-/// Whether the server answers no question of a mesh at present, rather than refuses this one.
+/// Returns whether the server currently refuses all commands, not only this one.
 bool answers_nothing(const redisReply& reply) {
   for (const std::string_view kind : {"LOADING", "NOAUTH", "MASTERDOWN", "CLUSTERDOWN", "BUSY"})
     if (has_error(reply, kind)) return true;
@@ -119,7 +120,7 @@ bool RedisStore::put(const std::string& id, std::string_view bytes) {
                   "The store of " + std::to_string(budget_) +
                       " bytes has no room for this mesh. Delete meshes, or ask the operator for room.");
   const std::string seconds = std::to_string(seconds_);
-  std::vector<std::string_view> words{"SET", key, bytes};  // replaces what is damaged, of another type too
+  std::vector<std::string_view> words{"SET", key, bytes};  // replaces a damaged value, also of another type
   if (seconds_ > 0) words.insert(words.end(), {"EX", seconds});
   const Reply reply = ask(words);
   if (has_error(*reply, "OOM"))
@@ -154,7 +155,7 @@ MeshStore::Bytes RedisStore::get(const std::string& id) {
   } else if (!has_error(*reply, "WRONGTYPE")) {
     throw redis_unavailable(text_of(*reply));
   }
-  // It stays: another server may be replacing it at this moment, and what it has put must not be removed.
+  // The value stays: another server may be replacing it now, and its mesh must not be removed.
   log_event("error", "store", {{"key", key}, {"reason", "the content is not what the key says; send the mesh again"}});
   return nullptr;
 }
@@ -180,7 +181,7 @@ Problem RedisStore::away(std::string_view reason) {
   const std::lock_guard lock(mutex_);
   is_away_ = true;
   away_until_ = std::chrono::steady_clock::now() + away_interval;
-  idle_.clear();  // lost too
+  idle_.clear();  // they are lost too
   return redis_unavailable(reason);
 }
 
@@ -228,7 +229,8 @@ RedisStore::Reply RedisStore::ask_on(redisContext& context, const std::vector<st
       static_cast<redisReply*>(redisCommandArgv(&context, static_cast<int>(words.size()), texts.data(), sizes.data())));
 }
 
-/// Null when there is none. Throws while Redis is known to be away, or another is finding out.
+// Returns an idle connection; null if there is none. Throws while Redis is known to be unavailable, or another command
+// is checking that.
 RedisStore::Context RedisStore::take_idle() {
   const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
@@ -246,7 +248,7 @@ RedisStore::Reply RedisStore::ask(const std::vector<std::string_view>& words) {
   if (context != nullptr) {
     errno = 0;
     reply = ask_on(*context, words);
-    // Redis closes idle connections, and does so when it is restarted; one that keeps silent is asked only once.
+    // Redis closes idle connections, also on a restart. A silent connection gets the command only once.
     const bool is_closed = reply == nullptr && errno != EAGAIN && errno != EWOULDBLOCK;
     if (is_closed || (reply != nullptr && !is_answer(*reply))) {
       drop_idle();  // they lead to the same server

@@ -10,10 +10,9 @@
 
 namespace papilio::server {
 
-/// The files below the directory of a store: DIRECTORY/ab/abcd....drc, and the part files of writers. What else lies
-/// there belongs to others and is left alone. A folder that cannot be read is named in a warning, once, and skipped.
-/// Any thread may use it. Its functions throw std::filesystem::filesystem_error where the directory itself cannot be
-/// read.
+/// Files below the directory of a store: DIRECTORY/ab/abcd....drc, and the part files of writers. Other files are
+/// ignored. An unreadable folder is skipped, with one warning. Thread-safe. Functions throw
+/// std::filesystem::filesystem_error if the directory itself cannot be read.
 class StoreFiles {
  public:
   explicit StoreFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
@@ -21,21 +20,21 @@ class StoreFiles {
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   [[nodiscard]] std::filesystem::path file_of(const std::string& id) const;
 
-  /// How many meshes there are, and their bytes.
+  /// Returns the number of meshes, and their bytes.
   [[nodiscard]] MeshStore::Usage count();
-  /// Removes the part files that interrupted writers have left.
+  /// Removes the part files of interrupted writers.
   void remove_abandoned();
 
  private:
   using Visit = std::function<void(const std::filesystem::directory_entry& file)>;
-  /// Visits what lies in the directory and in its folders.
+  /// Visits the files in the directory and in its folders.
   void visit(const Visit& visit_file);
   void visit_folder(const std::filesystem::path& folder, const Visit& visit_file);
   void warn_once(const std::filesystem::path& folder, const std::string& reason);
 
   const std::filesystem::path directory_;
   std::mutex mutex_;
-  std::set<std::filesystem::path> warned_;  ///< guarded by mutex_
+  std::set<std::filesystem::path> warned_;  ///< folders already warned of, guarded by mutex_
 };
 
 }  // namespace papilio::server

@@ -30,13 +30,13 @@ stays_within() {
 
 # HTTP
 
-@test "gzip: a small body that would unpack to a large one is not unpacked" {
+@test "a small gzip body that would expand to a large one is not expanded" {
   head -c 100000000 /dev/zero | gzip -1 >"$BATS_TEST_TMPDIR/bomb"
   stays_within 50 post "$BATS_TEST_TMPDIR/bomb" -H 'Content-Encoding: gzip' "$url/v1/refine"
   expect_problem 415 unsupported_encoding
 }
 
-@test "Content-Length too large: refused while none of the body has come" {
+@test "a Content-Length above the limit is refused before the body arrives" {
   printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 99999999999\r\n\r\n' \
     >"$BATS_TEST_TMPDIR/head"
   exchange "$(port)" <"$BATS_TEST_TMPDIR/head" >"$BATS_TEST_TMPDIR/answer"
@@ -44,7 +44,7 @@ stays_within() {
   grep -q '"code": "body_too_large"' "$BATS_TEST_TMPDIR/answer"
 }
 
-@test "chunked past the limit: refused while it comes, and not kept" {
+@test "a chunked body above the limit is refused while it arrives, and not kept" {
   stop_server
   start_server --max-body-bytes 1000000
   head -c 60000000 /dev/zero >"$BATS_TEST_TMPDIR/large"
@@ -52,7 +52,7 @@ stays_within() {
   expect_problem 413 body_too_large
 }
 
-@test "REMOTE_ADDR and its like: who claims another address does not reach the log with it" {
+@test "REMOTE_ADDR and similar headers: a forged address does not reach the log" {
   request -H 'REMOTE_ADDR: 6.6.6.6' -H 'Remote-Addr: 6.6.6.6' -H 'X-Forwarded-For: 6.6.6.6' -H 'X-Real-IP: 6.6.6.6' \
     -H 'Forwarded: for=6.6.6.6' -H 'X-Request-Id: forger' "$url/v1/info"
   [ "$status" = 200 ]
@@ -61,7 +61,7 @@ stays_within() {
   run ! grep -F 6.6.6.6 "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "idle connections, three times as many as there are threads, leave room for others" {
+@test "idle connections, three times as many as threads, do not block others" {
   stop_server
   start_server --connections 4 --idle-seconds 3600
   local fds=() fd line
@@ -78,7 +78,7 @@ stays_within() {
   for fd in "${fds[@]}"; do exec {fd}>&-; done
 }
 
-@test "SIGTERM during a stream: it arrives whole" {
+@test "SIGTERM during a stream: the stream is completed" {
   stop_server
   start_server --drain-seconds 3600
   mkfifo "$BATS_TEST_TMPDIR/stream"
@@ -97,13 +97,13 @@ stays_within() {
   tail -c 4 "$BATS_TEST_TMPDIR/whole" | cmp - <(printf -- '--\r\n')
 }
 
-@test "200 clients that connect at once are all answered" {
+@test "200 simultaneous clients are all answered" {
   curl -sS --noproxy '*' --parallel --parallel-immediate --parallel-max 200 -o "$BATS_TEST_TMPDIR/#1" \
     -w '%{http_code} %{num_connects}\n' -H 'Connection: close' "$url/v1/info?[1-200]" >"$BATS_TEST_TMPDIR/codes"
   [ "$(grep -c '^200 1$' "$BATS_TEST_TMPDIR/codes")" = 200 ]
 }
 
-@test "curl's default form type, above the size at which libraries begin to parse it: refused in words" {
+@test "curl's default form type, above the size at which libraries begin to parse it, is refused with a message" {
   head -c 100000 /dev/zero >"$BATS_TEST_TMPDIR/form"
   request --data-binary @"$BATS_TEST_TMPDIR/form" "$url/v1/refine"
   expect_problem 415 unsupported_media_type
@@ -116,7 +116,7 @@ post_form() {
   request -H "Content-Type: multipart/form-data; $1" --data-binary @"$BATS_TEST_TMPDIR/form" "$url/v1/refine"
 }
 
-@test "multipart in odd but lawful shapes" {
+@test "multipart bodies in unusual but valid forms are accepted" {
   post "$coarse" "$url/v1/refine?levels=1"
   mv "$body" "$BATS_TEST_TMPDIR/plain"
   local mesh='Content-Disposition: form-data; name="mesh"' params='\r\nContent-Disposition: form-data; name=params\r\n\r\n{"levels": 1}\r\n'
@@ -140,7 +140,7 @@ post_form() {
   done
 }
 
-@test "multipart that could be read in two ways, or has no end, is refused" {
+@test "ambiguous and unterminated multipart bodies are refused" {
   local mesh='Content-Disposition: form-data; name="mesh"' form
   for form in "--b\r\n$mesh\r\n\r\nMESH" "--b\r\n$mesh\r\n\r\nMESH\r\n--b" "--bad\r\n$mesh\r\n\r\nMESH\r\n--bad--" \
     "--b\n$mesh\n\nMESH\n--b--\n" "--b\r\nContent-Type: x/y\r\n\r\nMESH\r\n--b--" "--b--\r\nMESH"; do
@@ -159,7 +159,7 @@ stream() {
   python3 "$BATS_TEST_DIRNAME/../support/draco_bytes.py" "$1" >"$stream"
 }
 
-@test "streams built byte by byte are read when they are good" {
+@test "valid streams built byte by byte are read" {
   stream good
   post "$stream" "$url/v1/refine?levels=1"
   [ "$status" = 200 ]
@@ -169,7 +169,7 @@ stream() {
   [ "$status" = 200 ]
 }
 
-@test "memory bombs: streams of 70 bytes that declare 100 million faces, old bitstreams and new" {
+@test "memory bombs: 70-byte streams that declare 100 million faces are refused, in old and new bitstreams" {
   for version in 1.0 1.1 1.2 1.3 1.4 1.5 2.0 2.1; do
     stream "bomb_$version"
     stays_within 20 post "$stream" "$url/v1/refine"
@@ -188,7 +188,7 @@ stream() {
   done
 }
 
-@test "memory bombs: what the limits allow costs no more than a mesh of that size" {
+@test "memory bombs: a stream within the limits needs no more memory than a mesh of its size" {
   for kind in edgebreaker sequential; do
     stream "limit_$kind"
     stays_within 150 post "$stream" "$url/v1/refine"
@@ -196,14 +196,14 @@ stream() {
   done
 }
 
-@test "a decode that succeeds with a face's index out of range" {
+@test "a stream that decodes to a face index out of range is refused" {
   stream index_out_of_range
   post "$stream" "$url/v1/refine"
   expect_problem 422 mesh_unusable
   [[ $(field detail) == *'Face 1 '* ]]
 }
 
-@test "POSITION missing, of four or two components, of integers" {
+@test "a missing POSITION, or one of two, four or integer components, is refused" {
   for name in no_position four_components two_components integers; do
     stream "$name"
     post "$stream" "$url/v1/refine"
@@ -212,7 +212,7 @@ stream() {
   done
 }
 
-@test "coordinates that are NaN or infinite" {
+@test "NaN and infinite coordinates are refused" {
   for name in nan infinity; do
     stream "$name"
     post "$stream" "$url/v1/refine"
@@ -221,7 +221,7 @@ stream() {
   done
 }
 
-@test "isolated points are left out, and said to have been" {
+@test "isolated points are dropped and counted" {
   stream isolated_points
   post "$stream" "$url/v1/refine?levels=1"
   [ "$status" = 200 ]
@@ -229,7 +229,7 @@ stream() {
   [[ $(header Papilio-Found) == *isolated_points=2* ]]
 }
 
-@test "metadata: nested 100,000 deep, and counts of four milliards of entries, blocks and bytes" {
+@test "metadata nested 100,000 deep, or with counts of four billion entries, blocks or bytes, is refused" {
   stream metadata_deep
   stays_within 20 post "$stream" "$url/v1/refine"
   expect_problem 422 mesh_unsupported
@@ -240,7 +240,7 @@ stream() {
   done
 }
 
-@test "cut short at every byte" {
+@test "streams truncated at every byte are refused" {
   stream good
   local size
   size=$(stat -c %s "$stream")

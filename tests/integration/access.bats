@@ -37,7 +37,7 @@ GET /ready open
 END
 }
 
-@test "each endpoint needs what the table says" {
+@test "each endpoint requires a key as in the table" {
   local method path needs count=0
   while read -r method path needs; do
     send=(-X "$method")
@@ -58,7 +58,7 @@ END
   [ "$(field 'paths | map(length) | add')" = $((count - 1)) ]
 }
 
-@test "refusals say how to show a key, and keep their own counsel" {
+@test "refusals state how to send a key, and reveal nothing else" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine"
   expect_problem 401 unauthorized
   [[ $(header WWW-Authenticate) == Bearer* ]]
@@ -70,16 +70,16 @@ END
   ! grep -qE '(viewer|operator|nobody)-key' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "the command line shows its key, and says when it needs one" {
+@test "the command line sends its key, and reports a missing one" {
   run "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --server "$url" --levels 1
   [ "$status" = 1 ]
-  [[ $output == *"A key is needed"* ]]
+  [[ $output == *"An access key is required"* ]]
   PAPILIO_KEY=viewer-key-0123456789 "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --server "$url" --levels 1
   "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/here.drc" --levels 1
   cmp "$BATS_TEST_TMPDIR/fine.drc" "$BATS_TEST_TMPDIR/here.drc"
 }
 
-@test "with keys, only the client itself may keep what is answered" {
+@test "with keys, answers may be cached only by the client" {
   as viewer -H "$draco" --data-binary @"$coarse" "$url/v1/meshes"
   as viewer "$url/v1/meshes/$(coarse_id)/refined?levels=1"
   [ "$status" = 200 ]
@@ -92,7 +92,7 @@ END
   eventually grep -q 'id=who .*client=viewer' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "SIGHUP reads the keys again; a damaged file changes nothing" {
+@test "SIGHUP reloads the keys; a damaged file changes nothing" {
   cp "$keys" "$BATS_TEST_TMPDIR/before"
   echo 'late late-key-0123456789' >>"$keys"
   sed -i '/^viewer/d' "$keys"
@@ -126,7 +126,7 @@ END
   [ "$status" != 401 ]
 }
 
-@test "keys that cannot be read are refused at the start, by file and line" {
+@test "unreadable keys are refused at start-up, by file and line" {
   run "$server" --port 0 --keys "$BATS_TEST_TMPDIR/none"
   [ "$status" = 1 ]
   [[ $output == *"$BATS_TEST_TMPDIR/none"* ]]
@@ -136,7 +136,7 @@ END
   [[ $output == *"bad:2:"* ]]
 }
 
-@test "beyond loopback only with keys, or on purpose" {
+@test "other addresses than loopback require keys or an explicit option" {
   run "$server" --port 0 --host 0.0.0.0
   [ "$status" = 2 ]
   [[ $output == *--keys*--allow-open* ]]
@@ -151,7 +151,7 @@ END
   done
 }
 
-@test "pages of allowed origins may read the answers and ask before they send" {
+@test "pages of allowed origins may read answers and send preflight requests" {
   request -H 'Origin: https://b.example:8443' "$url/v1/info"
   [ "$(header Access-Control-Allow-Origin)" = https://b.example:8443 ]
   [[ $(header Access-Control-Expose-Headers) == *ETag*Papilio-Faces* ]]
@@ -170,7 +170,7 @@ END
   done
 }
 
-@test "without a list no origin is allowed; what is no origin is refused at the start" {
+@test "without a list no origin is allowed; an invalid origin is refused at start-up" {
   "$server" --port 0 >"$BATS_TEST_TMPDIR/out" 2>/dev/null 3>&- &
   for _ in {1..50}; do [[ ! -s $BATS_TEST_TMPDIR/out ]] || break; sleep 0.1; done
   request -H 'Origin: https://a.example' "$(sed 's/listening on //' "$BATS_TEST_TMPDIR/out")/v1/info"

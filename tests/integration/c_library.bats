@@ -10,7 +10,7 @@ setup_file() {
 
 setup() { skip_if_sanitized; } # neither Python nor a plain C program is built with them
 
-@test "a C program is compiled with the installed header and library, and runs" {
+@test "a C program compiles with the installed header and library, and runs" {
   cd "$BATS_TEST_TMPDIR"
   cat >use.c <<'END'
 #include <papilio.h>
@@ -32,11 +32,11 @@ END
   [ "$(./use)" = "$("$PREFIX/bin/papilio" --version | grep -o '[0-9.]*$') 256" ]
 }
 
-@test "Python binds it: results, levels, cancellation and faults with their text" {
+@test "Python bindings return results, levels, cancellation and errors with their text" {
   python3 "$BATS_TEST_DIRNAME/../support/c_library.py" "$PREFIX/lib/libpapilio.so"
 }
 
-@test "it exports its functions and nothing else, and needs neither server nor Draco" {
+@test "the library exports only its functions, and requires neither server nor Draco" {
   names=$(nm -D --defined-only "$PREFIX/lib/libpapilio.so" | awk '{ print $3 }' | sed 's/@.*//' | sort | xargs)
   declared=$(grep -oE '\bpapilio_[a-z_]+\(' "$PREFIX/include/papilio.h" | tr -d '(' | sort -u | xargs)
   [ "$names" = "$declared" ]

@@ -11,7 +11,7 @@ teardown() { [[ -z ${stub_pid:-} ]] || kill "$stub_pid"; }
 # nan_mesh: an OBJ file with a coordinate that is no number.
 nan_mesh() { printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n'; }
 
-@test "here and there give the same bytes, from every kind of file to every kind" {
+@test "local and remote results have the same bytes, from each input format to each output format" {
   for kind in obj ply off stl drc; do "$papilio" convert "$coarse" "in.$kind"; done
   for kind in obj ply off stl drc; do
     for flags in '--levels 2' '--levels 2 --flatness 0.8,0.9' '--levels 3 --view.eye 0,5,30 --output.normals true'; do
@@ -28,7 +28,7 @@ nan_mesh() { printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n'; }
   done
 }
 
-@test "texture coordinates and normals go all the way, here and there" {
+@test "texture coordinates and normals are kept, locally and remotely" {
   cat >square.obj <<'END'
 v 0 0 0
 v 1 0 0
@@ -67,7 +67,7 @@ END
   done
 }
 
-@test "a target that the levels do not reach is a warning, here and there" {
+@test "a target out of reach of the levels is a warning, locally and remotely" {
   for where in '' "--server $url"; do
     # shellcheck disable=SC2086
     "$papilio" refine "$coarse" -o fine.drc --tolerance 0.0001 --levels 1 $where 2>warnings
@@ -78,13 +78,13 @@ END
   done
 }
 
-@test "the curl answer is the command line's" {
+@test "curl receives the bytes of the command line" {
   "$papilio" refine "$coarse" -o here.drc --levels 2 --flatness 0.8,0.9
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"
   cmp here.drc "$body"
 }
 
-@test "results go to standard output only when asked" {
+@test "results go to standard output only on request" {
   "$papilio" refine "$coarse" -o - --levels 1 2>messages >out.drc
   [ "$(decoded_faces out.drc)" = 2400 ]
   "$papilio" refine "$coarse" -o file.drc --levels 1 2>messages >out
@@ -94,7 +94,7 @@ END
   [ "$("$papilio" refine "$coarse" -o file.drc --levels 1 --json | jq .faces)" = 2400 ]
 }
 
-@test "a folder: every mesh, names kept, failures named, the rest done" {
+@test "a folder has all its meshes refined under their names, and failures are reported by name" {
   mkdir -p models/deep
   "$papilio" convert "$coarse" models/a.obj
   "$papilio" convert "$coarse" models/deep/b.ply
@@ -122,14 +122,14 @@ END
   [[ $output == *'would both become'* ]]
 }
 
-@test "info says what is in a mesh" {
+@test "info describes a mesh" {
   run "$papilio" info "$PAPILIO_MESHES/bunny600.obj"
   [ "$status" = 0 ]
   [[ $output == *'euler_characteristic    2'* ]]
   [ "$("$papilio" info --json "$coarse" | jq -c '[.vertices, .faces, .closed]')" = '[302,600,true]' ]
 }
 
-@test "convert takes its output by place or by name" {
+@test "convert takes its output by position or by option" {
   "$papilio" convert "$coarse" place.ply
   "$papilio" convert "$coarse" -o name.ply
   cmp place.ply name.ply
@@ -138,14 +138,14 @@ END
   [ ! -e one.ply ] && [ ! -e other.ply ]
 }
 
-@test "convert --exact keeps positions to the bit" {
+@test "convert --exact keeps positions bit-identical" {
   "$papilio" convert --exact "$PAPILIO_MESHES/bunny600.obj" exact.drc
   "$papilio" convert exact.drc back.obj
   "$papilio" convert "$PAPILIO_MESHES/bunny600.obj" once.obj
   cmp <(grep '^v ' back.obj | sort) <(grep '^v ' once.obj | sort)
 }
 
-@test "smoothing groups of OBJ stay sharp, here and there, and come back" {
+@test "smoothing groups of OBJ stay sharp and are written again, locally and remotely" {
   # A pyramid of five faces over a square: a smooth mantle in group 1, a floor that is off.
   pyramid() { printf 'v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 0.5\n%bf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n%bf 4 3 2 1\n' "$@"; }
   pyramid 's 1\n' 's off\n' >groups.obj
@@ -166,7 +166,7 @@ END
   [ "$("$papilio" info --json fine.obj | jq '.marked_creases > 15')" = true ]
 }
 
-@test "concave polygons of a file are cut inside, and nothing folds" {
+@test "concave polygons are triangulated inside, without folds" {
   cat >plate.obj <<'END'
 v 0 0 0
 v 4 0 0
@@ -196,7 +196,7 @@ END
   "$papilio" compare --json "$coarse" fine.drc | jq -e '.hausdorff > .rms and .rms > 0 and .rms < 0.05 * .diagonal'
 }
 
-@test "failures: status 1 or 2, words, and no partial file" {
+@test "failures have status 1 or 2, a message, and no partial file" {
   run "$papilio" refine missing.obj -o out.drc
   [ "$status" = 1 ]
   [[ $output == *missing.obj* ]]
@@ -239,7 +239,7 @@ END
   [ "$status" = 2 ]
 }
 
-@test "whatever a server answers, the output is a whole mesh or stays as it was" {
+@test "any answer of a server leaves a complete mesh, or the previous output" {
   python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >port 3>&- &
   stub_pid=$!
   eventually test -s port
@@ -271,7 +271,7 @@ END
   cmp out.drc "$coarse"
 }
 
-@test "flags take hyphens, underscores and dots alike; a misspelt one is answered with the one meant" {
+@test "flags may have hyphens, underscores or dots; a misspelt flag is answered with a suggestion" {
   "$papilio" refine "$coarse" -o a.drc --crease_angle 30 --view.edge_pixels=2 --view.eye=0,0,5
   "$papilio" refine "$coarse" -o b.drc --crease-angle 30 --view.edge-pixels=2 --view-eye 0,0,5
   cmp a.drc b.drc
@@ -293,7 +293,7 @@ END
   [ ! -e c.drc ]
 }
 
-@test "without -o the result lies beside the input, and replaces nothing" {
+@test "without -o the result is written beside the input, and replaces no file" {
   mkdir deep
   "$papilio" convert "$coarse" deep/in.OBJ
   "$papilio" refine deep/in.OBJ --levels 1
@@ -311,7 +311,7 @@ END
   [[ $status == 2 && $output == *'leave --to away'* ]]
 }
 
-@test "- is standard input, whose format is seen, and standard output" {
+@test "- is standard input, with its format detected, and standard output" {
   "$papilio" refine "$coarse" -o fine.drc --levels 1
   for kind in obj ply off stl drc; do
     "$papilio" convert "$coarse" in.$kind
@@ -334,7 +334,7 @@ END
   [[ $status == 2 && $output == *'standard output is a terminal'* ]]
 }
 
-@test "what is said against a mesh names its file, and once" {
+@test "errors of a mesh name its file, once" {
   nan_mesh >nan.obj
   : >empty.drc
   echo hello >hello.drc
@@ -358,7 +358,7 @@ END
   done
 }
 
-@test "a folder run says what it skipped" {
+@test "a folder run lists skipped files" {
   mkdir models
   "$papilio" convert "$coarse" models/a.obj
   touch models/b.mtl
@@ -374,7 +374,7 @@ END
   [[ $status == 1 && $output == *'b\x1b[2J.off: '* && $output != *$'\e'* ]]
 }
 
-@test "README's curl lines work when they are pasted" {
+@test "README's curl lines work as written" {
   local line count=0
   "$PAPILIO_BUILD/coarsen" "$PAPILIO_MESHES/cgal/bunny00.off" bunny.obj 600 # as the demo makes it
   "$papilio" convert bunny.obj bunny.drc
@@ -393,14 +393,14 @@ END
   [ "$(decoded_faces view.drc)" -gt 600 ]
 }
 
-@test "README has the parameter table that the program prints" {
+@test "README has the parameter table of the program" {
   readme=$BATS_TEST_DIRNAME/../../README.md
   "$papilio" parameters >table
   sed -n '/^| parameter |/,/^$/p' "$readme" | sed '/^$/d' >found
   diff found table
 }
 
-@test "health: a server's state as an exit status" {
+@test "health returns a server's state as an exit status" {
   run "$papilio" health --server "$url"
   [ "$status" = 0 ]
   [ "$output" = alive ]

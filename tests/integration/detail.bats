@@ -22,7 +22,7 @@ attributes() { "$papilio" info --json "$1" | jq -c '.meshes[0].attributes'; }
 is_within() { jq -ne "$1 <= $2" >/dev/null || { echo "$1 > $2"; return 1; }; }
 report() { jq -r "$1" report.json; }
 
-@test "what is unpacked has the distance to the original that was stated, at every level" {
+@test "the surface of every level has the stated distance from the original" {
   [ "$(report .format)" = packed ]
   is_within "$(report '.levels[-1].rms')" 0.003
   levels=$(report '.levels | length')
@@ -42,7 +42,7 @@ report() { jq -r "$1" report.json; }
   is_within "$(report .bytes)" "$(report .plain.bytes)"
 }
 
-@test "a model is unpacked to every kind of file, the same surface in each" {
+@test "a model unpacks to each output format with the same surface" {
   "$papilio" unpack model.glb -o out.obj
   for kind in drc ply off stl glb gltf; do
     "$papilio" unpack model.glb -o "out.$kind"
@@ -62,7 +62,7 @@ report() { jq -r "$1" report.json; }
 ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahedron.obj" -o ball.obj --levels 4; }
 
 # bats test_tags=many_encodings
-@test "packing is deterministic, from each kind of file" {
+@test "packing is deterministic, from each input format" {
   ball
   "$papilio" pack - -o - --rms 0.005 --no-simplify <ball.obj >ball.glb
   for kind in drc ply stl; do
@@ -74,7 +74,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp ball.glb ply.glb
 }
 
-@test "the report on a terminal's lines has base, levels, distances and the ratio" {
+@test "the report has base, levels, distances and the ratio" {
   ball
   run --separate-stderr "$papilio" pack ball.obj -o again.glb --rms 0.005 --no-simplify
   [ "$status" = 0 ]
@@ -82,7 +82,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [[ $output == *"base "*" faces, "*" bytes: RMS "*" %, largest "*"level 1 "*"plain Draco at the same distance"*"times as many"* ]]
 }
 
-@test "a simplified mesh that is smaller is the file, unless levels are wanted" {
+@test "a simplified mesh that is smaller replaces the model, unless levels are requested" {
   ball
   "$papilio" refine ball.obj -o fine_ball.obj --levels 1 >/dev/null
   run --separate-stderr "$papilio" pack fine_ball.obj -o simple.glb --rms 0.005
@@ -96,14 +96,14 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   (($(stat -c %s simple.glb) < $(stat -c %s packed.glb)))
 }
 
-@test "a packed model is described" {
+@test "info describes a packed model" {
   "$papilio" info --json model.glb >info.json
   [ "$(jq -c '.detail.levels' info.json)" = "$(report '.levels' | jq -c .)" ]
   [ "$(jq .faces info.json)" = "$(report .base.faces)" ]
   [[ $("$papilio" info model.glb) == *"detail.levels.0.rms"* ]]
 }
 
-@test "a prefix is a coarser model, if that is allowed" {
+@test "a prefix is a coarser model, if prefixes are allowed" {
   size=$(stat -c %s model.glb)
   last=$(report '.levels[-1].bytes')
   head -c $((size - last / 2)) model.glb >cut.glb
@@ -118,7 +118,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp out.obj coarser.obj
 }
 
-@test "levels in pieces are the same surface, and a prefix has the pieces that are whole" {
+@test "levels in pieces have the same surface, and a prefix has its complete pieces" {
   "$papilio" pack "$fine" -o pieces.glb --rms 0.003 --no-simplify --piece-bytes 64 --json >pieces.json
   "$papilio" unpack pieces.glb -o pieces.obj
   "$papilio" unpack model.glb -o whole.obj
@@ -133,7 +133,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   ! cmp cut-pieces.obj whole.obj
 }
 
-@test "refine takes the levels of a packed model, to every kind of file" {
+@test "refine accepts levels of a packed model, for each output format" {
   levels=$(report '.levels | length')
   for ((level = 0; level <= levels; ++level)); do
     "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
@@ -177,7 +177,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp a.obj b.obj
 }
 
-@test "of a packed model of another version the base is used, and it is said" {
+@test "a packed model of another version is read as its base, with a warning" {
   sed 's/"version":2,/"version":7,/' model.glb >newer.glb
   run --separate-stderr "$papilio" refine newer.glb -o refined.glb --levels 1
   [ "$status" = 0 ]
@@ -185,7 +185,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [ "$("$papilio" info --json refined.glb | jq .faces)" = "$((4 * $(report .base.faces)))" ]
 }
 
-@test "the server refines packed models as the command line does, sent and stored" {
+@test "the server refines packed models as the command line does, posted and stored" {
   levels=$(report '.levels | length')
   start_server
   for query in "levels=$levels&output.compress=none" 'tolerance=0.002' 'levels=3&view.error_pixels=1'; do
@@ -215,7 +215,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   cmp local.drc stored.drc
 }
 
-@test "a small open surface becomes plain Draco, and it is said" {
+@test "a small open surface becomes plain Draco, with a message" {
   printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 1' 'f 1 2 3' 'f 1 3 4' >open.obj
   run --separate-stderr "$papilio" pack open.obj -o open.glb --json
   [ "$status" = 0 ]
@@ -236,7 +236,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [[ $(cat report.txt) == *" bytes of plain Draco ("*" bits, RMS "*")" ]]
 }
 
-@test "a scene that pack did not write is not unpacked" {
+@test "unpack refuses a scene without a packed model" {
   "$papilio" convert "$fine" scene.glb
   run "$papilio" unpack scene.glb -o out.obj
   [ "$status" = 1 ]
@@ -258,7 +258,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 }
 
 # bats test_tags=many_encodings
-@test "plain Draco keeps to --max, too" {
+@test "plain Draco respects --max" {
   printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v .3 .7 .1' 'f 1 2 3' >open.obj
   "$papilio" pack open.obj -o open.glb --max 0.001 --json 2>/dev/null >open.json
   [ "$(jq -r .format open.json)" = draco ]
@@ -268,7 +268,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 }
 
 # bats test_tags=many_encodings
-@test "a file has no more than --bytes" {
+@test "--bytes limits the size of a file" {
   ball
   "$papilio" pack ball.obj -o small.glb --bytes 1300 --json >small.json
   [ "$(jq -r .format small.json)" = packed ]
@@ -281,7 +281,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [ ! -e none.glb ]
 }
 
-@test "what a packed model does not hold is said" {
+@test "data that a packed model cannot hold is reported" {
   printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 0 0 1' 'vn 0 0 1' 'f 1//1 3//1 2//1' 'f 1//1 2//1 4//1' \
     'f 2//1 3//1 4//1' 'f 3//1 1//1 4//1' >smooth.obj
   run --separate-stderr "$papilio" pack smooth.obj -o smooth.glb
@@ -309,7 +309,7 @@ textured_ball() {
   "$papilio" refine cube.obj -o ball.obj --levels 5 --tension off --output.normals true
 }
 
-@test "a textured model stays textured, as base and unpacked" {
+@test "a textured model keeps its texture, as base and unpacked" {
   textured_ball
   run --separate-stderr "$papilio" pack ball.obj -o ball.glb --rms 0.001 --json
   [ "$status" = 0 ]
@@ -407,7 +407,7 @@ two_materials() {
   done
 }
 
-@test "a plain file of several materials keeps them where faces are lost" {
+@test "a plain file of several materials keeps them when faces are removed" {
   two_materials and-a-crumb
   "$papilio" pack two.obj -o two.glb --rms 0.01 2>/dev/null
   [ "$("$papilio" info --json two.glb | jq -c '[.materials, .detail]')" = '[2,null]' ]
@@ -417,7 +417,7 @@ two_materials() {
   [ "$(faces_of out.obj wood)" = 4 ]
 }
 
-@test "a signal ends a search without a file" {
+@test "a signal ends a search and leaves no file" {
   "$papilio" pack "$fine" -o searched.glb --max 0.001 --jobs 2 >out.txt 2>&1 &
   pid=$!
   sleep 0.7
@@ -429,7 +429,7 @@ two_materials() {
   [ "$(find . -name '*searched.glb*')" = "" ]
 }
 
-@test "a signal ends packing without a file" {
+@test "a signal ends packing and leaves no file" {
   "$papilio" pack "$PAPILIO_MESHES/elephant20k.drc" -o large.glb >out.txt 2>&1 &
   pid=$!
   sleep 0.7
@@ -441,7 +441,7 @@ two_materials() {
   [ "$(find . -name '*large.glb*')" = "" ]
 }
 
-@test "mistakes in the call are told from bad files" {
+@test "usage errors and bad files have different statuses" {
   run "$papilio" pack "$fine" -o out.obj
   [ "$status" = 2 ]
   [[ $output == *".glb"* ]]

@@ -16,7 +16,7 @@ clang_stubs() {
   PATH=$BATS_TEST_TMPDIR/stubs:$PATH
 }
 
-@test "the check fails with clang tools of another version, and says which it needs" {
+@test "the check fails with clang tools of another version, and names the required one" {
   clang_stubs 19.1.7
   run "$support/check.sh"
   [ "$status" = 1 ]
@@ -24,7 +24,7 @@ clang_stubs() {
   [[ $output == *"apt-get install clang-format-14"* ]]
 }
 
-@test "build and demo need none of the libraries of the tests" {
+@test "build and demo require none of the tests' libraries" {
   tested=$("$support/setup.sh" --list build test)
   [[ $tested == *gtest* && $tested == *benchmark* && $tested == *openmesh* ]]
   needed=$("$support/setup.sh" --list build demo)
@@ -44,7 +44,7 @@ clang_stubs() {
   [[ $output =~ ^build:\ [1-9][0-9][0-9]\ steps\ on\ [0-9]+\ cores,\ up\ to\ about\ [0-9]+\ min ]]
 }
 
-@test "the demo with --exit refines a bunny, and does not point to a viewer that is gone" {
+@test "the demo with --exit refines a bunny, and prints no address of the stopped viewer" {
   run "$support/demo.sh" --exit
   [ "$status" = 0 ]
   [[ $output =~ coarse\ +302\ +600 ]]

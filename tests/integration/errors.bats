@@ -12,7 +12,7 @@ teardown() { server_is_well; }
 
 post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
 
-@test "bad_parameter: out of range, ill-typed, given twice, all by name" {
+@test "bad_parameter names parameters that are out of range, ill-typed or repeated" {
   post "$url/v1/refine?levels=11"
   expect_problem 400 bad_parameter
   [ "$(field parameter)" = levels ]
@@ -35,7 +35,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   expect_problem 400 bad_parameter
 }
 
-@test "unknown_parameter" {
+@test "unknown_parameter names the parameter" {
   post "$url/v1/refine?level=2"
   expect_problem 400 unknown_parameter
   [ "$(field parameter)" = level ]
@@ -45,7 +45,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   [ "$(field parameter)" = view.eyes ]
 }
 
-@test "bad_request: forms and JSON that cannot be read" {
+@test "bad_request: malformed forms and JSON" {
   request -F mesh=@"$coarse" -F 'params={"levels": ' "$url/v1/refine"
   expect_problem 400 bad_request
   request -F 'params={}' "$url/v1/refine"
@@ -92,25 +92,25 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   [[ $answer == *length_required* ]]
 }
 
-@test "body_too_large: by its length, at once" {
+@test "body_too_large: refused by its length, at once" {
   file=$BATS_FILE_TMPDIR/large post "$url/v1/refine"
   expect_problem 413 body_too_large
   [[ $(field detail) == *100000* ]]
 }
 
-@test "body_too_large: chunked, as soon as the limit is passed" {
+@test "body_too_large: refused in chunks, as soon as the limit is passed" {
   file=$BATS_FILE_TMPDIR/large post -H 'Transfer-Encoding: chunked' "$url/v1/refine"
   expect_problem 413 body_too_large
 }
 
-@test "mesh_too_large: by the declared count" {
+@test "mesh_too_large: refused by the declared count" {
   "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --levels 1
   file=$BATS_TEST_TMPDIR/fine.drc post "$url/v1/refine?levels=0"
   expect_problem 413 mesh_too_large
   [[ $(field detail) == *2400*2000* ]]
 }
 
-@test "unsupported_media_type: and the words say what to send" {
+@test "unsupported_media_type states the accepted types" {
   request --data-binary @"$coarse" "$url/v1/refine"
   expect_problem 415 unsupported_media_type
   [[ $(field detail) == *'Content-Type: application/x-draco'* ]]
@@ -154,7 +154,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   expect_problem 422 mesh_unsupported
 }
 
-@test "mesh_unusable: no surface in it" {
+@test "mesh_unusable: a mesh without a surface" {
   printf 'v 0 0 0\nv 0 0 0\nv 1 1 1\nf 1 2 3\nf 1 3 2\n' >"$BATS_TEST_TMPDIR/flat.obj"
   draco_encoder -i "$BATS_TEST_TMPDIR/flat.obj" -o "$BATS_TEST_TMPDIR/flat.drc" -qp 0 -cl 0 >/dev/null
   file=$BATS_TEST_TMPDIR/flat.drc post "$url/v1/refine"
@@ -169,7 +169,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   [[ $(field detail) == *NaN* ]]
 }
 
-@test "result_too_large: with the number, before the work" {
+@test "result_too_large states the number, before the refinement" {
   post "$url/v1/refine?levels=9"
   expect_problem 507 result_too_large
   [[ $(field detail) == *38400*20000* ]]
@@ -177,7 +177,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   expect_problem 507 result_too_large
 }
 
-@test "a problem after a stream has begun comes as its last part" {
+@test "a problem after the start of a stream is its last part" {
   post -H 'Accept: multipart/mixed' "$url/v1/refine?levels=9&flatness=1"
   [ "$status" = 200 ]
   grep -aq 'Content-Type: application/problem+json' "$body"
@@ -185,7 +185,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   tail -c 4 "$body" | cmp - <(printf -- '--\r\n')
 }
 
-@test "request_timeout: a body that stalls" {
+@test "request_timeout: a stalled body" {
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 100\r\n\r\nDRACO' >&5
   answer=$(timeout 20 cat <&5)
@@ -194,7 +194,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
   [[ $answer == *request_timeout* ]]
 }
 
-@test "the body of a refused request is never taken for the next one" {
+@test "the body of a refused request is never read as the next request" {
   smuggled=$'GET /health HTTP/1.1\r\nHost: x\r\n\r\n'
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   printf 'POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n%s' ${#smuggled} "$smuggled" >&5

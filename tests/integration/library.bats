@@ -25,12 +25,12 @@ build_examples() {
   [ "$(examples/example_views | grep -c faces)" = 3 ]
 }
 
-@test "an installed core is found by find_package, and the examples build and run with it" {
+@test "find_package finds an installed core, and the examples build and run with it" {
   build_examples "$PREFIX" "$SANITIZERS"
   "$PREFIX/bin/papilio" --version
 }
 
-@test "an installed core is found by pkg-config, also after its tree was moved" {
+@test "pkg-config finds an installed core, also after the tree was moved" {
   mkdir elsewhere
   cp -r "$PREFIX"/{include,lib} elsewhere
   for prefix in "$PREFIX" "$PWD/elsewhere"; do
@@ -43,14 +43,14 @@ build_examples() {
   [ "$(PKG_CONFIG_PATH="$PREFIX/lib/pkgconfig" pkg-config --modversion papilio)" = "$("$PREFIX/bin/papilio" --version | grep -o '[0-9.]*$')" ]
 }
 
-@test "every installed header compiles as a first include, without a warning" {
+@test "every installed header compiles as the first include, without warnings" {
   for header in "$PREFIX"/include/papilio/*; do
     echo "#include <papilio/${header##*/}>" >one.cpp
     "${CXX:-c++}" -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$PREFIX/include" one.cpp
   done
 }
 
-@test "installed headers have no intrinsics and no macros, and include nothing that is not installed" {
+@test "installed headers have no intrinsics and no macros, and include only installed headers" {
   cd "$PREFIX/include/papilio"
   [ "$(grep -rnE 'immintrin|_mm_|^ *# *define' . | wc -l)" = 0 ]
   [ "$(grep -rhE '^ *# *include' . | grep -cvE '^#include (<[a-z_]+>|"papilio/[a-z_0-9]+\.h")$')" = 0 ]
@@ -58,7 +58,7 @@ build_examples() {
   [ "$(ls .. | xargs)" = "papilio papilio.h" ] # and the C functions
 }
 
-@test "the core alone is built and installed without what only server and client need" {
+@test "the core builds and installs without the dependencies of server and client" {
   skip_if_sanitized
   options=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='' -DCMAKE_UNITY_BUILD=ON
     -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)")
@@ -76,13 +76,13 @@ build_examples() {
   [ "$(cd alone && find . -type f | grep -vE '^\./(include/papilio/|lib/cmake/papilio/|lib/pkgconfig/papilio\.pc$)')" = ./lib/libpapilio_core.a ]
 }
 
-@test "warnings are errors to the project's presets alone" {
+@test "warnings are errors only in the project's presets" {
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../../core" -B core >/dev/null
   [ "$(grep -c -- -Werror core/build.ninja)" = 0 ]
   grep -q '^option(PAPILIO_WERROR .* OFF)$' "$BATS_TEST_DIRNAME/../../CMakeLists.txt"
 }
 
-@test "the includes of the tree point one way" {
+@test "includes between folders have one direction" {
   cd "$BATS_TEST_DIRNAME/../.."
   python3 tests/support/core_tree.py
 }

@@ -9,7 +9,7 @@ teardown() {
 
 is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 
-@test "a refinement that takes longer than the limit is stopped, alone or as a stream" {
+@test "a refinement beyond the time limit is stopped, single or streamed" {
   start_server --max-compute-seconds 1 --max-output-faces 100000000 --max-compute-bytes 0
   "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/fine.drc" --levels 4
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/fine.drc" "$url/v1/refine?levels=4&flatness=1"
@@ -25,7 +25,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   eventually both_counted
 }
 
-@test "a refinement that would take more memory than the limit is refused with the number" {
+@test "a refinement beyond the memory limit is refused with the number" {
   start_server --max-compute-bytes 50000000
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&flatness=1"
   expect_problem 507 result_too_large
@@ -34,7 +34,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [ "$status" = 200 ]
 }
 
-@test "the address space is bounded: what no limit foresaw fails for itself" {
+@test "the address space is bounded: unforeseen allocations fail for their request only" {
   ! is_sanitized || skip "sanitizers reserve terabytes"
   start_server --slots 1 --connections 4 --max-memory-bytes 300000000 --max-compute-bytes 0
   [ "$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")" = 300000000 ]
@@ -44,7 +44,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [ "$status" = 200 ]
 }
 
-@test "by default the address space is what the settings may need" {
+@test "the default address space follows from the settings" {
   ! is_sanitized || skip "sanitizers reserve terabytes"
   start_server --slots 1
   small=$(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits")
@@ -53,7 +53,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   (($(awk '/Max address space/ { print $4 }' "/proc/$server_pid/limits") > small + (2 << 30)))
 }
 
-@test "bodies together have a limit: the one too many is refused, the others go on" {
+@test "bodies have a common limit: one body above it is refused, the others continue" {
   start_server --max-body-bytes 3000000 --max-held-bytes 3000000 --read-seconds 60
   head -c 2000000 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
   # One holds two of three megabytes, and waits with the rest.
@@ -77,14 +77,14 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   expect_problem 422 mesh_not_draco
 }
 
-@test "a body as large as all together may be is read" {
+@test "a body as large as the common limit is read" {
   start_server --max-body-bytes 300001 --max-held-bytes 300001
   head -c 300001 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/bytes" "$url/v1/refine"
   expect_problem 422 mesh_not_draco
 }
 
-@test "clients that take their time do not each hold a copy of the stored mesh" {
+@test "slow clients do not each hold a copy of the stored mesh" {
   start_server
   { cat "$coarse" && head -c 20000000 /dev/zero; } >"$BATS_TEST_TMPDIR/fine.drc" # no decoder minds what follows
   upload "$BATS_TEST_TMPDIR/fine.drc"
@@ -108,7 +108,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   ((after - before < 30 * $(stat -c %s "$BATS_TEST_TMPDIR/fine.drc")))
 }
 
-@test "a stream's slot is free again before a slow client has read it" {
+@test "a stream's slot is free before a slow client has read the stream" {
   start_server --slots 1 --queue 0
   # The answer of megabytes is not read at all, and fits into no socket's buffer.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
@@ -137,7 +137,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [ "$(grep -ac '^Papilio-Faces: ' "$BATS_TEST_TMPDIR/stream")" = 7 ]
 }
 
-@test "a client that goes away from a stream, or from a stored mesh, stops the work" {
+@test "a client that disconnects from a stream or a stored mesh stops the work" {
   start_server --slots 1 --queue 0
   upload
   gone() { awk '/^papilio_problems_total.code="(cancelled|not_sent)"/ { n += $2 } END { print n + 0 }' "$body"; }

@@ -40,7 +40,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   ! grep -vE '^(# .*|[a-z_]+(\{([a-z_]+="[^"]*",?)+\})? [0-9.e+-]+|[a-z_]+_bucket\{.*\} [0-9]+)$' "$body" | grep .
 }
 
-@test "one JSON object a line in the log, with the id, the route's answer and the trace" {
+@test "the log has one JSON object a line, with the id, the route's answer and the trace" {
   trace=4bf92f3577b34da6a3ce929d0e0e4736
   request -H 'X-Request-Id: 1e5' -H "traceparent: 00-$trace-00f067aa0ba902b7-01" -H "$draco" \
     --data-binary @"$coarse" "$url/v1/refine?levels=x%22%7D"
@@ -57,7 +57,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   ! grep -q '"path":"/health"' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "the OpenAPI document passes a linter that is not ours" {
+@test "the OpenAPI document passes an independent linter" {
   request "$url/openapi.json"
   [ "$status" = 200 ]
   [ "$(field openapi)" = 3.1.0 ]
@@ -67,7 +67,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
     "$PAPILIO_MESHES/../redocly/node_modules/.bin/redocly" lint openapi.json
 }
 
-@test "each operation of the document is there, and nothing else answers" {
+@test "the operations of the document exist, and no others" {
   request "$url/openapi.json"
   cp "$body" "$BATS_TEST_TMPDIR/openapi.json"
   jq -r '.paths | to_entries[] | .key as $path | .value | keys[] | "\(.) \($path)"' "$BATS_TEST_TMPDIR/openapi.json" \
@@ -89,7 +89,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   done <"$BATS_TEST_TMPDIR/operations"
 }
 
-@test "the document has the parameters, limits and errors that the server has" {
+@test "the document has the server's parameters, limits and errors" {
   request "$url/openapi.json"
   cp "$body" "$BATS_TEST_TMPDIR/openapi.json"
   request "$url/v1/info"
@@ -139,7 +139,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   stop_server
 }
 
-@test "every error code is documented somewhere" {
+@test "every error code is documented" {
   request "$url/openapi.json"
   jq -e '.components.schemas.Problem.properties.code.enum as $codes
     | [.paths[][].responses[].description] | join("; ") as $all | $codes | length > 25 and all(. as $c | $all | contains($c + ":"))' "$body"

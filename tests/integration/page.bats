@@ -9,7 +9,7 @@ teardown_file() { stop_server; }
 # asset PATTERN: the name of a built file.
 asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
 
-@test "the page is asked for anew each time, and lets in nothing from elsewhere" {
+@test "the page is revalidated each time, and loads nothing from other origins" {
   request "$url/"
   [ "$status" = 200 ]
   [ "$(header Content-Type)" = "text/html; charset=utf-8" ]
@@ -25,7 +25,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   [ ! -s "$body" ]
 }
 
-@test "what the page consists of has names that change with the content, and is kept for ever" {
+@test "files of the page have names with a hash of the content, and are immutable" {
   for pattern in 'index-*.js' 'index-*.css' 'draco_decoder-*.wasm' 'draco_wasm_wrapper-*.js'; do
     name=$(asset "$pattern")
     request "$url/assets/$name"
@@ -38,7 +38,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   [ "$(header Content-Type)" = application/wasm ]
 }
 
-@test "compressed where the browser takes that, as another representation" {
+@test "the page is compressed for browsers that accept it, as another representation" {
   name=$(asset 'index-*.js')
   request "$url/assets/$name"
   plain=$(header ETag)
@@ -53,7 +53,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   [ "$status" = 200 ]
 }
 
-@test "the page has no other files, wherever a path may try to go" {
+@test "the page serves no other files, for any path" {
   for path in assets/none.js assets/..%2findex.html assets/%2e%2e%2f%2e%2e%2fCMakeCache.txt assets/.gz assets/ index.html; do
     request --path-as-is "$url/$path"
     [ "$status" = 404 ]
@@ -63,7 +63,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   expect_problem 405 method_not_allowed
 }
 
-@test "less than 400 KB without the decoder, compressed" {
+@test "the page is below 400 KB without the decoder, compressed" {
   total=0
   for file in "$PAPILIO_BUILD"/web/index.html.gz "$PAPILIO_BUILD"/web/assets/*.{js,css,svg}.gz; do
     [[ $file == *draco_wasm_wrapper* ]] || total=$((total + $(stat -c %s "$file")))
@@ -72,7 +72,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   ((total > 50000 && total < 400000))
 }
 
-@test "a knot, a mug and a wheel are always there, and can be refined" {
+@test "a knot, a mug and a wheel are always available and refinable" {
   request "$url/v1/info"
   [ "$(jq -c '[.samples[] | [.name, .vertices, .faces]]' "$body")" = '[["knot",216,432],["mug",172,344],["wheel",163,290]]' ]
   for name in knot mug wheel; do
@@ -96,7 +96,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   expect_problem 404 not_found
 }
 
-@test "an operator's meshes are samples too; one that cannot be used is refused at the start" {
+@test "an operator's meshes are samples; an unusable one is refused at start-up" {
   mkdir "$BATS_TEST_TMPDIR/samples"
   cp "$coarse" "$BATS_TEST_TMPDIR/samples/rabbit-600.drc"
   echo "no mesh" >"$BATS_TEST_TMPDIR/samples/readme.txt"
@@ -124,7 +124,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   [[ $output == *"--samples: "*"No such file"* ]]
 }
 
-@test "without a page the service is what it is, and says where the page would come from" {
+@test "without a page the service works, and states how to add the page" {
   BATS_FILE_TMPDIR=$BATS_TEST_TMPDIR start_server --web ""
   request "$url/"
   expect_problem 404 not_found
@@ -136,7 +136,7 @@ asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
   [[ $output == *"--web: "*index.html* ]]
 }
 
-@test "with keys the page is open, and the samples are not" {
+@test "with keys the page is public, and the samples are not" {
   echo 'someone 0123456789abcdef0123456789abcdef' >"$BATS_TEST_TMPDIR/keys"
   BATS_FILE_TMPDIR=$BATS_TEST_TMPDIR start_server --keys "$BATS_TEST_TMPDIR/keys"
   request "$url/"

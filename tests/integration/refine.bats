@@ -6,7 +6,7 @@ load helpers
 setup_file() { start_server; }
 teardown_file() { stop_server; }
 
-@test "uniform levels have four to the level times the faces" {
+@test "uniform levels quadruple the faces" {
   for level in 0 1 2 3; do
     request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=$level"
     [ "$status" = 200 ]
@@ -16,7 +16,7 @@ teardown_file() { stop_server; }
   done
 }
 
-@test "the answer carries its statistics, length and type" {
+@test "the answer has its statistics, length and type" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2"
   [ "$(header Content-Type)" = application/x-draco ]
   [ "$(header Content-Length)" = "$(stat -c %s "$body")" ]
@@ -27,7 +27,7 @@ teardown_file() { stop_server; }
   [ -n "$(header X-Request-Id)" ]
 }
 
-@test "flatness saves a third of the faces, a view saves more" {
+@test "flatness saves a third of the faces, and a view saves more" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9"
   [ "$status" = 200 ]
   adaptive=$(header Papilio-Faces)
@@ -41,14 +41,14 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" -gt 600 ]
 }
 
-@test "a flat request converges early and says so" {
+@test "flatness -1 converges at the coarse mesh, and the answer states it" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3&flatness=-1"
   [ "$(header Papilio-Stop-Reason)" = converged ]
   [ "$(header Papilio-Levels)" = 0 ]
   [ "$(decoded_faces "$body")" = 600 ]
 }
 
-@test "tolerance: the error reached is reported, finer is larger, a view saves" {
+@test "tolerance: the reached error is reported, finer costs faces, and a view saves some" {
   local before=600
   for tolerance in 0.004 0.002 0.001; do
     request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=6&tolerance=$tolerance"
@@ -70,7 +70,7 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" != "$before" ]
 }
 
-@test "view.error_pixels alone is reached: the eye and the levels follow" {
+@test "view.error_pixels alone is reached: eye and levels follow from it" {
   upload
   request "$url/v1/meshes/$(coarse_id)/refined?view.error_pixels=0.5"
   [ "$status" = 200 ]
@@ -82,7 +82,7 @@ teardown_file() { stop_server; }
   grep -aq '"unreached": "view.error_pixels=0.5 is not reached: the remaining error is .* Raise levels above 1' "$body"
 }
 
-@test "max_faces is never passed, in no part" {
+@test "no part exceeds max_faces" {
   for scheme in red-green in-place; do
     request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" \
       "$url/v1/refine?levels=4&max_faces=3000&scheme=$scheme"
@@ -95,7 +95,7 @@ teardown_file() { stop_server; }
   [[ $(field detail) == *600* ]]
 }
 
-@test "what is wrong with a mesh is refined without a crack and counted" {
+@test "mesh defects are refined without cracks and counted" {
   printf 'v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n' >"$BATS_TEST_TMPDIR/book.obj"
   "$papilio" convert "$BATS_TEST_TMPDIR/book.obj" "$BATS_TEST_TMPDIR/book.drc"
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/book.drc" "$url/v1/refine?levels=2"
@@ -104,7 +104,7 @@ teardown_file() { stop_server; }
   [ "$(header Papilio-Faces)" = 48 ]
 }
 
-@test "gaps of rounding and T-junctions are closed and counted" {
+@test "gaps from rounding and T-junctions are closed and counted" {
   # A cube. Its lid has corners of its own, three ten-millionths too high; on the side of its floor lies a corner of two
   # faces of the front.
   cat >"$BATS_TEST_TMPDIR/torn.obj" <<'END'
@@ -142,7 +142,7 @@ END
   [ "$("$papilio" info --json "$BATS_TEST_TMPDIR/fine.drc" | jq -c '[.closed, .euler_characteristic]')" = '[true,2]' ]
 }
 
-@test "a form with mesh and params answers the same bytes as body and query" {
+@test "a form with mesh and params has the same bytes as body and query" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9&output.speed=3"
   cp "$body" "$BATS_TEST_TMPDIR/raw"
   request -F mesh=@"$coarse" -F 'params={"levels": 2, "flatness": [0.8, 0.9], "output": {"speed": 3}}' "$url/v1/refine"
@@ -152,7 +152,7 @@ END
   [ "$(header Papilio-Faces)" = 9600 ]
 }
 
-@test "chunked upload and octet-stream answer the same bytes" {
+@test "chunked uploads and octet-streams have the same bytes" {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=1"
   cp "$body" "$BATS_TEST_TMPDIR/raw"
   request -H 'Content-Type: application/octet-stream' -H 'Transfer-Encoding: chunked' --data-binary @"$coarse" \
@@ -195,7 +195,7 @@ PY
   cmp "$body" "$BATS_TEST_TMPDIR/part2"
 }
 
-@test "vertices do not move between levels" {
+@test "vertices are at the same positions in all levels" {
   points() { # of the last answer
     cp "$body" "$BATS_TEST_TMPDIR/answer.drc"
     "$papilio" convert "$BATS_TEST_TMPDIR/answer.drc" "$BATS_TEST_TMPDIR/answer.obj"
@@ -208,7 +208,7 @@ PY
   [ "$(comm -12 "$BATS_TEST_TMPDIR/coarse" "$BATS_TEST_TMPDIR/fine" | wc -l)" = "$(wc -l <"$BATS_TEST_TMPDIR/coarse")" ]
 }
 
-@test "normals, bits and projection are taken" {
+@test "normals, bits and projection are applied" {
   request -H "$draco" --data-binary @"$coarse" \
     "$url/v1/refine?levels=1&output.normals=true&output.position_bits=16&view.projection=orthographic&view.eye=0,5,30"
   [ "$status" = 200 ]
@@ -216,7 +216,7 @@ PY
   grep -q '^vn ' "$BATS_TEST_TMPDIR/normals.obj"
 }
 
-@test "X-Request-Id is taken over when it is sane, and made when not" {
+@test "a valid X-Request-Id is kept, and a missing or invalid one replaced" {
   request -H "$draco" -H 'X-Request-Id: trace-42' --data-binary @"$coarse" "$url/v1/refine?levels=0"
   [ "$(header X-Request-Id)" = trace-42 ]
   request -H "$draco" -H 'X-Request-Id: no spaces!' --data-binary @"$coarse" "$url/v1/refine?levels=0"
@@ -224,7 +224,7 @@ PY
   [[ $(header X-Request-Id) =~ ^[A-Za-z0-9._-]+$ ]]
 }
 
-@test "many requests on one connection" {
+@test "one connection serves many requests" {
   run curl -sS --noproxy '*' --max-time 60 -o /dev/null -w '%{http_code} %{num_connects}\n' -H "$draco" \
     --data-binary @"$coarse" "$url/v1/refine?levels=[0-3]"
   [ "$(grep -c ^200 <<<"$output")" = 4 ]

@@ -21,7 +21,7 @@ two_nodes() {
   mv edited.gltf two.gltf
 }
 
-@test "a scene goes all the way, here and there, with the same bytes" {
+@test "a scene is refined to the same bytes locally and remotely" {
   for flags in '--levels 2' '--tolerance 0.001' '--levels 2 --compress draco' '--levels 1 --compress meshopt'; do
     # shellcheck disable=SC2086
     "$papilio" refine in.glb -o here.glb $flags
@@ -33,13 +33,13 @@ two_nodes() {
   [ "$("$papilio" info --json here.glb | jq .faces)" = 9600 ]
 }
 
-@test "a scene has the surface that its mesh has as Draco" {
+@test "a scene has the surface of its mesh as Draco" {
   "$papilio" refine in.glb -o fine.glb --levels 2
   "$papilio" refine "$coarse" -o fine.drc --levels 2 --output.position_bits 16
   [ "$("$papilio" compare --json fine.glb fine.drc | jq '.hausdorff / .diagonal < 0.0001')" = true ]
 }
 
-@test "a .gltf file is read with its files, and written with one" {
+@test ".gltf files are read with their files, and written with one" {
   two_nodes
   "$papilio" refine two.gltf -o fine.gltf --levels 1
   [ -s fine.bin ]
@@ -49,7 +49,7 @@ two_nodes() {
   [ "$("$papilio" convert fine.gltf both.ply && "$papilio" info --json both.ply | jq .faces)" = 4800 ]
 }
 
-@test "a .gltf file without its images is refined, and says so" {
+@test "a .gltf file without its images is refined, with a warning" {
   two_nodes
   jq '.images = [{uri: "lost.png", extras: "kept"}, {uri: "http://127.0.0.1:1/far.png"}]' two.gltf >edited.gltf
   mkdir out
@@ -90,7 +90,7 @@ json_of() {
   cat "$BATS_TEST_TMPDIR/document.gltf"
 }
 
-@test "materials of an .obj file become those of a scene, and go back" {
+@test "materials of an .obj file are converted to a scene's, and back" {
   cube
   run --separate-stderr "$papilio" convert cube.obj cube.glb
   [ "$status" = 0 ]
@@ -111,7 +111,7 @@ json_of() {
   [ "$(jq '.materials | length' cube.gltf)" = 2 ]
 }
 
-@test "what of materials is missing is said, and left out" {
+@test "missing parts of materials are reported and dropped" {
   cube
   rm wood.png
   run --separate-stderr "$papilio" convert cube.obj cube.glb
@@ -132,7 +132,7 @@ json_of() {
   [[ $output == *'cube.mtl: line 2: expected a finite number'* ]]
 }
 
-@test "refinement keeps materials between .obj files and scenes, here and there, with the same bytes" {
+@test "refinement keeps materials between .obj files and scenes, with the same bytes locally and remotely" {
   cube
   "$papilio" refine cube.obj -o here.glb --levels 2
   "$papilio" refine cube.obj -o there.glb --levels 2 --server "$url"
@@ -183,7 +183,7 @@ json_of() {
   [ "$(cd all && echo *)" = 'a.glb b.glb' ]
 }
 
-@test "a file outside of the folder is refused, and so is a .gltf file on standard output" {
+@test "files outside of the folder are refused, and so is .gltf on standard output" {
   two_nodes
   jq '.buffers[0].uri = "../two.bin"' two.gltf >outside.gltf
   run "$papilio" refine outside.gltf -o out.glb
@@ -193,7 +193,7 @@ json_of() {
   [ "$status" = 2 ]
 }
 
-@test "the server answers in kind, or as Accept says" {
+@test "the server answers in the request's format, or as Accept says" {
   request -H "$scene" --data-binary @in.glb "$url/v1/refine?levels=1"
   [ "$status" = 200 ]
   [ "$(header Content-Type)" = model/gltf-binary ]
@@ -222,7 +222,7 @@ json_of() {
 # glb_parts BODY: how many parts of it are scenes.
 glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
 
-@test "the levels of a scene come one by one, posted and stored, the last as the whole answer" {
+@test "the levels of a scene arrive separately, posted and stored, the last equal to the single answer" {
   two_nodes
   "$papilio" convert two.gltf two.glb
   "$papilio" refine two.glb -o fine.glb --levels 2
@@ -240,7 +240,7 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   [ "$status" = 204 ]
 }
 
-@test "nodes that show one mesh get their own on request" {
+@test "nodes that share a mesh get their own on request" {
   two_nodes
   jq '.nodes[1].scale = [0.001, 0.001, 0.001]' two.gltf >edited.gltf
   mv edited.gltf two.gltf
@@ -281,7 +281,7 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   expect_problem 404 mesh_not_found
 }
 
-@test "stored scenes and meshes are answered in the kind that Accept says" {
+@test "stored scenes and meshes are answered in the format that Accept says" {
   id=$(curl -sS -H "$scene" --data-binary @in.glb "$url/v1/meshes" | jq -r .id)
   request "$url/v1/meshes/$id/refined?levels=1"
   tag=$(header ETag)
@@ -319,7 +319,7 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   request -X DELETE "$url/v1/meshes/$(coarse_id)"
 }
 
-@test "the server fetches nothing that a scene names" {
+@test "the server fetches no external file of a scene" {
   python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >port 3>&- &
   stub_pid=$!
   eventually test -s port
@@ -344,7 +344,7 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   [ "$(header Count)" = 0 ]
 }
 
-@test "what is no scene, or names files, is refused by its name" {
+@test "bodies that are no scenes, or refer to files, are refused by name" {
   request -H "$scene" --data-binary 'glTF of a kind' "$url/v1/refine"
   expect_problem 422 mesh_not_gltf
   request -H "$scene" --data-binary '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "http://127.0.0.1:1/a.bin"}]}' "$url/v1/refine"

@@ -9,14 +9,14 @@ teardown() {
   if [[ -n ${server_pid:-} ]] && kill -0 "$server_pid" 2>/dev/null; then stop_server; fi
 }
 
-@test "the first and only line on standard output says where it listens" {
+@test "the only line on standard output states the address" {
   start_server
   stop_server
   [ "$(wc -l <"$BATS_FILE_TMPDIR/server.out")" = 1 ]
   grep -qE '^listening on http://127\.0\.0\.1:[0-9]+$' "$BATS_FILE_TMPDIR/server.out"
 }
 
-@test "health, readiness and info" {
+@test "health, readiness and info are served" {
   start_server --max-output-faces 12345
   request "$url/health"
   [ "$status" = 200 ]
@@ -34,7 +34,7 @@ teardown() {
   [ "$status" = 200 ]
 }
 
-@test "settings: the environment, then the flag, and refusals that name the setting and its range" {
+@test "settings: a flag overrides the environment, and refusals state the setting and its range" {
   PAPILIO_MAX_BODY_BYTES=1000 start_server
   request "$url/v1/info"
   [ "$(field limits.max_body_bytes)" = 1000 ]
@@ -59,7 +59,7 @@ teardown() {
   [[ $output == *PAPILIO_MAX_BODY_BYTES* ]]
 }
 
-@test "a port that is taken and an address that is not ours are refused in words" {
+@test "a used port and a foreign address are refused with a message" {
   start_server
   run "$server" --port "${url##*:}"
   [ "$status" = 1 ]
@@ -69,7 +69,7 @@ teardown() {
   [[ $output == *192.0.2.1* ]]
 }
 
-@test "settings that cannot be right together are refused before anything is promised" {
+@test "inconsistent settings are refused before the address is printed" {
   run timeout 20 "$server" --port 0 --max-body-bytes 2000000 --max-held-bytes 1000000
   [ "$status" = 2 ]
   [[ $output == *--max-held-bytes*--max-body-bytes* && $output != *listening* ]]
@@ -78,7 +78,7 @@ teardown() {
   [[ $output == *--max-memory-bytes*--connections* && $output != *listening* ]]
 }
 
-@test "a refusal names what the environment has, but no password" {
+@test "a refusal quotes the environment without passwords" {
   PAPILIO_PORT=99999 PAPILIO_STORE=redis://user:secret@localhost run timeout 20 "$server"
   [ "$status" = 2 ]
   [[ $output == *PAPILIO_PORT=99999* && $output == *PAPILIO_STORE* && $output != *secret* ]]
@@ -106,7 +106,7 @@ leave() {
   wait "$1" || true
 }
 
-@test "busy: with every slot and place taken large requests get 429 and Retry-After, small ones an answer" {
+@test "busy: with all slots and places taken, large requests get 429 and Retry-After, small ones an answer" {
   start_server --slots 1 --queue 0
   long_request long "levels=$large_levels&output.normals=true"
   until_busy
@@ -124,7 +124,7 @@ leave() {
   [ "$status" = 200 ]
 }
 
-@test "not ready: while not even a small request would be let in" {
+@test "not ready: while even small requests are refused" {
   start_server --slots 1 --queue 0
   long_request long "levels=$large_levels&flatness=1&growth=2&output.normals=true"
   first=$running
@@ -165,7 +165,7 @@ leave() {
   [ "$(cat "$BATS_TEST_TMPDIR"/large* | grep -c '^200')" = 6 ]
 }
 
-@test "2,000 silent connections do not keep others waiting" {
+@test "2,000 silent connections do not block others" {
   ulimit -Sn "$(ulimit -Hn)"
   most=$(($(ulimit -n) == 0 || $(ulimit -n) > 5000 ? 2000 : $(ulimit -n) / 3))
   start_server --connections 8 --idle-seconds 3600
@@ -183,14 +183,14 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   leave "$silent"
 }
 
-@test "a request that must wait is answered when its turn comes" {
+@test "a waiting request is answered in its turn" {
   start_server --slots 1 --queue 4
   curl -sS --noproxy '*' --parallel --parallel-max 5 -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code}\n' -H "$draco" \
     --data-binary @"$coarse" "$url/v1/refine?levels=4&w=0.0[1-5]" >"$BATS_TEST_TMPDIR/codes"
   [ "$(grep -c '^200$' "$BATS_TEST_TMPDIR/codes")" = 5 ]
 }
 
-@test "a client that goes away stops its work" {
+@test "a client that disconnects stops its work" {
   start_server --slots 1 --queue 0
   long_request leaver "levels=$large_levels&flatness=1&growth=2&output.normals=true"
   until_busy
@@ -199,7 +199,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   eventually grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "a client that goes away while it waits gives up its place" {
+@test "a client that disconnects while it waits frees its place" {
   start_server --slots 1 --queue 1
   long_request first "levels=$large_levels&output.normals=true"
   first=$running
@@ -226,7 +226,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   server_pid=
 }
 
-@test "SIGHUP while the last requests are answered cuts none of them short" {
+@test "SIGHUP during the last requests truncates none of them" {
   start_server --slots 1 --queue 0 --drain-seconds 300
   long_request long "levels=$large_levels&output.normals=true"
   until_busy
@@ -239,7 +239,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   server_pid=
 }
 
-@test "one structured log line a request, health questions only when they fail" {
+@test "the log has one structured line a request, and health checks only when they fail" {
   start_server
   request -H 'X-Request-Id: log-me' -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=9"
   request -H 'X-Request-Id: bad-one' -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=x"

@@ -6,7 +6,7 @@ load helpers
 setup_file() { start_server; }
 teardown_file() { stop_server; }
 
-@test "a mesh is stored under its SHA-256, and described" {
+@test "a mesh is stored under its SHA-256 with a description" {
   upload
   [ "$status" = 201 ]
   [ "$(field id)" = "$(coarse_id)" ]
@@ -25,7 +25,7 @@ teardown_file() { stop_server; }
   [ "$(field refined)" = "/v1/meshes/$(coarse_id)/refined" ]
 }
 
-@test "a refinement of a stored mesh has the bytes of the one-shot request, by GET and by POST" {
+@test "a refinement of a stored mesh has the bytes of the single request, by GET and by POST" {
   upload
   query='levels=3&flatness=0.9,0.95&view.eye=0,0,3&output.speed=5'
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?$query"
@@ -42,7 +42,7 @@ teardown_file() { stop_server; }
   cmp "$body" "$BATS_TEST_TMPDIR/shot.drc"
 }
 
-@test "levels of a stored mesh are streamed as those of the one-shot request" {
+@test "streamed levels of a stored mesh equal those of the single request" {
   upload
   request -H 'Accept: multipart/mixed' "$url/v1/meshes/$(coarse_id)/refined?levels=2"
   [ "$status" = 200 ]
@@ -51,7 +51,7 @@ teardown_file() { stop_server; }
   [ -z "$(header ETag)" ]
 }
 
-@test "the entity tag is that of the canonical parameters, and 304 follows from it" {
+@test "the entity tag follows from the canonical parameters, and is answered with 304" {
   upload
   refined="$url/v1/meshes/$(coarse_id)/refined"
   request "$refined?levels=2&tension=soft&view.eye=0,0,3.0"
@@ -80,7 +80,7 @@ teardown_file() { stop_server; }
   [ "$(header ETag)" != "$tag" ] # another representation
 }
 
-@test "the bytes stay what they are; their description may change with the server" {
+@test "stored bytes are constant; their description may change with the server" {
   upload
   request "$url/v1/meshes/$(coarse_id)"
   [[ $(header Cache-Control) == *immutable* ]]
@@ -104,7 +104,7 @@ teardown_file() { stop_server; }
   done
 }
 
-@test "a deleted mesh is gone, its results too" {
+@test "a deleted mesh is gone with its results" {
   upload
   request "$url/v1/meshes/$(coarse_id)/refined?levels=1"
   [ "$status" = 200 ]
@@ -118,7 +118,7 @@ teardown_file() { stop_server; }
   expect_problem 404 mesh_not_found
 }
 
-@test "what is no mesh is not stored, and what is no id is not found" {
+@test "invalid meshes are not stored, and invalid ids are not found" {
   printf 'solid cube' >"$BATS_TEST_TMPDIR/solid"
   upload "$BATS_TEST_TMPDIR/solid"
   expect_problem 422 mesh_not_draco
@@ -134,7 +134,7 @@ teardown_file() { stop_server; }
   expect_problem 415 unsupported_media_type
 }
 
-@test "each refusal of a refinement comes for stored meshes too" {
+@test "refinements of stored meshes have the same refusals" {
   upload
   refined="$url/v1/meshes/$(coarse_id)/refined"
   request "$refined?level=1"

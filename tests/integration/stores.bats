@@ -13,7 +13,7 @@ teardown() {
   fi
 }
 
-@test "equal requests in flight are computed once" {
+@test "equal simultaneous requests are computed once" {
   start_server --slots 2
   upload
   requests=()
@@ -24,7 +24,7 @@ teardown() {
   [ "$(sed -n 's/^papilio_stage_seconds_count{stage="refine"} //p' "$body")" = 1 ]
 }
 
-@test "equal requests share one slot, even where no other may wait" {
+@test "equal requests share one slot, even with no place to wait" {
   start_server --slots 2 --queue 0
   upload
   requests=()
@@ -33,7 +33,7 @@ teardown() {
   [ "$codes" = '200 200 200 ' ]
 }
 
-@test "the memory store forgets what was used longest ago" {
+@test "the memory store drops the least recently used" {
   start_server --store-bytes 3000 # two of them, with what an entry takes, and not three
   for faces in 1 2 3; do
     "$papilio" refine "$coarse" -o "$BATS_TEST_TMPDIR/$faces.drc" --levels 0 --output.position_bits $((8 + faces))
@@ -49,7 +49,7 @@ teardown() {
   expect_problem 507 store_full
 }
 
-@test "the directory store outlives kill -9, and says so when it is full or damaged" {
+@test "the directory store survives kill -9, and reports when it is full or damaged" {
   store=$BATS_TEST_TMPDIR/meshes
   start_server --store "directory:$store"
   upload
@@ -92,7 +92,7 @@ put_folder_at() {
   mkdir "$1"
 }
 
-@test "the directory store: a POST replaces what is damaged, and a folder is no mesh" {
+@test "the directory store: a POST replaces a damaged mesh, and a folder is no mesh" {
   store=$BATS_TEST_TMPDIR/meshes
   start_server --store "directory:$store"
   file=$store/$(coarse_id | cut -c1-2)/$(coarse_id).drc
@@ -118,7 +118,7 @@ put_folder_at() {
   [ -e "$file/of_others" ]
 }
 
-@test "kill -9 in the middle of uploads leaves whole meshes only" {
+@test "kill -9 during uploads leaves only complete meshes" {
   store=$BATS_TEST_TMPDIR/meshes
   for round in 1 2 3; do
     start_server --store "directory:$store"
@@ -143,7 +143,7 @@ put_folder_at() {
   done
 }
 
-@test "a store that cannot be opened is refused in words, without its password" {
+@test "a store that cannot be opened is refused with a message, without its password" {
   run "$server" --port 0 --store directory:/proc/nothing
   [ "$status" = 1 ]
   [[ $output == *"/proc/nothing"* ]]
@@ -171,7 +171,7 @@ stop_redis() {
   redis_pid=
 }
 
-@test "Redis: shared by servers, with a life that use prolongs" {
+@test "Redis: servers share meshes, and use extends their lifetime" {
   redis_password='of/the@test'
   start_redis --requirepass "$redis_password"
   store=redis://:of%2Fthe%40test@127.0.0.1:$redis_port/3
@@ -206,7 +206,7 @@ stop_redis() {
   wait "$first_pid"
 }
 
-@test "Redis away: a clear 503 while it is, nothing lost once it is back" {
+@test "Redis: 503 during an outage, and no data lost afterwards" {
   start_redis
   start_server --store "redis://127.0.0.1:$redis_port"
   upload
@@ -248,7 +248,7 @@ stop_redis() {
   [ "$status" = 200 ]
 }
 
-@test "Redis: a POST replaces what is damaged or of another type" {
+@test "Redis: a POST replaces damaged values and values of another type" {
   start_redis
   start_server --store "redis://127.0.0.1:$redis_port"
   key=papilio:mesh:$(coarse_id)
@@ -306,7 +306,7 @@ is_written_anew() {
   [[ $status == 201 ]]
 }
 
-@test "Redis: after a failover writes come back without a restart, and nothing acknowledged is lost" {
+@test "Redis: after a failover writes succeed without a restart, and no acknowledged mesh is lost" {
   start_pair
   start_server --store "redis://127.0.0.1:$(<"$BATS_TEST_TMPDIR/proxy")"
   is_written_anew
@@ -342,7 +342,7 @@ is_written_anew() {
   eventually is_written_anew
 }
 
-@test "Redis full: refused by our limit and by its own" {
+@test "Redis full: refused by the server's limit and by Redis's own" {
   start_redis --maxmemory 3mb --maxmemory-policy noeviction
   start_server --store "redis://127.0.0.1:$redis_port" --store-bytes 1024
   upload

@@ -34,7 +34,7 @@ start_https() {
 # handshake ARGUMENT...: what openssl's client makes of the server.
 handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>&1; }
 
-@test "HTTPS answers the same bytes as HTTP, and only https is listened on" {
+@test "HTTPS answers the same bytes as HTTP, and no plain port is open" {
   start_server
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=3"
   mv "$body" "$BATS_TEST_TMPDIR/plain"
@@ -48,7 +48,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   cmp "$body" "$BATS_TEST_TMPDIR/plain"
 }
 
-@test "the client verifies by default, trusts --ca, and says what is wrong" {
+@test "the client verifies certificates by default, trusts --ca, and reports faults" {
   start_https
   cd "$BATS_TEST_TMPDIR"
   "$papilio" refine "$coarse" -o here.drc
@@ -66,13 +66,13 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   [ ! -e x.drc ]
 }
 
-@test "curl refuses it under another authority" {
+@test "curl refuses the certificate under another authority" {
   start_https
   run curl -sS --noproxy '*' --max-time 20 --cacert "$certificates/stranger.pem" "$url/health"
   [ "$status" = 60 ]
 }
 
-@test "TLS 1.2 and 1.3 with forward secrecy, nothing older or weaker, no renegotiation" {
+@test "TLS 1.2 and 1.3 with forward secrecy; older and weaker ciphers and renegotiation are refused" {
   start_https
   [[ $(handshake -tls1_3) == *'New, TLSv1.3'* ]]
   [[ $(handshake -tls1_2) == *'New, TLSv1.2, Cipher is ECDHE-ECDSA-'* ]]
@@ -88,7 +88,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   server_is_well
 }
 
-@test "certificate and key: both or neither, readable, of each other, without a passphrase" {
+@test "certificate and key are required together, readable, matching and without a passphrase" {
   run "$server" --port 0 --tls-cert "$certificates/server.pem"
   [ "$status" = 2 ]
   [[ $output == *--tls-key* ]]
@@ -110,13 +110,13 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   [[ $output == *--tls-key*locked.key* ]]
 }
 
-@test "the settings' environment twins" {
+@test "settings from the environment enable TLS" {
   PAPILIO_TLS_CERT=$certificates/server.pem PAPILIO_TLS_KEY=$certificates/server.key start_server
   [[ $url == https://* ]]
   server_is_well
 }
 
-@test "plain HTTP to it is closed without an answer" {
+@test "plain HTTP on the TLS port is closed without an answer" {
   start_https
   run curl -sS --noproxy '*' --max-time 20 "http://$address/health"
   [[ $status == 52 || $status == 56 ]] # nothing came, or a reset
@@ -124,7 +124,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   server_is_well
 }
 
-@test "clients that connect and say nothing are closed at their deadline, and others are served" {
+@test "silent clients are closed at their deadline, and others are served" {
   start_https --idle-seconds 2 --connections 4
   exec 5<>"/dev/tcp/127.0.0.1/$port" 6<>"/dev/tcp/127.0.0.1/$port"
   printf '\x16\x03\x01\x02\x00\x01' >&6 # a handshake that is never finished
@@ -135,14 +135,14 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   server_is_well
 }
 
-@test "one connection takes several requests" {
+@test "one connection serves several requests" {
   start_https
   connects=$(curl -sS --noproxy '*' --max-time 20 -w '%{num_connects}' -o /dev/null "$url/health" -o /dev/null "$url/v1/info" \
     -o /dev/null "$url/ready")
   [ "$connects" = 100 ]
 }
 
-@test "a client that goes away stops its work" {
+@test "a client that disconnects from HTTPS stops its work" {
   start_https --slots 1 --queue 0
   curl -sS --noproxy '*' -o /dev/null -H "$draco" -H 'X-Request-Id: leaver' --data-binary @"$coarse" \
     "$url/v1/refine?levels=6&flatness=1&growth=2&output.normals=true" 3>&- &
@@ -155,7 +155,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   eventually grep -q 'id=leaver .* status=499 .*code=cancelled' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "a stream's first level arrives while later ones are still to be made" {
+@test "a stream's first level arrives before later ones exist" {
   start_https
   mkfifo "$BATS_TEST_TMPDIR/stream"
   curl -sSN --noproxy '*' -o "$BATS_TEST_TMPDIR/stream" -H "$draco" -H 'Accept: multipart/mixed' -H 'X-Request-Id: leaver' \
@@ -172,7 +172,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   eventually grep -q 'id=leaver .*code=not_sent' "$BATS_FILE_TMPDIR/server.log"
 }
 
-@test "a stream is the same over HTTPS but for its boundary" {
+@test "a stream over HTTPS differs only in its boundary" {
   start_https
   request -H "$draco" -H 'Accept: multipart/mixed' --data-binary @"$coarse" "$url/v1/refine?levels=3"
   [ "$status" = 200 ]
@@ -183,7 +183,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   grep -aq "^Content-Length: $size" "$body"
 }
 
-@test "a body of 60 MB is read to its end" {
+@test "a body of 60 MB is read completely" {
   start_https --max-body-bytes 70000000
   { printf DRACO; head -c 60000000 /dev/zero; } >"$BATS_TEST_TMPDIR/large"
   request -H "$draco" --data-binary @"$BATS_TEST_TMPDIR/large" "$url/v1/refine"
