@@ -3,7 +3,7 @@ import { gzipSync } from 'node:zlib';
 
 import { defineConfig, type Plugin } from 'vite';
 
-// Of Draco's decoder only the WebAssembly is used: the same in JavaScript, and the smaller one for glTF alone, stay out.
+// Drops Draco's decoders in JavaScript and for glTF only: the page uses the WebAssembly decoder.
 function withoutUnusedDecoders(): Plugin {
   return {
     name: 'without-unused-decoders',

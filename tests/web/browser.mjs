@@ -234,7 +234,12 @@ export const drop = (page, name, bytes) => dropAll(page, [[name, bytes]]);
 
 /// Drops files together; each is a name and bytes.
 export async function dropAll(page, files) {
-  const transfer = await page.evaluateHandle(
+  await dropCarried(page, await carry(page, files));
+}
+
+/// Files in the page, ready for dropCarried; each is a name and bytes.
+export const carry = (page, files) =>
+  page.evaluateHandle(
     (dropped) => {
       const data = new DataTransfer();
       for (const [name, text] of dropped)
@@ -243,6 +248,8 @@ export async function dropAll(page, files) {
     },
     files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]),
   );
+
+export async function dropCarried(page, transfer) {
   await page.dispatchEvent('#stage', 'dragover', { dataTransfer: transfer });
   await page.dispatchEvent('#stage', 'drop', { dataTransfer: transfer });
 }

@@ -56,7 +56,7 @@ for (const name of [
   'cgal/diplodocus.off',
 ])
   for (const speed of [7, 3])
-    test(`${name} at speed ${speed}: both read the same mesh`, async () => {
+    test(`${name} at speed ${speed}: both decoders read the same mesh`, async () => {
       const file = join(folder, 'refined.drc');
       for (const levels of [0, 1, 2]) {
         const options = ['--levels', levels, '--output.speed', speed, '--json'];

@@ -40,7 +40,7 @@ async function watchFaces(page) {
   return () => page.evaluate(() => window.seen.map(Number));
 }
 
-test('it opens on a model, before and after in one picture, refined here and sent nowhere', async () => {
+test('the page opens on a model, before and after in one picture, refined without a request', async () => {
   const context = await shared.browser.newContext();
   const page = await context.newPage();
   const [posts, faults] = [[], []];
@@ -69,7 +69,7 @@ test('it opens on a model, before and after in one picture, refined here and sen
   assert.deepEqual([posts, faults], [[], []]);
 });
 
-test('it refines while the camera moves, and asks the server for nothing', async () => {
+test('the page refines while the camera moves, without a request', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await quiet(page);
@@ -94,7 +94,7 @@ test('it refines while the camera moves, and asks the server for nothing', async
   assert.deepEqual(faults, []);
 });
 
-test('figures and the camera in the form follow what is turned, in the elements that are there', async () => {
+test('figures and the camera in the form follow the rotation, in existing elements', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await quiet(page);
@@ -124,7 +124,7 @@ test('figures and the camera in the form follow what is turned, in the elements 
   assert.deepEqual(faults, []);
 });
 
-test('a frozen view keeps its refinement here too', async () => {
+test('a frozen view keeps its refinement in this browser', async () => {
   const { page } = await open();
   await madeHere(page);
   await page.getByLabel(/Freeze the view/).check();
@@ -137,7 +137,7 @@ test('a frozen view keeps its refinement here too', async () => {
   assert.equal(await facesOf(page, 'view'), faces);
 });
 
-test('what a frozen view saw is drawn: its frustum', async () => {
+test('the frustum of a frozen view is drawn', async () => {
   const { page } = await open();
   await madeHere(page);
   await page.locator('#stage').focus();
@@ -155,7 +155,7 @@ test('what a frozen view saw is drawn: its frustum', async () => {
   assert.ok((await orange()) < 1e-4);
 });
 
-test('detail is one slider, hard edges are kept or rounded', async () => {
+test('detail is one slider, and hard edges are kept or rounded', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await drop(page, 'cube.obj', cubeObj());
@@ -185,7 +185,7 @@ test('detail is one slider, hard edges are kept or rounded', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('the server refines when asked to, and what that costs is said', async () => {
+test('the server refines on request, and its costs are shown', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   const faces = await facesOf(page, 'view');
@@ -207,7 +207,7 @@ test('the server refines when asked to, and what that costs is said', async () =
   assert.deepEqual(faults, []);
 });
 
-test('a scene is refined here part by part, and its parts can be hidden', async () => {
+test('a scene is refined in this browser part by part, and its parts can be hidden', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await drop(page, 'two.glb', twoCubesGlb());
@@ -238,10 +238,22 @@ test('a scene is refined here part by part, and its parts can be hidden', async 
   await madeHere(page);
   assert.ok((await compare(page, await picture(page, 'view'), both)).drawn < 0.7 * drawn);
   await page.getByLabel('second', { exact: true }).check();
+  // So are its edges.
+  await page.getByLabel('Edges', { exact: true }).check();
+  await quiet(page);
+  const bothEdged = await picture(page, 'view');
+  await page.getByLabel('second', { exact: true }).uncheck();
+  await quiet(page);
+  const oneEdged = await picture(page, 'view');
+  const [drawnEdged, leftEdged] = [
+    (await compare(page, bothEdged, oneEdged)).drawn,
+    (await compare(page, oneEdged, bothEdged)).drawn,
+  ];
+  assert.ok(leftEdged < 0.7 * drawnEdged, `${leftEdged} of ${drawnEdged} with edges`);
   assert.deepEqual(faults, []);
 });
 
-test('what the kernel cannot do the server does', async () => {
+test('the server refines what the kernel cannot', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   const asked = page.waitForRequest(/refined\?/);
@@ -252,7 +264,7 @@ test('what the kernel cannot do the server does', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('a double click looks at what was clicked, from nearer', async () => {
+test('a double click moves the camera towards the point', async () => {
   const { page } = await open();
   await madeHere(page);
   await quiet(page);
@@ -282,7 +294,7 @@ test('a double click looks at what was clicked, from nearer', async () => {
   assert.ok(Math.abs(after / before - 0.5) < 0.01, `${after} of ${before}`);
 });
 
-test('what is under the cursor stays there while the wheel zooms', async () => {
+test('the point under the cursor stays while the wheel zooms', async () => {
   const { page } = await open();
   await madeHere(page);
   await drag(page, 5, 0); // the link has the camera once it has moved
@@ -320,7 +332,7 @@ test('what is under the cursor stays there while the wheel zooms', async () => {
   assert.ok(angle(ways[0], ways[1]) > 0.3 && angle(ways[0], ways[2]) > 0.3);
 });
 
-test('a fine mesh is refined to the picture, not to millions of faces', async () => {
+test('a fine mesh is refined for the picture, not to millions of faces', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await drop(page, 'elephant.obj', readFileSync(join(meshes, 'elephant2000.obj')));
@@ -336,7 +348,7 @@ for (const [what, options] of [
   ['dark', { colorScheme: 'dark' }],
   ['on a phone', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
 ])
-  test(`the page as it opens is as axe-core wants it: ${what}`, async () => {
+  test(`the initial page has no axe-core violations: ${what}`, async () => {
     const { page } = await open(options);
     await madeHere(page);
     await page.evaluate(readFileSync(axeSource, 'utf8'));

@@ -67,7 +67,7 @@ function assertAsCompared(text, { rms, hausdorff, diagonal }) {
   }
 }
 
-test('the distance of each level is what papilio compare says', async () => {
+test('the distance of each level equals the result of papilio compare', async () => {
   const { page, faults } = await open();
   await choose(page, original);
   for (const level of [last, 0, 1]) {
@@ -80,7 +80,7 @@ test('the distance of each level is what papilio compare says', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('the original is measured in whatever format it comes, also dropped beside the levels', async () => {
+test('an original of any format is measured, also dropped beside the levels', async () => {
   const { page, faults } = await open();
   const expected = compared(last);
   for (const extension of ['ply', 'stl', 'glb', 'off']) {
@@ -108,7 +108,7 @@ async function dropOn(page, selector, name, bytes) {
   for (const event of ['dragover', 'drop']) await page.dispatchEvent(selector, event, { dataTransfer: transfer });
 }
 
-test('the level that is shown is coloured by the distance, and again where another one is', async () => {
+test('the visible level is coloured by its distance, also after a switch of levels', async () => {
   const { page, faults } = await open();
   await page.locator('#wipe').fill('1000'); // all of the picture is what was opened
   await slider(page).fill('0');
@@ -142,7 +142,7 @@ test('the level that is shown is coloured by the distance, and again where anoth
   assert.deepEqual(faults, []);
 });
 
-test('a file that is no mesh is told of, and what was measured stays', async () => {
+test('a file that is not a mesh is reported, and the measured original stays', async () => {
   const { page } = await open();
   await choose(page, original);
   await measured(page);
@@ -161,7 +161,7 @@ test('a file that is no mesh is told of, and what was measured stays', async () 
   await measured(page);
 });
 
-test('only packed models are compared, each with an original of its own', async () => {
+test('only packed models are compared, each with its own original', async () => {
   const { page } = await open();
   await choose(page, original);
   await measured(page);
@@ -177,7 +177,7 @@ for (const [what, options] of [
   ['dark', { colorScheme: 'dark' }],
   ['on a phone', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
 ])
-  test(`the page of a comparison is as axe-core wants it: ${what}`, async () => {
+  test(`the page of a comparison has no axe-core violations: ${what}`, async () => {
     const { page } = await open(options);
     await choose(page, original);
     await measured(page);

@@ -48,7 +48,7 @@ async function open(options = {}) {
 const faces = (page, level) =>
   page.locator(`.panel[data-mode=coarse][data-faces="${levels[level].faces}"][data-state=done]`).waitFor();
 
-test('a packed model opens with all its levels, and says what each has and reaches', async () => {
+test('a packed model opens with all its levels, and shows their sizes and distances', async () => {
   const { page, faults } = await open();
   const rows = await page.locator('#packed tbody tr').allInnerTexts();
   assert.deepEqual(
@@ -81,7 +81,7 @@ function tableBegin() {
 /// Of the packed model, whose report counts them in its container.
 const curveBytes = () => glb.readUInt32LE(tableBegin() + 6);
 
-test('what decodes packed models is fetched with the first one', async () => {
+test('the decoder of packed models is fetched with the first one', async () => {
   const context = await shared.browser.newContext();
   const page = await context.newPage();
   const fetched = [];
@@ -99,7 +99,7 @@ test('what decodes packed models is fetched with the first one', async () => {
   assert.equal(modules(), 1);
 });
 
-test('the slider shows each level, from the base to all, and the picture follows', async () => {
+test('the slider shows each level, from the base to the last, and the picture follows', async () => {
   const { page, faults } = await open();
   await page.locator('#wipe').fill('1000'); // all of the picture is what was opened
   const pictures = [];
@@ -124,7 +124,7 @@ test('the slider shows each level, from the base to all, and the picture follows
   assert.deepEqual(faults, []);
 });
 
-test('what is refined is the level that is shown, in this browser', async () => {
+test('this browser refines the visible level', async () => {
   const { page } = await open();
   const asked = refinements(page);
   const posts = [];
@@ -146,7 +146,7 @@ test('what is refined is the level that is shown, in this browser', async () => 
   assert.deepEqual([asked, posts], [[], []]);
 });
 
-test('the server refines the level that is shown', async () => {
+test('the server refines the visible level', async () => {
   const { page, faults } = await open();
   await slider(page).fill('1');
   await faces(page, 1);
@@ -182,7 +182,7 @@ function withMoreLevels(count) {
   return made;
 }
 
-test('a model of very many faces opens with the levels that are shown well', async () => {
+test('a model with very many faces opens at a level that browsers show smoothly', async () => {
   const { page } = await open();
   const most = Math.floor(Math.log(300_000 / levels[0].faces) / Math.log(4));
   assert.ok(most > last);
@@ -191,7 +191,7 @@ test('a model of very many faces opens with the levels that are shown well', asy
   assert.equal(await page.locator('#packed output').innerText(), `${most} of ${most + 1}`);
 });
 
-test('Save gives a packed model of the levels that are shown', async () => {
+test('Save writes a packed model of the visible levels', async () => {
   const { page } = await open();
   await slider(page).fill('1');
   await faces(page, 1);
@@ -206,7 +206,7 @@ test('Save gives a packed model of the levels that are shown', async () => {
   assert.deepEqual([made.positions, made.triangles], [expected.positions, expected.triangles]);
 });
 
-test('other files hide the levels, and damaged ones leave what is open', async () => {
+test('other files hide the levels, and damaged ones leave the open mesh', async () => {
   const { page } = await open();
   const tell = page.locator('#alert-text');
   const broken = Buffer.from(glb);
@@ -231,7 +231,7 @@ for (const [what, options] of [
   ['dark', { colorScheme: 'dark' }],
   ['on a phone', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
 ])
-  test(`the page of a packed model is as axe-core wants it: ${what}`, async () => {
+  test(`the page of a packed model has no axe-core violations: ${what}`, async () => {
     const { page } = await open(options);
     await madeHere(page);
     await page.evaluate(readFileSync(axeSource, 'utf8'));

@@ -78,7 +78,7 @@ for (const [name, model] of Object.entries(models)) {
         writeFileSync(join(process.env.PAPILIO_SHOTS, `${name}-${level}.png`), pictures[level]);
   });
 
-  test(`${name}: what is refined in this browser has them`, async () => {
+  test(`${name}: a level refined in this browser keeps its colours`, async () => {
     const { page, faults } = await open(model, 0);
     await page.locator('#wipe').fill('0'); // all of the picture is what is refined
     await page.waitForFunction(
@@ -89,7 +89,7 @@ for (const [name, model] of Object.entries(models)) {
     assert.deepEqual(faults, []);
   });
 
-  test(`${name}: the server refines the level that is shown, with them, and what it is sent has no gaps`, async () => {
+  test(`${name}: the server refines the visible level with its colours, from a mesh without gaps`, async () => {
     const { page, faults } = await open(model, 1);
     const sent = [];
     page.on('request', (request) => {
@@ -115,7 +115,7 @@ for (const [name, model] of Object.entries(models)) {
     assert.deepEqual(faults, []);
   });
 
-  test(`${name}: Save gives a packed model of the levels that are shown`, async () => {
+  test(`${name}: Save writes a packed model of the visible levels`, async () => {
     const { page } = await open(model, 1);
     const [download] = await Promise.all([
       page.waitForEvent('download'),

@@ -53,7 +53,7 @@ async function requireTexture(page, mode) {
   assert.ok(orange > 0.03 && blue > 0.03, `orange ${orange}, blue ${blue}`);
 }
 
-test('every level is shown with its texture, in the words and bytes of the file', async () => {
+test('every level is shown with its texture, with the figures and bytes of the file', async () => {
   const { page, faults } = await open();
   await page.locator('#wipe').fill('1000'); // all of the picture is what was opened
   const rows = await page.locator('#packed tbody tr').allInnerTexts();
@@ -73,7 +73,7 @@ test('every level is shown with its texture, in the words and bytes of the file'
   assert.deepEqual(faults, []);
 });
 
-test('what is refined in this browser has the texture', async () => {
+test('a level refined in this browser keeps the texture', async () => {
   const { page, faults } = await open();
   await slider(page).fill('0');
   await faces(page, 0);
@@ -86,7 +86,7 @@ test('what is refined in this browser has the texture', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('the server refines the level that is shown, as a scene with the texture', async () => {
+test('the server refines the visible level, as a scene with the texture', async () => {
   const { page, faults } = await open();
   await slider(page).fill('1');
   await faces(page, 1);
@@ -100,7 +100,7 @@ test('the server refines the level that is shown, as a scene with the texture', 
   assert.deepEqual(faults, []);
 });
 
-test('Save gives a packed model of the levels that are shown, with its image', async () => {
+test('Save writes a packed model of the visible levels, with its image', async () => {
   const { page } = await open();
   await slider(page).fill('1');
   await faces(page, 1);
@@ -114,22 +114,23 @@ test('Save gives a packed model of the levels that are shown, with its image', a
   assert.deepEqual(unpack(saved, 10), unpack(packed, 1));
 });
 
-test('colours by the distance to the original take the place of the texture, and give it back', async () => {
+test('colours by the distance to the original replace the texture, and restore it', async () => {
   const { page, faults } = await open();
   await page.locator('#wipe').fill('1000');
+  const textured = await shares(page, await picture(page, 'view'));
   await page.getByLabel('Compare with the original…').setInputFiles(original);
   await page.locator('#compare-words').getByText('RMS distance').waitFor();
   const colour = page.getByLabel('Colour the model by this distance');
   await colour.check();
   await page.locator('.panel[data-mode=coarse] .legend').getByText('largest here').waitFor();
-  const { orange } = await shares(page, await picture(page, 'view'));
-  assert.ok(orange < 0.01, `${orange}`);
+  const { orange } = await shares(page, await picture(page, 'view')); // some: the largest distances are yellow
+  assert.ok(orange < textured.orange / 4, `${orange} of ${textured.orange}`);
   await colour.uncheck();
   await requireTexture(page, 'view');
   assert.deepEqual(faults, []);
 });
 
-test('a damaged image is told of, and what is open stays', async () => {
+test('a damaged image is reported, and the open mesh stays', async () => {
   const { page } = await open();
   const broken = Buffer.from(glb);
   broken.write('"index":7', broken.indexOf('"index":0'));

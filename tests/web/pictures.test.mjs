@@ -18,7 +18,7 @@ import {
   shades,
   tasksOf,
 } from './browser.mjs';
-import { compressedCubeGlb, quantizedCubeGlb } from './mesh_files.mjs';
+import { compressedCubeGlb, cubeObj, quantizedCubeGlb } from './mesh_files.mjs';
 
 const shared = serverAndBrowser();
 const open = (hash, options = {}) => openPage(shared.browser, shared.server.url, { hash, ...options });
@@ -43,7 +43,7 @@ async function openElephant(faces, look) {
   return { page, faults };
 }
 
-test('a shaded surface is smooth: its shades are not one for each face', async () => {
+test('a smooth surface has fewer steps of shade than a faceted one', async () => {
   const stepsOf = async (where, normals) => {
     const view = `view.error_pixels=8&output.normals=${normals}`;
     const { page } = await open(`mesh=knot&show=view&look=shaded&where=${where}&${view}`);
@@ -57,7 +57,7 @@ test('a shaded surface is smooth: its shades are not one for each face', async (
   }
 });
 
-test('the edges of 70,000 faces leave the shades of the surface to be seen', async () => {
+test('the edges of 70,000 faces leave the shading visible', async () => {
   const { page, faults } = await openElephant(70_000, 'wireframe');
   const edges = await shades(page, await picture(page, 'view'));
   await page.getByLabel('Shaded', { exact: true }).check();
@@ -68,7 +68,30 @@ test('the edges of 70,000 faces leave the shades of the surface to be seen', asy
   assert.deepEqual(faults, []);
 });
 
-test('no task of the page takes 50 ms of the processor while a mesh of 70,000 faces is turned and refined', async () => {
+test('edges are found in a worker; without it the surface is drawn, and the reason is shown', async () => {
+  const { page, faults } = await open('mesh=knot&show=coarse,view&as=wipe&where=here&look=wireframe');
+  await madeHere(page);
+  const finders = () => page.workers().filter((worker) => /edges_worker/.test(worker.url())).length;
+  assert.equal(finders(), 1);
+  await quiet(page);
+  const edges = await picture(page, 'view');
+  await page.getByLabel('Shaded', { exact: true }).check();
+  await quiet(page);
+  const shaded = await picture(page, 'view');
+  assert.ok((await compare(page, edges, shaded)).differing > 0.05, 'edges are drawn');
+  assert.deepEqual(faults, []);
+  const other = await shared.browser.newContext({ viewport: { width: 1000, height: 700 } });
+  const without = await other.newPage();
+  await without.route(/edges_worker/, (route) => route.abort());
+  await without.goto(`${shared.server.url}#mesh=knot&show=coarse,view&as=wipe&where=here&look=wireframe`);
+  await without.getByText('Edges cannot be drawn').waitFor();
+  await madeHere(without);
+  await without.evaluate(() => (document.getElementById('advanced').open = true));
+  await quiet(without);
+  assert.ok((await compare(without, await picture(without, 'view'), edges)).drawn > 0.05, 'the surface is drawn');
+});
+
+test('no task takes 50 ms of processor time while a mesh of 70,000 faces is rotated and refined', async () => {
   for (const look of ['shaded', 'wireframe']) {
     const { page } = await openElephant(70_000, look);
     const before = await facesOf(page, 'view');
@@ -96,7 +119,7 @@ test('no task of the page takes 50 ms of the processor while a mesh of 70,000 fa
   }
 });
 
-test('each background is another picture', async () => {
+test('each background changes the picture', async () => {
   const { page } = await open('mesh=knot&show=view&where=here');
   await madeHere(page);
   const seen = [];
@@ -108,7 +131,44 @@ test('each background is another picture', async () => {
   }
 });
 
-test('the wheel zooms to the cursor: what is under it stays there', async () => {
+for (const colorScheme of ['light', 'dark'])
+  test(`text is readable on each background: ${colorScheme}`, async () => {
+    const { page } = await open('mesh=knot&show=coarse,view&as=wipe&where=here', { colorScheme });
+    await madeHere(page);
+    for (const ground of ['Plain', 'Light', 'Dark', 'Studio']) {
+      await page.getByLabel(ground, { exact: true }).check();
+      const contrasts = await page.evaluate(() => {
+        const canvas = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
+        const lightness = (...layers) => {
+          for (const layer of layers) {
+            canvas.fillStyle = layer;
+            canvas.fillRect(0, 0, 1, 1);
+          }
+          const [r, g, b] = [...canvas.getImageData(0, 0, 1, 1).data].map((value) => {
+            const share = value / 255;
+            return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+          });
+          return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        };
+        const ground = getComputedStyle(document.getElementById('stage')).backgroundColor;
+        const page = getComputedStyle(document.documentElement).backgroundColor;
+        return [...document.querySelectorAll('.panel-head h2, .panel-head .caption')].map((text) => {
+          const { color, backgroundColor } = getComputedStyle(text);
+          // On the mesh as well, which is grey.
+          return Math.min(
+            ...[ground, '#8f9ba8'].map((behind) => {
+              const [ink, under] = [lightness(color), lightness(page, behind, backgroundColor)];
+              return (Math.max(ink, under) + 0.05) / (Math.min(ink, under) + 0.05);
+            }),
+          );
+        });
+      });
+      assert.equal(contrasts.length, 4);
+      for (const contrast of contrasts) assert.ok(contrast >= 4.5, `${ground}: ${contrasts.join(', ')}`);
+    }
+  });
+
+test('the wheel zooms to the cursor: the point under it stays', async () => {
   const { page } = await open('mesh=knot&show=view&where=here');
   await madeHere(page);
   await quiet(page);
@@ -129,7 +189,7 @@ test('the wheel zooms to the cursor: what is under it stays there', async () => 
   assert.ok(distance(first.target, second.target) > 0.02 * before, 'the target moves towards what is pointed at');
 });
 
-test('dragging turns the mesh, and selects no text', async () => {
+test('dragging rotates the mesh, and selects no text', async () => {
   const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const before = await picture(page, 'coarse');
@@ -145,7 +205,7 @@ test('dragging turns the mesh, and selects no text', async () => {
 });
 
 for (const width of [1000, 1440])
-  test(`the figures of four meshes are seen whole at ${width} pixels`, async () => {
+  test(`the figures of four meshes are fully visible at ${width} pixels`, async () => {
     const { page } = await openPage(shared.browser, shared.server.url, { viewport: { width, height: 900 } });
     await done(page);
     const cut = await page.evaluate(() =>
@@ -157,7 +217,7 @@ for (const width of [1000, 1440])
     assert.deepEqual(cut, [0, 0]);
   });
 
-test('on a phone the mesh is turned by a finger, and buttons leave it uncovered', async () => {
+test('on a phone a finger rotates the mesh, and buttons leave it uncovered', async () => {
   const { page } = await open('', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true });
   await madeHere(page);
   await quiet(page);
@@ -186,7 +246,50 @@ test('on a phone the mesh is turned by a finger, and buttons leave it uncovered'
   assert.ok((await compare(page, before, await picture(page, 'view'))).differing > 0.01, 'it was turned');
 });
 
-test('quantized and meshopt-compressed .glb files are opened and refined', async () => {
+test('on a phone in landscape the mesh is below its captions', async () => {
+  const { page } = await open('', { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true });
+  await madeHere(page);
+  await quiet(page);
+  const { x, y, width } = await page.locator('#panels').boundingBox();
+  const heads = await page.locator('.panel-head').all();
+  const bottoms = await Promise.all(heads.map(async (head) => head.boundingBox()));
+  const height = Math.max(...bottoms.map((box) => box.y + box.height)) - y;
+  await page.evaluate(() => {
+    for (const over of document.querySelectorAll('.panel, #wipe, #wipe-line')) over.style.visibility = 'hidden';
+  });
+  const beside = await page.screenshot({ clip: { x: x + 2, y: y + 2, width: width - 4, height: height - 2 } });
+  assert.ok((await compare(page, beside, beside)).drawn < 0.01);
+});
+
+test('the handle of the wipe is above all messages below the picture', async () => {
+  const { page } = await open('', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true });
+  await madeHere(page);
+  await drop(page, 'cube.obj', cubeObj());
+  await page.getByText('This looks mechanical').waitFor();
+  const [handle, strip] = [await page.locator('#wipe').boundingBox(), await page.locator('#cost').boundingBox()];
+  assert.ok(handle.y + handle.height <= strip.y, `${handle.y + handle.height} is below ${strip.y}`);
+});
+
+test('labels of a slider are at its ends', async () => {
+  const { page } = await open('');
+  await madeHere(page);
+  const slider = await page.locator('#detail').boundingBox();
+  const [coarse, fine] = [page.getByText('coarse', { exact: true }), page.getByText('fine', { exact: true })];
+  const edges = await page.evaluate(
+    (texts) =>
+      texts.map((text) => {
+        const range = document.createRange();
+        range.selectNodeContents(text);
+        const { left, right } = range.getBoundingClientRect();
+        return { left, right };
+      }),
+    await Promise.all([coarse, fine].map((text) => text.elementHandle())),
+  );
+  assert.ok(Math.abs(edges[0].left - slider.x) < 4, `${edges[0].left}`);
+  assert.ok(Math.abs(edges[1].right - slider.x - slider.width) < 4, `${edges[1].right}`);
+});
+
+test('quantized and meshopt-compressed .glb files open and are refined', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   for (const [name, bytes] of [

@@ -31,7 +31,7 @@ const tryAgain = (page) =>
     .click({ timeout: 1000 })
     .catch(() => {});
 
-test('a result beyond a limit is refused where it would be, with the number; the others come', async () => {
+test('a result beyond a limit is refused in its panel, with the number; the others arrive', async () => {
   const small = await startServer('--max-output-faces', '10000', '--max-body-bytes', '1200');
   try {
     const { page, faults } = await openPage(shared.browser, small.url, {
@@ -53,7 +53,7 @@ test('a result beyond a limit is refused where it would be, with the number; the
   }
 });
 
-test('a busy server is asked again by itself, and at once where the user wants it', async () => {
+test('a busy server is retried automatically, and at once on request', async () => {
   const small = await startServer('--slots', '1', '--queue', '0');
   let isOver = false;
   const mesh = readFileSync(join(meshes, 'bunny600.drc'));
@@ -92,7 +92,7 @@ test('a busy server is asked again by itself, and at once where the user wants i
   await small.stop();
 });
 
-test('a server that is gone is missed in words, and found again', async () => {
+test('a server that is down is reported, and found again', async () => {
   const first = await startServer();
   const port = new URL(first.url).port;
   const { page } = await openPage(shared.browser, first.url, { countRefusals: false });
@@ -110,7 +110,7 @@ test('a server that is gone is missed in words, and found again', async () => {
   }
 });
 
-test('a mesh that the store has given up is stored again', async () => {
+test('a mesh that the store has dropped is stored again', async () => {
   const { page } = await openPage(shared.browser, shared.server.url, {
     countRefusals: false,
   });
@@ -123,7 +123,7 @@ test('a mesh that the store has given up is stored again', async () => {
   await done(page);
 });
 
-test('where keys are asked for, the page asks for one, and the command leaves room for it', async () => {
+test('a server with keys makes the page request one, and the command has a placeholder for it', async () => {
   const key = '0123456789abcdef0123456789abcdef';
   const folder = mkdtempSync(join(tmpdir(), 'papilio-keys-'));
   const file = join(folder, 'keys');
@@ -147,7 +147,7 @@ test('where keys are asked for, the page asks for one, and the command leaves ro
   }
 });
 
-test('the server cannot be asked what it has: said, with a way to go on', async () => {
+test('a server without info is reported, with a button to retry', async () => {
   const page = await shared.browser.newPage();
   const gone = /\/v1\/|\.wasm/;
   await page.route(gone, (route) => route.abort());
@@ -164,7 +164,7 @@ for (const [what, options] of [
   ['dark', { colorScheme: 'dark' }],
   ['on a small screen', { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true }],
 ])
-  test(`names, contrast and roles are as axe-core wants them: ${what}`, async () => {
+  test(`names, contrast and roles have no axe-core violations: ${what}`, async () => {
     const { page, context } = await openPage(shared.browser, shared.server.url, options);
     await done(page);
     await page.locator('[id="parameter-levels"]').focus();
@@ -177,7 +177,7 @@ for (const [what, options] of [
     await context.close();
   });
 
-test('all of it can be reached and worked by keys alone, and the focus is seen', async () => {
+test('all of the page is usable by keys alone, and the focus is visible', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const reached = new Set();

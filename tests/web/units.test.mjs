@@ -43,7 +43,7 @@ async function partsFrom(bytes, chunkSize) {
   return parts;
 }
 
-test('parts are the same however the answer is cut, even where a body looks like a boundary', async () => {
+test('the parts do not depend on the chunks of the answer, even if a body resembles a boundary', async () => {
   for (let size = 1; size <= answer.length; ++size)
     assert.deepEqual(await partsFrom(answer, size), [
       ['a/b', '\r\n--b\r'],
@@ -51,14 +51,14 @@ test('parts are the same however the answer is cut, even where a body looks like
     ]);
 });
 
-test('an answer that ends too soon is an error, wherever it ends', async () => {
+test('a truncated answer is an error at every length', async () => {
   for (let length = 0; length < answer.length - 2; ++length)
     await assert.rejects(partsFrom(answer.subarray(0, length), 7), /ended too soon/, String(length));
   await assert.rejects(partsFrom(Buffer.from('hello\r\n'), 7), /not divided/);
   await assert.rejects(partsFrom(Buffer.from('--b\r\n\r\nx'), 7), /length/);
 });
 
-test('the boundary is found in all ways to write it', () => {
+test('the boundary is found in all valid spellings', () => {
   assert.equal(boundaryOf('multipart/mixed; boundary=abc-1'), 'abc-1');
   assert.equal(boundaryOf('multipart/mixed; charset=x; Boundary="a b"; c=d'), 'a b');
   assert.equal(boundaryOf('application/json'), null);
@@ -76,7 +76,7 @@ const defaults = {
   values: new Map([['levels', '3']]),
 };
 
-test('a state comes back from its link; what a link cannot mean is passed over', () => {
+test('a state is restored from its link; invalid fields of a link are ignored', () => {
   const state = {
     mesh: 'f'.repeat(64),
     modes: ['coarse', 'view'],
@@ -101,7 +101,7 @@ test('a state comes back from its link; what a link cannot mean is passed over',
   assert.deepEqual(strange, { ...earlier, mesh: 'a', modes: ['coarse'], values: new Map([['levels', '1']]) });
 });
 
-test('commands say what they mean to a shell, whatever a file is called', () => {
+test('commands are quoted for a shell, for any file name', () => {
   const base = 'http://host/';
   assert.equal(link.curlOf(base, null, { id: null, file: 'a', kind: 'draco' }, false), '');
   assert.match(
@@ -118,7 +118,7 @@ test('commands say what they mean to a shell, whatever a file is called', () => 
   }
 });
 
-test('values are judged as the server would', () => {
+test('values are validated as on the server', () => {
   const flatness = { name: 'flatness', type: 'numbers', min: -1, max: 1, least: 1, most: 10 };
   for (const text of ['0.8', '-1,1', '1e-3']) assert.equal(faultOf(flatness, text), null, text);
   for (const text of ['', '2', 'a', '0.8,', Array(11).fill('0').join()])
@@ -130,7 +130,7 @@ test('values are judged as the server would', () => {
   assert.equal(rangeOf({ name: 'w', type: 'number', min: 0, max: 1e18, unit: 'pixels' }), 'at least 0, pixels');
 });
 
-test('what chooses where to refine has no part in the uniform result, nor a view in the adaptive one', () => {
+test('the uniform result has no parameters of selection, and the adaptive one no view', () => {
   const values = new Map(
     Object.entries({
       tolerance: '1',
@@ -173,14 +173,14 @@ function square(n, height, side = 1) {
   return { positions: new Float32Array(positions), triangles: new Uint32Array(triangles) };
 }
 
-test('the distance between parallel squares is their height, of all faces', () => {
+test('the distance between parallel squares is their height, at all faces', () => {
   const { rms, largest, diagonal, ofFaces } = new MeasuredOriginal(square(1, 0)).measure(square(3, 0.25));
   for (const distance of [rms, largest, ...ofFaces]) assert.ok(Math.abs(distance - 0.25) < 1e-9, `${distance}`);
   assert.ok(Math.abs(diagonal - Math.SQRT2) < 1e-9);
   assert.equal(ofFaces.length, 18);
 });
 
-test('the distance is the larger of both directions, and that of a face is what lies nearest to it', () => {
+test('the distance is the larger of both directions; a face has the distance of its nearest points', () => {
   // From the small square to the large one it is 0. From 0..2 to 0..1 it is by x and y beyond 1.
   const small = square(2, 0);
   const large = square(8, 0, 2);
@@ -196,7 +196,7 @@ test('the distance is the larger of both directions, and that of a face is what 
   assert.ok(Math.max(...marked) > 1.3 && marked[0] < 0.01, `${marked}`);
 });
 
-test('points that no face has, and faces without an area, are not measured', () => {
+test('points without faces, and faces without area, are not measured', () => {
   const { positions, triangles } = square(1, 0);
   const more = {
     positions: new Float32Array([...positions, 9, 9, 9]),
@@ -246,7 +246,7 @@ test('each edge of a closed surface is drawn once', () => {
   assert.deepEqual(edges, edgesByTable(corners));
 });
 
-test('no edge is left out at borders, at one that three faces share, and where faces are turned', () => {
+test('no edge is missing at boundaries, at non-manifold edges, and between flipped faces', () => {
   const { corners, vertices } = gridOf(9, false);
   const fin = [...corners, 33, 34, vertices];
   const turned = fin.flatMap((_, i) =>

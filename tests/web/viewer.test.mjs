@@ -31,7 +31,7 @@ const shared = serverAndBrowser();
 /// Nothing is asked for any more: the camera has been at rest for longer than it takes to notice.
 const quiet = (page) => page.waitForTimeout(700);
 
-test('the sample is shown four ways: finer where refined, and drawn', async () => {
+test('the sample is shown in four modes: refined ones are finer, and all are drawn', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const [coarse, uniform, adaptive, view] = await Promise.all(
@@ -66,7 +66,7 @@ test('the sample is shown four ways: finer where refined, and drawn', async () =
   assert.deepEqual(faults, []);
 });
 
-test('the first picture takes one round trip, and levels are shown as they arrive', async () => {
+test('the first picture takes one round trip, and levels are shown on arrival', async () => {
   // Of what the service computes nothing comes but the coarse level of the uniform result.
   const first = 1400;
   const proxy = await startProxy(shared.server.url, (url) => (url.includes('/refined?') ? first : Infinity));
@@ -98,7 +98,7 @@ test('the first picture takes one round trip, and levels are shown as they arriv
   }
 });
 
-test('the sample and the parameters are asked for at once', async () => {
+test('the sample and the parameters are fetched in parallel', async () => {
   const page = await shared.browser.newPage();
   const events = [];
   page.on('request', (request) => events.push(`> ${new URL(request.url()).pathname}`));
@@ -112,7 +112,7 @@ test('the sample and the parameters are asked for at once', async () => {
   await page.close();
 });
 
-test('when the camera rests, exactly one request asks for the new view', async () => {
+test('a camera at rest sends exactly one request for the new view', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await quiet(page);
@@ -142,7 +142,7 @@ test('when the camera rests, exactly one request asks for the new view', async (
   assert.deepEqual(faults, []);
 });
 
-test('a newer view aborts the older request; the last good mesh stays until then', async () => {
+test('a newer view aborts the older request; the last good mesh stays until it arrives', async () => {
   const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await quiet(page);
@@ -175,7 +175,7 @@ test('a newer view aborts the older request; the last good mesh stays until then
   assert.notEqual(await facesOf(page, 'view'), faces);
 });
 
-test('a file that is no mesh is refused in words, and what was open stays', async () => {
+test('a file that is not a mesh is refused with a message, and the open mesh stays', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   for (const [name, bytes, words] of [
@@ -201,7 +201,7 @@ test('a file that is no mesh is refused in words, and what was open stays', asyn
   );
 });
 
-test('files of all formats are opened, and sent as Draco, scenes as they are', async () => {
+test('files of all formats open, and are sent as Draco, scenes unchanged', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const bunny = readFileSync(join(meshes, 'bunny600.drc'));
@@ -275,7 +275,7 @@ test('a scene is shown with its textures in every panel, and saved as .glb', asy
   assert.deepEqual([...faults, ...again.faults], []);
 });
 
-test('a metal shows what is round it', async () => {
+test('a metal reflects its surroundings', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await page.getByLabel('Shaded').check();
@@ -298,7 +298,7 @@ test('a metal shows what is round it', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('a .gltf file is opened with the files that it names, or misses them by name', async () => {
+test('a .gltf file opens with its referenced files, or names the missing ones', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const files = cubeGltf();
@@ -329,7 +329,7 @@ test('a .gltf file is opened with the files that it names, or misses them by nam
   assert.deepEqual(faults, []);
 });
 
-test('the command shown gives the bytes that are on screen', async () => {
+test('the displayed command returns the bytes on screen', async () => {
   const { page } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await page.locator('[data-mode=view] pre').waitFor();
@@ -347,7 +347,7 @@ test('the command shown gives the bytes that are on screen', async () => {
   }
 });
 
-test('a target that is not reached is said at the mesh', async () => {
+test('an unreached target is reported at the mesh', async () => {
   const hash = (levels) => `mesh=mug&show=adaptive&levels=${levels}&tolerance=0.0001`;
   const { page } = await openPage(shared.browser, shared.server.url, { hash: hash(1) });
   await done(page, ['adaptive']);
@@ -361,7 +361,7 @@ test('a target that is not reached is said at the mesh', async () => {
   await page.waitForFunction(() => document.querySelector('.panel[data-mode=adaptive] .note').textContent === '');
 });
 
-test('a frozen view keeps its refinement while it is looked at from elsewhere', async () => {
+test('a frozen view keeps its refinement when the camera moves', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url, {
     hash: 'mesh=mug&show=view&look=wireframe&levels=3&view.error_pixels=0.5&view.edge_pixels=0',
   });
@@ -432,7 +432,7 @@ test('a link restores the whole state', async () => {
   assert.equal(await copy.page.locator('.panel').count(), 1);
 });
 
-test('colours by level and by distance to uniform, with legends that say what they mean', async () => {
+test('colours by level and by distance to uniform have legends with units', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const shaded = await picture(page, 'adaptive');
@@ -463,7 +463,7 @@ test('colours by level and by distance to uniform, with legends that say what th
   assert.deepEqual([...faults, ...alone.faults], []);
 });
 
-test('one mesh alone, and side by side again', async () => {
+test('a mesh is enlarged, and restored side by side', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   await page.getByRole('button', { name: 'Show Adaptive alone' }).click();
@@ -477,14 +477,17 @@ test('one mesh alone, and side by side again', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('every parameter of the server has a control, which says what it takes', async () => {
+test('every parameter of the server has a control that states its range', async () => {
   const { page, faults } = await openPage(shared.browser, shared.server.url);
   await done(page);
   const info = await (await fetch(`${shared.server.url}v1/info`)).json();
   const ofScenes = ['output.compress', 'split_instances'];
-  for (const { name } of info.parameters) {
+  for (const { name, choices } of info.parameters) {
     const controls = ofScenes.includes(name) ? 0 : 1;
     assert.equal(await page.locator(`[id="parameter-${name}"]`).count(), controls, name);
+    if (choices === undefined || controls === 0) continue;
+    const label = await page.locator(`label[for="parameter-${name}"]`).innerText();
+    assert.ok(!choices.some((choice) => label.startsWith(choice)), `${label}: what is chosen, not a choice`);
   }
   const made = refinements(page);
   // Out of range: said at the control, nothing asked.
@@ -531,7 +534,7 @@ test('every parameter of the server has a control, which says what it takes', as
   assert.deepEqual(faults, []);
 });
 
-test('keys turn the mesh about the way up, whichever that is', async () => {
+test('keys rotate the mesh about any up axis', async () => {
   const hash = 'mesh=wheel&show=view&levels=1&view.up=0,0,1&camera=60,10,20,0,0,0';
   const { page, faults } = await openPage(shared.browser, shared.server.url, { hash });
   await done(page, ['view']);

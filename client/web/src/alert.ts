@@ -1,4 +1,4 @@
-// What the page says when something is wrong, above everything.
+// Alert above the whole page.
 
 import { button, element, find } from './elements';
 
@@ -7,7 +7,7 @@ export class Alert {
     find('alert-close').addEventListener('click', () => this.hide());
   }
 
-  /// `again`: offers to try it again.
+  /// Shows a problem. `again`: function behind a button to retry.
   show(words: string, again?: () => void): void {
     find('alert').hidden = false;
     find('alert-text').replaceChildren(element('span', '', words));

@@ -1,4 +1,4 @@
-// Asks for what panels are to show: of the server, or of the kernel here.
+// Asker: chooses what panels request, from the server or from the kernel in this browser.
 
 import { cameraOf, type Lens } from './camera';
 import type { Here } from './here';
@@ -9,26 +9,26 @@ import { queryOf, type Values } from './parameters';
 import { forMoving, noteFor, valuesFor } from './requests';
 import type { Info } from './service';
 
-/// What of the page decides what is asked for.
+/// State of the page that decides the requests.
 export interface Page {
   state: State;
   look: Look;
-  /// What the camera sees now.
+  /// View of the current camera.
   view: Frozen;
 }
 
 export class Asker {
-  /// There is something other to ask: the kernel has the mesh.
+  /// Function called when requests change because the kernel has the mesh.
   onChange: () => void = () => {};
-  /// Of the server; null until it has come.
+  /// Info of the server; null until it arrives.
   info: Info | null = null;
   #mesh: OpenMesh | null = null;
-  /// Undefined until it is known; null where this browser cannot refine the mesh.
+  /// Mesh in the kernel. Undefined while this is unknown; null if this browser cannot refine the mesh.
   #here: Here | null | undefined = null;
 
   constructor(private readonly page: () => Page) {}
 
-  /// Also where the user has chosen again who refines.
+  /// Opens the mesh in the kernel if this browser is to refine; call it again when this choice changes.
   set mesh(mesh: OpenMesh) {
     const isKnown = mesh === this.#mesh && this.#here !== null;
     this.#mesh = mesh;
@@ -41,13 +41,13 @@ export class Asker {
     });
   }
 
-  /// Asks for what this panel is for.
+  /// Requests the mesh of a panel.
   ask(panel: Panel): void {
     const { mode } = panel;
     const { state } = this.page();
     const note = noteFor(mode, state.values);
     if (this.#mesh === null) return;
-    // What this browser may refine is not sent anywhere before that is known. A scene is in one picture at a time.
+    // Nothing is sent until it is known whether this browser can refine. A scene can be in only one picture.
     const isUndecided = mode === 'view' && state.where === 'here' && this.#here === undefined;
     if (isUndecided && this.#mesh.isScene) return;
     if (mode === 'coarse' || isUndecided) panel.ask(this.#mesh, { query: null, make: null, note });
@@ -55,19 +55,20 @@ export class Asker {
       panel.ask(this.#mesh, { query: this.queryFor(mode), make: mode === 'view' ? this.#maker() : null, note });
   }
 
-  /// Whether the picture is refined here, as the camera moves.
+  /// Returns whether the picture is refined in this browser, as the camera moves.
   get isLive(): boolean {
     return this.#maker() !== null && this.page().state.frozen === null;
   }
 
-  /// Of the server. There must be a mesh, and info.
+  /// Returns the server's query; needs a mesh and info.
   queryFor(mode: Mode): string {
     const { state, view } = this.page();
     const values = valuesFor(mode, state.values, state.frozen ?? view, this.#mesh!.decoded.faces);
     return queryOf(values, this.info!.parameters);
   }
 
-  /// Where this browser can and the user wants it so: for looks that need no more than the surface.
+  /// Returns the function that refines in this browser. Null if the user chose the server, if this browser cannot
+  /// refine the mesh, or if the look needs levels or distances.
   #maker(): Request['make'] {
     const { state, look, view } = this.page();
     const here = this.#here;
@@ -79,7 +80,7 @@ export class Asker {
   }
 }
 
-/// How the picture is made, by what the user has set.
+/// Returns how the picture is projected, by the parameters.
 export function lensOf(values: Values): Lens {
   const up = (values.get('view.up') ?? '').split(',').map(Number);
   const isUp = up.length === 3 && up.every(Number.isFinite) && up.some((x) => x !== 0);

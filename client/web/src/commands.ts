@@ -1,4 +1,4 @@
-// The commands that ask for what is on screen, to be copied.
+// Commands that request the meshes on screen, to be copied.
 
 import { button, element } from './elements';
 import { curlOf, type Mode } from './link';
@@ -12,7 +12,7 @@ export interface Command {
   text: string;
 }
 
-/// `id`: of the stored mesh, or null. `queryFor`: null for the mesh as it is.
+/// Returns the commands. `id`: id of the stored mesh, or null. `queryFor`: returns null for the mesh as it is.
 export function commandsFor(
   mesh: OpenMesh,
   id: string | null,
@@ -33,7 +33,7 @@ export function commandRows(commands: Command[]): HTMLElement[] {
     row.dataset.mode = mode;
     const head = element('div', 'command-head');
     const code = element('pre', '', text);
-    code.tabIndex = 0; // it scrolls
+    code.tabIndex = 0; // the element scrolls
     const copyButton = button('Copy', (pressed) => void copy(text, pressed, code));
     copyButton.setAttribute('aria-label', `Copy the command for ${title.toLowerCase()}`);
     head.append(element('span', '', title), copyButton);
@@ -42,8 +42,8 @@ export function commandRows(commands: Command[]): HTMLElement[] {
   });
 }
 
-/// Says on the button how it went. Where the browser does not let the page copy (over HTTP from another machine), selects
-/// `shown` instead.
+/// Copies a text, and shows on the button whether it succeeded. If the browser forbids copying (over HTTP from another
+/// machine), selects `shown` instead.
 export async function copy(text: string, pressed: HTMLButtonElement, shown?: HTMLElement): Promise<void> {
   const before = pressed.textContent;
   try {

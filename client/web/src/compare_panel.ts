@@ -1,4 +1,4 @@
-// The distance of the level that is shown to an original that the user has: measured, in words, and as colours.
+// Panel of the distance between the visible level and an original that the user opens: in numbers and as colours.
 
 import { button, element } from './elements';
 import { takeDrops } from './input';
@@ -10,7 +10,7 @@ import type { DistanceColours } from './pictures';
 const significant = (n: number) => String(Number(n.toPrecision(3)));
 
 export class ComparePanel {
-  /// Other colours are to be shown.
+  /// Function called when the colours change.
   onColours: () => void = () => {};
   onProblem: (error: unknown) => void = () => {};
   #mesh: OpenMesh | null = null;
@@ -18,7 +18,7 @@ export class ComparePanel {
   #measured: { mesh: OpenMesh; original: Original; distances: TwoSided } | null = null;
   #colours: DistanceColours | null = null;
   #isMeasuring = false;
-  /// How many originals were chosen, and how often there were other colours.
+  /// Count of openings and closings, by which an outdated opening is recognized.
   #opening = 0;
   #colouring = 0;
   readonly #section = element('section');
@@ -26,7 +26,7 @@ export class ComparePanel {
   readonly #coloured = element('input');
   readonly #more = element('div', 'compare-more');
 
-  /// `place`: what it is added to, where the original may be dropped.
+  /// `place`: element that receives the panel, and on which the original may be dropped.
   constructor(place: HTMLElement) {
     const title = element('h2', '', 'Distance to the original');
     title.id = 'compare-title';
@@ -52,19 +52,19 @@ export class ComparePanel {
     this.#forget();
   }
 
-  /// Of the level that is shown; null: none are wanted, or there.
+  /// Returns the colours of the visible level; null if they are switched off or not measured.
   get colours(): DistanceColours | null {
     return this.#colours;
   }
 
-  /// A file has been opened, whose original is not known; hides the panel where that is no packed model.
+  /// Starts with a new file, whose original is unknown; hides the panel unless the file is a packed model.
   show(mesh: OpenMesh): void {
     this.#mesh = mesh.packed && mesh;
     this.#section.hidden = mesh.packed === null;
     this.#forget();
   }
 
-  /// Another level of the same model is shown.
+  /// Switches to another level of the same model.
   follow(mesh: OpenMesh): void {
     this.#mesh = mesh;
     void this.#measure();
@@ -82,7 +82,7 @@ export class ComparePanel {
     return [label, picked];
   }
 
-  /// What is compared with stays so unless all goes well.
+  /// Opens an original; keeps the previous one on failure.
   async #open(files: File[]): Promise<void> {
     if (this.#mesh === null) return;
     const opening = ++this.#opening;
@@ -116,7 +116,7 @@ export class ComparePanel {
     this.#tellColours();
   }
 
-  /// Measures the level that is shown, one at a time.
+  /// Measures the visible level, one level at a time.
   async #measure(): Promise<void> {
     if (this.#isMeasuring) return;
     this.#isMeasuring = true;
@@ -130,7 +130,7 @@ export class ComparePanel {
         const distances = await original.measure(mesh.geometry);
         this.#measured = { mesh, original, distances };
       } catch (error) {
-        if (original !== this.#original) continue; // it was closed
+        if (original !== this.#original) continue; // the original was closed
         this.#forget();
         this.onProblem(error);
       }

@@ -1,17 +1,17 @@
-// What most users set: how fine, what becomes of hard edges, who refines, and how it is shown.
+// Main controls: fineness, hard edges, place of refinement, and look.
 
 import { addChoice, find } from './elements';
 import { arrangementTitles, groundTitles, lookTitles, placeTitles } from './defaults';
 import { arrangements, grounds, type Look, looks, places, type State } from './link';
 import type { Values } from './parameters';
 
-/// Pixels of error at the ends of the slider.
+/// Ends of the slider, in pixels of error.
 const [coarsest, finest] = [16, 0.125];
 
 export class Controls {
-  /// The user has chosen something other of these.
+  /// Function called when the user chooses another of these.
   onChoice: (choice: Partial<Pick<State, 'arrangement' | 'look' | 'where' | 'ground'>>) => void = () => {};
-  /// The user has set a parameter; null: back to its default.
+  /// Function called when the user sets a parameter; null: its default.
   onParameter: (name: string, value: string | null) => void = () => {};
   #detail = find<HTMLInputElement>('detail');
 
@@ -32,7 +32,7 @@ export class Controls {
       radio('grounds', 'ground', ground, groundTitles[ground], () => this.onChoice({ ground }));
   }
 
-  /// `look`: as it is shown; `isScene`: of which levels do not come one by one.
+  /// Shows the choices. `look`: the current look; `isScene`: whether levels arrive only with the result.
   show({ arrangement, where, ground, values }: State, look: Look, isScene: boolean): void {
     const chosen = new Map<string, string>([
       ['as', arrangement],
@@ -55,7 +55,7 @@ export class Controls {
   }
 }
 
-/// Neither, where the shape was named in another way.
+/// Returns the choice for hard edges; empty if neither matches the shape.
 function edgesOf(values: Values): string {
   const shape = values.get('shape') ?? 'auto';
   return shape === 'auto' ? 'keep' : shape === 'organic' ? 'round' : '';

@@ -1,4 +1,4 @@
-// What the page shows before anybody has chosen, and the words for what can be chosen.
+// Initial state of the page, and labels of its choices.
 
 import type { Arrangement, Ground, Look, Place, State } from './link';
 
@@ -15,7 +15,7 @@ export const arrangementTitles: Record<Arrangement, string> = {
 export const placeTitles: Record<Place, string> = { here: 'in this browser', server: 'on the server' };
 export const groundTitles: Record<Ground, string> = { page: 'Plain', light: 'Light', dark: 'Dark', studio: 'Studio' };
 
-/// What a user who has set nothing sees.
+/// State of a page on which the user has set nothing.
 export const defaults: State = {
   mesh: 'knot',
   modes: ['coarse', 'view'],

@@ -1,34 +1,38 @@
-// How far a mesh is from the uniform result.
+// Distance of a mesh from the uniform result, measured in a worker: the search tree of a large mesh takes longer than a
+// frame.
 
-import { type BufferGeometry, Vector3 } from 'three';
+import type { BufferGeometry } from 'three';
 
-/// How long the page may be busy at a time, in milliseconds.
-const slice = 12;
+import { positionsOf } from './bounds';
+import type { FromDistanceMeasurer, ToDistanceMeasurer } from './distance_worker';
 
-/// [faces of `mesh`]: the largest distance of those vertices of `uniform` that are nearest to the face, in the mesh's
-/// units. Rejects with an AbortError once the signal says so.
+/// Returns [faces of `mesh`] the largest distance of the vertices of `uniform` that are nearest to the face, in mesh
+/// units. Rejects with an AbortError once the signal is aborted.
 export async function distancesToUniform(
   mesh: BufferGeometry,
   uniform: BufferGeometry,
   signal: AbortSignal,
 ): Promise<Float32Array> {
-  const { MeshBVH } = await import('three-mesh-bvh');
-  const searched = mesh.clone(); // the tree reorders its triangles
-  searched.deleteAttribute('normal');
-  const tree = new MeshBVH(searched, { indirect: true });
-  const distances = new Float32Array(mesh.index!.count / 3);
-  const position = uniform.getAttribute('position');
-  const point = new Vector3();
-  const nearest = { point: new Vector3(), distance: 0, faceIndex: 0 };
-  let until = performance.now() + slice;
-  for (let v = 0; v < position.count; ++v) {
-    tree.closestPointToPoint(point.fromBufferAttribute(position, v), nearest);
-    distances[nearest.faceIndex] = Math.max(distances[nearest.faceIndex], nearest.distance);
-    if (v % 64 === 0 && performance.now() > until) {
-      await new Promise((resolve) => setTimeout(resolve));
-      signal.throwIfAborted();
-      until = performance.now() + slice;
-    }
+  signal.throwIfAborted();
+  const worker = new Worker(new URL('./distance_worker.ts', import.meta.url), {
+    type: 'module',
+    name: 'papilio-distance',
+  });
+  try {
+    return await new Promise<Float32Array>((resolve, reject) => {
+      signal.addEventListener('abort', () => reject(signal.reason as Error), { once: true });
+      worker.onmessage = ({ data }: MessageEvent<FromDistanceMeasurer>) => resolve(data);
+      worker.onerror = ({ message }) =>
+        reject(new Error(`The distance cannot be measured: ${message || 'its script could not be loaded'}.`));
+      const triangles = mesh.index!.array;
+      const message: ToDistanceMeasurer = {
+        positions: positionsOf(mesh),
+        triangles: triangles instanceof Uint32Array ? triangles : Uint32Array.from(triangles),
+        points: positionsOf(uniform),
+      };
+      worker.postMessage(message);
+    });
+  } finally {
+    worker.terminate();
   }
-  return distances;
 }

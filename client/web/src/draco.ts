@@ -1,5 +1,5 @@
-// Draco in the browser: the decoder that comes with three.js, in workers; the encoder of draco3d, which is fetched when
-// a mesh of another format is opened.
+// Draco in the browser: three.js's decoder in workers, and draco3d's encoder, fetched when a mesh of another format is
+// opened.
 
 import encoderWasmUrl from 'draco3d/draco_encoder.wasm?url';
 import encoderUrl from 'draco3d/draco_encoder_nodejs.js?url';
@@ -11,14 +11,14 @@ import { Problem } from './service';
 
 let loader = new DRACOLoader();
 
-/// Fetches the decoder, beside whatever else is fetched. Rejects with a Problem where it cannot be had now.
+/// Fetches the decoder in parallel with other files. Rejects with a Problem if it is not available.
 export async function fetchDecoder(): Promise<DRACOLoader> {
   const fetching = loader;
   try {
-    // What it waits for itself: where that fails, all that it is given to decode fails as well.
+    // Awaits the decoder's own promise: if it fails, all later decoding fails too.
     await (fetching.preload() as DRACOLoader & { decoderPending: Promise<void> }).decoderPending;
   } catch {
-    if (loader === fetching) loader = new DRACOLoader(); // for the next try
+    if (loader === fetching) loader = new DRACOLoader(); // for the next attempt
     throw new Problem('unreachable', 'The server cannot be reached: the Draco decoder did not come.', {
       retryAfter: 2,
     });
@@ -26,12 +26,12 @@ export async function fetchDecoder(): Promise<DRACOLoader> {
   return fetching;
 }
 
-/// The mesh with its positions and, where it has them, its normals. Rejects with a Problem where the bytes are no mesh.
+/// Decodes a mesh: positions and, if present, normals. Rejects with a Problem if the bytes are not a mesh.
 export async function decodeDraco(draco: Bytes): Promise<Decoded> {
   const decoder = await fetchDecoder();
   const geometry = await new Promise<BufferGeometry>((resolve, reject) => {
     const refuse = () => reject(new Problem('mesh_not_draco', 'This is no Draco mesh, or it is damaged.'));
-    decoder.parse(draco.slice().buffer, resolve, refuse); // the copy goes to the worker for good
+    decoder.parse(draco.slice().buffer, resolve, refuse); // the copy is transferred to the worker
   });
   if (geometry.index === null || geometry.index.count === 0 || !geometry.hasAttribute('position'))
     throw new Problem('mesh_unsupported', 'There are no triangles in this file, only points.');
@@ -47,7 +47,7 @@ export async function decodeDraco(draco: Bytes): Promise<Decoded> {
   };
 }
 
-// What of draco3d's encoder is used.
+// Part of draco3d's encoder that is called.
 interface Encoder {
   SetSpeedOptions(encoding: number, decoding: number): void;
   SetEncodingMethod(method: number): void;
@@ -99,8 +99,8 @@ async function loadEncoder(): Promise<EncoderModule> {
   return globalThis.DracoEncoderModule!({ locateFile: () => encoderWasmUrl });
 }
 
-/// What is encoded: positions [vertices * 3] and triangles [faces * 3 vertices], and if they are there texture coordinates
-/// [vertices * 2], colours and normals [vertices * 3].
+/// Surface to encode: positions [vertices * 3], triangles [faces * 3 vertices]; optional texture coordinates [vertices
+/// * 2], colours and normals [vertices * 3].
 export interface Surface {
   positions: Float32Array;
   triangles: Uint32Array;
@@ -109,12 +109,12 @@ export interface Surface {
   normals?: Float32Array;
 }
 
-/// As a Draco mesh, positions on a grid of 16 bits. Its attributes have the unique ids 0, 1, 2 in the order of the surface's.
-/// `box`: of the grid; left out: of the positions. Surfaces that meet need one grid.
+/// Encodes a Draco mesh with positions on a grid of 16 bits. Its attributes have the unique ids 0, 1, 2 in the
+/// surface's order. `box`: box of the grid; default: box of the positions. Adjoining surfaces need one grid.
 export async function encode(surface: Surface, box?: Box3): Promise<Bytes> {
   const { positions, triangles, texcoords, colours, normals } = surface;
   encoderModule ??= loadEncoder();
-  encoderModule.catch(() => (encoderModule = undefined)); // the next try fetches it again
+  encoderModule.catch(() => (encoderModule = undefined)); // the next attempt fetches it again
   const module = await encoderModule;
   const builder = new module.MeshBuilder();
   const mesh = new module.Mesh();

@@ -1,4 +1,4 @@
-// What a panel draws of a mesh: shaded, with its edges, or each face in a colour of its own.
+// Drawings of a mesh: shaded, with its edges, or with a colour for each face.
 
 import {
   BufferAttribute,
@@ -18,7 +18,8 @@ import {
   Vector4,
 } from 'three';
 
-import { edgesOf } from './mesh_edges';
+import { measureBounds, positionsOf } from './bounds';
+import { findEdges, foundEdges } from './edges';
 import type { Decoded } from './model';
 
 function material(options: MeshStandardMaterialParameters): MeshStandardMaterial {
@@ -33,36 +34,55 @@ function material(options: MeshStandardMaterialParameters): MeshStandardMaterial
   });
 }
 
-// Each is for all pictures: a material that comes and goes has its shaders compiled again each time.
+// Materials shared by all pictures: a new material has its shaders compiled again.
 const smoothSurface = material({ color: 0xa9bccd, flatShading: false });
 const facets = material({ color: 0xa9bccd, flatShading: true });
 const colouredFacets = material({ vertexColors: true, flatShading: true, toneMapped: false });
 const lines = new LineBasicMaterial({ color: 0x16344f, transparent: true });
 
-/// A scene with its materials. A mesh has facets as they are; it is smooth where it has normals.
+/// Returns a scene with its materials, or a mesh: faceted, or smooth if it has normals.
 export function shaded({ geometry, scene }: Decoded): Object3D {
   if (scene !== null) return scene;
+  if (geometry.boundingSphere === null) measureBounds(geometry);
   return new Mesh(geometry, geometry.hasAttribute('normal') ? smoothSurface : facets);
 }
 
+/// Returns the shaded mesh with its edges, except those not found yet.
 export function withEdges(decoded: Decoded): Object3D {
   const all = new Group().add(shaded(decoded));
-  const { scene } = decoded;
-  const meshes: Mesh[] = [];
-  scene?.traverse((object) => isPlain(object) && meshes.push(object));
-  const isPlainScene =
-    scene !== null && meshes.reduce((sum, { geometry }) => sum + facesOf(geometry), 0) === decoded.faces;
-  if (!isPlainScene) return all.add(drawnEdges(decoded.geometry));
-  for (const mesh of meshes) {
-    const edges = drawnEdges(mesh.geometry);
-    edges.matrixAutoUpdate = false;
-    edges.matrix.copy(mesh.matrixWorld);
-    all.add(edges);
+  for (const edged of edgedIn(decoded)) {
+    const edges = drawnEdges(edged);
+    if (edges) all.add(edges);
   }
   return all;
 }
 
-/// Whether it is drawn as its geometry is.
+/// Finds edges; once resolved, withEdges draws all of them.
+export async function findEdgesOf(decoded: Decoded): Promise<void> {
+  await Promise.all(edgedIn(decoded).map(({ geometry }) => findEdges(geometry)));
+}
+
+export function hasFoundEdges(decoded: Decoded): boolean {
+  return edgedIn(decoded).every(({ geometry }) => foundEdges(geometry) !== null);
+}
+
+/// Geometry whose edges are drawn.
+interface Edged {
+  geometry: BufferGeometry;
+  /// Mesh with its transformation and visibility; null: none.
+  mesh: Mesh | null;
+}
+
+/// Returns the meshes of a scene if they are all of it; otherwise all triangles as one.
+function edgedIn(decoded: Decoded): Edged[] {
+  const meshes: Mesh[] = [];
+  decoded.scene?.traverse((object) => isPlain(object) && meshes.push(object));
+  const isAll = meshes.reduce((sum, { geometry }) => sum + facesOf(geometry), 0) === decoded.faces;
+  if (decoded.scene === null || !isAll) return [{ geometry: decoded.geometry, mesh: null }];
+  return meshes.map((mesh) => ({ geometry: mesh.geometry as BufferGeometry, mesh }));
+}
+
+/// Returns whether an object is drawn as its geometry is.
 function isPlain(object: Object3D): object is Mesh {
   if (!(object instanceof Mesh) || object instanceof SkinnedMesh || object instanceof InstancedMesh) return false;
   const geometry = object.geometry as BufferGeometry;
@@ -71,19 +91,25 @@ function isPlain(object: Object3D): object is Mesh {
 
 const facesOf = (geometry: BufferGeometry) => Math.floor(geometry.index!.count / 3);
 
-/// Fainter where they are close to each other in the picture, so that the surface is seen through them: those of a scene
-/// as the first that is drawn.
-function drawnEdges(geometry: BufferGeometry): LineSegments {
-  const ends = edgesOf(geometry.index!.array, geometry.getAttribute('position').count);
+/// Returns the edges, fainter if they are close together in the picture, so that the surface stays visible; a scene's
+/// edges are all as faint as the first ones drawn. Null while they are not found yet.
+function drawnEdges({ geometry, mesh }: Edged): LineSegments | null {
+  const ends = foundEdges(geometry);
+  if (ends === null) return null;
   const edges = new BufferGeometry();
   edges.setAttribute('position', geometry.getAttribute('position'));
   edges.setIndex(new BufferAttribute(ends, 1));
+  if (geometry.boundingSphere === null) measureBounds(geometry);
   edges.boundingSphere = geometry.boundingSphere;
   const made = new LineSegments(edges, lines);
+  if (mesh !== null) {
+    made.matrixAutoUpdate = false;
+    made.matrix.copy(mesh.matrixWorld);
+    Object.defineProperty(made, 'visible', { get: () => isShown(mesh) });
+  }
   const length = medianLength(geometry.getAttribute('position'), ends);
   const centre = new Vector3();
   made.onBeforeRender = (renderer, _, camera) => {
-    if (edges.boundingSphere === null) edges.computeBoundingSphere();
     centre.copy(edges.boundingSphere!.center).applyMatrix4(made.matrixWorld).applyMatrix4(camera.matrixWorldInverse);
     const perspective = camera.projectionMatrix.elements[11] === 0 ? 1 : Math.max(-centre.z, 1e-30);
     const high = renderer.getCurrentViewport(new Vector4()).w;
@@ -94,7 +120,12 @@ function drawnEdges(geometry: BufferGeometry): LineSegments {
   return made;
 }
 
-/// Of a few hundred edges.
+/// Returns whether an object and its ancestors are visible.
+function isShown(object: Object3D | null): boolean {
+  return object === null || (object.visible && isShown(object.parent));
+}
+
+/// Returns the median length of a few hundred edges.
 function medianLength(
   position: { getX(i: number): number; getY(i: number): number; getZ(i: number): number },
   ends: Uint32Array,
@@ -114,34 +145,39 @@ function medianLength(
   return lengths.sort((a, b) => a - b)[lengths.length >> 1] ?? 0;
 }
 
-/// `shares` [faces]: 0 to 1, each face's place on the ramp.
+/// Returns the mesh with coloured faces. `shares` [faces]: position of each face on the ramp, 0 to 1.
 export function coloured(geometry: BufferGeometry, shares: ArrayLike<number>): Object3D {
-  const position = geometry.getAttribute('position');
+  const points = positionsOf(geometry);
   const corners = geometry.index!.array;
   const positions = new Float32Array(3 * corners.length);
   const colours = new Float32Array(3 * corners.length);
-  const table = Array.from({ length: 256 }, (_, i) => new Color(rampColour(i / 255)));
+  const table = Float32Array.from(
+    Array.from({ length: 256 }, (_, i) => new Color(rampColour(i / 255)).toArray()).flat(),
+  );
   for (let i = 0, to = 0; i < corners.length; ++i, to += 3) {
-    const { r, g, b } = table[Math.round(255 * Math.min(Math.max(shares[Math.floor(i / 3)], 0), 1))];
-    colours[to] = r;
-    colours[to + 1] = g;
-    colours[to + 2] = b;
-    positions[to] = position.getX(corners[i]);
-    positions[to + 1] = position.getY(corners[i]);
-    positions[to + 2] = position.getZ(corners[i]);
+    const colour = 3 * Math.round(255 * Math.min(Math.max(shares[Math.floor(i / 3)], 0), 1));
+    const point = 3 * corners[i];
+    colours[to] = table[colour];
+    colours[to + 1] = table[colour + 1];
+    colours[to + 2] = table[colour + 2];
+    positions[to] = points[point];
+    positions[to + 1] = points[point + 1];
+    positions[to + 2] = points[point + 2];
   }
   const faces = new BufferGeometry();
   faces.setAttribute('position', new BufferAttribute(positions, 3));
   faces.setAttribute('color', new BufferAttribute(colours, 3));
+  if (geometry.boundingSphere === null) measureBounds(geometry);
+  faces.boundingSphere = geometry.boundingSphere;
   const made = new Mesh(faces, colouredFacets);
   made.userData.isColoured = true;
   return made;
 }
 
-// From dark blue by green to yellow, even in lightness, so that it is read without telling hues apart.
+// Dark blue through green to yellow, with even steps of lightness: readable without distinguishing hues.
 const ramp = ['#3b4a8f', '#31688e', '#21908c', '#35b779', '#90d743', '#fde725'].map((text) => new Color(text));
 
-/// As #rrggbb.
+/// Returns a colour of the ramp as #rrggbb.
 export function rampColour(share: number): string {
   const at = Math.min(Math.max(share, 0), 1) * (ramp.length - 1);
   const below = Math.min(Math.floor(at), ramp.length - 2);

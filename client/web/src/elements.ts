@@ -1,6 +1,6 @@
-// Making elements of the page.
+// Elements of the page.
 
-/// An element with a class and a text.
+/// Makes an element with a class and a text.
 export function element<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag,
   className = '',
@@ -19,7 +19,7 @@ export function button(text: string, onClick: (button: HTMLButtonElement) => voi
   return made;
 }
 
-/// A labelled checkbox or radio button at the end of `parent`.
+/// Adds a labelled checkbox or radio button at the end of `parent`.
 export function addChoice(
   parent: HTMLElement,
   attributes: { type: string; name: string; value: string },
@@ -34,13 +34,13 @@ export function addChoice(
   parent.append(label);
 }
 
-/// One of the page, which must have it.
+/// Returns an element that the page must have.
 export function find<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
-/// Gives an element these children, which have no listeners. What is equal to a child at the same place stays, and of
-/// the others the texts and attributes that differ are set: new elements cost the layout of the page much more.
+/// Sets the children of an element; they must have no listeners. Keeps equal children at their places; of others, sets
+/// only the texts and attributes that differ: new elements cost far more layout.
 export function setChildren(parent: Element, wanted: Iterable<Node>): void {
   let own = parent.firstChild;
   for (const node of wanted) {

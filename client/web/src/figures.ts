@@ -1,4 +1,4 @@
-// What the meshes on screen cost, beside each other: numbers, and bars.
+// Table and bars that compare the costs of the meshes on screen.
 
 import { element } from './elements';
 import type { Panel, Shown } from './panel';
@@ -9,10 +9,10 @@ const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 }
 const significant = (n: number | undefined) => (n === undefined ? null : String(Number(n.toPrecision(2))));
 const milliseconds = (n: number | undefined) => (n === undefined ? null : n.toFixed(n < 10 ? 1 : 0));
 
-/// That came from the server for this mesh.
+/// Returns the bytes received from the server for a mesh.
 export const bytesOf = (shown: Shown) => shown.encoded?.bytes.length ?? 0;
 
-/// `uniformFaces`: of the uniform result; `uniformBytes`: null where it was not fetched.
+/// Returns table and bars. `uniformFaces`: faces of the uniform result; `uniformBytes`: its bytes, null if not fetched.
 export function figures(panels: Panel[], uniformFaces: number, uniformBytes: number | null): Node[] {
   const shown = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
   if (shown.length === 0) return [];
@@ -58,7 +58,7 @@ export function figures(panels: Panel[], uniformFaces: number, uniformBytes: num
     row.append(cell, ...values.map((text) => element('td', '', text ?? '–')));
   }
   const bars = element('div', 'bars');
-  bars.setAttribute('aria-hidden', 'true'); // the table has it in numbers
+  bars.setAttribute('aria-hidden', 'true'); // the table has the numbers
   const most = Math.max(...shown.map((one) => one.shown.faces));
   const mostBytes = Math.max(...shown.map((one) => bytesOf(one.shown)));
   for (const { panel, shown: one } of shown) {

@@ -1,29 +1,40 @@
-// Where to look from so that all of a mesh is in the picture.
+// Camera that has all of a mesh in the picture.
 
 import { type BufferGeometry, type Sphere, Vector3 } from 'three';
 
+import { positionsOf } from './bounds';
 import type { Lens } from './camera';
 import type { Camera } from './link';
 
-/// From slightly above, to the right of the front. `aspect`: of the narrowest picture, width to height.
-export function framed(geometry: BufferGeometry, { center }: Sphere, aspect: number, lens: Lens): Camera {
-  const position = geometry.getAttribute('position');
-  const high = 0.9 * Math.tan((lens.fovY * Math.PI) / 360); // the caption takes the rest
+/// Returns a camera slightly above the mesh, to the right of its front. `aspect`: width to height of the narrowest
+/// picture. `share`: share of the picture's height, in its middle, for the mesh.
+export function framed(
+  geometry: BufferGeometry,
+  { center }: Sphere,
+  aspect: number,
+  share: number,
+  lens: Lens,
+): Camera {
+  const positions = positionsOf(geometry);
+  const high = share * Math.tan((lens.fovY * Math.PI) / 360);
   const wide = 0.95 * aspect * Math.tan((lens.fovY * Math.PI) / 360);
   const up = new Vector3(...lens.up).normalize();
   const axes = [new Vector3(0, 0, 1), new Vector3(1, 0, 0)];
-  const front = axes.find((axis) => Math.abs(axis.dot(up)) < 0.8)!; // with y up, z
+  const front = axes.find((axis) => Math.abs(axis.dot(up)) < 0.8)!; // z, if y is up
   const side = up.clone().cross(front).normalize();
   const towards = side.clone().cross(up).addScaledVector(side, 0.55).normalize().addScaledVector(up, 0.4).normalize();
   const right = up.clone().cross(towards).normalize();
   const above = towards.clone().cross(right);
-  // From where the last vertex comes into the picture.
+  // Smallest distance that has all vertices in the picture.
+  const [x, y, z] = center.toArray();
   let distance = 0;
-  const point = new Vector3();
-  for (let v = 0; v < position.count; ++v) {
-    point.fromBufferAttribute(position, v).sub(center);
-    const across = Math.max(Math.abs(point.dot(above)) / high, Math.abs(point.dot(right)) / wide);
-    distance = Math.max(distance, point.dot(towards) + across);
+  for (let i = 0; i + 2 < positions.length; i += 3) {
+    const [dx, dy, dz] = [positions[i] - x, positions[i + 1] - y, positions[i + 2] - z];
+    const across = Math.max(
+      Math.abs(dx * above.x + dy * above.y + dz * above.z) / high,
+      Math.abs(dx * right.x + dy * right.y + dz * right.z) / wide,
+    );
+    distance = Math.max(distance, dx * towards.x + dy * towards.y + dz * towards.z + across);
   }
   const eye = towards.multiplyScalar(distance).add(center);
   return { eye: eye.toArray(), target: center.toArray() };

@@ -1,4 +1,4 @@
-// The camera moves to another place, in a moment that the eye can follow.
+// Animation of the camera to another place.
 
 import { Vector3 } from 'three';
 
@@ -6,8 +6,8 @@ import type { Camera } from './link';
 
 const duration = 250; // milliseconds
 
-/// Calls `move` for each frame from `from` to `to`; at once to the end where the user wants no motion. Returns what stops
-/// it.
+/// Calls `move` for each frame between `from` and `to`; only for `to` if the user prefers no motion. Returns a function
+/// that stops the animation.
 export function glide(from: Camera, to: Camera, move: (camera: Camera) => void): () => void {
   if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
     move(to);

@@ -1,4 +1,4 @@
-// A .gltf file and the buffers and images that it names, as one .glb.
+// Packing of a .gltf file with its buffers and images as one .glb.
 
 import type { Bytes } from './model';
 import { Problem } from './service';
@@ -22,8 +22,8 @@ const mediaTypes: Record<string, string> = {
 };
 const padded = (length: number) => (length + 3) & ~3;
 
-/// `files`: what was dropped or picked with it, by whose names the document's addresses are found. Rejects with a Problem
-/// where a buffer is missing; an image that is missing stays named.
+/// Packs a document. `files`: files dropped or picked with it, found by name. Rejects with a Problem if a buffer is
+/// missing; a missing image remains a reference.
 export async function packGlb(gltf: File, files: readonly File[]): Promise<Bytes> {
   let document: Document;
   try {

@@ -9,7 +9,7 @@ import type { Values } from './parameters';
 import { decodedScene } from './scene';
 import { Problem, type Summary } from './service';
 
-/// What was made here.
+/// Result of a refinement.
 export interface Made {
   decoded: Decoded;
   summary: Summary;
@@ -21,11 +21,11 @@ let refiner: Promise<Refiner> | null = null;
 function theRefiner(): Promise<Refiner> {
   const workers = Math.min(4, Math.max(1, (navigator.hardwareConcurrency ?? 2) - 1));
   refiner ??= Refiner.start({ workers });
-  refiner.catch(() => (refiner = null)); // for the next try
+  refiner.catch(() => (refiner = null)); // for the next attempt
   return refiner;
 }
 
-/// Where the camera is, which each mesh of a scene sees in its own coordinates.
+/// Parameters of the camera, which each mesh of a scene has in its own coordinates.
 const places = ['eye', 'target', 'up', 'fov_y', 'viewport', 'projection', 'near'].map((name) => `view.${name}`);
 
 export class Here {
@@ -37,7 +37,7 @@ export class Here {
     this.#parts = parts;
   }
 
-  /// Null where something in it is for the server: what a skeleton moves, or many instances.
+  /// Opens a mesh or scene; null if parts of it need the server: skinned meshes, or many instances.
   static async of(decoded: Decoded): Promise<Here | null> {
     const root = decoded.scene ?? new Mesh(decoded.geometry, new MeshStandardMaterial());
     root.updateMatrixWorld(true);
@@ -48,13 +48,13 @@ export class Here {
     return null;
   }
 
-  /// Whether it can do what is asked for: a budget of faces is for all meshes of a scene together, and where the picture
-  /// begins is for each the same.
+  /// Returns whether the kernel supports the parameters. In a scene of several meshes, a budget of faces and a near
+  /// plane apply to all meshes together.
   does(values: Values): boolean {
     return this.#parts.all.length === 1 || !['max_faces', 'view.near'].some((name) => values.has(name));
   }
 
-  /// What this camera sees, in a picture of so many pixels. Rejects with KernelError.
+  /// Refines for a camera and a picture's width and height. Rejects with KernelError.
   async refine(values: Values, camera: Camera, pixels: [number, number]): Promise<Made> {
     const began = performance.now();
     const rest = [...values].filter(([name]) => !places.includes(name) && !name.startsWith('output.'));
@@ -94,7 +94,7 @@ export class Here {
   }
 }
 
-/// In the words of the page; null where the server can do what this browser could not.
+/// Returns the problem in the page's words; null if the server can refine where this browser failed.
 export function problemOf(error: unknown): Problem | null {
   if (!(error instanceof KernelError)) return new Problem('unexpected', String(error));
   if (error.fault !== 'bad-parameter') return null;
@@ -112,7 +112,7 @@ function decodedMesh(geometry: Decoded['geometry']): Decoded {
   };
 }
 
-/// A copy of the scene in which these meshes have these geometries; materials and textures are the scene's.
+/// Returns a copy of the scene with other geometries for these meshes; it shares materials and textures.
 function withGeometries(scene: Object3D, meshes: Mesh[], geometries: Mesh['geometry'][]): Object3D {
   const own: Object3D[] = [];
   const copies: Object3D[] = [];

@@ -1,9 +1,10 @@
-// Keys and files.
+// Keys and files as input.
 
 import { find } from './elements';
 import type { Stage } from './stage';
 
-/// While the picture has the focus: arrows turn it, with Shift they move it, + and - zoom, Home shows all of it.
+/// Handles keys while the picture has the focus: arrows rotate, Shift and arrows move, + and - zoom, Home shows the
+/// whole mesh.
 export function listenToKeys(surface: HTMLElement, stage: Stage): void {
   const turn = Math.PI / 24;
   const step = 1 / 20;
@@ -26,8 +27,8 @@ export function listenToKeys(surface: HTMLElement, stage: Stage): void {
   });
 }
 
-/// Files that are picked, or dropped anywhere on the page but where something else takes them. `onFiles`: with none where
-/// what was dropped is no file.
+/// Handles files that are picked, or dropped on the page outside elements with takeDrops. `onFiles`: called with an
+/// empty array if no files were dropped.
 export function listenToFiles(onFiles: (files: File[]) => void): void {
   const picked = find<HTMLInputElement>('file');
   picked.addEventListener('change', () => {
@@ -50,7 +51,7 @@ export function listenToFiles(onFiles: (files: File[]) => void): void {
   });
 }
 
-/// Files that are dropped on an element, which takes them before the page does.
+/// Handles files dropped on an element, instead of the page.
 export function takeDrops(element: HTMLElement, onFiles: (files: File[]) => void): void {
   element.addEventListener('dragover', (event) => event.preventDefault());
   element.addEventListener('drop', (event) => {

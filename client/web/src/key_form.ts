@@ -1,12 +1,12 @@
-// The access key, where the server wants one.
+// Form for the access key of a server.
 
 import { find } from './elements';
 import { setKey } from './service';
 
-/// `onKey`: the user has given another, which is sent from now on.
+/// `onKey`: function called after the user has entered another key, which later requests send.
 export function listenToKey(onKey: () => void): void {
   const key = find<HTMLInputElement>('key');
-  find('key-form').addEventListener('submit', (event) => event.preventDefault()); // Enter is a change too
+  find('key-form').addEventListener('submit', (event) => event.preventDefault()); // Enter also triggers change
   key.addEventListener('change', () => {
     setKey(key.value.trim());
     onKey();

@@ -1,11 +1,12 @@
-// In which level a vertex came. Positions of one request lie on one grid, so that a vertex keeps its place to the bit.
+// Level in which each vertex first appears. All positions of a request lie on one grid, so that they stay
+// bit-identical.
 
 import type { BufferGeometry } from 'three';
 
 export class LevelsOfVertices {
   #first = new Map<string, number>();
 
-  /// To be called for each level in turn, the coarse mesh first.
+  /// Adds the next level; the coarse mesh comes first.
   add(mesh: BufferGeometry, level: number): void {
     const position = mesh.getAttribute('position');
     for (let v = 0; v < position.count; ++v) {
@@ -14,7 +15,7 @@ export class LevelsOfVertices {
     }
   }
 
-  /// [faces]: the level of the youngest of the three corners, which is the one that the face comes from.
+  /// Returns [faces] the level of the newest of the three corners, which is the level of the face.
   ofFaces(mesh: BufferGeometry): Uint8Array {
     const position = mesh.getAttribute('position');
     const corners = mesh.index!.array;

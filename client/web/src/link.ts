@@ -1,4 +1,4 @@
-// The whole state of the page in its address, behind the #; and the commands that ask for what is on screen.
+// State of the page in the fragment of its address; and the commands that request the meshes on screen.
 
 import { type Encoded, extensionOf, mediaTypes } from './model';
 import type { Values } from './parameters';
@@ -9,16 +9,16 @@ export type Mode = (typeof modes)[number];
 export const looks = ['shaded', 'wireframe', 'level', 'distance'] as const;
 export type Look = (typeof looks)[number];
 
-/// One picture with a wipe between two meshes, or a panel for each mesh.
+/// Arrangement: one picture with a wipe between two meshes, or a panel for each mesh.
 export const arrangements = ['wipe', 'panels'] as const;
 export type Arrangement = (typeof arrangements)[number];
 
-/// Who refines for the view: this browser, or the server.
+/// Place of refinement for the view: this browser, or the server.
 export const places = ['here', 'server'] as const;
 export type Place = (typeof places)[number];
 
 export const grounds = ['page', 'light', 'dark', 'studio'] as const;
-/// What is behind the mesh.
+/// Background of the mesh.
 export type Ground = (typeof grounds)[number];
 
 type Triple = [number, number, number];
@@ -28,30 +28,30 @@ export interface Camera {
   target: Triple;
 }
 
-/// A view that is kept: where from, and the pixels of its picture.
+/// Fixed view: a camera, and the size of its picture in pixels.
 export interface Frozen extends Camera {
   pixels: [number, number];
 }
 
 export interface State {
-  /// A sample's name or a stored mesh's id; empty: a mesh that only this page has.
+  /// Name of a sample, or id of a stored mesh; empty: a mesh that only this page has.
   mesh: string;
-  /// Those shown; of a wipe the first and the last.
+  /// Visible modes; with a wipe, the first and the last.
   modes: Mode[];
   arrangement: Arrangement;
   look: Look;
   where: Place;
   ground: Ground;
-  /// Null: as opening a mesh has it.
+  /// Camera; null: the initial one of the mesh.
   camera: Camera | null;
-  /// The view that the refinement is for, where that is not the camera's.
+  /// View of the refinement; null: the camera's.
   frozen: Frozen | null;
   values: Values;
 }
 
 const isId = (text: string) => /^[0-9a-f]{64}$/.test(text);
 
-/// Whether the mesh is a stored one, not a sample.
+/// Returns whether a name is the id of a stored mesh, not a sample.
 export const isStored = (mesh: string): boolean => isId(mesh);
 
 export function toHash(state: State): string {
@@ -65,8 +65,8 @@ export function toHash(state: State): string {
   return fields.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('&');
 }
 
-/// What a hash says, over `defaults`. What it cannot mean is passed over. Where it says anything, the parameters are its
-/// alone.
+/// Returns the state in a fragment, with `defaults` for the rest. Ignores invalid fields. With a field `show`, the
+/// default parameters are not used.
 export function fromHash(hash: string, defaults: State): State {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
   const state: State = { ...defaults, values: new Map(defaults.values) };
@@ -78,7 +78,7 @@ export function fromHash(hash: string, defaults: State): State {
   const chosen = <T extends string>(name: string, from: readonly T[], otherwise: T) =>
     from.find((one) => one === fields.get(name)) ?? otherwise;
   state.look = chosen('look', looks, defaults.look);
-  // Links of earlier versions do not say these, and showed what they meant so.
+  // Links of earlier versions lack these fields, whose values were fixed.
   const isEarlier = fields.has('show');
   state.arrangement = chosen('as', arrangements, isEarlier ? 'panels' : defaults.arrangement);
   state.where = chosen('where', places, isEarlier ? 'server' : defaults.where);
@@ -98,7 +98,7 @@ function cameraText({ eye, target }: Camera): string {
   return [...eye, ...target].map(shortest).join(',');
 }
 
-/// Null where the text is not so many numbers.
+/// Returns the numbers in a text; null unless there are `count`.
 function numbersOf(text: string | null, count: number): number[] | null {
   const numbers = (text ?? '').split(',').map(Number);
   return text !== null && numbers.length === count && numbers.every(Number.isFinite) ? numbers : null;
@@ -108,13 +108,13 @@ function cameraOf(numbers: number[] | null): Camera | null {
   return numbers && { eye: numbers.slice(0, 3) as Triple, target: numbers.slice(3, 6) as Triple };
 }
 
-/// Six digits are more than a screen shows.
+/// Returns a number with six digits, more than a screen shows.
 export function shortest(number: number): string {
   return String(Number(number.toPrecision(6)));
 }
 
-/// What to type to get the same bytes. `query`: null for the mesh as it is. `id`: null for one that the server could not
-/// store; then `file` is its name on the user's disk.
+/// Returns the command that fetches the same bytes. `query`: null for the mesh as it is. `id`: null if the server could
+/// not store the mesh; then `file` is its name on the user's disk.
 export function curlOf(
   base: string,
   query: string | null,

@@ -1,4 +1,4 @@
-// The mesh that is open: its bytes, its picture, and who refines it.
+// Open mesh: its bytes, its decoded form, and its refinement.
 
 import { RemoteMesh } from 'papilio/client';
 import type { BufferGeometry } from 'three';
@@ -13,11 +13,11 @@ export class OpenMesh {
   #here: Promise<Here | null> | null = null;
 
   constructor(
-    /// A file's or a sample's.
+    /// Name of a file or sample.
     readonly name: string,
     readonly encoded: Encoded,
     readonly decoded: Decoded,
-    /// The level of a packed model that this is; null: no packed model.
+    /// Level of a packed model that is this mesh; null: no packed model.
     readonly packed: PackedLevel | null = null,
   ) {}
 
@@ -25,30 +25,30 @@ export class OpenMesh {
     return this.decoded.geometry;
   }
 
-  /// A packed model with materials or colours is one, too.
+  /// Returns whether the mesh is a scene; packed models with materials or colours are scenes.
   get isScene(): boolean {
     return this.decoded.scene !== null;
   }
 
-  /// What the server is sent.
+  /// Returns the format for the server.
   get sentKind(): 'draco' | 'scene' {
     return this.isScene ? 'scene' : 'draco';
   }
 
-  /// As RemoteMesh has it.
+  /// Returns the id on the server, as RemoteMesh does.
   get id(): Promise<string | null> {
     return this.#theRemote().then((remote) => remote.id);
   }
 
-  /// Its refinement in this browser; null where this browser cannot.
+  /// Returns the mesh in the kernel; null if this browser cannot refine it.
   get here(): Promise<Here | null> {
     this.#here ??= Here.of(this.decoded).catch(() => null);
     return this.#here;
   }
 
-  /// Refines it by the server. Calls onLevel for each level of a mesh as it comes, the coarse mesh first; for a scene,
-  /// whose levels would each bring its images again, with the result alone. Rejects with a Problem, or with an AbortError
-  /// once the signal says so.
+  /// Refines by the server. Calls onLevel for each level of a mesh, the coarse mesh first; for a scene only with the
+  /// result, as each level would repeat its images. Rejects with a Problem, or with an AbortError once the signal is
+  /// aborted.
   async refine(query: string, onLevel: (level: Level) => void, signal: AbortSignal): Promise<Summary> {
     const remote = await this.#theRemote();
     signal.throwIfAborted();
@@ -58,12 +58,12 @@ export class OpenMesh {
     return fine.summary;
   }
 
-  /// Made when it is needed: a level of a packed model is encoded for it.
+  /// Returns the mesh on the server; encodes a level of a packed model with the first call.
   #theRemote(): Promise<RemoteMesh> {
     if (this.#remote !== null) return this.#remote;
     const sent = this.packed?.encode() ?? Promise.resolve(this.encoded.bytes);
     this.#remote = sent.then((bytes) => new RemoteMesh(client, { type: mediaTypes[this.sentKind], bytes }));
-    this.#remote.catch(() => (this.#remote = null)); // the next request tries again
+    this.#remote.catch(() => (this.#remote = null)); // the next request retries
     return this.#remote;
   }
 
@@ -72,7 +72,7 @@ export class OpenMesh {
     this.decoded.dispose();
   }
 
-  /// Also of the packed model that it is a level of.
+  /// Frees the mesh and the packed model it is a level of.
   close(): void {
     this.dispose();
     this.packed?.model.close();

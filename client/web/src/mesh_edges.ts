@@ -1,10 +1,10 @@
-// The edges of a mesh, to be drawn as lines.
+// Edges of a mesh, for drawing as lines.
 
-/// The ends of each edge; `corners` [faces * 3] are vertices below `vertices`. An edge of two faces comes once where they
-/// run along it in opposite directions, as on an oriented surface; one between two vertices of borders may come twice.
-/// O(F), without a table of edges: inside a surface each neighbour of a vertex is met once on the way out and once on the
-/// way in, so that their marks cancel.
-export function edgesOf(corners: ArrayLike<number>, vertices: number): Uint32Array {
+/// Returns the ends of each edge; `corners` [faces * 3] are vertices below `vertices`. An edge of two faces appears
+/// once if they traverse it in opposite directions, as on an oriented surface; an edge between two boundary vertices
+/// may appear twice. O(F), without a table of edges: inside a surface, each neighbour of a vertex is reached by one
+/// outgoing and one incoming side, so that their marks cancel.
+export function edgesOf(corners: ArrayLike<number>, vertices: number): Uint32Array<ArrayBuffer> {
   const marks = new Int32Array(vertices); // sums; 0 inside
   const whole = corners.length - (corners.length % 3);
   for (let i = 0; i < whole; i += 3) {
@@ -16,7 +16,7 @@ export function edgesOf(corners: ArrayLike<number>, vertices: number): Uint32Arr
     marks[b] += ofC - ofA;
     marks[c] += ofA - ofB;
   }
-  const ends = new Uint32Array(2 * whole); // enough for all sides; what is not written takes no memory
+  const ends = new Uint32Array(2 * whole); // enough for all sides; unwritten pages take no memory
   let count = 0;
   for (let i = 0; i < whole; i += 3)
     for (let side = 0; side < 3; ++side) {
@@ -29,7 +29,8 @@ export function edgesOf(corners: ArrayLike<number>, vertices: number): Uint32Arr
   return ends.subarray(0, count);
 }
 
-/// Different for each vertex, and in no relation to its number: sums of a few that differ are not 0 by chance.
+/// Returns a mark that is unique to the vertex and unrelated to its number, so that sums of different marks are not 0
+/// by chance.
 function markOf(vertex: number): number {
   const mixed = Math.imul(vertex + 1, 0x9e3779b1);
   return Math.imul(mixed ^ (mixed >>> 15), 0x85ebca6b);

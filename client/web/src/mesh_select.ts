@@ -1,4 +1,4 @@
-// The list of meshes to choose from, and the name of the one that is open.
+// List of the available meshes, and the name of the open one.
 
 import { find } from './elements';
 import { isStored } from './link';
@@ -16,7 +16,7 @@ export class MeshSelect {
     this.#select.replaceChildren(...samples.map(({ name, faces }) => new Option(`${name} (${faces} faces)`, name)));
   }
 
-  /// A sample's, a file's or the id of a stored mesh.
+  /// Sets the name of a sample or file, or the id of a stored mesh.
   set name(name: string) {
     const words = isStored(name) ? `stored ${name.slice(0, 8)}` : name;
     this.#select.querySelector('option[data-own]')?.remove();

@@ -1,10 +1,10 @@
-// What is shown: a mesh as Draco, a glTF scene, or a packed model; its bytes, and what they are decoded to.
+// Model: a Draco mesh, a glTF scene or a packed model; its bytes and its decoded form.
 
 import type { BufferGeometry, Object3D } from 'three';
 
 export type Bytes = Uint8Array<ArrayBuffer>;
 
-/// A file as the server takes and gives it; a packed model is refined as the mesh that it is decoded to.
+/// File in a format of the server. A packed model is refined as its decoded mesh.
 export interface Encoded {
   kind: 'draco' | 'scene' | 'packed';
   bytes: Bytes;
@@ -17,23 +17,23 @@ export const mediaTypes = {
 } as const;
 export const extensionOf = { draco: '.drc', scene: '.glb', packed: '.glb' } as const;
 
-/// Null for other types.
+/// Returns the kind of a media type; null for others.
 export function kindOf(mediaType: string | null): Encoded['kind'] | null {
   if (mediaType === mediaTypes.draco) return 'draco';
   return mediaType === mediaTypes.scene ? 'scene' : null;
 }
 
-/// What a file is decoded to.
+/// Decoded file.
 export interface Decoded {
-  /// All triangles as one indexed mesh, where they are in the scene.
+  /// All triangles as one indexed mesh, in the scene's coordinates.
   readonly geometry: BufferGeometry;
-  /// The scene with its materials; null for a mesh.
+  /// Scene with its materials; null for a mesh.
   scene: Object3D | null;
-  /// Each mesh counted once, however often it is shown.
+  /// Number of vertices; each mesh counts once, however often it is shown.
   vertices: number;
   faces: number;
-  /// Files that the scene names, and that are not in it.
+  /// Names of files that the scene refers to and does not contain.
   missing: string[];
-  /// Frees what it holds on the graphics card.
+  /// Frees the memory on the graphics card.
   dispose(): void;
 }

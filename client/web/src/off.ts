@@ -2,7 +2,7 @@
 
 import { BufferGeometry, Float32BufferAttribute } from 'three';
 
-/// Colours and other numbers behind a vertex or a face are passed over. Throws an Error that says what is wrong.
+/// Reads a mesh; ignores colours and other numbers after a vertex or face. Throws an Error that states the fault.
 export function readOff(text: string): BufferGeometry {
   const lines = text
     .replace(/^\uFEFF/, '')

@@ -1,5 +1,5 @@
-// Files that the user drops or picks: a .drc mesh or a .glb scene as it is, a .gltf file with those that it names as a .glb,
-// other formats by three's loaders as a Draco mesh of positions and triangles alone.
+// Files dropped or picked by the user: .drc meshes and .glb scenes as they are, .gltf files with their references as a
+// .glb, other formats by three's loaders as Draco meshes of positions and triangles.
 
 import { encode } from './draco';
 import { packGlb } from './gltf_files';
@@ -11,15 +11,16 @@ export const extensions = ['.drc', '.obj', '.ply', '.stl', '.off', '.glb', '.glt
 
 const extensionIn = (name: string) => /\.[^.]*$/.exec(name.toLowerCase())?.[0] ?? '';
 
-/// What to tell of a drop without files.
+/// Returns the problem of a drop without files.
 export const noFile = () => new Problem('unsupported', `That is no file. Drop one of ${extensions.join(', ')}.`);
 
-/// The mesh among files that were dropped together: the others are what it names.
+/// Returns the mesh among files dropped together; it refers to the others.
 export function meshAmong(files: readonly File[]): File {
   return files.find(({ name }) => extensions.includes(extensionIn(name))) ?? files[0];
 }
 
-/// `files`: those that came with it, itself among them. Rejects with a Problem. `maxBytes`: of the service.
+/// Reads a mesh. `files`: files dropped or picked together, including `file`. `maxBytes`: the server's limit. Rejects
+/// with a Problem.
 export async function readMeshFile(file: File, files: readonly File[], maxBytes: number): Promise<Encoded> {
   const extension = formatOf(file);
   if (triangleFormats.includes(extension))
@@ -29,7 +30,7 @@ export async function readMeshFile(file: File, files: readonly File[], maxBytes:
   return readEncoded(file, files);
 }
 
-/// The extension of its name. Throws a Problem where that is no mesh's, or the file is empty.
+/// Returns the extension of a name. Throws a Problem if no mesh has this extension, or the file is empty.
 export function formatOf(file: File): string {
   const extension = extensionIn(file.name);
   if (!extensions.includes(extension))
@@ -38,7 +39,7 @@ export function formatOf(file: File): string {
   return extension;
 }
 
-/// A file of another format than triangleFormats, as it is; a .gltf file as a .glb. Rejects with a Problem.
+/// Reads a file that is not of triangleFormats: as it is, or a .gltf file as a .glb. Rejects with a Problem.
 export async function readEncoded(file: File, files: readonly File[]): Promise<Encoded> {
   const extension = formatOf(file);
   if (extension === '.gltf') return { kind: 'scene', bytes: await packGlb(file, files) };

@@ -1,14 +1,20 @@
-// A file as a mesh that is open.
+// Opening of a file as a mesh.
 
+import { measureBounds } from './bounds';
 import { decode } from './decode';
 import { OpenMesh } from './mesh';
 import type { Encoded } from './model';
 
-/// Rejects with a Problem where the bytes are damaged. What packed models need is fetched with the first scene.
+/// Opens a mesh. Rejects with a Problem if the bytes are damaged. The first scene fetches the decoder of packed models.
 export async function openMesh(name: string, encoded: Encoded): Promise<OpenMesh> {
   if (encoded.kind === 'scene') {
     const { isPacked, openPackedMesh } = await import('./packed');
     if (isPacked(encoded.bytes)) return openPackedMesh(name, encoded.bytes);
   }
-  return new OpenMesh(name, encoded, await decode(encoded));
+  const decoded = await decode(encoded);
+  if (decoded.scene === null) {
+    measureBounds(decoded.geometry);
+    await new Promise((resolve) => setTimeout(resolve)); // the page shows the mesh in a task of its own
+  }
+  return new OpenMesh(name, encoded, decoded);
 }

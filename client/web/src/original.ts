@@ -1,4 +1,4 @@
-// The original of a packed model: a file that its levels are compared with, in a worker.
+// Original of a packed model: a file that levels are compared with, in a worker.
 
 import type { BufferGeometry } from 'three';
 
@@ -16,7 +16,7 @@ export class Original {
     type: 'module',
     name: 'papilio-distance',
   });
-  /// What is to be answered; null: nothing.
+  /// Pending request; null: none.
   #waiting: { resolve: (measured: TwoSided | null) => void; reject: (reason: unknown) => void } | null = null;
 
   private constructor(readonly name: string) {
@@ -28,7 +28,7 @@ export class Original {
       this.#fail(`The distance cannot be measured: ${message || 'its script could not be loaded'}.`);
   }
 
-  /// `files`: those that came with it, itself among them. Rejects with a Problem.
+  /// Opens an original. `files`: files dropped or picked together, including `file`. Rejects with a Problem.
   static async open(file: File, files: readonly File[]): Promise<Original> {
     const extension = formatOf(file);
     if (triangleFormats.includes(extension)) {
@@ -46,12 +46,12 @@ export class Original {
     }
   }
 
-  /// How far this surface is from the original. One at a time. Rejects with a Problem.
+  /// Measures the distance of a surface from the original, one surface at a time. Rejects with a Problem.
   async measure(geometry: BufferGeometry): Promise<TwoSided> {
     return (await this.#send({ kind: 'measure', surface: surfaceOf(geometry) }))!;
   }
 
-  /// Ends the worker. What is being measured is rejected.
+  /// Ends the worker, and rejects a pending measurement.
   close(): void {
     this.#worker.terminate();
     this.#fail('The original was closed.');
@@ -67,7 +67,7 @@ export class Original {
     }
   }
 
-  /// Arrays that are not transferred are copied: the page draws them.
+  /// Sends a message. Arrays that are not transferred are copied, as the page draws them.
   #send(message: ToMeasurer, transfer: Transferable[] = []): Promise<TwoSided | null> {
     return new Promise((resolve, reject) => {
       this.#waiting = { resolve, reject };

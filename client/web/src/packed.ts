@@ -1,4 +1,4 @@
-// Packed models: each of their levels as a mesh that is open.
+// Levels of packed models as open meshes.
 
 import { isPacked, openPacked, type PackedModel, withLevels, withSurfaces } from 'papilio/detail';
 import { dracoDecoder, geometryOf, sceneNormals, showLevel } from 'papilio/three';
@@ -11,27 +11,27 @@ import { decodeScene } from './scene';
 
 export { isPacked };
 
-/// What all levels of a packed model have.
+/// Members shared by all levels of a packed model.
 interface Opened {
   readonly model: PackedModel;
-  /// The whole file.
+  /// Bytes of the complete file.
   readonly file: Bytes;
-  /// The base as a scene with its materials and colours; null where the file has none.
+  /// Base as a scene with its materials and colours; null if the file has none.
   readonly base: Decoded | null;
 }
 
-/// One level of a packed model.
+/// Level of a packed model.
 export interface PackedLevel extends Opened {
-  /// How many levels are shown; 0: the base.
+  /// Number of levels added to the base; 0: the base.
   readonly level: number;
-  /// Its surface for the server: with materials or colours a scene.
+  /// Encodes the surface for the server: as a scene if it has materials or colours.
   encode(): Promise<Bytes>;
 }
 
-/// Levels with more faces are not shown until the user asks for them.
+/// Most faces of a level shown before the user selects one.
 const mostFacesAtFirst = 300_000;
 
-/// The model with all its levels, or with those that a browser shows well. Rejects with a Problem.
+/// Opens a model at its last level, or at the last that browsers show smoothly. Rejects with a Problem.
 export async function openPackedMesh(name: string, file: Bytes): Promise<OpenMesh> {
   const model = await openPacked(file, { decodeDraco: async (draco) => dracoDecoder(await fetchDecoder())(draco) });
   try {
@@ -44,7 +44,7 @@ export async function openPackedMesh(name: string, file: Bytes): Promise<OpenMes
   }
 }
 
-/// The model with its first levels. Rejects with a Problem.
+/// Opens a model at a level. Rejects with a Problem.
 export async function levelOf(name: string, { model, file, base }: Opened, level: number): Promise<OpenMesh> {
   const surface = await model.decode(level, base ? { normals: sceneNormals(model) } : {});
   const geometry = geometryOf(surface);
@@ -62,7 +62,8 @@ export async function levelOf(name: string, { model, file, base }: Opened, level
   return new OpenMesh(name, { kind: 'packed', bytes: withLevels(file, level) }, decoded, packed);
 }
 
-/// A copy of the base's scene with the surfaces of a level, one for each primitive; materials and images are the base's.
+/// Returns a copy of the base's scene with the surfaces of a level, one for each primitive; it shares materials and
+/// images.
 function sceneWith(base: Decoded, level: BufferGeometry): { scene: Object3D; geometries: BufferGeometry[] } {
   const scene: Object3D = base.scene!.clone(true);
   return { scene, geometries: showLevel(scene, level) };

@@ -1,4 +1,4 @@
-// What a packed model has: its levels with their bytes and distances, and a slider through them.
+// Panel of a packed model: bytes and distances of its levels, and a slider between them.
 
 import type { LevelInfo } from 'papilio/detail';
 
@@ -8,11 +8,11 @@ import { element } from './elements';
 import type { OpenMesh } from './mesh';
 
 const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 });
-/// A share of the diagonal.
+/// Returns a share of the diagonal in per cent.
 const percent = (share: number) => `${Number((100 * share).toPrecision(2))} %`;
 
 export class PackedPanel {
-  /// Another level is to be shown, and has been decoded.
+  /// Function called with another level, decoded.
   onLevel: (mesh: OpenMesh) => void = () => {};
   onProblem: (error: unknown) => void = () => {};
   readonly compare: ComparePanel;
@@ -25,7 +25,7 @@ export class PackedPanel {
   readonly #words = element('p');
   readonly #table = element('table');
 
-  /// `place`: what it fills.
+  /// `place`: element that receives the panel.
   constructor(place: HTMLElement) {
     const title = element('h2', '', 'Packed model');
     const label = element('label', '', 'Levels of detail');
@@ -56,7 +56,7 @@ export class PackedPanel {
     this.compare = new ComparePanel(place);
   }
 
-  /// `mesh`: what has been opened; hides the panel where that is no packed model.
+  /// Shows an open mesh; hides the panel unless it is a packed model.
   show(mesh: OpenMesh): void {
     this.#mesh = mesh.packed && mesh;
     this.compare.show(mesh);
@@ -71,7 +71,7 @@ export class PackedPanel {
     this.#tell();
   }
 
-  /// Decodes the level that was asked for last, one at a time.
+  /// Decodes the last level requested, one level at a time.
   async #want(level: number): Promise<void> {
     this.#wanted = level;
     this.#tell();
@@ -85,7 +85,7 @@ export class PackedPanel {
         if (from === this.#mesh) this.#fail(from.packed!.level, error);
         return null;
       });
-      if (made === null || from !== this.#mesh) continue; // another file may be open by now
+      if (made === null || from !== this.#mesh) continue; // another file may be open now
       this.#mesh = made;
       this.onLevel(made);
       this.compare.follow(made);
@@ -95,7 +95,7 @@ export class PackedPanel {
     this.#tell();
   }
 
-  /// The level that is shown stays.
+  /// Reports an error; the visible level stays.
   #fail(level: number, error: unknown): void {
     this.#wanted = level;
     this.#slider.value = String(level);
@@ -120,7 +120,7 @@ export class PackedPanel {
     this.#table.replaceChildren(head.parentElement!, body);
   }
 
-  /// Says what the slider is at.
+  /// Shows the level of the slider.
   #tell(): void {
     const { packed } = this.#mesh ?? {};
     if (!packed) return;

@@ -1,4 +1,4 @@
-// One of the meshes that are compared: what is asked for, of the server or of the kernel here, and what has come.
+// Panel of a mesh: its request, to the server or to the kernel in this browser, and the result.
 
 import type { BufferGeometry } from 'three';
 
@@ -18,33 +18,33 @@ const titles: Record<Mode, string> = {
   view: 'View-dependent',
 };
 
-/// A server that stays busy or silent is asked again by itself, after pauses that double up to this many seconds.
+/// Longest pause in seconds before a busy or silent server is retried; pauses double up to it.
 const longestPause = 60;
 
-/// A mesh that can be shown, and what it cost.
+/// Decoded mesh, and its costs.
 export interface Shown {
   mesh: OpenMesh;
   decoded: Decoded;
   readonly geometry: BufferGeometry;
-  /// Null for what was made in this browser: nothing was sent.
+  /// Encoded mesh; null if this browser refined it.
   encoded: Encoded | null;
   vertices: number;
   faces: number;
-  /// Milliseconds by stage, of the server or of the kernel here; empty for the coarse mesh.
+  /// Milliseconds by stage, on the server or in the kernel; empty for the coarse mesh.
   timing: Record<string, number>;
   /// Milliseconds from the request to the decoded mesh.
   roundTrip: number | null;
-  /// Null while further levels may come, and for the coarse mesh.
+  /// Summary; null while further levels may arrive, and for the coarse mesh.
   summary: Summary | null;
-  /// The meshes up to this one, coarse first; of a scene this one alone, of what was made here none.
+  /// Meshes up to this one, the coarse mesh first; for a scene only this one, for a mesh refined in this browser none.
   levels: Encoded[];
 }
 
-/// What a panel is asked to show.
+/// Request of a panel.
 export interface Request {
-  /// Of the server; null: the coarse mesh as it is.
+  /// Query for the server; null: the coarse mesh as it is.
   query: string | null;
-  /// Makes it in this browser, now; null: the server is asked.
+  /// Function that refines in this browser; null: the server refines.
   make: (() => Promise<Made>) | null;
   note: string;
 }
@@ -52,15 +52,17 @@ export interface Request {
 export class Panel {
   readonly element: HTMLElement;
   readonly title: string;
-  /// For where there is little room.
+  /// Title for narrow places.
   readonly shortTitle: string;
-  /// There is another mesh to be drawn, or another state to be told.
+  /// Function called when the mesh or the state has changed.
   onChange: () => void = () => {};
   onProblem: (problem: Problem) => void = () => {};
-  /// The user wants this one alone, or all again.
+  /// Prepares the drawing of a mesh, which is shown afterwards.
+  prepare: (decoded: Decoded) => Promise<void> = async () => {};
+  /// Function called when the user enlarges the panel, or restores all.
   onEnlarge: () => void = () => {};
   shown: Shown | null = null;
-  /// Why what was asked for last did not come; null: it has, or may yet.
+  /// Reason why the last request failed; null: it succeeded, or is pending.
   problem: Problem | null = null;
   #asked: { mesh: OpenMesh; request: Request } | null = null;
   #isMaking = false;
@@ -69,7 +71,7 @@ export class Panel {
   #retryTimer: ReturnType<typeof setTimeout> | undefined;
   #caption: HTMLElement;
   #note: HTMLElement;
-  /// From whoever asked for the mesh.
+  /// Note from the caller of ask().
   #givenNote = '';
   #message: HTMLElement;
   #legend: HTMLElement;
@@ -83,7 +85,8 @@ export class Panel {
     this.element.dataset.mode = mode;
     this.element.setAttribute('aria-label', this.title);
     const head = element('div', 'panel-head');
-    head.append(element('h2', '', this.title));
+    const title = head.appendChild(element('h2', '', this.shortTitle));
+    title.append(element('span', 'rest', this.title.slice(this.shortTitle.length)));
     this.#caption = head.appendChild(element('span', 'caption'));
     head.append(element('span', 'space'));
     const actions = head.appendChild(element('span', 'actions'));
@@ -92,7 +95,7 @@ export class Panel {
     this.#save.setAttribute('aria-label', `Save the ${this.title.toLowerCase()} mesh to a file`);
     this.#save.hidden = true;
     this.setEnlarged(false);
-    // What is pressed here must not turn the mesh, which takes all that the pointer does from then on.
+    // The press must not start a rotation, which would capture the pointer.
     this.element.addEventListener('pointerdown', (event) => event.stopPropagation());
     this.#note = element('p', 'note');
     this.#message = element('div', 'message');
@@ -102,8 +105,9 @@ export class Panel {
     this.#tell('idle');
   }
 
-  /// Asks for this unless it is what is shown or on its way. What is on its way from the server is aborted; what is being
-  /// made here is shown when it is done, and then the latest is made. What is shown stays until there is better.
+  /// Requests a mesh unless it is visible or pending. Aborts a pending request to the server; a running refinement in
+  /// this browser is finished and shown before the latest request starts. The visible mesh stays until a better one is
+  /// ready.
   ask(mesh: OpenMesh, request: Request): void {
     this.#givenNote = request.note;
     this.#showNote();
@@ -116,7 +120,7 @@ export class Panel {
     this.#start();
   }
 
-  /// Gives up what is on its way.
+  /// Cancels the pending request.
   stop(): void {
     if (this.#asked === null) return;
     this.#abort?.abort();
@@ -129,13 +133,13 @@ export class Panel {
     this.#legend.replaceChildren(...content);
   }
 
-  /// Whether it is the only one on screen.
+  /// Sets whether the panel is the only one on screen.
   setEnlarged(isEnlarged: boolean): void {
     this.#enlarge.textContent = isEnlarged ? 'Side by side' : 'Enlarge';
     this.#enlarge.setAttribute('aria-label', isEnlarged ? 'Show all meshes side by side' : `Show ${this.title} alone`);
   }
 
-  /// [faces] of what is shown.
+  /// Returns [faces] the levels of the visible mesh.
   async levelsOfFaces(shown: Shown): Promise<Uint8Array> {
     const vertices = new LevelsOfVertices();
     for (const [level, encoded] of shown.levels.entries()) {
@@ -170,7 +174,7 @@ export class Panel {
     });
   }
 
-  /// Makes what is asked for here, until that is what is shown.
+  /// Refines in this browser until the latest request is visible.
   async #makeLatest(): Promise<void> {
     this.#isMaking = true;
     for (let isLatest = false; !isLatest; ) {
@@ -178,6 +182,7 @@ export class Panel {
       if (!asked?.request.make) break;
       try {
         const made = await asked.request.make();
+        await this.prepare(made.decoded);
         if (asked.mesh === this.#asked?.mesh && this.#asked.request.make) this.#show(shownOf(asked.mesh, made));
         else made.decoded.dispose();
         isLatest = asked === this.#asked;
@@ -216,13 +221,12 @@ export class Panel {
         levels: encoded,
       });
     };
-    // Shows levels that are better than what is on screen. Those that come while one is decoded wait, and of those the
-    // last is next.
+    // Shows levels better than the visible one. While one is decoded, only the last of the others is kept.
     const showBetter = async () => {
       for (let level = -1; level + 1 < levels.length; ) {
         level = levels.length - 1;
         if (this.shown?.mesh === mesh && levels[level].faces <= this.shown.faces) continue;
-        latest = { level, decoded: await decode(levels[level].encoded) };
+        latest = { level, decoded: await this.#decode(levels[level].encoded) };
         signal.throwIfAborted();
         show(level, latest.decoded, null);
       }
@@ -232,17 +236,23 @@ export class Panel {
       levels.push(level);
       this.#tell('busy', `level ${levels.length - 1}`);
       showing ??= showBetter().finally(() => (showing = null));
-      showing.catch(() => {}); // told below
+      showing.catch(() => {}); // errors are shown below
     };
     const summary = await mesh.refine(query, onLevel, signal);
     await showing;
     const last = levels.length - 1;
     const made = latest as { level: number; decoded: Decoded } | null;
-    const decoded = made?.level === last ? made.decoded : await decode(levels[last].encoded);
+    const decoded = made?.level === last ? made.decoded : await this.#decode(levels[last].encoded);
     signal.throwIfAborted();
     show(last, decoded, summary);
     this.#retries = 0;
     this.#tell('done');
+  }
+
+  async #decode(encoded: Encoded): Promise<Decoded> {
+    const decoded = await decode(encoded);
+    await this.prepare(decoded);
+    return decoded;
   }
 
   #show(shown: Shown): void {
@@ -259,7 +269,7 @@ export class Panel {
 
   #showNote(): void {
     const note = [this.#givenNote, this.shown?.summary?.unreached ?? ''].join(' ').trim();
-    if (note !== this.#note.textContent) this.#note.textContent = note; // the same again costs a layout
+    if (note !== this.#note.textContent) this.#note.textContent = note; // setting an equal text costs a layout
   }
 
   #tell(state: 'idle' | 'busy' | 'done' | 'failed', doing = ''): void {
@@ -290,7 +300,7 @@ export class Panel {
     this.#retryTimer = setTimeout(() => this.#countDown(seconds - 1, again), 1000);
   }
 
-  /// What was made here is a file once the server has encoded it.
+  /// Saves the mesh; the server encodes a mesh refined in this browser.
   async #saveFile(): Promise<void> {
     const { shown } = this;
     if (shown === null) return;

@@ -1,4 +1,4 @@
-// A control for each parameter that the server has, with its name and range.
+// Form with a control for each parameter of the server, with its name and range.
 
 import { element } from './elements';
 import { defaultOf, faultOf, type ParameterKind, rangeOf, type Values } from './parameters';
@@ -6,9 +6,10 @@ import { defaultOf, faultOf, type ParameterKind, rangeOf, type Values } from './
 const groups: Record<string, string> = { '': 'Refinement', view: 'View', output: 'Output' };
 
 export class ParameterForm {
-  /// The user has set something, or set it back.
+  /// Function called when the user sets or resets a parameter.
   onChange: (name: string, value: string | null) => void = () => {};
   #form: HTMLFormElement;
+  #names = '';
   #rows = new Map<string, { kind: ParameterKind; input: HTMLInputElement | HTMLSelectElement; fault: HTMLElement }>();
   #placeholders = new Map<string, string>();
   #placeholdersDue: ReturnType<typeof setTimeout> | undefined;
@@ -18,7 +19,11 @@ export class ParameterForm {
     form.addEventListener('submit', (event) => event.preventDefault());
   }
 
+  /// Sets the parameters. Equal ones keep their controls: new ones cost a layout of the page.
   setKinds(kinds: readonly ParameterKind[]): void {
+    const names = kinds.map(({ name }) => name).join();
+    if (names === this.#names) return;
+    this.#names = names;
     this.#rows.clear();
     const sections = Object.entries(groups).map(([prefix, title]) => {
       const section = element('fieldset');
@@ -30,7 +35,7 @@ export class ParameterForm {
     this.#form.replaceChildren(...sections);
   }
 
-  /// What is not in `values` shows as its default.
+  /// Sets the controls; parameters absent from `values` show their defaults.
   setValues(values: Values): void {
     for (const [name, { kind, input }] of this.#rows) {
       const text = values.get(name);
@@ -41,15 +46,15 @@ export class ParameterForm {
     }
   }
 
-  /// Shows what a parameter is that has not been set, where that is not its default. The form waits until no other text
-  /// has come for 100 ms: the camera's come with each picture, and each costs a layout of the page.
+  /// Shows the value of an unset parameter if it is not the default. Waits until no text has come for 100 ms: the
+  /// camera's texts come with each picture, and each costs a layout of the page.
   setPlaceholder(name: string, text: string): void {
     this.#placeholders.set(name, text);
     clearTimeout(this.#placeholdersDue);
     this.#placeholdersDue = setTimeout(() => this.#showPlaceholders(), 100);
   }
 
-  /// Says at a parameter what is wrong with it; null: nothing.
+  /// Shows a fault at a parameter; null: none.
   setFault(name: string, fault: string | null): void {
     const row = this.#rows.get(name);
     if (row === undefined) return;
@@ -68,7 +73,7 @@ export class ParameterForm {
   #row(kind: ParameterKind): HTMLElement {
     const row = element('div', 'parameter');
     const id = `parameter-${kind.name}`;
-    // In words, and as requests have it.
+    // Label in words, and name as in requests.
     const label = element('label', '', kind.description.split(/[;:.]( |$)/)[0]);
     if (kind.unit) label.append(` (${kind.unit})`);
     label.append(' ', element('code', '', kind.name));

@@ -1,6 +1,6 @@
-// Parameters of a refinement: what the user has set, in the words of the query.
+// Parameters of a refinement, as texts of the query.
 
-/// One parameter, as the server describes it.
+/// Parameter as the server describes it.
 export interface ParameterKind {
   name: string;
   type: 'integer' | 'number' | 'numbers' | 'boolean' | 'choice';
@@ -16,10 +16,10 @@ export interface ParameterKind {
   description: string;
 }
 
-/// What is set, by the parameter's name; what has its default is left out.
+/// Values by the parameters' names, without defaults.
 export type Values = Map<string, string>;
 
-/// In the query of a request, in the order of the server's table.
+/// Returns the query, in the order of the server's table.
 export function queryOf(values: Values, kinds: readonly ParameterKind[]): string {
   return kinds
     .filter((kind) => values.has(kind.name))
@@ -27,7 +27,7 @@ export function queryOf(values: Values, kinds: readonly ParameterKind[]): string
     .join('&');
 }
 
-/// Why a text is no value for the parameter; null when it is one.
+/// Returns why a text is not a value of the parameter; null if it is one.
 export function faultOf(kind: ParameterKind, text: string): string | null {
   if (kind.type === 'choice') return kind.choices!.includes(text) ? null : `One of ${kind.choices!.join(', ')}.`;
   if (kind.type === 'boolean') return text === 'true' || text === 'false' ? null : 'true or false.';
@@ -42,12 +42,12 @@ export function faultOf(kind: ParameterKind, text: string): string | null {
   return numbers.every(isInRange) ? null : `${rangeOf(kind)}.`;
 }
 
-/// What the parameter takes: "0 to 10", "3 numbers, mesh units".
+/// Returns the range: "0 to 10", "3 numbers, mesh units".
 export function rangeOf(kind: ParameterKind): string {
   if (kind.type === 'boolean' || kind.type === 'choice') return '';
   const parts: string[] = [];
   if (kind.type === 'numbers') parts.push(countOf(kind));
-  // The largest of a float means: no limit.
+  // The largest float stands for no limit.
   const [low, high] = [kind.min ?? -Infinity, kind.max ?? Infinity].map((n) => (Math.abs(n) > 1e15 ? null : n));
   if (low !== null && high !== null) parts.push(`${low} to ${high}`);
   else if (low !== null) parts.push(`at least ${low}`);
@@ -62,7 +62,7 @@ function countOf(kind: ParameterKind): string {
   return least === most ? `${least} ${what}` : `${least} to ${most} ${what}`;
 }
 
-/// The default, in the words of the query; empty where it follows from other parameters or from the mesh.
+/// Returns the default as in the query; empty if it depends on other parameters or on the mesh.
 export function defaultOf(kind: ParameterKind): string {
   return Array.isArray(kind.default) ? kind.default.join(',') : String(kind.default ?? '');
 }

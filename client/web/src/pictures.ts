@@ -1,9 +1,10 @@
-// Draws what the panels have, in the look that is chosen, with legends.
+// Pictures of the panels in the current look, with legends.
 
 import type { Object3D } from 'three';
 
+import { measureBounds } from './bounds';
 import { distancesToUniform } from './distance';
-import { coloured, rampColour, shaded, withEdges } from './drawing';
+import { coloured, findEdgesOf, hasFoundEdges, rampColour, shaded, withEdges } from './drawing';
 import { element } from './elements';
 import type { Look } from './link';
 import type { OpenMesh } from './mesh';
@@ -12,9 +13,9 @@ import type { Panel, Shown } from './panel';
 import type { Stage } from './stage';
 import { hide, type Path } from './tree';
 
-/// What is drawn in colours by distance, whatever the look: the level of a packed model by that to its original.
+/// Colours by distance, in every look: distances of a packed model's level from its original.
 export interface DistanceColours {
-  /// Other colours have another one.
+  /// Number that differs for other colours.
   id: number;
   decoded: Decoded;
   /// [faces] in the unit of `diagonal`.
@@ -23,12 +24,12 @@ export interface DistanceColours {
 }
 
 export class Pictures {
-  /// By what they are of, to which uniform mesh, and [faces] in the mesh's units.
+  /// Distances by the mesh: the uniform mesh, and [faces] in mesh units.
   #distances = new WeakMap<Shown, { uniform: Shown; faces: Float32Array }>();
   #abort = new AbortController();
-  /// Parts of a scene that are not shown.
+  /// Hidden parts of a scene.
   #hidden: ReadonlySet<Path> = new Set();
-  /// What each panel's picture is of.
+  /// Mesh and look of each panel's picture.
   #drawn = new Map<Panel, { shown: Shown; how: string }>();
 
   constructor(readonly stage: Stage) {}
@@ -39,8 +40,13 @@ export class Pictures {
     this.stage.draw();
   }
 
-  /// Draws these panels; what was being drawn is given up. `levels`: as many as were asked for. `uniform`: what distances
-  /// are to, or why that is not there. Rejects where a mesh cannot be decoded.
+  /// Prepares the edges or levels of a look. An error is reported when the mesh is drawn.
+  async prepare(decoded: Decoded, look: Look): Promise<void> {
+    if (look === 'wireframe') await findEdgesOf(decoded).catch(() => {});
+  }
+
+  /// Draws panels, and cancels the previous drawing. `levels`: number requested. `uniform`: mesh that distances are
+  /// measured to, or the reason why it is absent. Rejects if a mesh cannot be decoded.
   async draw(
     panels: Panel[],
     look: Look,
@@ -57,15 +63,31 @@ export class Pictures {
     try {
       if (look === 'level') await this.#drawLevels(pictures, Math.max(levels, 1), signal);
       else if (look === 'distance' && typeof uniform !== 'string') await this.#drawDistances(pictures, uniform, signal);
-      else for (const picture of pictures) this.#drawPlain(picture, look, look === 'distance' ? String(uniform) : '');
+      else if (look === 'wireframe') await this.#drawEdges(pictures, signal);
+      else for (const picture of pictures) this.#drawShaded(picture, look === 'distance' ? String(uniform) : '');
     } catch (error) {
       if (!signal.aborted) throw error;
     }
   }
 
-  #drawPlain({ panel, shown }: Picture, look: Look, words: string): void {
-    this.#put({ panel, shown }, look, () => (look === 'wireframe' ? withEdges(shown.decoded) : shaded(shown.decoded)));
+  #drawShaded({ panel, shown }: Picture, words: string): void {
+    this.#put({ panel, shown }, 'shaded', () => shaded(shown.decoded));
     panel.setLegend(words === '' ? [] : [element('span', '', words)]);
+  }
+
+  /// Draws edges; shades meshes until their edges are found, as the previous picture may be freed by then.
+  async #drawEdges(pictures: Picture[], signal: AbortSignal): Promise<void> {
+    const draw = (picture: Picture) => this.#put(picture, 'edges', () => withEdges(picture.shown.decoded));
+    for (const picture of pictures) {
+      if (hasFoundEdges(picture.shown.decoded)) draw(picture);
+      else this.#drawShaded(picture, '');
+      picture.panel.setLegend([]);
+    }
+    for (const picture of pictures) {
+      await findEdgesOf(picture.shown.decoded);
+      signal.throwIfAborted();
+      draw(picture);
+    }
   }
 
   #drawColours({ panel, shown }: Picture, { id, ofFaces, diagonal }: DistanceColours): void {
@@ -81,7 +103,7 @@ export class Pictures {
       if (!this.#has({ panel, shown }, how)) {
         const ofFaces = await panel.levelsOfFaces(shown);
         signal.throwIfAborted();
-        const shares = Array.from(ofFaces, (level) => level / levels);
+        const shares = Float32Array.from(ofFaces, (level) => level / levels);
         this.#put({ panel, shown }, how, () => coloured(shown.geometry, shares));
       }
       panel.setLegend(levelLegend(levels));
@@ -99,15 +121,17 @@ export class Pictures {
       signal.throwIfAborted();
       this.#distances.set(shown, { uniform, faces });
     }
-    // One scale for all, so that the colours compare.
+    // One scale for all, so that colours are comparable.
     const largest = pictures.map(({ shown }) => this.#distances.get(shown)!.faces.reduce((a, b) => Math.max(a, b), 0));
     const most = Math.max(...largest) || 1;
     const diagonal = diagonalOf(uniform.mesh);
     for (const [i, { panel, shown }] of pictures.entries()) {
       const { faces } = this.#distances.get(shown)!;
-      const share = (distance: number) => Math.sqrt(distance / most); // by the root: small ones differ too
-      this.#put({ panel, shown }, `distances ${most}`, () => coloured(shown.geometry, Array.from(faces, share)));
+      const share = (distance: number) => Math.sqrt(distance / most); // square root: makes small distances distinguishable
+      this.#put({ panel, shown }, `distances ${most}`, () => coloured(shown.geometry, faces.map(share)));
       panel.setLegend(distanceLegend(largest[i] / diagonal, most / diagonal));
+      await this.stage.drawn(); // one mesh a frame
+      signal.throwIfAborted();
     }
   }
 
@@ -130,7 +154,7 @@ interface Picture {
 }
 
 function diagonalOf(mesh: OpenMesh): number {
-  mesh.geometry.computeBoundingBox();
+  if (mesh.geometry.boundingBox === null) measureBounds(mesh.geometry);
   const box = mesh.geometry.boundingBox!;
   return box.min.distanceTo(box.max);
 }
@@ -146,7 +170,7 @@ function levelLegend(most: number): Node[] {
   return [element('span', '', 'level'), ...swatches];
 }
 
-/// Both in shares of the diagonal.
+/// Returns a legend; both arguments are shares of the diagonal.
 function distanceLegend(largest: number, most: number): Node[] {
   const percent = (share: number) => `${Number((100 * share).toPrecision(2))} %`;
   const marks = [0, 1 / 4, 1].map((share) => swatch(Math.sqrt(share), percent(share * most)));

@@ -1,18 +1,18 @@
-// Which parameters each of the compared meshes is asked for with.
+// Parameters for each of the compared meshes.
 
 import { type Frozen, type Mode, shortest } from './link';
 import type { Values } from './parameters';
 
-// What chooses where to refine, and so has no part in the uniform result; of these, `targets` make a choice by themselves.
+// Parameters that select where to refine, and are not sent for the uniform result; `targets` select on their own.
 const targets = ['tolerance', 'max_faces', 'flatness'];
 const criteria = [...targets, 'growth', 'simplify_hidden'];
 
-/// Pixels of a picture that shows the whole of a mesh.
+/// Pixels of a picture that shows a whole mesh.
 const wholePicture = 1000;
-/// Of the uniform result, where the user does not say how many levels.
+/// Limit of faces of the uniform result if the user has not set the levels.
 const mostUniformFaces = 300_000;
 
-/// `values`: what the user has set; `faces`: of the coarse mesh.
+/// Returns the parameters for a mode. `values`: parameters set by the user; `faces`: faces of the coarse mesh.
 export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: number): Values {
   const without = (left: string[]) =>
     new Map([...values].filter(([name]) => !left.includes(name) && !name.startsWith('view.')));
@@ -21,7 +21,7 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
     return uniform.has('levels') ? uniform : uniform.set('levels', String(levelsOf(values, faces)));
   }
   if (mode === 'adaptive') {
-    // Without a target of its own it is as near as the picture asks for where all of the mesh is in it.
+    // Without a target: the accuracy for a picture that shows the whole mesh.
     const adaptive = without(['simplify_hidden']);
     const pixels = Number(values.get('view.error_pixels') ?? 0);
     if (pixels > 0 && !hasTarget(values)) adaptive.set('tolerance', shortest(pixels / wholePicture));
@@ -34,20 +34,20 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
   return all;
 }
 
-/// A picture that follows the camera does not wait for surfaces to be compared, unless the user says so.
+/// Returns the parameters while the camera moves: surfaces are not verified unless the user requests it.
 export function forMoving(values: Values): Values {
   const all = new Map(values);
   return all.has('view.error_pixels') && !all.has('view.verify') ? all.set('view.verify', 'false') : all;
 }
 
-/// What the user should know of it; empty: nothing.
+/// Returns a note for the user; may be empty.
 export function noteFor(mode: Mode, values: Values): string {
   if (mode === 'adaptive' && !hasTarget(values) && !values.has('view.error_pixels'))
     return 'The same as uniform: set tolerance, flatness or max_faces.';
   return '';
 }
 
-/// As many as the user says, or as the browser carries well; `faces`: of the coarse mesh.
+/// Returns the levels set by the user, or as many as a browser shows smoothly; `faces`: faces of the coarse mesh.
 export function levelsOf(values: Values, faces: number): number {
   const given = values.get('levels');
   if (given !== undefined) return Number(given);

@@ -1,4 +1,4 @@
-// Pictures and figures of what has come.
+// Pictures and figures of the results.
 
 import { find, setChildren } from './elements';
 import { figures } from './figures';
@@ -13,8 +13,8 @@ export class Results {
 
   constructor(readonly pictures: Pictures) {}
 
-  /// `uniform`: the panel with the uniform result of so many levels, which others are compared with, on screen or not.
-  /// Rejects where a mesh cannot be decoded.
+  /// Shows results. `uniform`: panel with the uniform result for comparison, on screen or not. Rejects if a mesh cannot
+  /// be decoded.
   async show(
     mesh: OpenMesh | null,
     panels: Panel[],
@@ -31,7 +31,7 @@ export class Results {
       const current = panels.filter((panel) => panel.shown?.mesh === mesh);
       const refined = current.filter(({ mode }) => mode !== 'coarse').at(-1)?.shown;
       setChildren(find('cost'), refined ? costOf(refined, mesh.decoded.faces) : []);
-      // While the camera moves there is something new with each picture: tables can wait.
+      // While the camera moves, each picture has new results: the tables are delayed.
       clearTimeout(this.#figuresDue);
       this.#figuresDue = setTimeout(() => {
         const faces = reference?.faces ?? mesh.decoded.faces * 4 ** levels;

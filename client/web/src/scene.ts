@@ -1,4 +1,4 @@
-// glTF scenes in the browser, by three's loader.
+// glTF scenes, decoded by three's loader.
 
 import {
   BufferAttribute,
@@ -20,7 +20,7 @@ import { Problem } from './service';
 const whitePixel =
   'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4//8/AAX+Av4N70a4AAAAAElFTkSuQmCC';
 
-/// Rejects with a Problem where the bytes are no scene of triangles.
+/// Decodes a scene. Rejects with a Problem unless the bytes are a scene of triangles.
 export async function decodeScene(bytes: Bytes): Promise<Decoded> {
   const [{ GLTFLoader }, { MeshoptDecoder }, draco] = await Promise.all([
     import('three/examples/jsm/loaders/GLTFLoader.js'),
@@ -28,7 +28,7 @@ export async function decodeScene(bytes: Bytes): Promise<Decoded> {
     fetchDecoder(),
   ]);
   const loader = new GLTFLoader().setDRACOLoader(draco).setMeshoptDecoder(MeshoptDecoder);
-  // What it has in itself are blobs. Files beside it are not there: white is shown in their place.
+  // Embedded files are blobs. External files are absent, and are replaced by white.
   const missing = new Set<string>();
   loader.manager.setURLModifier((url) => {
     if (/^(blob|data):/.test(url)) return url;
@@ -44,8 +44,10 @@ export async function decodeScene(bytes: Bytes): Promise<Decoded> {
   scene.userData.hasMaterials = true;
   scene.traverse((object) => {
     if (!isMesh(object)) return;
-    for (const material of ([] as Material[]).concat(object.material))
+    for (const material of ([] as Material[]).concat(object.material)) {
       Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }); // edges lie in front
+      for (const texture of texturesOf(material)) texture.anisotropy = 8; // sharp at oblique angles
+    }
   });
   const decoded = decodedScene(scene);
   if (decoded.faces === 0) throw new Problem('mesh_unsupported', 'There are no triangles in this file.');
@@ -53,7 +55,7 @@ export async function decodeScene(bytes: Bytes): Promise<Decoded> {
   return decoded;
 }
 
-/// The triangles of all of it are put together when they are asked for.
+/// Returns the decoded scene; its triangles are merged on demand.
 export function decodedScene(scene: Object3D): Decoded {
   scene.updateMatrixWorld(true);
   const geometries = new Set<BufferGeometry>();
@@ -88,7 +90,7 @@ function cornersOf(geometry: BufferGeometry): number {
   return geometry.index?.count ?? geometry.getAttribute('position').count;
 }
 
-/// All triangles of a scene in world coordinates, skinned ones as they stand.
+/// Returns all triangles of a scene in world coordinates, skinned meshes in their current pose.
 function mergedGeometry(scene: Object3D): BufferGeometry {
   const positions: number[] = [];
   const corners: number[] = [];
@@ -97,7 +99,7 @@ function mergedGeometry(scene: Object3D): BufferGeometry {
     const first = positions.length / 3;
     const position = mesh.geometry.getAttribute('position');
     for (let i = 0; i < position.count; ++i) {
-      mesh.getVertexPosition(i, point).applyMatrix4(matrix); // with morph targets and skin
+      mesh.getVertexPosition(i, point).applyMatrix4(matrix); // applies morph targets and skin
       positions.push(point.x, point.y, point.z);
     }
     const count = cornersOf(mesh.geometry) - (cornersOf(mesh.geometry) % 3);
@@ -122,14 +124,18 @@ function mergedGeometry(scene: Object3D): BufferGeometry {
   return geometry;
 }
 
+function texturesOf(material: Material): Texture[] {
+  const values = Object.values(material) as unknown[];
+  return values.filter((value) => value !== null && typeof value === 'object' && 'isTexture' in value) as Texture[];
+}
+
 function disposeScene(scene: Object3D): void {
   scene.traverse((object) => {
     if (!isMesh(object)) return;
     object.geometry.dispose();
     (object as Partial<SkinnedMesh>).skeleton?.dispose();
     for (const material of ([] as Material[]).concat(object.material)) {
-      for (const value of Object.values(material) as unknown[])
-        if (value !== null && typeof value === 'object' && 'isTexture' in value) (value as Texture).dispose();
+      for (const texture of texturesOf(material)) texture.dispose();
       material.dispose();
     }
   });

@@ -1,4 +1,4 @@
-// What the page asks of the server, by the client of the npm package.
+// Requests to the server, through the client of the npm package.
 
 import { Client, type EncodedLevel, type Levels, Problem, type Summary } from 'papilio/client';
 
@@ -21,7 +21,7 @@ export interface Info {
   samples: Sample[];
 }
 
-/// What came of one level.
+/// Result of one level.
 export interface Level {
   encoded: Encoded;
   vertices: number;
@@ -30,7 +30,7 @@ export interface Level {
   timing: Record<string, number>;
 }
 
-/// The key that is sent with each request; empty: none.
+/// Key sent with each request; empty: none.
 let key = '';
 export const client = new Client({ key: () => key });
 
@@ -54,7 +54,7 @@ export async function fetchStored(id: string): Promise<Encoded> {
   return encodedOf(await client.stored(id));
 }
 
-/// Hands over the levels as they come, and resolves with the summary.
+/// Calls `onLevel` for each level, and resolves with the summary.
 export async function read(levels: Levels, onLevel: (level: Level) => void): Promise<Summary> {
   for await (const level of levels) onLevel(levelOf(level));
   return levels.summary;

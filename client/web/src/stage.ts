@@ -1,8 +1,7 @@
-// Where meshes are drawn: one canvas, one renderer and one camera for all panels, so that they always look the same way.
+// Stage: one canvas, renderer and camera for all panels, so that they share the view.
 
 import {
   AmbientLight,
-  Box3,
   type BufferGeometry,
   CameraHelper,
   DirectionalLight,
@@ -24,12 +23,13 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 
+import { measureBounds } from './bounds';
 import { cameraOf, type Lens, orthographic } from './camera';
 import { framed } from './framing';
 import { glide } from './glide';
 import type { Camera, Frozen } from './link';
 
-/// How long the camera must have been still to be at rest, in milliseconds.
+/// Milliseconds without motion after which the camera is at rest.
 const rest = 200;
 
 interface View {
@@ -41,36 +41,36 @@ interface View {
 }
 
 export class Stage {
-  /// The camera has come to rest somewhere else, or the panels have another size.
+  /// Function called when the camera rests at another place, or the panels have another size.
   onRest: () => void = () => {};
-  /// The camera moves.
+  /// Function called while the camera moves.
   onMove: () => void = () => {};
   #renderer: WebGLRenderer;
-  /// Light from all sides; made when the first scene comes.
+  /// Ambient light; made with the first scene.
   #room: Texture | null = null;
   #surface: HTMLElement;
   #camera = new PerspectiveCamera(45);
   #controls: OrbitControls;
   #lens: Lens = { fovY: 45, isOrthographic: false, up: [0, 1, 0] };
   #views = new Map<HTMLElement, View>();
-  /// Those on screen.
+  /// Panels on screen.
   #panels: HTMLElement[] = [];
   #sphere = new Sphere(new Vector3(), 1);
-  /// What the camera is to show the whole of.
+  /// Mesh that the camera frames.
   #framed: BufferGeometry | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  /// A finger or a button is down: the camera is not at rest, however still.
+  /// Whether a finger or button is pressed: then the camera is never at rest.
   #isHeld = false;
   #isDue = false;
-  /// Where the first panel's picture ends and the last one's begins, which lie in the same place; null: they do not.
+  /// Border between the first and the last panel's pictures in one place, as a share of the width; null: no wipe.
   #wipe: number | null = null;
   #stopGliding = () => {};
 
-  /// `surface` is as large as the canvas; on it the mesh is turned. Throws where the browser has no WebGL.
+  /// `surface`: element of the canvas's size that receives the pointer. Throws if the browser has no WebGL.
   constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
     this.#surface = surface;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.#renderer.toneMapping = ReinhardToneMapping; // what is white keeps its shades
+    this.#renderer.toneMapping = ReinhardToneMapping; // keeps shades in white areas
     this.#renderer.toneMappingExposure = 1.6;
     this.#controls = this.#makeControls();
     new ResizeObserver(() => this.#moved()).observe(surface);
@@ -79,15 +79,15 @@ export class Stage {
     surface.addEventListener('wheel', () => this.#stopGliding(), { passive: true });
   }
 
-  /// A share of the width; null: panels side by side.
+  /// Sets the border of the wipe, as a share of the width; null: panels side by side.
   set wipe(share: number | null) {
     this.#wipe = share;
-    // In panels beside each other the cursor is not where the picture is.
+    // With several panels, the cursor is not at its place in the picture.
     this.#controls.zoomToCursor = share !== null || this.#panels.length === 1;
     this.draw();
   }
 
-  /// The panels on screen: what each shows is drawn where it lies. Others keep what they show.
+  /// Sets the panels on screen; each draws its content at its place. Others keep their content.
   setPanels(elements: HTMLElement[]): void {
     this.#panels = elements;
     for (const element of elements) {
@@ -101,7 +101,7 @@ export class Stage {
     this.draw();
   }
 
-  /// Draws this in the panel from now on, and frees what was there.
+  /// Draws content in the panel, and frees the previous content.
   show(element: HTMLElement, content: Object3D | null): void {
     const view = this.#views.get(element);
     if (view === undefined) return;
@@ -109,16 +109,16 @@ export class Stage {
     dispose(view.content);
     view.content = content;
     if (content) view.scene.add(content);
-    // Metals show what is round them.
-    const isColoured = content?.userData.isColoured === true; // by what must be read
+    // Metals reflect their surroundings.
+    const isColoured = content?.userData.isColoured === true; // colours must stay readable
     view.scene.environment = isColoured ? null : this.#roomLight();
-    view.scene.environmentIntensity = 0.5; // white stays below white
+    view.scene.environmentIntensity = 0.5; // keeps white below saturation
     view.light.intensity = isColoured ? 2.4 : 1.5;
     view.ambient.intensity = isColoured ? 0.7 : 0;
     this.draw();
   }
 
-  /// Draws the frustum of a camera that is not the one looked through; null: none.
+  /// Draws the frustum of a camera other than the current one; null: none.
   showFrustum(camera: Frozen | null): void {
     for (const view of this.#views.values()) {
       if (view.frustum) view.scene.remove(view.frustum);
@@ -136,7 +136,7 @@ export class Stage {
     this.#lens = lens;
     if (isTurned) {
       const { eye, target } = this.camera;
-      this.#controls.dispose(); // they take the camera's up when they are made
+      this.#controls.dispose(); // the controls read the camera's up vector only when made
       this.#controls = this.#makeControls();
       this.camera = { eye, target };
     }
@@ -154,28 +154,30 @@ export class Stage {
     this.draw();
   }
 
-  /// Pixels of the panel's picture, width and height.
+  /// Returns width and height of the panel's picture in pixels.
   pixelsOf(element: HTMLElement): [number, number] {
     const bounds = element.getBoundingClientRect();
     return [bounds.width, bounds.height].map((n) => Math.max(1, Math.round(n * devicePixelRatio))) as [number, number];
   }
 
-  /// Looks at this mesh from now on, from where all of it is seen.
+  /// Places the camera so that all of a mesh is visible.
   frame(geometry: BufferGeometry): void {
-    new Box3().setFromBufferAttribute(geometry.getAttribute('position') as never).getBoundingSphere(this.#sphere);
+    if (geometry.boundingBox === null) measureBounds(geometry);
+    geometry.boundingBox!.getBoundingSphere(this.#sphere);
     this.#sphere.radius = Math.max(this.#sphere.radius, 1e-30);
     this.#framed = geometry;
     this.resetCamera();
   }
 
   resetCamera(): void {
-    if (this.#framed !== null)
-      this.camera = framed(this.#framed, this.#sphere, Math.min(...this.#panels.map(aspectOf)), this.#lens);
+    if (this.#framed === null) return;
+    const [aspect, share] = [aspectOf, freeShareOf].map((of) => Math.min(...this.#panels.map(of)));
+    this.camera = framed(this.#framed, this.#sphere, aspect, share, this.#lens);
   }
 
-  /// Turns about the target; angles in radians.
+  /// Rotates about the target; angles in radians.
   orbit(right: number, up: number): void {
-    // Spherical coordinates are about y.
+    // Spherical coordinates have y as their axis.
     const upright = new Quaternion().setFromUnitVectors(this.#camera.up.clone().normalize(), new Vector3(0, 1, 0));
     const arm = this.#camera.position.clone().sub(this.#controls.target).applyQuaternion(upright);
     const at = new Spherical().setFromVector3(arm);
@@ -186,7 +188,7 @@ export class Stage {
     this.#controls.update();
   }
 
-  /// Moves camera and target, in shares of their distance.
+  /// Moves camera and target, in multiples of their distance.
   pan(right: number, up: number): void {
     const distance = this.#camera.position.distanceTo(this.#controls.target);
     const step = new Vector3(right * distance, up * distance, 0).applyQuaternion(this.#camera.quaternion);
@@ -207,6 +209,12 @@ export class Stage {
       this.#isDue = false;
       this.#drawNow();
     });
+  }
+
+  /// Resolves once the next picture is drawn.
+  async drawn(): Promise<void> {
+    this.draw();
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
   }
 
   #roomLight(): Texture {
@@ -259,14 +267,14 @@ export class Stage {
       const [from, to] = this.#wipe === null ? [0, 1] : i === 0 ? [0, this.#wipe] : [this.#wipe, 1];
       this.#renderer.setScissor(left + from * at.width, bottom, (to - from) * at.width, at.height);
       const camera = this.#lookingAt(element);
-      // From over the left shoulder.
+      // Light from behind the left shoulder.
       light.position.set(-0.5, 0.7, 0.6).multiplyScalar(toTarget).applyMatrix4(this.#camera.matrixWorld);
       light.target.position.copy(this.#controls.target);
       this.#renderer.render(scene, camera);
     }
   }
 
-  /// The camera with the panel's picture.
+  /// Returns the camera, with the projection for the panel's picture.
   #lookingAt(element: HTMLElement): PerspectiveCamera | OrthographicCamera {
     this.#camera.aspect = aspectOf(element);
     this.#camera.updateProjectionMatrix();
@@ -283,7 +291,7 @@ export class Stage {
     return camera;
   }
 
-  /// Turns about what is pointed at from now on, from half as far.
+  /// Moves the target to the surface under the pointer, and halves the distance.
   #focus({ clientX, clientY }: MouseEvent): void {
     const isAt = (box: DOMRect) =>
       clientX >= box.left && clientX < box.right && clientY >= box.top && clientY < box.bottom;
@@ -313,9 +321,16 @@ function aspectOf(element: HTMLElement): number {
   return Math.max(width, 1) / Math.max(height, 1);
 }
 
-/// Scenes with materials of their own are shown again in other looks, and freed by those who decoded them.
+/// Returns the share of a panel's height, in its middle, between caption and buttons; at least half.
+function freeShareOf(element: HTMLElement): number {
+  const { top, height } = element.getBoundingClientRect();
+  const caption = element.firstElementChild!.getBoundingClientRect().bottom - top;
+  return Math.min(0.9, Math.max(0.5, 1 - (2 * caption) / Math.max(height, 1)));
+}
+
+/// Frees content. Scenes with their own materials are kept: other looks show them, and their owners free them.
 function dispose(content: Object3D | null): void {
   if (content === null || content.userData.hasMaterials === true) return;
   for (const child of [...content.children]) dispose(child);
-  (content as { geometry?: { dispose(): void } }).geometry?.dispose(); // materials are for all pictures
+  (content as { geometry?: { dispose(): void } }).geometry?.dispose(); // materials are shared by all pictures
 }

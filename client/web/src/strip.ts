@@ -1,4 +1,4 @@
-// What the refined mesh costs and what was found of it, in one line at the picture.
+// Strip at the picture: costs and findings of the refined mesh in one line.
 
 import { element } from './elements';
 import { bytesOf } from './figures';
@@ -6,7 +6,7 @@ import type { Shown } from './panel';
 
 const whole = (n: number) => n.toLocaleString('en', { maximumFractionDigits: 0 });
 
-/// `coarseFaces`: of the mesh that was opened.
+/// Returns the costs. `coarseFaces`: faces of the coarse mesh.
 export function costOf(shown: Shown, coarseFaces: number): Node[] {
   const { summary, timing } = shown;
   const bytes = bytesOf(shown);

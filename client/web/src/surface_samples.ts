@@ -1,4 +1,4 @@
-// Points that are spread evenly over a surface, as `papilio compare` takes them.
+// Points spread evenly over a surface, as in `papilio compare`.
 
 /// Indexed triangles: [points * 3], [faces * 3].
 export interface Surface {
@@ -9,7 +9,7 @@ export interface Surface {
 export interface Samples {
   /// [samples * 3]
   points: Float64Array;
-  /// [samples] the face that each lies in.
+  /// [samples] the face that contains each.
   faces: Uint32Array;
 }
 
@@ -17,7 +17,7 @@ export interface Samples {
 const step = 0.7548776662466927;
 const spread = (i: number, of: number) => (0.5 + i * of) % 1;
 
-/// `count` points, each for the same share of the area. None if there is no area.
+/// Returns `count` points, each for an equal share of the area; none if there is no area.
 export function samplesOf(surface: Surface, count: number): Samples {
   const { triangles } = surface;
   const areas = new Float64Array(triangles.length / 3);
@@ -43,7 +43,7 @@ function areaOf({ positions, triangles }: Surface, face: number): number {
   return Math.hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx) / 2;
 }
 
-/// The square is folded onto the triangle.
+/// Puts a point of the unit square, folded onto the triangle.
 function putPoint({ positions, triangles }: Surface, face: number, sample: number, points: Float64Array): void {
   let [u, v] = [spread(sample, step), spread(sample, step * step)];
   if (u + v > 1) [u, v] = [1 - u, 1 - v];

@@ -1,17 +1,18 @@
-// The parts of a scene, by name, each to be hidden and shown.
+// Tree of a scene's parts by name, in which each can be hidden.
 
 import type { Object3D } from 'three';
 
 import { element, find } from './elements';
 import { isMesh } from './scene';
 
-/// Where a part is in its scene: the numbers of the children that lead there, "0/2/1".
+/// Path of a part in its scene: indices of children, "0/2/1".
 export type Path = string;
 
-/// More would be no help to anybody.
+/// Most parts listed; longer lists are not usable.
 const most = 500;
 
-/// Shows the tree of a scene, if it has parts. `onHidden`: the user has hidden parts or shows them again; none at first.
+/// Shows the tree of a scene that has parts. `onHidden`: function called when the user hides or shows parts; initially
+/// none are hidden.
 export function showParts(scene: Object3D | null, onHidden: (hidden: ReadonlySet<Path>) => void): void {
   const hidden = new Set<Path>();
   onHidden(hidden);
@@ -26,7 +27,7 @@ export function showParts(scene: Object3D | null, onHidden: (hidden: ReadonlySet
   find('parts').replaceChildren(...(tree ? [tree] : []));
 }
 
-/// Null where there is nothing to choose from.
+/// Returns the tree; null if there is nothing to choose.
 function treeOf(scene: Object3D, onToggle: (path: Path, isHidden: boolean) => void): HTMLElement | null {
   let meshes = 0;
   scene.traverse((object) => (meshes += Number(isMesh(object))));
@@ -54,7 +55,7 @@ function treeOf(scene: Object3D, onToggle: (path: Path, isHidden: boolean) => vo
   return listOf(scene, '');
 }
 
-/// Hides these parts of a scene, or of a refined copy of it, and shows the others.
+/// Hides these parts of a scene, or of its refined copy, and shows the others.
 export function hide(scene: Object3D, hidden: ReadonlySet<Path>): void {
   scene.traverse((object) => (object.visible = true));
   for (const path of hidden) {

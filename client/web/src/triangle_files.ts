@@ -1,4 +1,4 @@
-// Formats that three's loaders read as triangles alone: in the page, and in workers.
+// Formats that three's loaders read as triangles only, in the page and in workers.
 
 import { type BufferGeometry, Mesh, type Object3D, Vector3 } from 'three';
 import { Problem } from 'papilio/client';
@@ -6,10 +6,10 @@ import { Problem } from 'papilio/client';
 import { readOff } from './off';
 import type { Surface } from './surface_samples';
 
-/// By the extension of their names.
+/// Extensions of the formats.
 export const triangleFormats: readonly string[] = ['.obj', '.ply', '.stl', '.off'];
 
-/// All triangles in a file of one of these formats; points at the same place are one vertex. Rejects with a Problem.
+/// Reads all triangles of a file; points of equal position are one vertex. Rejects with a Problem.
 export async function readTriangles(name: string, extension: string, bytes: ArrayBuffer): Promise<Surface> {
   let geometries: BufferGeometry[];
   try {
@@ -33,7 +33,7 @@ async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeomet
     case '.ply': {
       const { PLYLoader } = await import('three/examples/jsm/loaders/PLYLoader.js');
       const head = new TextDecoder().decode(bytes.slice(0, 10_000));
-      if (!/^element face [1-9]/m.test(head)) return []; // the points are no triangles
+      if (!/^element face [1-9]/m.test(head)) return []; // a point cloud
       return [new PLYLoader().parse(bytes)];
     }
     case '.off':
@@ -45,7 +45,7 @@ async function load(extension: string, bytes: ArrayBuffer): Promise<BufferGeomet
   }
 }
 
-/// In world coordinates.
+/// Returns the meshes of a scene in world coordinates.
 function meshesIn(scene: Object3D): BufferGeometry[] {
   scene.updateMatrixWorld(true);
   const found: BufferGeometry[] = [];
@@ -56,7 +56,7 @@ function meshesIn(scene: Object3D): BufferGeometry[] {
   return found;
 }
 
-/// As one mesh: many formats repeat points in each triangle.
+/// Merges geometries, and points of equal position: many formats repeat points in each triangle.
 function welded(geometries: BufferGeometry[]): Surface {
   const positions: number[] = [];
   const triangles: number[] = [];

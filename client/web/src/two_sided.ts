@@ -1,4 +1,4 @@
-// How far a surface is from its original, and the original from it.
+// Distances between a surface and its original, in both directions.
 
 import { BufferAttribute, BufferGeometry, Vector3 } from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
@@ -9,20 +9,20 @@ export type { Surface };
 
 /// Distances in the unit of the positions.
 export interface TwoSided {
-  /// Root mean square over the area, the larger of both directions.
+  /// Root mean square over the area; the larger of both directions.
   rms: number;
   /// Largest of both directions, at vertices and samples.
   largest: number;
-  /// Of the bounding box of the original.
+  /// Diagonal of the original's bounding box.
   diagonal: number;
   /// [faces of the surface] the largest distance found at each face.
   ofFaces: Float32Array<ArrayBuffer>;
 }
 
-/// As many as `papilio compare` takes in each direction.
+/// Samples in each direction, as in `papilio compare`.
 const sampleCount = 50_000;
 
-/// An original that surfaces are compared with.
+/// Original prepared for comparison with surfaces.
 export class MeasuredOriginal {
   readonly #side: Side;
   readonly #diagonal: number;
@@ -51,7 +51,7 @@ export class MeasuredOriginal {
   }
 }
 
-/// A surface, what it is searched by, and the points of it that are looked up on the other one.
+/// Surface, its search tree, and its points for the search on the other surface.
 class Side {
   readonly surface: Surface;
   readonly tree: MeshBVH;
@@ -62,7 +62,7 @@ class Side {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(surface.positions, 3));
     geometry.setIndex(new BufferAttribute(surface.triangles, 1));
-    this.tree = new MeshBVH(geometry, { indirect: true }); // the triangles keep their order
+    this.tree = new MeshBVH(geometry, { indirect: true }); // keeps the order of triangles
     this.samples = samplesOf(surface, sampleCount);
   }
 }
@@ -70,11 +70,11 @@ class Side {
 interface OneWay {
   rms: number;
   largest: number;
-  /// [points of `from`] 0 for those that no face has.
+  /// [points of `from`] 0 for points without faces.
   ofVertices: Float64Array;
   /// [samples of `from`]
   ofSamples: Float64Array;
-  /// [samples of `from`] the face of `to` that is nearest.
+  /// [samples of `from`] the nearest face of `to`.
   nearest: Uint32Array;
 }
 
@@ -106,7 +106,7 @@ function oneWay(from: Side, to: Side): OneWay {
   };
 }
 
-/// Vertices that a face has.
+/// Returns the vertices that have faces.
 function usedIn({ positions, triangles }: Surface): Uint32Array {
   const isUsed = new Uint8Array(positions.length / 3);
   for (const v of triangles) isUsed[v] = 1;

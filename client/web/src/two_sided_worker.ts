@@ -1,9 +1,9 @@
-// Reads an original and measures distances to it in a worker: original.ts starts it.
+// Worker that reads an original and measures distances to it; original.ts starts it.
 
 import { readTriangles } from './triangle_files';
 import { MeasuredOriginal, type Surface, type TwoSided } from './two_sided';
 
-/// The original comes first, as a file of one of triangleFormats or as it was decoded. All are answered.
+/// Message; the first is the original, as a file of one of triangleFormats or decoded. Each is answered.
 export type ToMeasurer =
   | { kind: 'file'; name: string; extension: string; bytes: ArrayBuffer }
   | { kind: 'original' | 'measure'; surface: Surface };

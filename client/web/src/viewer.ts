@@ -1,5 +1,6 @@
-// The page: what is open, what is shown of it, and what the user has set.
+// Page: the open mesh, its panels, and the user's settings.
 
+import { writeAddress } from './address';
 import { Alert } from './alert';
 import { Asker, lensOf } from './asker';
 import { commandRows, commandsFor, copy } from './commands';
@@ -9,7 +10,7 @@ import { fetchDecoder } from './draco';
 import { addChoice, find } from './elements';
 import { listenToFiles, listenToKeys } from './input';
 import { askForKey, listenToKey } from './key_form';
-import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest, type State, toHash } from './link';
+import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest, type State } from './link';
 import type { OpenMesh } from './mesh';
 import { MeshSelect } from './mesh_select';
 import type { Encoded } from './model';
@@ -40,10 +41,10 @@ export class Viewer {
   #select = new MeshSelect();
   #packed = new PackedPanel(find('packed'));
   #asker: Asker;
-  /// How many meshes were asked to be opened.
+  /// Count of openings, by which an outdated one is recognized.
   #opening = 0;
 
-  /// Throws where the browser has no WebGL.
+  /// Throws if the browser has no WebGL.
   constructor() {
     this.#stage = new Stage(find<HTMLCanvasElement>('canvas'), find('panels'));
     this.#pictures = new Pictures(this.#stage);
@@ -55,6 +56,7 @@ export class Viewer {
     for (const panel of this.#panels.values()) {
       panel.onChange = () => this.#showResults();
       panel.onProblem = (problem) => this.#point(problem);
+      panel.prepare = (decoded) => this.#pictures.prepare(decoded, this.#look());
       panel.onEnlarge = () => {
         const isAlone = this.#visible().length === 1;
         this.#state.arrangement = 'panels';
@@ -66,9 +68,9 @@ export class Viewer {
     this.#setPanels();
   }
 
-  /// Fetches what is to be there first; again what could not be had.
+  /// Fetches the initial data, and retries what failed before.
   async start(): Promise<void> {
-    fetchDecoder().catch(() => {}); // told by what is decoded
+    fetchDecoder().catch(() => {}); // errors are shown by the decoding
     const info = this.#asker.info === null ? this.#fetchInfo() : null;
     await Promise.all([info, this.#mesh === null ? this.#openNamed(this.#state.mesh) : null]);
   }
@@ -88,19 +90,19 @@ export class Viewer {
     this.#refresh();
   }
 
-  /// A sample, or a mesh that is stored.
+  /// Opens a sample or a stored mesh.
   async #openNamed(name: string): Promise<void> {
     await this.#open(name, true, () => (isStored(name) ? fetchStored(name) : fetchSample(name)));
   }
 
-  /// A mesh, and what it names besides.
+  /// Opens a mesh with the files it refers to.
   async #openFiles(files: File[]): Promise<void> {
     const most = this.#asker.info?.limits.max_body_bytes ?? Infinity;
     const file = meshAmong(files);
     await this.#open(file.name.replace(/\.gltf$/i, '.glb'), false, () => readMeshFile(file, files, most));
   }
 
-  /// What is open stays so unless all goes well.
+  /// Opens a mesh; keeps the previous one on failure.
   async #open(name: string, isNamed: boolean, read: () => Promise<Encoded>): Promise<void> {
     const opening = ++this.#opening;
     const isLatest = () => opening === this.#opening;
@@ -123,7 +125,7 @@ export class Viewer {
   }
 
   #show(mesh: OpenMesh, isNamed: boolean): void {
-    // The first one may come with a link's camera.
+    // The camera of a link is kept for the first mesh.
     if (this.#mesh !== null) this.#state.camera = this.#state.frozen = null;
     this.#mesh?.close();
     this.#take(mesh);
@@ -149,7 +151,7 @@ export class Viewer {
     this.#asker.mesh = mesh;
   }
 
-  /// Some parameters are of scenes alone.
+  /// Shows parameters; some apply only to scenes.
   #showParameters(): void {
     const ofScenes = ['output.compress', 'split_instances'];
     const isScene = this.#mesh?.isScene ?? false;
@@ -164,10 +166,10 @@ export class Viewer {
 
   // Asking
 
-  /// Asks for what is shown and not there yet.
+  /// Requests the visible meshes that are missing.
   #refresh(): void {
     this.#stage.setLens(lensOf(this.#state.values));
-    this.#writeLink();
+    writeAddress(this.#state);
     const mesh = this.#mesh;
     if (mesh === null) return;
     for (const [mode, panel] of this.#panels) {
@@ -178,13 +180,13 @@ export class Viewer {
     void this.#writeCommands(mesh);
   }
 
-  /// What the camera sees now, in the panel that is for it.
+  /// Returns the view of the current camera, in the panel for which it refines.
   #view(): Frozen {
     const panel = this.#visible().find(({ mode }) => mode === 'view') ?? this.#visible()[0];
     return { ...this.#stage.camera, pixels: this.#stage.pixelsOf(panel.element) };
   }
 
-  /// What is refined here follows the camera.
+  /// Requests refinements in this browser for the moved camera.
   #cameraMoves(): void {
     this.#showCamera();
     const panel = this.#panels.get('view')!;
@@ -200,7 +202,7 @@ export class Viewer {
 
   // Showing
 
-  /// Of scenes the levels do not come one by one.
+  /// Returns the look; scenes have none by level, as their levels do not arrive separately.
   #look(): Look {
     return this.#mesh?.isScene && this.#state.look === 'level' ? 'shaded' : this.#state.look;
   }
@@ -221,7 +223,7 @@ export class Viewer {
     this.#showResults();
   }
 
-  /// Of a wipe the first and the last that are chosen; one alone is coarse beside itself.
+  /// Returns the visible panels: with a wipe, the first and the last chosen; a single one is paired with coarse.
   #visible(): Panel[] {
     const { arrangement } = this.#state;
     let chosen = this.#state.modes;
@@ -237,7 +239,7 @@ export class Viewer {
       .catch((error: unknown) => this.#tell(error));
   }
 
-  /// Where the camera is, in the form.
+  /// Shows the camera's values in the form.
   #showCamera(): void {
     const { eye, target, pixels } = this.#view();
     this.#form.setPlaceholder('view.eye', eye.map(shortest).join(','));
@@ -250,21 +252,17 @@ export class Viewer {
     this.#stage.showFrustum(this.#state.frozen);
   }
 
-  #writeLink(): void {
-    history.replaceState(null, '', `#${toHash(this.#state)}`);
-  }
-
-  /// Stores the mesh, of which a file's has a name in links from then on. Null where the server cannot store it.
+  /// Stores the mesh, which gives a file's mesh its name in links. Returns null if the server cannot store it.
   async #store(mesh: OpenMesh): Promise<string | null> {
-    const id = await mesh.id.catch(() => null); // the panels tell
+    const id = await mesh.id.catch(() => null); // the panels report errors
     if (mesh === this.#mesh && this.#state.mesh === '' && id !== null) {
       this.#state.mesh = id;
-      this.#writeLink();
+      writeAddress(this.#state);
     }
     return id;
   }
 
-  /// Where they are looked at: what is refined here is not sent anywhere.
+  /// Writes the commands if they are visible: otherwise a mesh refined in this browser would be sent.
   async #writeCommands(mesh: OpenMesh): Promise<void> {
     if (!find<HTMLDetailsElement>('advanced').open) return;
     const id = await this.#store(mesh);
@@ -356,7 +354,7 @@ export class Viewer {
   }
 
   #setParameter(name: string, value: string | null): void {
-    // These two are where the camera is, which is turned by hand as well: they move it, and nothing else keeps them.
+    // These two move the camera, and are stored nowhere else.
     if ((name === 'view.eye' || name === 'view.target') && value !== null) {
       const point = value.split(',').map(Number) as [number, number, number];
       this.#stage.camera = { ...this.#stage.camera, [name === 'view.eye' ? 'eye' : 'target']: point };
@@ -369,7 +367,7 @@ export class Viewer {
     this.#refresh();
   }
 
-  /// The address was changed by hand.
+  /// Opens the state of an address that the user changed.
   async #followLink(): Promise<void> {
     const { mesh } = this.#state;
     const next = fromHash(location.hash, defaults);
@@ -390,7 +388,7 @@ export class Viewer {
     this.#alert.show(error instanceof Error ? error.message : String(error), mayDoBetter ? again : undefined);
   }
 
-  /// Shows where something can be done about it.
+  /// Marks the parameter at fault, or asks for the access key.
   #point(problem: Problem): void {
     if (problem.parameter) this.#form.setFault(problem.parameter, problem.message);
     if (problem.code === 'unauthorized' || problem.code === 'forbidden') askForKey();

@@ -1,9 +1,9 @@
-// The wipe between two meshes in one picture.
+// Wipe between two meshes in one picture.
 
 import { find } from './elements';
 
 export class Wipe {
-  /// Where the first picture ends, as a share of the width.
+  /// Function called with the border of the first picture, as a share of the width.
   onChange: (share: number) => void = () => {};
   #surface = find('stage');
   #input = find<HTMLInputElement>('wipe');
@@ -11,7 +11,7 @@ export class Wipe {
   constructor() {
     this.#input.addEventListener('input', () => this.#moved());
     new ResizeObserver(() => this.#moved()).observe(this.#surface);
-    // What is pressed here must not turn the mesh.
+    // The press must not rotate the mesh.
     this.#input.addEventListener('pointerdown', (event) => event.stopPropagation());
   }
 
@@ -21,7 +21,7 @@ export class Wipe {
   }
 
   get share(): number {
-    // The middle of the handle, which does not leave the picture.
+    // Middle of the handle, which stays within the picture.
     const width = Math.max(1, this.#surface.clientWidth);
     const handle = 0.5 * parseFloat(getComputedStyle(this.#input).getPropertyValue('--handle')) || 0;
     return (handle + (Number(this.#input.value) / 1000) * (width - 2 * handle)) / width;
