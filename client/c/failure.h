@@ -9,7 +9,7 @@
 
 namespace papilio::c {
 
-/// An error as C sees it.
+/// Error in the terms of the C functions.
 struct Failure {
   papilio_fault fault = PAPILIO_NO_FAULT;
   std::string message{}, parameter{};
@@ -17,7 +17,7 @@ struct Failure {
 
 [[nodiscard]] Failure failure_of(const proto::Problem& problem);
 [[nodiscard]] Failure failure_of(const Error& error);
-/// Of any other.
+/// Returns the failure of any other exception.
 [[nodiscard]] Failure failure_of(const std::exception& error);
 [[nodiscard]] Failure lack_of_memory();
 

@@ -15,16 +15,16 @@
 #include "proto/problem.h"
 #include "proto/url.h"
 
-using namespace papilio;  // C has no namespaces: what this file defines is the library's
+using namespace papilio;  // the C functions have no namespace
 
 namespace {
 
-/// Of a program with 32-bit addresses a level may take half.
+/// Memory limit of a level: half of the address space with 32-bit addresses, else none.
 constexpr uint64_t memory_limit = sizeof(void*) == 4 ? uint64_t{2} << 30 : 0;
-/// Most that a mesh keeps for its next view.
+/// Upper bound of the bytes that a mesh keeps for its next view.
 constexpr uint64_t kept_bytes = uint64_t{256} << 20;
 
-/// Triangles, and how C sees them.
+/// Triangles, and their C description.
 struct Arrays {
   TriangleMesh mesh;
   std::vector<papilio_attribute> attributes;
@@ -44,7 +44,7 @@ struct Arrays {
 
 thread_local c::Failure last_failure;
 
-/// Runs `work`, which returns a pointer. Returns null where it throws.
+/// Runs `work`, which returns a pointer. Records an exception and returns null if it throws.
 template <class Work>
 auto guarded(const Work& work) -> decltype(work()) {
   try {
@@ -80,7 +80,7 @@ void require_attribute(const papilio_attribute& attribute) {
       return takes(3, "Displacements");
     default:
       throw proto::Problem(proto::Code::mesh_unusable,
-                           "There is no kind of attribute " + std::to_string(attribute.kind) + ".");
+                           "Unknown kind of attribute: " + std::to_string(attribute.kind) + ".");
   }
 }
 
@@ -109,10 +109,10 @@ TriangleMesh copy_of(const papilio_triangles& from) {
 
 struct papilio_mesh {
   Mesh coarse;
-  std::vector<int32_t> kinds;                      ///< of the attributes
-  std::unique_ptr<const PreparedMesh> prepared{};  ///< for the rules of the last refinement that needed it
+  std::vector<int32_t> kinds;                      ///< [attributes]
+  std::unique_ptr<const PreparedMesh> prepared{};  ///< mesh prepared for the rules of the last refinement that used it
 
-  /// A level with its own normals, where it has normals.
+  /// Returns a level, with recomputed normals if it has any.
   [[nodiscard]] Arrays arrays_of(Mesh level, bool is_coarse, bool adds_normals) const {
     std::vector<int32_t> all = kinds;
     for (size_t a = 0; a < kinds.size() && !is_coarse; ++a)
@@ -139,13 +139,13 @@ struct papilio_result {
 
 namespace {
 
-/// What the C function does, with exceptions for errors.
+/// Refines the mesh; throws on errors.
 papilio_result* refined(papilio_mesh& mesh, std::string_view query, const papilio_hooks& hooks) {
   const proto::Parameters parameters = proto::parse_query(proto::split_query(query));
   Options options = proto::options_for(parameters, bounding_box(mesh.coarse.positions));
   const bool has_normals = std::find(mesh.kinds.begin(), mesh.kinds.end(), PAPILIO_NORMALS) != mesh.kinds.end();
   const bool adds_normals = parameters.normals && !has_normals;
-  options.edges = adds_normals;  // they are divided at creases
+  options.edges = adds_normals;  // normals are split at creases, which are edges
   options.memory_limit = memory_limit;
   check_room(mesh.coarse, options);
 
@@ -153,7 +153,7 @@ papilio_result* refined(papilio_mesh& mesh, std::string_view query, const papili
   if (hooks.cancelled != nullptr) core.cancelled = [&] { return hooks.cancelled(hooks.user) != 0; };
   if (hooks.on_level != nullptr) {
     core.on_level = [&](const Level& level) {
-      if (level.last) return;  // told below, with its statistics
+      if (level.last) return;  // reported below, with its statistics
       const Arrays arrays = mesh.arrays_of(level.mesh, level.level == 0, adds_normals);
       papilio_statistics statistics{};
       statistics.level = level.level;

@@ -19,7 +19,7 @@ std::string folded(std::string_view name) {
 
 bool is_long_flag(std::string_view argument) { return argument.starts_with(dashes) && argument != dashes; }
 
-/// Without dashes and value.
+/// Returns a flag's name, without dashes and value.
 std::string_view name_in(std::string_view argument) {
   argument.remove_prefix(dashes.size());
   return argument.substr(0, argument.find('='));

@@ -6,12 +6,13 @@
 
 namespace papilio::client {
 
-/// A long flag, "--view.edge-pixels" or "--crease-angle=30", under the one of the known `names` (without dashes in
-/// front) that is the same but for `-`, `_` and `.`: "--view.edge_pixels", "--crease_angle=30". All else as it is.
+/// Returns a long flag, "--view.edge-pixels" or "--crease-angle=30", under its known name, which may differ in `-`,
+/// `_` and `.`: "--view.edge_pixels", "--crease_angle=30". `names` have no leading dashes. Other arguments are returned
+/// unchanged.
 [[nodiscard]] std::string known_flag(const std::string& argument, const std::vector<std::string>& names);
 
-/// What to say against an argument that a command does not take: a flag's nearest name, or where to look.
-/// `command` is its name as it is called, "papilio refine".
+/// Returns the message for an argument that a command does not take: the nearest flag, or where to find help.
+/// `command`: its name as called, such as "papilio refine".
 [[nodiscard]] std::string unexpected_argument(const std::string& argument, const std::string& command,
                                               const std::vector<std::string>& names);
 

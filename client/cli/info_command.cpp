@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Describes the levels of a packed model, or what is wrong with them.
+/// Describes the levels of a packed model, or their defect.
 ordered_json describe_detail(const MeshBytes& file) {
   try {
     return ordered_json::parse(proto::detail::describe(proto::detail::read_packed(file.bytes, {.limits = own_limits})));

@@ -2,8 +2,8 @@
 
 namespace papilio::client {
 
-/// While it lives, the first SIGINT or SIGTERM asks to stop instead of ending the program; the second ends it. One at a
-/// time.
+/// Handler of SIGINT and SIGTERM during its lifetime: the first signal requests to stop, the second ends the program.
+/// Only one may exist at a time.
 class Interruption {
  public:
   Interruption();
@@ -11,7 +11,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// Returns whether a signal came since the construction.
+  /// Returns whether a signal has arrived since the construction.
   [[nodiscard]] static bool is_asked();
 };
 

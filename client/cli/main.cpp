@@ -20,7 +20,7 @@ enum ExitStatus { success = 0, failed = 1, usage = 2 };
 
 constexpr const char* mesh_file = "Mesh file (.drc .obj .ply .off .stl .glb .gltf), or - for standard input";
 
-/// A flag whose value is the name of a mesh format.
+/// Adds a flag whose value is the name of a mesh format.
 void add_format(CLI::App& command, const std::string& flag, std::optional<Format>& format,
                 const std::string& description) {
   command
@@ -34,11 +34,10 @@ void add_from(CLI::App& command, MeshPlace& input) {
   add_format(command, "--from", input.format, "Format of the input, instead of by its extension or content");
 }
 
-/// Values of the table's parameters by name, as they were typed; empty where they were not given.
+/// Values of the table's parameters by name, as typed; empty if not given.
 using TypedParameters = std::map<std::string, std::string>;
 
-/// The table's parameters whose names begin with `prefix` as flags under their own names: --levels,
-/// --view.eye.
+/// Adds the table's parameters whose names start with `prefix` as flags: --levels, --view.eye.
 void add_parameters(CLI::App& command, TypedParameters& typed, std::string_view prefix) {
   for (const proto::ParameterInfo& parameter : proto::parameter_table()) {
     if (!parameter.name.starts_with(prefix)) continue;
@@ -223,7 +222,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// In the order that CLI11 takes, which is reversed; flags under their known names.
+/// Returns the arguments in CLI11's order, which is reversed, with flags under their known names.
 std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(app)) std::ranges::copy(flags_of(*command), std::back_inserter(names));
@@ -233,13 +232,13 @@ std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
   return reversed;
 }
 
-/// The program and the command, as they were called.
+/// Returns the program and the command, as called.
 std::string called_as(const CLI::App& app) {
   const std::vector<CLI::App*> called = app.get_subcommands();
   return called.empty() ? "papilio" : "papilio " + called[0]->get_name();
 }
 
-/// What to say against the first argument that nothing takes, a flag before others; "" where there is none.
+/// Returns the message for the first unexpected argument, flags first; "" if there is none.
 std::string unexpected(const CLI::App& app) {
   const std::vector<CLI::App*> called = app.get_subcommands();
   const CLI::App& command = called.empty() ? app : *called[0];

@@ -18,7 +18,7 @@ namespace {
 using proto::format_rounded;
 using proto::detail::Packed;
 
-/// Says what a packed model does not hold.
+/// Warns of data that a packed model does not store.
 void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& model) {
   std::vector<std::string> warnings;
   const size_t packed = (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) +
@@ -65,7 +65,7 @@ void print_packed(std::ostream& out, const Packed& packed) {
   out << '\n';
 }
 
-/// Whether the file is a simplified mesh.
+/// Returns whether the file is a simplified mesh.
 bool is_simplified(const Packed& packed) {
   return !packed.model && packed.simplified && packed.simplified->bytes == packed.glb.size();
 }

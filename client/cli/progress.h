@@ -2,7 +2,7 @@
 
 namespace papilio::client {
 
-/// A bar on standard error where that is a terminal; nothing elsewhere.
+/// Progress bar on standard error, if that is a terminal.
 class ShareProgress {
  public:
   ShareProgress();

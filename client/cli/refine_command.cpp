@@ -25,7 +25,7 @@ void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output
     return;
   }
   std::cerr << shown(output) << ": " << statistics.vertices << " vertices, " << statistics.faces << " faces, ";
-  if (made.is_scene || output_format(output) == Format::drc)  // else the file has another size
+  if (made.is_scene || output_format(output) == Format::drc)  // files of other formats have another size
     std::cerr << made.bytes.size() << (made.is_scene ? " bytes of glTF, " : " bytes of Draco, ");
   std::cerr << statistics.level << (statistics.level == 1 ? " level" : " levels") << "; decode "
             << statistics.times.decode << " ms, refine " << statistics.times.refine << " ms, encode "
@@ -35,10 +35,10 @@ void report(std::ostream& out, const RefineFlags& flags, const MeshPlace& output
   if (!statistics.unreached.empty()) std::cerr << "warning: " << statistics.unreached << '\n';
 }
 
-/// Beside the input: bunny.obj becomes bunny.refined.obj. A file that is there already is not replaced unasked.
+/// Returns the output beside the input: bunny.refined.obj for bunny.obj. Throws if the file exists.
 fs::path path_beside(const MeshPlace& input, std::optional<Format> to) {
   if (!to) to = input.format;
-  if (!to) (void)format_of(input.path);  // refuses it by its own name
+  if (!to) (void)format_of(input.path);  // refuses an unknown extension
   const std::string extension = to ? "." + std::string(name_of(*to)) : input.path.extension().string();
   fs::path path = input.path.parent_path() / (input.path.stem().string() + ".refined" + extension);
   std::error_code ignored;
@@ -53,13 +53,13 @@ MeshPlace output_of(const RefineFlags& flags) {
   return output;
 }
 
-/// Whether a scene stays one. On standard output it does unless another format is named.
+/// Returns whether a scene stays a scene. On standard output it does, unless another format is given.
 bool stays_scene(const MeshBytes& file, const MeshPlace& output) {
   return is_scene(file.format) && ((output.is_standard() && !output.format) || is_scene(output_format(output)));
 }
 
-/// Returns a mesh file as a Draco stream, a packed model as it is. `materials` becomes those that its faces name, if
-/// the output can hold any.
+/// Returns a mesh file as a Draco stream, and a packed model unchanged. Sets `materials` to the materials of its faces,
+/// if the output can store any.
 std::string mesh_to_refine(const MeshPlace& input, const MeshPlace& output, MeshBytes file,
                            proto::gltf::Materials& materials) {
   if (is_scene(file.format) && proto::detail::find_packed(file.bytes, own_limits)) {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Results among the sources would replace them, or be refined themselves the next time.
+/// Throws if one folder contains the other: results among sources would replace them, or be refined the next time.
 void check_folders_apart(const fs::path& input, const fs::path& output) {
   const fs::path inner = fs::weakly_canonical(output);
   const fs::path outer = fs::canonical(input);
@@ -34,19 +34,19 @@ void check_flags(const RefineFlags& flags) {
   check_folders_apart(flags.input.path, flags.output.path);
 }
 
-/// What is in a folder.
+/// Contents of a folder.
 struct Plan {
   std::vector<std::pair<fs::path, fs::path>> files;  ///< mesh files, each with the name of its result
-  std::vector<fs::path> skipped;                     ///< all else, relative to the folder
+  std::vector<fs::path> skipped;                     ///< other files, relative to the folder
 };
 
-/// What a file becomes without --to: scenes stay scenes, all else becomes Draco.
+/// Returns the format of a result without --to: scenes stay scenes, other meshes become Draco.
 Format default_format(const fs::path& name) {
   const Format format = known_format_of(name).value_or(Format::drc);
   return is_scene(format) ? format : Format::drc;
 }
 
-/// In alphabetical order.
+/// Lists the files of a folder in alphabetical order.
 Plan plan_folder(const fs::path& input, const fs::path& output, const std::optional<Format>& format) {
   Plan plan;
   std::map<fs::path, fs::path> taken;
@@ -72,12 +72,12 @@ Plan plan_folder(const fs::path& input, const fs::path& output, const std::optio
   return plan;
 }
 
-/// One line on a terminal, nothing elsewhere.
+/// Progress in one line, if standard error is a terminal.
 class Progress {
  public:
   explicit Progress(size_t total) : total_(total), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-  /// One more is done; `failure` names the file and says why it failed, "" when it did not.
+  /// Counts a finished file. `failure`: message with the file's name, or "".
   void step(const fs::path& path, const std::string& failure) {
     const std::lock_guard lock(mutex_);
     ++done_;
@@ -114,7 +114,7 @@ std::string refine_one_of_many(const fs::path& input, const MeshPlace& output, c
   }
 }
 
-/// "3 files: a.txt, b.txt, c.txt"; of many the first names alone.
+/// Formats "3 files: a.txt, b.txt, c.txt"; only the first names of many.
 std::string list_of(const std::vector<fs::path>& names) {
   constexpr size_t most = 5;
   std::string text;

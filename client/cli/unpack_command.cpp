@@ -23,8 +23,8 @@ void save_triangles(const MeshPlace& output, const proto::gltf::MaterialMesh& mo
   save_mesh(output, model);
 }
 
-/// Returns the materials of a scene whose mesh is decoded, by its triangles, where the output holds any. A file that is
-/// cut lacks what lies behind its levels.
+/// Returns the materials of a decoded scene's triangles, if the output can store any. A cut file lacks them, as they
+/// follow the levels.
 proto::gltf::Materials material_of(const UnpackFlags& flags, const MeshBytes& file, const TriangleMesh& mesh) {
   if (!holds_materials(flags.output)) return {};
   try {
@@ -35,18 +35,18 @@ proto::gltf::Materials material_of(const UnpackFlags& flags, const MeshBytes& fi
   }
 }
 
-/// Returns how the normals of what is written are split, where the original's are of this style.
+/// Returns the style of the written normals, given the original's style.
 NormalStyle output_normals(const UnpackFlags& flags, NormalStyle original) {
   const Format format = output_format(flags.output);
   if (!holds_normals(format) || !flags.normals.value_or(true)) return NormalStyle::absent;
   const bool is_asked = flags.normals.has_value();
   if (original == NormalStyle::faceted) return is_asked ? NormalStyle::creased : original;
-  // Viewers show scenes without normals in facets, and other meshes smooth.
+  // Viewers show scenes without normals faceted, and other meshes smooth.
   if (original == NormalStyle::absent && (is_asked || is_scene(format))) return NormalStyle::creased;
   return original;
 }
 
-/// Gives the mesh of a file without levels normals of its surface, unless it has its own. Degenerate faces go.
+/// Adds normals to the mesh of a file without levels, unless it has its own. Drops degenerate faces.
 void add_output_normals(const UnpackFlags& flags, NormalStyle original, proto::gltf::MaterialMesh& model) {
   const bool has_own =
       std::ranges::count(model.mesh.format.attributes, proto::AttributeKind::normal, &proto::AttributeFormat::kind) > 0;
@@ -71,7 +71,7 @@ size_t whole_levels(const PackedModel& model) {
   return static_cast<size_t>(std::ranges::count(model.levels, 0U, &proto::detail::PackedLevel::missing_pieces));
 }
 
-/// Of a file that is cut.
+/// Describes the complete part of a cut file.
 std::string what_is_there(const PackedModel& model) {
   std::string there =
       std::to_string(whole_levels(model)) + " of " + std::to_string(model.declared_levels) + " levels are whole";
@@ -89,7 +89,7 @@ void report(const UnpackFlags& flags, const PackedModel& model, const TriangleMe
                             << " % of the diagonal, largest " << proto::format_rounded(100 * reach.largest) << " %\n";
 }
 
-/// Decodes the file without levels that `pack` writes where that is smaller. Returns whether it is one.
+/// Decodes a file without levels, which `pack` writes if it is smaller. Returns whether the file is one.
 bool unpack_plain(const UnpackFlags& flags, const MeshBytes& file) {
   if (!is_scene(file.format)) return false;
   const auto model =

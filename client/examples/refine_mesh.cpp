@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   std::ifstream in(argv[1]);
   papilio::Options options;
   options.levels = 4;
-  options.tolerance = 0.002;  // of the diagonal of the mesh's box
+  options.tolerance = 0.002;  // share of the diagonal of the mesh's box
   try {
     const papilio::Result result = papilio::refine(papilio::build_mesh(read_obj(in)), options);
     std::ofstream out(argv[2]);

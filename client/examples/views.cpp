@@ -14,9 +14,9 @@ int main() try {
   options.levels = 6;
   options.view = papilio::View{};
   options.view->edge_pixels = 0;
-  options.view->error_pixels = 0.5;  // cannot be seen
+  options.view->error_pixels = 0.5;  // below what is visible
 
-  // Holds at most 64 MiB between the views.
+  // Keeps at most 64 MiB between the views.
   const papilio::PreparedMesh mesh(papilio::build_mesh(octahedron), options, uint64_t{64} << 20);
   for (const papilio::Vec3d eye : {papilio::Vec3d{0, 0, 3}, papilio::Vec3d{0.5, 0, 3}, papilio::Vec3d{0, 0, 12}}) {
     options.view->eye = eye;

@@ -17,7 +17,7 @@ using Triangles = std::vector<TriangleCorners>;
 
 bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-/// `name` is which mesh it is, for messages.
+/// Returns the corners of all triangles. `name` is the mesh's name for messages.
 Triangles corners_of(const TriangleMesh& mesh, const std::string& name) {
   if (mesh.triangles.empty()) throw std::invalid_argument(name + " has no triangles: there is nothing to compare");
   const auto corner = [&](uint32_t vertex) {
@@ -46,14 +46,14 @@ std::vector<Vec3d> used_vertices(const TriangleMesh& mesh) {
 
 struct Sample {
   Vec3d position;
-  Vec3d normal;  ///< of length one
+  Vec3d normal;  ///< unit normal
 };
 
 double area(const TriangleCorners& triangle) {
   return 0.5 * length(cross(triangle.b - triangle.a, triangle.c - triangle.a));
 }
 
-/// Fractional part of a multiple: evenly spread over 0 to 1, without chance.
+/// Returns the fractional part of a multiple: a deterministic sequence, evenly spread over 0..1.
 double spread(size_t index, double step) { return std::fmod(0.5 + static_cast<double>(index) * step, 1.0); }
 
 Vec3d point_in(const TriangleCorners& triangle, size_t index) {
@@ -69,7 +69,7 @@ Vec3d point_in(const TriangleCorners& triangle, size_t index) {
   return triangle.a + u * (triangle.b - triangle.a) + v * (triangle.c - triangle.a);
 }
 
-/// `count` points, each for the same share of the area. None if there is no area.
+/// Returns `count` points for equal shares of the area; none if there is no area.
 std::vector<Sample> sample_by_area(std::span<const TriangleCorners> triangles, size_t count) {
   double total = 0;
   for (const TriangleCorners& triangle : triangles) total += area(triangle);

@@ -9,35 +9,33 @@
 namespace papilio::client {
 
 struct CompareOptions {
-  /// Points spread over each surface by area, besides all its vertices. More find smaller bumps and take
-  /// longer. 0 looks at the vertices alone. Default 50,000.
+  /// Number of points sampled on each surface by area, besides all its vertices. More samples find smaller bumps, and
+  /// take longer. 0: only vertices.
   size_t samples = 50'000;
 };
 
-/// How far two surfaces are apart. Distances are in the meshes' own unit. Forward is from a to b: from points
-/// of a to the nearest point of b's surface, which may be small though a lacks a part of b; backward the
-/// other way.
+/// Distances between two surfaces, in the meshes' unit. Forward is from points of a to the nearest point of b's
+/// surface, which may be small even if a lacks a part of b; backward is from b to a.
 struct Comparison {
-  double hausdorff = 0;     ///< the larger of `max_forward` and `max_backward`
-  double rms = 0;           ///< the larger of `rms_forward` and `rms_backward`
-  double max_forward = 0;   ///< largest distance, over vertices and samples: a lower bound of the exact one
-  double max_backward = 0;  ///< the same from b to a
-  double rms_forward = 0;   ///< root mean square distance over the area (over the vertices if there is no area)
-  double rms_backward = 0;  ///< the same from b to a
-  double diagonal = 0;      ///< of the smallest box, along the axes, around a's triangles: what to divide by for shares
-  /// Mean angle between the normals at a sample and at the point nearest to it, over the samples of both
-  /// directions; degrees, 0 to 180. Where faces meet in that point, the one that agrees best counts. 0 where
-  /// nothing has a normal.
+  double hausdorff = 0;     ///< larger of `max_forward` and `max_backward`
+  double rms = 0;           ///< larger of `rms_forward` and `rms_backward`
+  double max_forward = 0;   ///< largest distance from a to b, over vertices and samples: a lower bound of the exact one
+  double max_backward = 0;  ///< largest distance from b to a
+  double rms_forward = 0;   ///< root mean square distance from a to b over the area (or vertices, if there is no area)
+  double rms_backward = 0;  ///< root mean square distance from b to a
+  double diagonal = 0;      ///< diagonal of the bounding box of a's triangles, the unit of shares
+  /// Mean angle between the normals at a sample and at its nearest point, over samples of both directions; degrees,
+  /// 0..180. If several faces meet at that point, the normal of best agreement counts. 0 if no face has a normal.
   double normal_degrees_mean = 0;
 };
 
-/// Distances to triangles are exact but for rounding, the points they are measured from are samples. The same
-/// input gives the same result. After Aspert, Santa-Cruz and Ebrahimi, "MESH: measuring errors between
-/// surfaces using the Hausdorff distance" (2002). Degenerate triangles count as the segments or points that
-/// they cover; positions that no triangle uses do not count.
+/// Measures the distances between two meshes from samples; distances to triangles are exact, except for rounding.
+/// Deterministic. After Aspert, Santa-Cruz and Ebrahimi, "MESH: measuring errors between surfaces using the Hausdorff
+/// distance" (2002). Degenerate triangles count as the segments or points that they cover; unused positions are
+/// ignored.
 ///
-/// Throws `std::invalid_argument`, which says which mesh, if one has no triangles, an index out of range, or
-/// a coordinate that is not finite. `names` are what the meshes are called there.
+/// Throws `std::invalid_argument`, with the mesh's name in `names`, for no triangles, an index out of range, or a
+/// coordinate that is not finite.
 [[nodiscard]] Comparison compare(const TriangleMesh& a, const TriangleMesh& b, const CompareOptions& options = {},
                                  const std::array<std::string, 2>& names = {"the first mesh", "the second mesh"});
 

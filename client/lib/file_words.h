@@ -9,8 +9,8 @@
 
 namespace papilio::client {
 
-/// Runs `work` on the mesh of the file `name`, and turns what the core, `proto` or a server says against the mesh into
-/// a `FileError`. Other failures stay as they are.
+/// Runs `work` on the mesh of the file `name`. Converts errors of the core, `proto` or a server that concern the mesh
+/// to a `FileError`; passes on all others.
 template <class Work>
 auto in_words_of_the_file(const std::string& name, const Work& work) {
   const auto is_of_the_mesh = [](std::string_view code) { return code.starts_with("mesh_"); };

@@ -13,32 +13,33 @@
 
 namespace papilio::client {
 
-/// A file beside another one, by its place in the folder.
+/// File beside another one, by its place in the folder.
 struct FileBeside {
-  std::filesystem::path inner;  ///< relative to the folder
-  bool is_there = false;        ///< a regular file
-  bool is_inside = true;  ///< whether its name leads into the folder; else `inner` is in it by the last part alone
+  std::filesystem::path inner;  ///< path relative to the folder
+  bool is_there = false;        ///< whether it is a regular file
+  bool is_inside = true;        ///< whether its name leads into the folder; else `inner` is only its last part
 };
 
-/// Finds the file that a file in `folder / below` names. / separates folders.
+/// Finds a file by its name in a file in `folder / below`. / separates folders.
 [[nodiscard]] FileBeside find_beside(const std::filesystem::path& folder, const std::filesystem::path& below,
                                      const std::string& name);
 
-/// Reads the material libraries of an OBJ file, and the images of those of its materials that faces have.
+/// Reader of the material libraries of an OBJ file, and of the images of used materials.
 class LibraryReader {
  public:
-  /// `obj`: the OBJ file. `has_coordinates`: whether it has texture coordinates, without which images are left out.
+  /// Prepares to read for the file `obj`. `has_coordinates`: whether it has texture coordinates; without them, images
+  /// are skipped.
   LibraryReader(std::filesystem::path obj, bool has_coordinates)
       : obj_(std::move(obj)), folder_(obj_.parent_path()), has_coordinates_(has_coordinates) {}
 
-  /// Returns the materials in the order of `named.names`; none where no library can be read. Throws `FileError` for a
+  /// Returns the materials in the order of `named.names`; none if no library can be read. Throws `FileError` for a
   /// damaged library, and for images of more than `kMaxFileBytes` together.
   [[nodiscard]] proto::gltf::Materials read(const ObjMaterials& named);
-  /// Returns what was left out.
+  /// Returns warnings of skipped files.
   [[nodiscard]] std::vector<std::string> warnings() && { return std::move(warnings_); }
 
  private:
-  /// A material and the folder of its library, relative to that of the OBJ file.
+  /// Material and the folder of its library, relative to the folder of the OBJ file.
   struct Defined {
     MtlMaterial material;
     std::filesystem::path library;
@@ -55,9 +56,9 @@ class LibraryReader {
   std::filesystem::path obj_, folder_;
   bool has_coordinates_;
   bool has_library_ = false;
-  std::map<std::string, Defined> defined_;                           ///< by name
-  std::map<std::filesystem::path, std::optional<uint32_t>> images_;  ///< by place; nothing for those left out
-  std::map<std::filesystem::path, bool> libraries_;                  ///< those that were looked for
+  std::map<std::string, Defined> defined_;                           ///< materials by name
+  std::map<std::filesystem::path, std::optional<uint32_t>> images_;  ///< images by path; nothing for skipped ones
+  std::map<std::filesystem::path, bool> libraries_;                  ///< libraries by path: whether they were found
   uint64_t image_bytes_ = 0;
   proto::gltf::Materials out_;
   std::vector<std::string> warnings_;

@@ -98,7 +98,7 @@ void save_draco(const MeshPlace& place, std::string_view draco, const proto::glt
   proto::gltf::MaterialMesh model{.mesh = proto::read_draco(draco, own_limits), .materials = materials};
   if (!materials.empty() && proto::gltf::has_material_attribute(model.mesh))
     model.materials.of_triangle = proto::gltf::take_material_attribute(model.mesh, materials.materials.size());
-  else if (!materials.empty())  // of a packed model, whose faces all have it
+  else if (!materials.empty())  // material of all faces of a packed model
     model.materials.of_triangle.assign(model.mesh.triangles.size(), 0);
   save_mesh(place, model);
 }

@@ -33,13 +33,13 @@ constexpr int most_attempts = 30;
 constexpr uint64_t longest_pause_seconds = 10;
 constexpr const char* who_is_there = "Is papilio-server running there, and is the address right?";
 
-/// The text of a document's field, fit for a terminal; "" where there is none.
+/// Returns the text of a document's field, escaped for a terminal; "" if there is none.
 std::string text_of(const json& document, const char* field) {
   if (!document.is_object() || !document.contains(field) || !document[field].is_string()) return "";
   return proto::escape_controls(document[field].get<std::string>());
 }
 
-/// The server's problem document as an exception; other answers as they are.
+/// Converts the server's problem document, or another answer, to an exception.
 ServerError error_from(int status, const std::string& body) {
   const json document = json::parse(body, nullptr, false);
   std::string text = text_of(document, "detail");
@@ -52,7 +52,7 @@ ServerError error_from(int status, const std::string& body) {
 ServerError no_answer(const std::string& origin, httplib::Error error) {
   std::string advice = who_is_there;
   if (error == httplib::Error::SSLServerVerification)
-    advice = "Its certificate is not of this name, or is not signed by one that is trusted here; --ca names another.";
+    advice = "The certificate is for another host, or its issuer is not trusted. Name trusted certificates with --ca.";
   if (error == httplib::Error::SSLLoadingCerts)
     advice = "The certificates of --ca cannot be read; it names a PEM file.";
   return {0, "", "No answer from " + origin + " (" + httplib::to_string(error) + "). " + advice};
@@ -69,13 +69,13 @@ httplib::Client connect(const std::string& origin, const RemoteOptions& options)
   return client;
 }
 
-/// 0 for what is no count.
+/// Parses a count; returns 0 for other text.
 uint64_t count_of(const std::string& header) {
   constexpr double most = 1e15;
   return static_cast<uint64_t>(std::clamp(proto::parse_number(header).value_or(0), 0.0, most));
 }
 
-/// Without parameters, in lower case.
+/// Returns the media type without parameters, in lower case.
 std::string media_type(const httplib::Response& response) {
   std::string type = response.get_header_value("Content-Type");
   type.resize(std::min(type.size(), type.find_first_of("; \t")));
@@ -83,8 +83,8 @@ std::string media_type(const httplib::Response& response) {
   return type;
 }
 
-/// What is wrong with an answer's header; "" where nothing is. Without a length the end of a body cannot be told from
-/// a connection that broke.
+/// Returns the fault of an answer's header; "" if there is none. Without a length, the end of a body cannot be
+/// distinguished from a broken connection.
 std::string fault_of(const httplib::Response& response, const std::string& type) {
   const std::string found = media_type(response);
   if (found != type) return (found.empty() ? "no Content-Type" : proto::quote(found)) + ", not with " + type;
@@ -142,7 +142,7 @@ void check_mesh(const std::string& origin, const httplib::Response& response) {
                           proto::quote(declared) + ". Try again.");
 }
 
-/// decode;dur=1.2, refine;dur=3.4, encode;dur=5.6
+/// Returns the time of a stage in "decode;dur=1.2, refine;dur=3.4, encode;dur=5.6".
 double stage_time(const std::string& server_timing, const std::string& stage) {
   const size_t found = server_timing.find(stage + ";dur=");
   if (found == std::string::npos) return 0;
@@ -170,7 +170,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   return statistics;
 }
 
-/// Sends a body to be refined, again and again while the server is busy. Returns its answer of media type `type`.
+/// Sends a body to be refined, and repeats that while the server is busy. Returns its answer of media type `type`.
 /// Throws `ServerError`.
 httplib::Response ask_to_refine(const std::string& origin, httplib::Client& client, const std::string& prefix,
                                 const char* type, std::string_view body, const proto::Parameters& parameters) {
@@ -190,7 +190,7 @@ httplib::Response ask_to_refine(const std::string& origin, httplib::Client& clie
   return answer;
 }
 
-/// Throws `ServerError` unless the body is a scene that can be read.
+/// Throws `ServerError` unless the body is a readable scene.
 void check_scene(const std::string& origin, const httplib::Response& response) {
   try {
     (void)proto::gltf::describe_scene(response.body, own_limits);
@@ -233,7 +233,7 @@ proto::EncodedLevel Remote::refine_scene(std::string_view glb, const proto::Para
 }
 
 void Remote::refine_levels(std::string_view draco, const proto::Parameters& parameters,
-                           const std::function<void(const proto::Part&)>& on_part) const {
+                           const std::function<void(const proto::BodyPart&)>& on_part) const {
   httplib::Request request;
   request.method = "POST";
   request.path = prefix_ + "/v1/refine?" + proto::to_query(parameters);
@@ -242,9 +242,9 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
 
   int status = 0;
   std::string refusal;
-  std::string failure;  ///< a problem document that came as a part
+  std::string failure;  ///< problem document received as a part
   std::optional<proto::MultipartReader> reader;
-  const auto take_part = [&](const proto::Part& part) {
+  const auto take_part = [&](const proto::BodyPart& part) {
     if (part.header("Content-Type") == "application/problem+json")
       failure = part.body;
     else
@@ -270,7 +270,7 @@ void Remote::refine_levels(std::string_view draco, const proto::Parameters& para
     if (status != ok_status) throw error_from(status, refusal);
     if (!failure.empty()) throw error_from(status, failure);
     reader->finish();
-  } catch (const proto::Problem& problem) {  // of the reader
+  } catch (const proto::Problem& problem) {  // thrown by the reader
     throw ServerError(status, "", problem.what());
   }
 }

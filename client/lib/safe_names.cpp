@@ -21,7 +21,7 @@ std::string lower_case(std::string text) {
 
 std::string safe_file_name(std::string_view text) {
   std::string name(text.substr(0, most_bytes));
-  // A character of several bytes is not cut in two.
+  // Characters of several bytes are not split.
   if (text.size() > name.size())
     while (!name.empty() && (static_cast<unsigned char>(text[name.size()]) & 0xC0) == 0x80) name.pop_back();
   for (char& c : name)

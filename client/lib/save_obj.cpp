@@ -37,7 +37,7 @@ std::string extension_of(const Image& image) {
   return ".image";
 }
 
-/// Returns an image's name without the extension that it may have.
+/// Returns an image's name without its extension.
 std::string stem_of(const Image& image) {
   const fs::path name = image.name;
   for (const auto& [type, extension] : extensions)
@@ -45,14 +45,14 @@ std::string stem_of(const Image& image) {
   return image.name;
 }
 
-/// Returns the file names of images beside NAME.obj; "" for those without bytes.
+/// Returns the file names of images beside NAME.obj; "" for an image without bytes.
 std::vector<std::string> image_names(const std::string& stem, const std::vector<Image>& images) {
   std::vector<std::string> names;
   UniqueNames unique(UniqueNames::Kind::file);
   for (size_t i = 0; i < images.size(); ++i) {
     std::string own = safe_file_name(stem_of(images[i]));
     if (own.empty()) own = std::to_string(i);
-    const bool has_stem = own.starts_with(stem + "_");  // that of an OBJ file written before
+    const bool has_stem = own.starts_with(stem + "_");  // its name is from an OBJ file written before
     names.push_back(images[i].bytes.empty() ? ""
                                             : unique.add(has_stem ? own : stem + "_" + own, extension_of(images[i])));
   }
@@ -91,8 +91,7 @@ MtlMaterial mtl_of(const Material& material, const std::string& name, const std:
   return out;
 }
 
-/// Files that are removed again unless all are written; those that were there before stay as the latest write left
-/// them.
+/// Group of files: new ones are removed again unless all are written. Existing files keep their latest content.
 class FilesTogether {
  public:
   ~FilesTogether() {

@@ -58,13 +58,13 @@ double SurfaceDistance::distance(Vec3d point) const {
 
 template <class Reach, class Visit>
 void SurfaceDistance::walk(Vec3d point, const Reach& reach, const Visit& visit) const {
-  // A box's distance may be rounded above that of a triangle which touches it.
+  // A box's distance may be rounded above the distance of a triangle that touches it.
   constexpr double kSlack = 1 - 1e-12;
   struct Pending {
     uint32_t node;
     double squared_distance;
   };
-  // The tree halves its triangles at each step: depth 32 at most, one node put aside on each.
+  // The tree halves its triangles at each level: at most 32 levels, with one pending node on each.
   std::array<Pending, 64> pending;
   size_t size = 0;
   pending[size++] = {0, squared_distance_to_box(point, nodes_[0].box)};

@@ -11,37 +11,36 @@
 
 namespace papilio::client {
 
-/// Of length one; nothing for a degenerate triangle.
+/// Returns the unit normal; nothing for a degenerate triangle.
 [[nodiscard]] std::optional<Vec3d> unit_normal(const TriangleCorners& triangle);
 
-/// Finds the point of a surface that is nearest to a given one, through a tree of boxes (median splits, so
-/// that its depth is the logarithm of the number of triangles). Own, because Debian has no libigl, and CGAL's
-/// or Embree's tree would bring Boost, GMP and MPFR, or TBB and single precision, for these hundred lines.
-/// Threads may share it.
+/// Search for the point of a surface nearest to a given one, by a bounding volume hierarchy with median splits, of
+/// logarithmic depth. Thread-safe. Own code, as Debian has no libigl, and the trees of CGAL or Embree depend on Boost,
+/// GMP and MPFR, or on TBB and single precision.
 class SurfaceDistance {
  public:
-  /// At least one triangle; all corners finite.
+  /// Builds the tree of at least one triangle, with finite corners.
   explicit SurfaceDistance(std::span<const TriangleCorners> triangles);
 
   struct Nearest {
-    double distance;  ///< in the mesh's unit
-    /// Cosine of the angle between `normal` and the nearest face's; of faces equally near, such as the two at
-    /// an edge, that of the one that agrees best. Nothing if no face that near has a normal.
+    double distance;  ///< distance in the mesh's unit
+    /// Cosine of the angle between `normal` and the nearest face's normal. Of equally near faces, such as two at an
+    /// edge, the one of best agreement counts. Nothing if none of them has a normal.
     std::optional<double> cosine;
   };
-  /// `normal` has length one.
+  /// Returns the distance to the nearest point, and the agreement with `normal`, of unit length.
   [[nodiscard]] Nearest nearest(Vec3d point, Vec3d normal) const;
-  /// In the mesh's unit.
+  /// Returns the distance in the mesh's unit.
   [[nodiscard]] double distance(Vec3d point) const;
 
  private:
   struct Box {
     Vec3d low, high;
   };
-  /// Two children, the first right after this node; or, if `count` is not 0, triangles from `first` on.
+  /// Node with two children, the first of which follows it; or, if `count` is not 0, with triangles from `first` on.
   struct Node {
     Box box;
-    uint32_t first;  ///< the first triangle, or the second child
+    uint32_t first;  ///< first triangle, or second child
     uint32_t count;
   };
 
@@ -52,9 +51,9 @@ class SurfaceDistance {
   template <class Reach, class Visit>
   void walk(Vec3d point, const Reach& reach, const Visit& visit) const;
 
-  std::vector<TriangleCorners> triangles_;  ///< in the order of the tree's leaves
+  std::vector<TriangleCorners> triangles_;  ///< triangles in the order of the tree's leaves
   std::vector<Node> nodes_;
-  double tie_ = 0;  ///< distances this close are equal but for rounding
+  double tie_ = 0;  ///< bound of the difference of equal distances by rounding
 };
 
 }  // namespace papilio::client

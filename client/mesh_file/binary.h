@@ -11,7 +11,7 @@
 
 namespace papilio::client {
 
-/// The number that the first bytes of `bytes` are in the given order. There must be that many.
+/// Returns the number in the first bytes of `bytes`, in the given byte order. There must be enough bytes.
 template <class Number>
 Number load(std::string_view bytes, std::endian order) {
   std::array<char, sizeof(Number)> raw;

@@ -13,7 +13,7 @@ bool has_obj_vertex(std::string_view text) {
   return false;
 }
 
-/// The keyword may be absent: the counts of vertices and faces then come first.
+/// Returns whether the text starts like OFF: with the keyword, or with the counts of vertices and faces.
 bool looks_like_off(std::string_view text) {
   TextScanner scanner(text, {.hash_comments = true});
   const std::string_view first = scanner.word_anywhere();

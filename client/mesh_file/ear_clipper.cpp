@@ -5,9 +5,9 @@
 namespace papilio::client {
 namespace {
 
-constexpr double rounding = 1e-12;      // of a product of two coordinates
-constexpr double thin_height = 1e-3;    // of a triangle's longest side
-constexpr double equal_lengths = 1e-6;  // relative difference of squared lengths that counts as none
+constexpr double rounding = 1e-12;      // bound of the rounding error of a product of two coordinates
+constexpr double thin_height = 1e-3;    // height of a thin triangle, a share of its longest side
+constexpr double equal_lengths = 1e-6;  // relative difference of squared lengths that count as equal
 
 double squared_distance(Point2 a, Point2 b) { return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y); }
 

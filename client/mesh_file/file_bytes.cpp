@@ -39,7 +39,7 @@ FileError failure(const fs::path& path, const std::string& action, int error) {
   return {path, "cannot " + action + ": " + reason(error) + "; " + advice(error)};
 }
 
-/// An open file that is closed at the end of its scope.
+/// Open file that is closed at the end of its scope.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -49,15 +49,15 @@ class Descriptor {
 
   [[nodiscard]] int number() const { return number_; }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
-  /// False, with errno set, if what was written could not be kept after all (quotas and network disks say so
-  /// here).
+  /// Closes the file. Returns false, with errno, if written bytes could not be stored (as quotas and network disks
+  /// report).
   bool close() { return !is_open() || ::close(std::exchange(number_, -1)) == 0; }
 
  private:
   int number_;
 };
 
-/// A file that is removed at the end of its scope unless it has become `path`.
+/// File that is removed at the end of its scope, unless it was renamed to `path`.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& beside) : path_(beside.parent_path() / unique_name(beside)) {}
@@ -67,7 +67,7 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  /// A descriptor to write to, or a closed one with errno set.
+  /// Creates the file. Returns a descriptor to write to, or a closed one with errno.
   [[nodiscard]] int create() {
     const int number = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     exists_ = number >= 0;
@@ -82,7 +82,7 @@ class TemporaryFile {
  private:
   static std::string unique_name(const fs::path& beside) {
     static std::atomic<unsigned> counter{0};
-    // Names may have 255 bytes: the target's own is cut so that a long one still leaves room.
+    // Names may have 255 bytes: the target's name is cut to leave room.
     return "." + beside.filename().string().substr(0, 200) + "." + std::to_string(::getpid()) + "." +
            std::to_string(counter++) + ".tmp";
   }
@@ -101,14 +101,14 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-/// Where `path` leads through symbolic links; the file itself need not exist yet.
+/// Returns the target of `path` through symbolic links; the file itself need not exist.
 fs::path resolved(const fs::path& path) {
   std::error_code failed;
   const fs::path target = fs::weakly_canonical(path, failed);
   return failed ? path : target;
 }
 
-/// All of an open file. `path` is its name for messages.
+/// Reads all bytes of an open file. `path`: its name for messages.
 std::string read_open(int descriptor, const fs::path& path, uint64_t limit) {
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) throw failure(path, "be read", errno);
@@ -124,7 +124,7 @@ std::string read_open(int descriptor, const fs::path& path, uint64_t limit) {
   constexpr size_t kChunk = 1 << 16;
   std::string bytes;
   size_t used = 0;
-  // One byte more than the size, so that the end of the file is met without growing again.
+  // One byte more than the size, so that the end of the file is read without growing.
   bytes.resize(std::max<size_t>(size + 1, kChunk));
   for (;;) {
     const ssize_t got = ::read(descriptor, bytes.data() + used, bytes.size() - used);

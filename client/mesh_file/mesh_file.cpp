@@ -64,8 +64,7 @@ std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshF
   throw format_is_elsewhere();
 }
 
-/// The number of triangles before the first that names a vertex that does not exist; all of them if none
-/// does.
+/// Returns the number of triangles before the first with an index out of range; the number of all if there is none.
 size_t count_sound(const TriangleMesh& mesh) {
   const auto is_broken = [count = mesh.positions.size()](const Triangle& triangle) {
     return std::ranges::any_of(triangle, [count](uint32_t vertex) { return vertex >= count; });
@@ -79,7 +78,7 @@ std::string describe_broken(const TriangleMesh& mesh, size_t index) {
          std::to_string(mesh.positions.size()) + " vertices";
 }
 
-/// Returns a file's mesh and, of OBJ, its materials.
+/// Returns a file's mesh, and the materials of an OBJ file.
 ObjFile parse_sound(const std::string& name, Format format, std::string_view bytes) {
   if (bytes.empty()) throw FileError(name, "is empty; export the mesh again");
   try {

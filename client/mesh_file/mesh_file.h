@@ -10,60 +10,63 @@
 
 namespace papilio::client {
 
-/// The kinds of mesh files, by what their names end in.
+/// Format of a mesh file, by its extension.
 enum class Format { drc, obj, ply, off, stl, glb, gltf };
 
-/// Whether files of the format hold scenes, which `proto` reads and writes.
+/// Returns whether files of the format contain scenes, which `proto` reads and writes.
 [[nodiscard]] bool is_scene(Format format);
 
-/// "drc", "obj", "ply", "off", "stl", "glb", "gltf".
+/// Returns "drc", "obj", "ply", "off", "stl", "glb" or "gltf".
 [[nodiscard]] std::string_view name_of(Format format);
-/// The reverse of `name_of`; nothing for any other text.
+/// Returns the format of a name; nothing for other text.
 [[nodiscard]] std::optional<Format> format_named(std::string_view name);
 
-/// By the extension, in upper or lower case; nothing for an unknown one.
+/// Returns the format by the extension, in upper or lower case; nothing for an unknown one.
 [[nodiscard]] std::optional<Format> known_format_of(const std::filesystem::path& path);
-/// By the extension. Throws `FileError` that names the extension and those that are known.
+/// Returns the format by the extension. Throws `FileError`, with the extension and the known ones.
 [[nodiscard]] Format format_of(const std::filesystem::path& path);
-/// By what the bytes begin with: Draco's, PLY's or glTF's magic, the brace of JSON, OFF's keyword or counts, `solid` or
-/// the size of a binary STL file, or lines of an OBJ file. `name` is for messages. Throws `FileError` where none fits.
+/// Returns the format by the first bytes: Draco's, PLY's or glTF's magic, the brace of JSON, OFF's keyword or counts,
+/// `solid` or the size of a binary STL file, or lines of an OBJ file. `name` is for messages. Throws `FileError` if
+/// none matches.
 [[nodiscard]] Format format_of_content(const std::string& name, std::string_view bytes);
 
-/// The largest file that is read: 4 GiB.
+/// Upper bound of the size of a file: 4 GiB.
 inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 
-/// Positions and triangles as they stand in the file: repeated, degenerate and non-manifold faces are kept,
-/// unused positions too. Polygons are cut into triangles (polygon.h); polygons of one or two corners,
-/// which OFF and PLY allow, are left out. Text may begin with the byte order mark of UTF-8. A binary STL file may be
-/// longer than its count asks for, but not by a whole number of triangles. OBJ's texture coordinates (`vt`, of two or
-/// three numbers) and normals (`vn`) are attributes: each position is then one point for each pair of them that faces
-/// name with it; where a corner lacks one it is zero. OBJ's smoothing groups (`s`) are an attribute named
-/// smoothing_group if faces are in different ones; its materials are read by `parse_obj_file` alone (obj_file.h). PLY's
-/// normals, colours and texture coordinates of vertices are attributes. Attributes of OFF and STL, and materials of
-/// other formats than OBJ, are not read. STL has no shared vertices: three new positions for each triangle. Coordinates
-/// that are NaN or infinite are passed on.
+/// Reads positions, triangles and attributes of a file. Repeated, degenerate and non-manifold faces are kept, and so
+/// are unused positions. Polygons are triangulated (polygon.h); polygons of one or two corners, which OFF and PLY
+/// permit, are dropped. Text may start with the byte order mark of UTF-8. Coordinates may be NaN or infinite.
+/// - OBJ: texture coordinates (`vt`, of 2 or 3 numbers) and normals (`vn`) are attributes. A position becomes one point
+/// for
+///   each pair of them that faces use with it; missing ones are zero. Smoothing groups (`s`) are an attribute named
+///   smoothing_group if faces have different ones. Only parse_obj_file() reads materials (obj_file.h).
+/// - PLY: normals, colours and texture coordinates of vertices are attributes.
+/// - OFF: attributes are not read.
+/// - STL: each triangle has three new positions. A binary file may be longer than its count requires, but not by a
+/// whole
+///   number of triangles. Attributes are not read.
 ///
-/// Throws `FileError` if the file cannot be read, is empty, damaged or cut short (as far as its format lets
-/// one tell), names a vertex, texture coordinate or normal that does not exist, has a coordinate too large for a float,
-/// or holds no triangle; and `std::logic_error` for `Format::drc` and scenes, whose bytes are read by `proto`. Memory
-/// stays within a small multiple of the file's size, whatever counts the file declares. Any number of threads may call
-/// it.
+/// Throws `FileError` if the file is unreadable, empty, damaged or recognizably cut; if it has an index out of range, a
+/// coordinate too large for a float, or no triangle. Throws `std::logic_error` for `Format::drc` and scenes, which
+/// `proto` reads. Memory is bounded by a small multiple of the file's size, for any declared counts. Thread-safe.
 [[nodiscard]] proto::FormattedMesh read_triangles(const std::filesystem::path& path, Format format);
-/// `read_triangles` of a file's bytes. `name` is the file's, for messages.
+/// Reads the bytes of a file as read_triangles() does. `name`: the file's name for messages.
 [[nodiscard]] proto::FormattedMesh parse_triangles(const std::string& name, Format format, std::string_view bytes);
 
-/// Writes through `write_atomically`. OBJ and OFF as text, in the shortest digits that give back the same
-/// float; PLY and STL binary, little-endian. Positions survive to the bit in all four; STL loses what is
-/// shared between triangles, and gives degenerate ones a zero normal. OBJ keeps the first texture coordinates of at
-/// most three numbers and the first normals that `mesh_format` describes, as floats, and smoothing groups; PLY such
-/// normals, texture coordinates of two numbers and the first colours, with a vertex for each point; OFF and STL keep
-/// positions alone.
+/// Writes a file by write_atomically(). Positions are exact in all formats.
+/// - OBJ: text with the shortest exact digits; the first texture coordinates of at most 3 numbers and the first normals
+/// that
+///   `mesh_format` describes, as floats, and smoothing groups.
+/// - PLY: binary, little-endian; the first normals, texture coordinates of 2 numbers and colours, with a vertex per
+/// point.
+/// - OFF: text with the shortest exact digits; positions only.
+/// - STL: binary, little-endian; positions only, without shared vertices. Degenerate triangles get a zero normal.
 ///
-/// Throws `FileError` if it cannot be written; `std::invalid_argument` if a triangle names a vertex that does
-/// not exist; `std::logic_error` for `Format::drc` and scenes.
+/// Throws `FileError` if it cannot be written, `std::invalid_argument` for an index out of range, and
+/// `std::logic_error` for `Format::drc` and scenes.
 void write_triangles(const std::filesystem::path& path, Format format, const TriangleMesh& mesh,
                      const proto::MeshFormat& mesh_format = {});
-/// The bytes that `write_triangles` writes. `name` is the file's, for messages.
+/// Returns the bytes that write_triangles() writes. `name`: the file's name for messages.
 [[nodiscard]] std::string encode_triangles(const std::string& name, Format format, const TriangleMesh& mesh,
                                            const proto::MeshFormat& mesh_format = {});
 

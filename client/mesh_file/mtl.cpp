@@ -14,9 +14,9 @@ namespace papilio::client {
 namespace {
 
 struct MapKeyword {
-  std::string_view keyword;  ///< as it is written; read in any case
+  std::string_view keyword;  ///< keyword as written; read in any case
   MtlMap map;
-  std::string_view options{};  ///< as they are written
+  std::string_view options{};  ///< options as written
 };
 constexpr std::array<MapKeyword, 9> map_keywords{{{"map_Kd", MtlMap::diffuse},
                                                   {"map_Ke", MtlMap::emissive},
@@ -28,7 +28,7 @@ constexpr std::array<MapKeyword, 9> map_keywords{{{"map_Kd", MtlMap::diffuse},
                                                   {"map_d", MtlMap::opacity},
                                                   {"map_opacity", MtlMap::opacity}}};
 
-/// Options of maps with the most words that follow them.
+/// Options of maps, with the upper bound of their arguments.
 constexpr std::array<std::pair<std::string_view, int>, 13> map_options{{{"-blendu", 1},
                                                                         {"-blendv", 1},
                                                                         {"-bm", 1},
@@ -50,7 +50,7 @@ bool is_alike(std::string_view a, std::string_view b) {
 
 constexpr std::string_view mtl_blanks = " \t\r\v\f";
 
-/// Takes the first word off `rest`, and the blanks after it.
+/// Consumes the first word of `rest`, and the blanks after it.
 std::string_view take_word(std::string_view& rest) {
   const std::string_view word = rest.substr(0, rest.find_first_of(mtl_blanks));
   rest.remove_prefix(word.size());
@@ -63,7 +63,8 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(mtl_blanks) + 1);
 }
 
-/// Takes the arguments of an option off `rest`. Those of three numbers may have fewer; the last word is a file's name.
+/// Consumes the arguments of an option in `rest`. Options of three numbers may have fewer; the last word is a file's
+/// name.
 void skip_arguments(std::string_view& rest, int most) {
   for (int i = 0; i < most; ++i) {
     std::string_view after = rest;
@@ -74,7 +75,7 @@ void skip_arguments(std::string_view& rest, int most) {
   }
 }
 
-/// Returns the file's name in what follows the keyword of a map.
+/// Returns the file's name after the keyword of a map.
 std::string file_name(std::string_view rest) {
   while (rest.starts_with('-')) {
     std::string_view after = rest;
@@ -91,7 +92,7 @@ std::string file_name(std::string_view rest) {
   return name;
 }
 
-/// Returns the number that is at least 0 and at most `most` and nearest to that of a word.
+/// Returns the number of a word, clamped to 0..`most`.
 double factor_of(const TextScanner& scanner, std::string_view word, double most) {
   double number = 0;
   if (!parse_number(word, number) || !std::isfinite(number))
@@ -114,7 +115,7 @@ std::optional<std::array<double, 3>> parse_color(TextScanner& scanner, double mo
 
 constexpr double unbounded = 1e30;
 
-/// Reads one line of a material. `has_opacity`: whether `d` has said it, which counts more than `Tr`.
+/// Reads one line of a material. `has_opacity`: whether `d` has set the opacity, which overrides `Tr`.
 void parse_line(TextScanner& scanner, std::string_view keyword, MtlMaterial& material, bool& has_opacity) {
   if (is_alike(keyword, "Kd")) {
     if (const auto color = parse_color(scanner, 1)) material.diffuse = color;

@@ -12,11 +12,11 @@
 
 namespace papilio::client {
 
-/// Images that a material names.
+/// Images of a material.
 enum class MtlMap : uint8_t { diffuse, emissive, normal, bump, roughness, metallic, opacity };
 inline constexpr size_t mtl_map_count = 7;
 
-/// Material of a library; nothing where the library says nothing.
+/// Material of a library; members are empty if the library does not set them.
 struct MtlMaterial {
   std::string name{};
   std::optional<std::array<double, 3>> diffuse{}, emissive{};  ///< Kd, Ke
@@ -30,13 +30,13 @@ struct MtlMaterial {
   friend bool operator==(const MtlMaterial&, const MtlMaterial&) = default;
 };
 
-/// Reads a library. Options of maps and unknown keywords are skipped. Names may have blanks. Numbers are finite and at
-/// least 0; all but those of Ke and Ns at most 1. Throws `ParseError`: binary data, UTF-16, what is not a number, more
-/// than `most_materials`.
+/// Reads a library. Skips options of maps and unknown keywords. Names may have blanks. Numbers are finite and at least
+/// 0; all but Ke and Ns are at most 1. Throws `ParseError`: binary data, UTF-16, a word that is no number, more than
+/// `most_materials`.
 [[nodiscard]] std::vector<MtlMaterial> parse_mtl(std::string_view bytes);
 
-/// Writes a library that `parse_mtl` reads as these materials, if names have no line ends and no blanks around them.
-/// The roughness and metallic maps are channels of images, green and blue, as in glTF.
+/// Writes a library that parse_mtl() reads as these materials. Names must have no line ends, and no blanks at their
+/// ends. The roughness and metallic maps are channels of images, green and blue, as in glTF.
 [[nodiscard]] std::string format_mtl(const std::vector<MtlMaterial>& materials);
 
 }  // namespace papilio::client

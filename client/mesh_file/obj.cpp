@@ -1,6 +1,6 @@
-// Wavefront OBJ: `v x y z`, `vt u v`, `vn x y z` and `f 1/1/1 2/2/2 3/3/3`, indices from 1 or, negative, back from the
-// latest. A face may come before what it names. `s 1` and `s off` say which smoothing group the faces after them are
-// in, `usemtl NAME` which material they have, `mtllib FILE` where materials are. All other keywords are passed over.
+// Wavefront OBJ: `v x y z`, `vt u v`, `vn x y z` and `f 1/1/1 2/2/2 3/3/3`, with indices from 1, or negative ones back
+// from the latest. A face may precede its vertices. `s 1` and `s off` set the smoothing group of later faces, `usemtl
+// NAME` their material, and `mtllib FILE` a material library. Other keywords are skipped.
 
 #include <algorithm>
 #include <array>
@@ -21,10 +21,10 @@ namespace {
 
 using proto::AttributeKind;
 
-constexpr uint32_t nowhere = none - 1;  ///< an index that is sure to be out of range
+constexpr uint32_t nowhere = none - 1;  ///< index that is always out of range
 
-/// Position, texture coordinate and normal of a face's corner, from zero; `none` for one that is not named. `group` is
-/// the face's smoothing group.
+/// Indices of position, texture coordinate and normal of a face's corner, from zero; `none` if absent. `group`: the
+/// face's smoothing group.
 struct Corner {
   uint32_t position = none, texture = none, normal = none, group = 0;
   friend bool operator==(const Corner&, const Corner&) = default;
@@ -33,14 +33,14 @@ struct Corner {
   }
 };
 
-/// What the file lists, before points are made of it.
+/// Lists of the file, before they are combined to points.
 struct Lists {
   Buffer<Vec3f> positions, textures, normals;
   std::vector<Corner> corners;
-  PolygonList faces;  ///< of numbers of corners
+  PolygonList faces;  ///< faces, as numbers of corners
   std::vector<std::string> libraries;
   std::vector<std::string> materials;
-  std::vector<uint32_t> material_of_face;  ///< in `materials`; `none` for none
+  std::vector<uint32_t> material_of_face;  ///< [faces] index in `materials`, or `none`
 };
 
 uint32_t from_zero(int64_t index, size_t so_far) {
@@ -48,7 +48,7 @@ uint32_t from_zero(int64_t index, size_t so_far) {
   return number < 0 || number >= nowhere ? nowhere : static_cast<uint32_t>(number);
 }
 
-/// The texture coordinate or normal of a corner: takes "/7" off the front of `rest`.
+/// Consumes "/7" at the begin of `rest`, the texture coordinate or normal of a corner; returns its index.
 uint32_t parse_optional(std::string_view& rest, size_t so_far) {
   if (!rest.empty()) rest.remove_prefix(1);
   const std::string_view number = rest.substr(0, rest.find('/'));
@@ -58,7 +58,7 @@ uint32_t parse_optional(std::string_view& rest, size_t so_far) {
   return parse_number(number, index) ? from_zero(index, so_far) : nowhere;
 }
 
-/// A face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
+/// Parses a face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
 Corner parse_corner(const TextScanner& scanner, std::string_view word, const Lists& lists) {
   const std::string_view number = word.substr(0, word.find('/'));
   std::string_view rest = word.substr(number.size());
@@ -72,7 +72,7 @@ Corner parse_corner(const TextScanner& scanner, std::string_view word, const Lis
   return corner;
 }
 
-/// One to three numbers; those that are absent are zero.
+/// Parses one to three numbers; missing ones are zero.
 Vec3f parse_texture(TextScanner& scanner) {
   std::array<float, 3> numbers{scanner.coordinate()};
   for (size_t i = 1; i < numbers.size(); ++i) {
@@ -83,12 +83,12 @@ Vec3f parse_texture(TextScanner& scanner) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// Numbers the smoothing groups of a file: 0 for `off`, else from 1 in the order in which they come, as the author's
-/// numbers may be bit masks. Faces before the first `s` are a group of their own.
+/// Numbering of a file's smoothing groups: 0 for `off`, else from 1 in order of appearance, as the author's numbers may
+/// be bit masks. Faces before the first `s` are a separate group.
 class SmoothingGroups {
  public:
   [[nodiscard]] uint32_t current() const { return current_; }
-  /// Takes what follows an `s`; what is no number is passed over.
+  /// Sets the group from the word after `s`; ignores a word that is no number.
   void set(std::string_view word) {
     int64_t number = 0;
     if (word == "off")
@@ -103,15 +103,15 @@ class SmoothingGroups {
   uint32_t current_ = 1;
 };
 
-/// Numbers the materials of a file in the order in which faces are first given them.
+/// Numbering of a file's materials in the order in which faces first use them.
 class MaterialNames {
  public:
-  /// Takes what follows a `usemtl`.
+  /// Sets the material from the text after `usemtl`.
   void use(std::string_view name) {
     name_ = name;
     number_ = std::nullopt;
   }
-  /// Material of the next face; `none` before the first `usemtl`. New ones are added to `names`.
+  /// Returns the material of the next face; `none` before the first `usemtl`. Adds new ones to `names`.
   [[nodiscard]] uint32_t of_face(std::vector<std::string>& names, const TextScanner& scanner) {
     if (number_) return *number_;
     const auto [known, is_new] = numbers_.try_emplace(name_, static_cast<uint32_t>(names.size()));
@@ -124,10 +124,10 @@ class MaterialNames {
  private:
   std::map<std::string, uint32_t> numbers_;
   std::string name_;
-  std::optional<uint32_t> number_ = none;  ///< of the latest name, once a face has it
+  std::optional<uint32_t> number_ = none;  ///< number of the latest name, once a face uses it
 };
 
-/// Takes what follows an `mtllib`.
+/// Adds the libraries after `mtllib`.
 void add_library(Lists& lists, std::string_view names, const TextScanner& scanner) {
   if (names.empty() || std::ranges::find(lists.libraries, names) != lists.libraries.end()) return;
   if (lists.libraries.size() == most_libraries) scanner.fail("there are more than 1024 different lines mtllib");
@@ -178,7 +178,7 @@ Buffer<Triangle> triangulate(const Lists& lists, std::vector<uint32_t>* face_of)
   return lists.faces.triangles(position_of, face_of);
 }
 
-/// Whether any corner names one of the `listed`; if none is listed, whatever corners name is passed over.
+/// Returns whether any corner uses one of the `listed` values; without any, indices of corners are ignored.
 bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Buffer<Vec3f>& listed, const char* what) {
   bool used = false;
   for (Corner& corner : corners) {
@@ -190,7 +190,7 @@ bool are_used(std::vector<Corner>& corners, uint32_t Corner::*member, const Buff
   return used;
 }
 
-/// Returns whether faces are in different smoothing groups; if not, forgets the groups.
+/// Returns whether faces have different smoothing groups; if not, removes the groups.
 bool have_groups(std::vector<Corner>& corners) {
   const bool differ = std::ranges::any_of(corners, [&](const Corner& c) { return c.group != corners[0].group; });
   if (!differ)
@@ -198,7 +198,8 @@ bool have_groups(std::vector<Corner>& corners) {
   return differ;
 }
 
-/// Makes each of `corners` the number of its point. Points are in the order of their positions, at least one each.
+/// Combines corners to points, and sets each of `point_of_corner`. Points are in the order of positions, at least one
+/// for each.
 std::vector<Corner> make_points(const Lists& lists, std::vector<uint32_t>& point_of_corner) {
   const std::vector<Corner>& corners = lists.corners;
   std::vector<uint32_t> order(corners.size());
@@ -242,7 +243,8 @@ void add_groups(proto::FormattedMesh& mesh, const std::vector<Corner>& points) {
                                     .name = proto::smoothing_group_name});
 }
 
-/// Makes the mesh of the lists, which lose their positions. `face_of`, unless null, receives the face of each triangle.
+/// Makes the mesh of the lists, and moves their positions out. `face_of`, unless null, receives the face of each
+/// triangle.
 proto::FormattedMesh make_mesh(Lists& lists, std::vector<uint32_t>* face_of) {
   const bool textures = are_used(lists.corners, &Corner::texture, lists.textures, "texture coordinate (vt)");
   const bool normals = are_used(lists.corners, &Corner::normal, lists.normals, "normal (vn)");
@@ -251,7 +253,7 @@ proto::FormattedMesh make_mesh(Lists& lists, std::vector<uint32_t>* face_of) {
   mesh.triangles = triangulate(lists, face_of);
   const bool sound =
       std::ranges::all_of(lists.corners, [&](const Corner& c) { return c.position < lists.positions.size(); });
-  if (!sound || (!textures && !normals && !groups)) {  // of indices out of range the caller tells
+  if (!sound || (!textures && !normals && !groups)) {  // the caller reports indices out of range
     for (Triangle& triangle : mesh.triangles)
       for (uint32_t& corner : triangle) corner = lists.corners[corner].position;
     mesh.positions = std::move(lists.positions);

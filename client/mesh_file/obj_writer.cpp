@@ -1,4 +1,4 @@
-// The OBJ that obj.cpp reads.
+// Writer of OBJ files; obj.cpp is their reader.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,8 @@ namespace {
 
 using proto::AttributeKind;
 
-/// The numbers of the first attribute of this kind, three a point, a missing third one zero; empty if there is none.
+/// Returns the values of the first attribute of a kind, three numbers a point, with zero for a missing third; empty if
+/// there is none.
 Buffer<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& format, AttributeKind kind,
                              uint32_t& components) {
   for (size_t a = 0; a < format.attributes.size(); ++a) {
@@ -37,7 +38,7 @@ Buffer<Vec3f> find_attribute(const TriangleMesh& mesh, const proto::MeshFormat& 
   return {};
 }
 
-/// Returns the values of the smoothing groups, one a point; nothing if there are none.
+/// Returns the smoothing group of each point; empty if there are none.
 std::span<const double> find_groups(const TriangleMesh& mesh, const proto::MeshFormat& format) {
   for (size_t a = 0; a < format.attributes.size(); ++a)
     if (proto::is_smoothing_group(format.attributes[a], mesh.attributes[a].components))
@@ -45,7 +46,7 @@ std::span<const double> find_groups(const TriangleMesh& mesh, const proto::MeshF
   return {};
 }
 
-/// Appends the line that says which group the faces after it are in.
+/// Appends the line that sets the group of later faces.
 void append_group(std::string& text, double group) {
   text += 's';
   if (group == 0)
@@ -55,7 +56,7 @@ void append_group(std::string& text, double group) {
   text += '\n';
 }
 
-/// Returns the order in which triangles are written: as they are or, with materials, by material, none first.
+/// Returns the order in which triangles are written: unchanged, or with materials by material, `none` first.
 std::vector<uint32_t> writing_order(const TriangleMesh& mesh, const ObjMaterials& materials) {
   std::vector<uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0);
@@ -65,9 +66,9 @@ std::vector<uint32_t> writing_order(const TriangleMesh& mesh, const ObjMaterials
   return order;
 }
 
-/// Leaves the different ones among `values`, in order; gives the place of each.
+/// Removes repeated values, and returns the new index of each.
 std::vector<uint32_t> drop_repeated(Buffer<Vec3f>& values) {
-  const auto bits = [&](uint32_t p) {  // which have an order, also where a value is NaN
+  const auto bits = [&](uint32_t p) {  // bits are ordered even if a value is NaN
     return std::array{std::bit_cast<uint32_t>(values[p].x), std::bit_cast<uint32_t>(values[p].y),
                       std::bit_cast<uint32_t>(values[p].z)};
   };
@@ -100,7 +101,7 @@ std::string format_obj(const TriangleMesh& mesh, const proto::MeshFormat& format
   Buffer<Vec3f> positions = mesh.positions;
   std::vector<uint32_t> position(positions.size());
   std::iota(position.begin(), position.end(), 0);
-  // Points apart in their attributes alone are one vertex, which does not come apart where the file is read again.
+  // Points that differ only in attributes are one vertex, which stays whole when the file is read.
   const std::span<const double> groups = find_groups(mesh, format);
   if (!textures.empty() || !normals.empty() || !groups.empty()) position = drop_repeated(positions);
   const std::vector<uint32_t> texture = drop_repeated(textures);

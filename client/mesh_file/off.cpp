@@ -1,6 +1,6 @@
-// Geomview's Object File Format, as text: `OFF`, the counts of vertices, faces and edges, then one line for
-// each vertex and each face. The keyword may be absent, or say which attributes follow each position: they
-// are passed over, as are colours at the end of a face's line. http://www.geomview.org/docs/html/OFF.html
+// Geomview's Object File Format, as text: `OFF`, the counts of vertices, faces and edges, then one line for each vertex
+// and each face. The keyword may be absent, or declare attributes after each position. These are skipped, as are
+// colours at the end of a face's line. http://www.geomview.org/docs/html/OFF.html
 
 #include <algorithm>
 #include <limits>
@@ -14,8 +14,7 @@
 namespace papilio::client {
 namespace {
 
-/// A count of lines to come. Each has at least `least` bytes, so that no count of a damaged file can ask for
-/// more memory than the file warrants.
+/// Parses a count of lines, each of at least `least` bytes, so that memory is bounded by the file's size.
 size_t parse_count(TextScanner& scanner, const std::string& what, size_t least) {
   const int64_t count = scanner.integer();
   if (count < 0 || count > std::numeric_limits<int32_t>::max() ||
@@ -24,7 +23,7 @@ size_t parse_count(TextScanner& scanner, const std::string& what, size_t least) 
   return static_cast<size_t>(count);
 }
 
-/// Leaves the scanner before the counts.
+/// Parses the keyword, if any.
 void parse_keyword(TextScanner& scanner) {
   TextScanner ahead = scanner;
   std::string_view keyword = ahead.word_anywhere();

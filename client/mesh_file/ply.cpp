@@ -1,5 +1,5 @@
-// Stanford's Polygon File Format: a header that says what follows, then the same in text or binary. Read are
-// the vertices' x, y, z and attributes and the faces' vertex_indices, of whatever type; everything else is passed over.
+// Stanford's Polygon File Format: a header of declarations, then data in text or binary. Reads the vertices' x, y, z
+// and attributes, and the faces' vertex_indices, of any type; skips everything else.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace papilio::client {
 namespace {
 
-/// The numbers after the header, one after another. A double holds every type's values.
+/// Reader of the numbers after the header. A double represents the values of every type.
 class PlyNumbers {
  public:
   PlyNumbers(std::string_view bytes, const PlyHeader& header)
@@ -24,8 +24,7 @@ class PlyNumbers {
 
   [[nodiscard]] double next(PlyType type) { return order_ ? next_binary(type) : next_text(type); }
 
-  /// Throws unless so many elements can be there, so that no declared count costs more than the file
-  /// warrants.
+  /// Throws unless the file is large enough for the declared elements, so that memory is bounded by the file's size.
   void require(const PlyElement& element) const {
     uint64_t least = 0;
     for (const PlyProperty& property : element.properties)
@@ -37,7 +36,7 @@ class PlyNumbers {
                        "' are declared, more than the file can hold: it is damaged or cut short");
   }
 
-  /// Throws if more than blanks is left.
+  /// Throws unless only blanks are left.
   void require_end() {
     if (order_) text_ = TextScanner(binary_, {});
     if (text_.to_word()) throw ParseError("goes on after what its header declares");
@@ -94,14 +93,14 @@ float to_coordinate(double value) {
   return static_cast<float>(value);
 }
 
-/// A number that must be whole, as an index or a count.
+/// Converts a number that must be whole, such as an index or a count.
 uint32_t to_index(double value) {
   if (!(value >= 0 && value <= std::numeric_limits<uint32_t>::max()) || value != std::floor(value))
     throw ParseError("has an index or a count that is negative, too large or not whole");
   return static_cast<uint32_t>(value);
 }
 
-/// The numbers of one property: one, or a list's.
+/// Reads the numbers of one property: one, or those of a list.
 void read_property(PlyNumbers& numbers, const PlyProperty& property, std::vector<double>& values) {
   values.clear();
   uint32_t count = property.count_type ? to_index(numbers.next(*property.count_type)) : 1;

@@ -31,7 +31,7 @@ bool has_kind(const std::vector<AttributeFormat>& formats, AttributeKind kind) {
   return std::ranges::find(formats, kind, &AttributeFormat::kind) != formats.end();
 }
 
-/// Colours of bytes stay bytes; everything else is taken for floats.
+/// Returns whether an attribute is stored in bytes: colours of bytes are, all others are floats.
 bool are_bytes(AttributeKind kind, PlyType type) { return kind == AttributeKind::color && type == PlyType::uint8; }
 
 }  // namespace

@@ -12,22 +12,22 @@
 
 namespace papilio::client {
 
-/// Collects what a vertex element has of them.
+/// Collector of the attributes of a vertex element.
 class PlyAttributes {
  public:
   explicit PlyAttributes(const PlyElement& element);
 
-  /// The first number of each of a vertex's properties, in order.
+  /// Adds a vertex by the first number of each of its properties, in order.
   void add(std::span<const double> numbers);
   void move_to(proto::FormattedMesh& mesh);
 
  private:
-  std::vector<std::vector<size_t>> properties_;  ///< of each attribute, component by component
+  std::vector<std::vector<size_t>> properties_;  ///< [attribute][component] index of the property
   std::vector<Attribute> attributes_;
   std::vector<proto::AttributeFormat> formats_;
 };
 
-/// The other way: the first attribute of each kind whose type and components PLY has names for.
+/// Writer of attributes: the first of each kind with a type and components that PLY has names for.
 class PlyAttributeWriter {
  public:
   PlyAttributeWriter(const TriangleMesh& mesh, const proto::MeshFormat& format);
@@ -38,8 +38,8 @@ class PlyAttributeWriter {
  private:
   struct Chosen {
     const Attribute* attribute;
-    bool as_bytes;  ///< else as floats
-    double one;     ///< what stands for 1 where numbers are floats
+    bool as_bytes;  ///< whether values are written as bytes; else as floats
+    double one;     ///< stored number that represents 1, if values are floats
   };
   std::vector<Chosen> chosen_;
   std::string properties_;

@@ -12,13 +12,13 @@ namespace {
 using LocalTriangle = std::array<uint32_t, 3>;  ///< numbers of a polygon's corners
 using Places = std::vector<Vec3d>;
 
-constexpr double least_area = 1e-9;          // of a triangle's share of a polygon's area
-constexpr double least_polygon = 1e-12;      // area vector of a polygon of extent 1
-constexpr double plane_quad = 1e-3;          // distance of a corner from the plane, of the extent
-constexpr double plane_polygon = 1e-2;       // the same of five corners or more
-constexpr double clearly_flatter = 0.3;      // difference of the folds' cosines
-constexpr double clearly_thinner = 0.1;      // difference of the smallest angles' cosines
-constexpr double least_angle_cosine = 0.99;  // 8 degrees
+constexpr double least_area = 1e-9;      // lower bound of a triangle's share of a polygon's area
+constexpr double least_polygon = 1e-12;  // lower bound of the area vector of a polygon of extent 1
+constexpr double plane_quad = 1e-3;      // upper bound of a corner's distance from a plane quad, a share of the extent
+constexpr double plane_polygon = 1e-2;   // upper bound of that distance for polygons of five corners or more
+constexpr double clearly_flatter = 0.3;  // lower bound of the difference of the folds' cosines
+constexpr double clearly_thinner = 0.1;  // lower bound of the difference of the smallest angles' cosines
+constexpr double least_angle_cosine = 0.99;  // cosine of 8 degrees
 
 /// Returns the corners' positions from the first, scaled to magnitude 1; nothing if any is not finite or all are equal.
 Places scaled_places(std::span<const uint32_t> corners, const CornerPosition& position) {
@@ -56,7 +56,7 @@ double smallest_angle_cosine(const Places& places, const LocalTriangle& t) {
   return most;
 }
 
-/// Two triangles of a quad.
+/// Division of a quad into two triangles.
 struct Cut {
   std::array<LocalTriangle, 2> triangles;
 

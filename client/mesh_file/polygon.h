@@ -9,23 +9,25 @@
 
 namespace papilio::client {
 
-/// Returns the position of a corner; NaN where the file has none.
+/// Function that returns the position of a corner; NaN if the file has none.
 using CornerPosition = std::function<Vec3f(uint32_t corner)>;
 
-/// Cuts a polygon into triangles of its orientation and appends them; nothing for one or two corners.
+/// Triangulates a polygon with its orientation, and appends the triangles; none for one or two corners.
 ///
-/// The fan around the first corner is kept unless another cut is clearly better: neighbouring quads that all have their
-/// diagonal in one direction give vertices of valence six, which subdivision likes best.
-/// - A plane quad is cut along the diagonal inside it. Of two such diagonals, as of a bent quad's, it is the one with
-///   the clearly flatter fold, else the one with the clearly larger smallest angle, else the one at the first corner.
-/// - A plane polygon of more corners is cut by ear clipping, shortest diagonal first, in O(n^2).
-/// - A fan remains what is bent, crosses itself, has no area, has a position that is not finite, or has more than
-///   `most_clipped_corners`.
+/// The fan around the first corner is kept unless another division is clearly better: diagonals of neighbouring quads
+/// in one direction give vertices of valence six, which are regular in the subdivision.
+/// - A plane quad is divided by its inner diagonal. Of two candidates, as in a bent quad, it is the one with the
+/// clearly
+///   flatter fold, else the one with the clearly larger smallest angle, else the one at the first corner.
+/// - A plane polygon of more corners is triangulated by ear clipping, shortest diagonal first, in O(n^2).
+/// - Other polygons are fans: bent or self-intersecting ones, without area, with a position that is not finite, or with
+/// more
+///   than `most_clipped_corners`.
 void append_polygon(std::span<const uint32_t> corners, const CornerPosition& position, Buffer<Triangle>& triangles);
 
 inline constexpr size_t most_clipped_corners = 1024;
 
-/// Polygons of a file whose faces may come before its positions.
+/// Polygons of a file whose faces may precede its positions.
 class PolygonList {
  public:
   void add(std::span<const uint32_t> corners);

@@ -1,7 +1,7 @@
-// Stereolithography, binary and text. Binary: 80 bytes of anything, a count, 50 bytes for each triangle. The
-// text begins with `solid`, but so do the 80 bytes of many binary files: what tells them apart is the size,
-// which the count gives. Some writers append bytes of their own to a binary file. They are skipped, unless they could
-// be whole triangles that the count leaves out.
+// Stereolithography, binary and text. Binary: 80 arbitrary bytes, a count, and 50 bytes for each triangle. Text starts
+// with `solid`, but so do the 80 bytes of many binary files: these are recognized by their size, which follows from the
+// count. Some writers append bytes to a binary file. They are skipped, unless they could be whole triangles not
+// counted.
 
 #include <cctype>
 #include <cmath>
@@ -23,12 +23,12 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower) {
   return std::ranges::equal(word, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
 }
 
-/// The header must be whole.
+/// Returns the declared number of triangles. The header must be complete.
 size_t declared_triangles(std::string_view bytes) { return load<uint32_t>(bytes.substr(80), std::endian::little); }
 
 size_t size_of_binary(size_t triangles) { return kHeaderBytes + kTriangleBytes * triangles; }
 
-/// Whether the size is to the byte what a binary file's count asks for.
+/// Returns whether the size exactly matches a binary file's count.
 bool is_surely_binary(std::string_view bytes) {
   return bytes.size() >= kHeaderBytes && size_of_binary(declared_triangles(bytes)) == bytes.size();
 }
@@ -38,7 +38,7 @@ bool is_text(std::string_view bytes) {
          bytes.find('\0') == std::string_view::npos;
 }
 
-/// Throws where triangles are missing, or are there and not counted.
+/// Throws `ParseError` if triangles are missing, or not counted.
 void check_size(std::string_view bytes) {
   const size_t declared = declared_triangles(bytes);
   const size_t needed = size_of_binary(declared);
@@ -52,7 +52,7 @@ void check_size(std::string_view bytes) {
                      std::to_string(declared + more / kTriangleBytes) + ": its count or its end is damaged");
 }
 
-/// The next of the positions, which become one corner each.
+/// Appends a position, and returns its index.
 uint32_t append_corner(TriangleMesh& mesh, Vec3f position) {
   mesh.positions.push_back(position);
   return static_cast<uint32_t>(mesh.positions.size() - 1);
@@ -84,7 +84,7 @@ void expect(TextScanner& scanner, std::string_view lower) {
   if (!equals_ignoring_case(word, lower)) scanner.fail("expected " + quoted(lower) + ", found " + quoted(word));
 }
 
-/// From after `facet` to after `endfacet`. Normals are not looked at: some writers put words for NaN there.
+/// Parses the rest of a facet after `facet`, including `endfacet`. Skips the normal, which some writers set to NaN.
 void parse_facet(TextScanner& scanner, TriangleMesh& mesh) {
   expect(scanner, "normal");
   for (int i = 0; i < 3; ++i) (void)scanner.word_anywhere();
@@ -103,7 +103,7 @@ void parse_facet(TextScanner& scanner, TriangleMesh& mesh) {
       corners, [&](uint32_t corner) { return mesh.positions[corner]; }, mesh.triangles);
 }
 
-/// One or more solids: `solid NAME`, facets, `endsolid NAME`. The name may have many words.
+/// Parses one or more solids: `solid NAME`, facets, `endsolid NAME`. The name may have several words.
 TriangleMesh parse_text(std::string_view bytes) {
   TextScanner scanner(bytes, {});
   TriangleMesh mesh;
@@ -118,7 +118,7 @@ TriangleMesh parse_text(std::string_view bytes) {
   return mesh;
 }
 
-/// Of length one, or zero for a degenerate triangle.
+/// Returns the unit normal, or zero for a degenerate triangle.
 Vec3f unit_normal(Vec3d a, Vec3d b, Vec3d c) {
   const Vec3d normal = cross(b - a, c - a);
   const double size = length(normal);

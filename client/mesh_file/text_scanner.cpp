@@ -25,7 +25,7 @@ std::errc parse_whole(std::string_view word, Number& value) {
 bool parse_number(std::string_view word, float& value) {
   const std::errc error = parse_whole(word, value);
   if (error != std::errc::result_out_of_range) return error == std::errc();
-  // Too large or too small, from_chars does not say which.
+  // from_chars does not distinguish too large from too small.
   double wide = 0;
   if (!parse_number(word, wide) || std::abs(wide) >= 1) return false;
   value = static_cast<float>(wide);

@@ -7,55 +7,55 @@
 
 namespace papilio::client {
 
-/// The number that `word` is, whole, whatever the locale; a leading plus is allowed. False if it is no number
-/// or too large for the type. One too small for it becomes the nearest that is not, 0 or subnormal.
+/// Parses a whole word as a number, in any locale; a leading plus is accepted. Returns false if it is no number, or too
+/// large for the type. A number too small for the type becomes the nearest one, 0 or subnormal.
 [[nodiscard]] bool parse_number(std::string_view word, float& value);
 [[nodiscard]] bool parse_number(std::string_view word, double& value);
 [[nodiscard]] bool parse_number(std::string_view word, int64_t& value);
 
-/// Reads words of a text in which some lines matter: goes forward only, and knows the line for messages.
-/// Blanks are space, tab, carriage return, vertical tab and form feed.
+/// Forward scanner of the words and lines of a text, with the line number for messages. Blanks are space, tab, carriage
+/// return, vertical tab and form feed.
 class TextScanner {
  public:
   struct Dialect {
-    bool hash_comments = false;        ///< `#` begins a comment, up to the end of the line
-    bool backslash_continues = false;  ///< a backslash at the end of a line joins the next to it
+    bool hash_comments = false;        ///< whether `#` starts a comment, up to the end of the line
+    bool backslash_continues = false;  ///< whether a backslash at the end of a line continues it on the next
   };
 
-  /// `first_line` is the number of the first line, where `text` is the rest of a longer one.
+  /// Starts at the begin of `text`. `first_line`: number of its first line.
   TextScanner(std::string_view text, Dialect dialect, size_t first_line = 1)
       : text_(text), dialect_(dialect), line_(first_line) {}
 
-  /// The next word of this line, empty at its end.
+  /// Returns the next word of this line, empty at its end.
   [[nodiscard]] std::string_view word();
-  /// The next word of this line or a later one, empty at the end of the text.
+  /// Returns the next word of this line or a later one, empty at the end of the text.
   [[nodiscard]] std::string_view word_anywhere();
-  /// What is left of this line without the blanks around it, comments included: names may have blanks and `#`.
+  /// Returns the rest of this line without blanks at its ends, but with comments: names may have blanks and `#`.
   [[nodiscard]] std::string_view rest_of_line();
-  /// The next word of this line as a number. Throws `ParseError` if there is none.
+  /// Returns the next word of this line as a number. Throws `ParseError` if there is none.
   [[nodiscard]] float coordinate();
   [[nodiscard]] int64_t integer();
 
-  /// To the next line that has a word. False at the end of the text.
+  /// Moves to the next line with a word. Returns false at the end of the text.
   bool next_line();
-  /// To the first word from here, on this line or a later one. False at the end of the text.
+  /// Moves to the next word, on this line or a later one. Returns false at the end of the text.
   bool to_word();
 
-  /// Bytes from the start of the text to the end of this line, its line feed included.
+  /// Returns the bytes from the start of the text to the end of this line, including its line feed.
   [[nodiscard]] size_t end_of_line() const;
-  /// Bytes between the current place and the end of the text.
+  /// Returns the bytes between the current place and the end of the text.
   [[nodiscard]] size_t remaining() const { return text_.size() - position_; }
 
-  /// The number of the current line.
+  /// Returns the number of the current line.
   [[nodiscard]] size_t line() const { return line_; }
 
-  /// Throws `ParseError` that begins with the number of the line.
+  /// Throws `ParseError` with a message that starts with the number of the line.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
   void skip_blanks();
   [[nodiscard]] bool at_line_end() const { return position_ == text_.size() || text_[position_] == '\n'; }
-  /// The length of a backslash and the line end it hides, or 0.
+  /// Returns the length of a backslash and the line end it escapes, or 0.
   [[nodiscard]] size_t continuation() const;
 
   std::string_view text_;
@@ -64,7 +64,7 @@ class TextScanner {
   size_t line_;
 };
 
-/// The start of a word as it may be shown in a message: short, in quotes, no control characters.
+/// Returns the start of a word for a message: short, in quotes, without control characters.
 [[nodiscard]] std::string quoted(std::string_view word);
 
 }  // namespace papilio::client

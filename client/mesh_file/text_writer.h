@@ -8,7 +8,7 @@
 
 namespace papilio::client {
 
-/// Appends a number after a blank: floats in the shortest digits that give back the same float.
+/// Appends a blank and a number, floats with the shortest exact digits.
 template <class Number>
 requires std::integral<Number> || std::floating_point<Number>
 void append_number(std::string& text, Number number, char blank = ' ') {
@@ -18,7 +18,7 @@ void append_number(std::string& text, Number number, char blank = ' ') {
   text.append(digits, written.ptr);
 }
 
-/// A line of a keyword and numbers.
+/// Appends a line of a keyword and numbers.
 template <class Number>
 void append_line(std::string& text, std::string_view keyword, std::initializer_list<Number> numbers) {
   text += keyword;

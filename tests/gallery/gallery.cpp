@@ -1,7 +1,7 @@
 // gallery FOLDER MODEL...: what refinement makes of models, for people to look at. Of each it draws, in
-// FOLDER/NAME.png, the coarse mesh, the plain scheme and the shape rules, above with flat faces, below smooth; and
-// prints a row of figures. gallery --sheet FILE MODEL...: only draws, all into one picture, a row each, with flat
-// faces.
+// FOLDER/NAME.png, the coarse mesh, the plain scheme and the shape rules, above with flat faces, below with normals
+// that are apart at creases; and prints a row of figures. gallery --sheet FILE MODEL...: only draws, all into one
+// picture, a row each, with flat faces.
 
 #include <png.h>
 
@@ -28,12 +28,7 @@ constexpr uint32_t side = 360;  // pixels of one picture
 constexpr uint64_t most_faces = 400'000;
 
 View view_of(const Mesh& mesh) {
-  const Box box = bounding_box(mesh.positions);
-  View view;
-  view.target = box.centre();
-  view.eye = view.target + box.diagonal() * Vec3d{0.9, 0.65, 1.2};
-  view.fov_y = 38;
-  view.viewport = {side, side};
+  View view = overview(mesh, side, side);
   view.lights = {Vec3d{0.5, 0.9, 0.8}};
   return view;
 }
@@ -47,6 +42,19 @@ Mesh faceted(const Mesh& mesh) {
     out.topology.origin.push_back(h);
     out.positions.push_back(mesh.positions[mesh.topology.origin[h]]);
   }
+  return out;
+}
+
+/// The same with a vertex for each of its normals, as a result has them: smooth, apart at creases.
+Mesh parted_at_creases(Mesh mesh) {
+  mesh.attributes = {};
+  add_normals(mesh);
+  Mesh out;
+  out.topology.vertex_count = mesh.attributes.point_count;
+  out.topology.origin = mesh.attributes.point;
+  out.positions.resize(mesh.attributes.point_count);
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+    out.positions[mesh.attributes.point[h]] = mesh.positions[mesh.topology.origin[h]];
   return out;
 }
 
@@ -105,7 +113,7 @@ void show(const std::filesystem::path& folder, const std::filesystem::path& file
   uint32_t column = 0;
   for (const Mesh* mesh : {&model.coarse, &model.plain, &model.ours.mesh}) {
     sheet.put(column, 0, render(faceted(*mesh), view));
-    sheet.put(column++, 1, render(*mesh, view));
+    sheet.put(column++, 1, render(parted_at_creases(*mesh), view));
   }
   sheet.write(folder / (file.stem().string() + ".png"));
 

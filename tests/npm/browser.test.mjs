@@ -38,7 +38,7 @@ function digest({ mesh }) {
   return hash.digest('hex');
 }
 
-test('results in workers are those of the native library, to the bit', async () => {
+test('results in workers are bit-identical to the native library', async () => {
   const page = await open();
   let compared = 0;
   for (const [name, mesh] of meshes()) {
@@ -65,7 +65,7 @@ test('results in workers are those of the native library, to the bit', async () 
 const elephant = plain(readMesh('elephant2000.obj'));
 
 for (const where of ['', '/isolated'])
-  test(`a refinement that is not wanted any more ends${where && ', where memory is shared'}`, async () => {
+  test(`an aborted refinement ends${where && ', where memory is shared'}`, async () => {
     const page = await open(where);
     const seen = await page.evaluate(async (coarse) => {
       const refiner = await papilio.Refiner.start();
@@ -95,7 +95,7 @@ for (const where of ['', '/isolated'])
     await page.close();
   });
 
-test('levels come as they are made, and the page is not held up meanwhile', async () => {
+test('levels arrive one by one, and the page stays responsive', async () => {
   const page = await open();
   const seen = await page.evaluate(async (coarse) => {
     const refiner = await papilio.Refiner.start();
@@ -112,7 +112,7 @@ test('levels come as they are made, and the page is not held up meanwhile', asyn
   await page.close();
 });
 
-test('two workers work at once: what is short does not wait for what is long', async () => {
+test('two workers run in parallel: short work does not wait for long work', async () => {
   const page = await open();
   const order = await page.evaluate(async (coarse) => {
     const order = async (workers) => {
@@ -135,7 +135,7 @@ test('two workers work at once: what is short does not wait for what is long', a
   await page.close();
 });
 
-test('faults have their text, and a missing module is said', async () => {
+test('faults have their text, and a missing module is reported', async () => {
   const page = await open();
   const seen = await page.evaluate(async (coarse) => {
     const refiner = await papilio.Refiner.start();

@@ -35,7 +35,7 @@ async function read(levels) {
   return { all, summary: await levels.summary };
 }
 
-test('the server is described', async () => {
+test('info describes the server', async () => {
   const info = await client.info();
   assert.match(info.version, /^\d+\.\d+\.\d+$/);
   assert.ok(info.parameters.some(({ name }) => name === 'tolerance'));
@@ -46,7 +46,7 @@ test('the server is described', async () => {
   assert.equal(sample.type, 'application/x-draco');
 });
 
-test('a mesh and a scene are refined, each to its kind', async () => {
+test('a mesh and a scene are refined, each to its format', async () => {
   const fine = await client.refine(bunny, { levels: 2 });
   assert.deepEqual([fine.type, fine.level, fine.faces, fine.vertices], ['application/x-draco', 2, 9600, 4802]);
   assert.equal(fine.summary.stop_reason, 'levels');
@@ -59,7 +59,7 @@ test('a mesh and a scene are refined, each to its kind', async () => {
   assert.deepEqual([scene.type, scene.faces], ['model/gltf-binary', 192]);
 });
 
-test('levels come as they are made, the summary last; the last is the single answer', async () => {
+test('levels arrive one by one, then the summary; the last equals the single answer', async () => {
   const { all, summary } = await read(client.levels(bunny, { levels: 3 }));
   assert.deepEqual(
     all.map(({ level }) => level),
@@ -81,7 +81,7 @@ test('levels come as they are made, the summary last; the last is the single ans
   );
 });
 
-test('a stored mesh is described, refined, asked for again, and deleted', async () => {
+test('a stored mesh is described, refined, revalidated, and deleted', async () => {
   const stored = await client.store(bunny);
   assert.match(stored.id, /^[0-9a-f]{64}$/);
   assert.equal((await client.describe(stored.id)).faces, 600);
@@ -96,7 +96,7 @@ test('a stored mesh is described, refined, asked for again, and deleted', async 
   assert.deepEqual([gone.code, gone.status], ['mesh_not_found', 404]);
 });
 
-test('refusals are problems, with the parameter and the request that they are of', async () => {
+test('refusals are problems with the parameter and the id of the request', async () => {
   const refused = await problemOf(client.refine(bunny, { levels: 99 }));
   assert.deepEqual([refused.code, refused.status, refused.parameter], ['bad_parameter', 400, 'levels']);
   assert.match(refused.message, /levels must be an integer in 0\.\.10/);
@@ -108,7 +108,7 @@ test('refusals are problems, with the parameter and the request that they are of
   assert.deepEqual([(await problemOf(absent.info())).code, await absent.isAlive()], ['unreachable', false]);
 });
 
-test('a refinement that is not wanted any more is given up', async () => {
+test('an aborted refinement is cancelled', async () => {
   const reason = new Error('enough');
   const signal = AbortSignal.abort(reason);
   await assert.rejects(client.refine(bunny, { levels: 3 }, { signal }), reason);
@@ -120,7 +120,7 @@ test('a refinement that is not wanted any more is given up', async () => {
   await assert.rejects(levels.summary, reason);
 });
 
-test('a key goes with each request', async () => {
+test('each request sends the key', async () => {
   const key = '0123456789abcdef0123456789abcdef';
   const folder = mkdtempSync(path.join(tmpdir(), 'papilio-keys-'));
   writeFileSync(path.join(folder, 'keys'), `someone ${key}\n`);

@@ -105,7 +105,7 @@ test('a worker decodes each level to the bits of papilio unpack', async () => {
   await page.close();
 });
 
-test('a decoding that is aborted is given up, and the next one is done', async () => {
+test('an aborted decoding stops, and the next one runs', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const model = await open('/vase.glb');
@@ -124,7 +124,7 @@ test('a decoding that is aborted is given up, and the next one is done', async (
   await page.close();
 });
 
-test('a prefix is opened where that is allowed, and has the levels that have come', async () => {
+test('a prefix opens if prefixes are allowed, with its complete levels', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const whole = await open('/vase.glb');
@@ -140,7 +140,7 @@ test('a prefix is opened where that is allowed, and has the levels that have com
   await page.close();
 });
 
-test('a base that is not what the file declares is refused', async () => {
+test('a base that differs from the declared one is refused', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const refusedWith = (change) =>
@@ -187,7 +187,7 @@ test('PapilioLoader shows a packed model with all its levels', async () => {
   await page.close();
 });
 
-test('PapilioLoader shows a textured one with its material, and refines it', async () => {
+test('PapilioLoader shows a textured model with its material, and refines it', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const model = await new PapilioLoader().loadAsync('/textured.glb');
@@ -262,7 +262,7 @@ async function loaded(page, url) {
 /// The values at the corners of faces.
 const atCorners = (values, triangles) => Array.from(triangles).flatMap((v) => [...values.subarray(3 * v, 3 * v + 3)]);
 
-test('PapilioLoader shows one of two materials with both, and refines it', async () => {
+test('PapilioLoader shows a model of two materials with both, and refines it', async () => {
   const { page } = await open();
   const seen = await loaded(page, '/parted.glb');
   const { positions, triangles } = unpack(parted.packed, 10);
@@ -279,7 +279,7 @@ test('PapilioLoader shows one of two materials with both, and refines it', async
   await page.close();
 });
 
-test('PapilioLoader shows one with colours, and refines it', async () => {
+test('PapilioLoader shows a model with colours, and refines it', async () => {
   const { page } = await open();
   const seen = await loaded(page, '/coloured.glb');
   const { positions, triangles, colours } = unpack(coloured.packed, 10);

@@ -43,7 +43,7 @@ function assertSame(made, expected, what) {
 let compared = 0;
 let refined = 0;
 for (const [name, mesh] of meshes())
-  test(`${name}: results are those of the native library, to the bit`, () => {
+  test(`${name}: results are bit-identical to the native library`, () => {
     const random = randomNumbers(name.length + mesh.positions.length);
     const queries = Array.from({ length: 24 }, () => randomQuery(random, sizeOf(mesh)));
     const expected = nativeResults(mesh, queries);
@@ -71,12 +71,12 @@ for (const [name, mesh] of meshes())
     });
   });
 
-test('at least 300 requests were compared, and most of them refined something', () => {
+test('at least 300 requests were compared, and most of them refined faces', () => {
   assert.ok(compared >= 300, `${compared}`);
   assert.ok(refined > 0.8 * compared, `${refined}`);
 });
 
-test('levels come coarse first, and are those of fewer levels', () => {
+test('levels arrive with the coarse mesh first, and equal results with fewer levels', () => {
   const kernel = new Kernel(module);
   const mesh = kernel.open(readMesh('bunny600.obj'));
   const levels = [];
@@ -105,7 +105,7 @@ const faultOf = (work) => {
   return assert.fail('nothing was thrown');
 };
 
-test('refusals say what the service says, and the kernel goes on', () => {
+test('refusals have the text of the service, and the kernel works afterwards', () => {
   const kernel = new Kernel(module);
   const mesh = kernel.open(readMesh('bunny600.obj'));
   const before = kernel.refine(mesh, { levels: 1 });
@@ -125,7 +125,7 @@ test('refusals say what the service says, and the kernel goes on', () => {
   assert.ok(areSame(kernel.refine(mesh, { levels: 1 }).mesh.positions, before.mesh.positions));
 });
 
-test('a refinement stops when it is not wanted any more', () => {
+test('an aborted refinement stops', () => {
   const kernel = new Kernel(module);
   const mesh = kernel.open(readMesh('elephant2000.obj'));
   let asked = 0;
@@ -136,7 +136,7 @@ test('a refinement stops when it is not wanted any more', () => {
   assert.equal(asked, 4);
 });
 
-test('what a caller throws comes through, and the kernel goes on', () => {
+test('an exception of the caller passes through, and the kernel works afterwards', () => {
   const kernel = new Kernel(module);
   const mesh = kernel.open(readMesh('bunny600.obj'));
   const fail = () => {
@@ -146,7 +146,7 @@ test('what a caller throws comes through, and the kernel goes on', () => {
   assert.equal(kernel.refine(mesh, { levels: 1 }).statistics.level, 1);
 });
 
-test('memory is given back, and the next refinement is the same', () => {
+test('memory is returned, and the next refinement has the same result', () => {
   const kernel = new Kernel(module, 32 * 2 ** 20);
   const mesh = kernel.open(readMesh('elephant2000.obj'));
   const small = kernel.refine(mesh, { levels: 1 });
@@ -156,7 +156,7 @@ test('memory is given back, and the next refinement is the same', () => {
   assert.ok(areSame(kernel.refine(mesh, { levels: 1 }).mesh.positions, small.mesh.positions));
 });
 
-test('what does not fit in memory is refused by its size, before it is made', () => {
+test('a result beyond the memory is refused with its size before the refinement', () => {
   const kernel = new Kernel(module);
   const mesh = readMesh('elephant2000.obj');
   const values = new Float64Array((8 * mesh.positions.length) / 3);

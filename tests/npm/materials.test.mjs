@@ -55,7 +55,7 @@ function facesByMaterial(obj) {
 const seen = { compared: 0, moved: 0, colours: 0 };
 for (const [kind, options] of Object.entries(kinds))
   for (const name of ['waves', 'cushion', 'vase'])
-    test(`${name} with ${kind}: each level has the bits of papilio unpack`, async () => {
+    test(`${name} with ${kind}: each level is bit-identical to papilio unpack`, async () => {
       const { packed, report } = packOnce(name, kind);
       assert.ok(isPacked(bytesOf(packed)));
       const file = readPacked(bytesOf(packed));
@@ -105,7 +105,7 @@ for (const [kind, options] of Object.entries(kinds))
       }
     });
 
-test('levels were compared whose bits hang on the borders, and on residuals of colours', () => {
+test('the levels compared depend on borders and on residuals of colours', () => {
   assert.ok(seen.compared >= 36 && seen.moved >= 3 && seen.colours >= 4, JSON.stringify(seen));
 });
 
@@ -115,7 +115,7 @@ function documentOf(packed) {
 }
 
 for (const kind of Object.keys(kinds))
-  test(`${kind}: of pieces, and of a file that is cut, the bits are those of papilio unpack`, async () => {
+  test(`${kind}: pieces and truncated files have the bits of papilio unpack`, async () => {
     const { packed } = inPieces(kind);
     const file = bytesOf(packed);
     const whole = readPacked(file);
@@ -137,7 +137,7 @@ for (const kind of Object.keys(kinds))
     }
   });
 
-test('a file that is cut in a primitive of the base is refused', () => {
+test('a file truncated within a primitive of the base is refused', () => {
   const file = bytesOf(packOnce('vase', 'two materials').packed);
   const { base } = readPacked(file);
   for (const { draco } of base.primitives) {
@@ -161,7 +161,7 @@ function nativeRefusal(bytes) {
   }
 }
 
-test('documents are refused as by the native reader', () => {
+test('invalid documents are refused as by the native reader', () => {
   const detail = { version: 2, bufferView: 0 };
   const parted = bytesOf(packOnce('cushion', 'two materials and a texture').packed);
   const coloured = bytesOf(packOnce('waves', 'colours').packed);
@@ -205,7 +205,7 @@ test('documents are refused as by the native reader', () => {
 });
 const dracoOf = ({ extensions }) => extensions.KHR_draco_mesh_compression;
 
-test('primitives that are other than declared are refused', async () => {
+test('primitives that differ from the declared ones are refused', async () => {
   const refusalOf = async (name, kind, change) => {
     const { base } = readPacked(bytesOf(packOnce(name, kind).packed));
     const decode = async (draco) => {
@@ -224,13 +224,13 @@ test('primitives that are other than declared are refused', async () => {
   assert.match(await refusalOf('vase', 'two materials', () => ({ colours })), /declares no colours, unlike/);
 });
 
-test('of files damaged at random the same are refused as by the native reader, others have its bits', async () => {
+test('randomly damaged files are refused or read as by the native reader', async () => {
   for (const kind of Object.keys(kinds)) await compareDamaged(inPieces(kind).packed, { module, assertSame });
 });
 
 const infoOf = (file) => JSON.parse(execFileSync(path.join(build, 'papilio'), ['info', '--json', file]));
 
-test('a file of fewer levels keeps materials and colours, and the native library reads it', () => {
+test('a file of fewer levels keeps materials and colours, and is read by the native library', () => {
   for (const kind of Object.keys(kinds)) {
     const { packed } = packOnce('vase', kind);
     const file = bytesOf(packed);
@@ -247,7 +247,7 @@ test('a file of fewer levels keeps materials and colours, and the native library
   }
 });
 
-test('a scene of other surfaces keeps materials, images and colours, and is no packed model', () => {
+test('a scene with other surfaces keeps materials, images and colours, and is not a packed model', () => {
   for (const [name, kind, attributes] of [
     ['cushion', 'two materials and a texture', { POSITION: 0, TEXCOORD_0: 1 }],
     ['vase', 'colours', { POSITION: 0, COLOR_0: 3 }],

@@ -28,7 +28,7 @@ before(() => {
 });
 after(() => rmSync(folder, { recursive: true }));
 
-test('it holds what it exports, with types, and nothing else', () => {
+test('the package contains its exports with types, and nothing else', () => {
   const installed = path.join(folder, 'node_modules/papilio');
   const { exports } = JSON.parse(readFileSync(path.join(installed, 'package.json'), 'utf8'));
   const named = Object.values(exports).flatMap((to) => (typeof to === 'string' ? [to] : Object.values(to)));
@@ -38,7 +38,7 @@ test('it holds what it exports, with types, and nothing else', () => {
     assert.match(file, /(\.d\.ts|\.js|\.wasm|^three|^detail)$/);
 });
 
-test('node takes it as it is', () => {
+test('Node.js imports the package without a bundler', () => {
   const mesh = cone(6);
   writeFileSync(
     path.join(folder, 'use.js'),
@@ -59,7 +59,7 @@ test('node takes it as it is', () => {
   assert.equal(run(process.execPath, 'use.js'), '96 function\n3 false\n');
 });
 
-test('TypeScript finds its types', () => {
+test('TypeScript finds the types of the package', () => {
   writeFileSync(
     path.join(folder, 'use.ts'),
     `import { Client, type Refined } from 'papilio/client';
@@ -83,7 +83,7 @@ test('TypeScript finds its types', () => {
   run(process.execPath, tsc, '--noEmit', ...options, 'use.ts');
 });
 
-test('Vite bundles it, its workers and its module, and the page refines', async () => {
+test('Vite bundles the package, its workers and its module, and the page refines', async () => {
   const mesh = cone(6);
   mkdirSync(path.join(folder, 'src'));
   writeFileSync(

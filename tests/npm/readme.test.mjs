@@ -47,14 +47,14 @@ async function run(example, beforeIt, afterIt) {
   return JSON.parse(title.replace('said: ', ''));
 }
 
-test('there is one for each part of the package', () => {
+test('the README has an example for each part of the package', () => {
   assert.deepEqual(
     examples.map((code) => /from '(.*?)'/.exec(code)[1]),
     ['papilio/three', 'papilio/wasm', 'papilio/client', 'papilio/detail'],
   );
 });
 
-test('papilio/three: a model in a scene that is drawn becomes finer', async () => {
+test('papilio/three: a model in a rendered scene becomes finer', async () => {
   const faces = await run(
     examples[0],
     `import * as THREE from 'three';
@@ -84,7 +84,7 @@ test('papilio/wasm: a geometry is refined in workers', async () => {
   assert.ok(triangles > 3 * 6 && error <= 0.001, `${triangles}, ${error}`);
 });
 
-test('papilio/client: a scene comes back level by level', async () => {
+test('papilio/client: a scene arrives level by level', async () => {
   const faces = await run(
     examples[2].replace('https://refine.example.com/', server.url),
     `const file = await (await fetch('/model.glb')).blob();
@@ -97,7 +97,7 @@ test('papilio/client: a scene comes back level by level', async () => {
   assert.ok(faces.length > 1 && faces.every(([isLong]) => isLong), JSON.stringify(faces));
 });
 
-test('papilio/detail: a packed model gives all its faces', async () => {
+test('papilio/detail: a packed model returns all its faces', async () => {
   const faces = await run(
     examples[3],
     `import * as THREE from 'three';

@@ -138,17 +138,22 @@ export function nativeResults(mesh, queries) {
   }
 }
 
-/// A process of kernel_results that stays: `time` refines once and returns the milliseconds.
-export function nativeClock(mesh) {
+/// A process of kernel_results that stays. `refine` refines so often, and returns the milliseconds of all by the clock.
+export function nativeProcess(mesh) {
   const { file, remove } = writeMesh(mesh);
   const child = spawn(kernelResults, [file, '--times'], { stdio: ['pipe', 'pipe', 'inherit'] });
   const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
   return {
-    async time(query) {
-      child.stdin.write(`${query}\n`);
-      const { value, done } = await lines.next();
-      if (done) throw new Error(`kernel_results cannot refine by ${query}`);
-      return Number(value);
+    pid: child.pid,
+    async refine(query, times = 1) {
+      child.stdin.write(`${query}\n`.repeat(times));
+      let sum = 0;
+      for (let i = 0; i < times; ++i) {
+        const { value, done } = await lines.next();
+        if (done) throw new Error(`kernel_results cannot refine by ${query}`);
+        sum += Number(value);
+      }
+      return sum;
     },
     stop() {
       child.stdin.end();

@@ -97,7 +97,7 @@ test('a model refines itself to the camera, in the browser', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('a vertex is at the same place in every view', async () => {
+test('a vertex has the same position in every view', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const model = await load('/bunny.drc', { parameters: { levels: 4, view: { error_pixels: 0.5 } } });
@@ -133,7 +133,7 @@ test('a vertex is at the same place in every view', async () => {
   assert.equal(new Set(seen.counts).size, 4);
 });
 
-test('a server refines to the same faces, and the nodes stay', async () => {
+test('a server refines to the same faces, and the nodes are kept', async () => {
   const { page, faults } = await open();
   const asked = [];
   page.on('request', (request) => request.url().includes('error_pixels') && asked.push(request.url()));
@@ -170,7 +170,7 @@ test('a server refines to the same faces, and the nodes stay', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('where a model stands, how it is turned and how large it is makes no difference', async () => {
+test('position, rotation and scale of a model do not affect its refinement', async () => {
   const { page } = await open();
   const faces = await page.evaluate(async () => {
     const counts = [];
@@ -248,7 +248,7 @@ test('texture coordinates, colours and morph targets are refined with the surfac
   assert.deepEqual(faults, []);
 });
 
-test('instances are refined once, skinned meshes stay, and both are drawn', async () => {
+test('instances are refined once, skinned meshes are kept, and both are drawn', async () => {
   const { page, faults } = await open();
   const seen = await page.evaluate(async () => {
     const ball = () => new THREE.IcosahedronGeometry(1, 1);
@@ -281,7 +281,7 @@ test('instances are refined once, skinned meshes stay, and both are drawn', asyn
   assert.deepEqual(faults, []);
 });
 
-test('frozen it stays, one camera counts, and what is disposed of does nothing more', async () => {
+test('a frozen model is constant, one camera counts, and a disposed model does nothing', async () => {
   const { page, faults } = await open();
   const seen = await page.evaluate(async () => {
     const model = await load('/cube.glb', { parameters: { shape: 'organic', view: { error_pixels: 0.5 } } });
@@ -303,7 +303,7 @@ test('frozen it stays, one camera counts, and what is disposed of does nothing m
   assert.deepEqual(faults, []);
 });
 
-test('what cannot be had is told, and the model stays as it was', async () => {
+test('failures are reported, and the model is unchanged', async () => {
   const { page, faults } = await open();
   const seen = await page.evaluate(async () => {
     const missing = await new PapilioLoader().loadAsync('/nothing.glb').catch((error) => String(error));
@@ -323,7 +323,7 @@ test('what cannot be had is told, and the model stays as it was', async () => {
   assert.deepEqual(faults, []);
 });
 
-test('an orthographic view is that of the service', async () => {
+test('an orthographic view gives the result of the service', async () => {
   const { page } = await open();
   const seen = await page.evaluate(async () => {
     const object = new THREE.Group();
@@ -347,7 +347,7 @@ test('an orthographic view is that of the service', async () => {
   );
 });
 
-test('parts that meet stay closed: a mesh with two materials is refined as one', async () => {
+test('adjacent parts stay closed: a mesh with two materials is refined as one', async () => {
   const { page, faults } = await open();
   const seen = await page.evaluate(async () => {
     const ball = new THREE.IcosahedronGeometry(1, 1).deleteAttribute('uv');

@@ -1,5 +1,4 @@
-// papilio/client: typed calls of a papilio-server. Every path of its HTTP is here; errors are what its problem documents
-// say.
+// papilio/client: typed calls of a papilio-server, one for each path of its HTTP. Errors carry its problem documents.
 
 import { queryOf, type Parameters } from './parameters.js';
 import { boundaryOf, partsOf } from './multipart.js';
@@ -7,13 +6,13 @@ import { boundaryOf, partsOf } from './multipart.js';
 export type MediaType = 'application/x-draco' | 'model/gltf-binary';
 export type Bytes = Uint8Array<ArrayBuffer>;
 
-/// A mesh as Draco, or a scene as .glb.
+/// Mesh as Draco, or scene as .glb.
 export interface Encoded {
   type: MediaType;
   bytes: Bytes;
 }
 
-/// A mesh of one level, or a whole scene, and what the server says of it.
+/// Mesh of one level, or whole scene, with its statistics.
 export interface EncodedLevel extends Encoded {
   level: number;
   vertices: number;
@@ -22,22 +21,22 @@ export interface EncodedLevel extends Encoded {
   timing: Record<string, number>;
 }
 
-/// What the server says of the whole refinement.
+/// Statistics of a whole refinement.
 export interface Summary {
   stop_reason: 'converged' | 'levels' | 'budget' | 'limits';
   /// Largest deviation left, as a share of the coarse mesh's diagonal.
   error: number;
-  /// The same in pixels, where there is a view.
+  /// Largest deviation left in pixels, with a view.
   error_pixels?: number;
-  /// Targets that were not reached, and what to do, in words.
+  /// Description of targets that were not reached, and the remedy.
   unreached?: string;
-  /// What the mesh was taken for, in words.
+  /// Description of the shapes found on the mesh.
   shape?: string;
 }
 
 export interface Refined extends EncodedLevel {
   summary: Summary;
-  /// Of a stored mesh's refinement: to ask with again.
+  /// Entity tag of a stored mesh's refinement, for a later conditional request.
   etag: string | null;
 }
 
@@ -47,7 +46,7 @@ export interface StoredMesh {
   bytes: number;
   vertices: number;
   faces: number;
-  /// Defects by name, and how many of each.
+  /// Number of defects by name.
   found: Record<string, number>;
 }
 
@@ -60,22 +59,22 @@ export interface Info {
 }
 
 export interface Call {
-  /// Gives up; the promise is rejected with the signal's reason.
+  /// Signal that aborts the call; the promise is rejected with its reason.
   signal?: AbortSignal;
 }
 
-/// A refusal, in the server's words (RFC 9457), or why there is no answer (`unreachable`, `unexpected`).
+/// Refusal by the server (RFC 9457), or the cause of a missing answer (`unreachable`, `unexpected`).
 export class Problem extends Error {
   override name = 'Problem';
-  /// Of HTTP; 0 where there was no answer.
+  /// HTTP status; 0 without an answer.
   readonly status: number;
-  /// Seconds after which to try again; null where that would not help.
+  /// Seconds after which to retry; null if that would not help.
   readonly retryAfter: number | null;
-  /// The parameter at fault; null where none is.
+  /// Parameter at fault, or null.
   readonly parameter: string | null;
   readonly requestId: string | null;
 
-  /// `code`: stable, `mesh_too_large` for one; `message`: what is wrong and what to do.
+  /// `code`: stable code, such as `mesh_too_large`. `message`: the problem and its remedy.
   constructor(
     readonly code: string,
     message: string,
@@ -90,15 +89,15 @@ export class Problem extends Error {
 }
 
 export interface ClientOptions {
-  /// Where the server is; left out: where the page is.
+  /// URL of the server; default: the origin of the page.
   base?: string | URL;
-  /// The access key, or what gives it; left out: none.
+  /// Access key, or a function that returns it; default: none.
   key?: string | (() => string);
 }
 
-/// The levels of a refinement, as they arrive: `for await (const level of levels)`. Read them once.
+/// Levels of a refinement as they arrive: `for await (const level of levels)`. They can be read once.
 export class Levels implements AsyncIterable<EncodedLevel> {
-  /// Comes after the last level.
+  /// Summary, resolved after the last level.
   readonly summary: Promise<Summary>;
   readonly #levels: AsyncGenerator<EncodedLevel, Summary>;
   #settle!: { resolve: (summary: Summary) => void; reject: (reason: unknown) => void };
@@ -106,7 +105,7 @@ export class Levels implements AsyncIterable<EncodedLevel> {
   constructor(levels: AsyncGenerator<EncodedLevel, Summary>) {
     this.#levels = levels;
     this.summary = new Promise((resolve, reject) => (this.#settle = { resolve, reject }));
-    this.summary.catch(() => {}); // whoever reads the levels is told, too
+    this.summary.catch(() => {}); // the reader of the levels gets the error, too
   }
 
   async *[Symbol.asyncIterator](): AsyncGenerator<EncodedLevel> {
@@ -134,17 +133,17 @@ export class Client {
     return (await this.#send('v1/info', {}, call)).json() as Promise<Info>;
   }
 
-  /// The OpenAPI document.
+  /// Returns the OpenAPI document.
   async openapi(call: Call = {}): Promise<Record<string, unknown>> {
     return (await this.#send('openapi.json', {}, call)).json() as Promise<Record<string, unknown>>;
   }
 
-  /// Whether the server answers.
+  /// Returns whether the server answers.
   async isAlive(call: Call = {}): Promise<boolean> {
     return this.#says('health', call);
   }
 
-  /// Whether it takes work now.
+  /// Returns whether the server accepts work now.
   async isReady(call: Call = {}): Promise<boolean> {
     return this.#says('ready', call);
   }
@@ -153,32 +152,32 @@ export class Client {
     return encodedOf(await this.#send(`v1/samples/${encodeURIComponent(name)}`, {}, call), call);
   }
 
-  /// Refines a mesh or a scene; the answer is of the same kind.
+  /// Refines a mesh or a scene, and returns one of its kind.
   async refine(mesh: Encoded, parameters: Parameters | string = {}, call: Call = {}): Promise<Refined> {
     const request = { method: 'POST', headers: { 'Content-Type': mesh.type, Accept: mesh.type }, body: mesh.bytes };
     return refinedOf(await this.#send(`v1/refine?${queryOf(parameters)}`, request, call), call);
   }
 
-  /// The same, level by level, the coarse one first.
+  /// Refines a mesh or a scene level by level, the coarse one first.
   levels(mesh: Encoded, parameters: Parameters | string = {}, call: Call = {}): Levels {
     const headers = { 'Content-Type': mesh.type, Accept: 'multipart/mixed' };
     const request = { method: 'POST', headers, body: mesh.bytes };
     return new Levels(levelsOf(this.#send(`v1/refine?${queryOf(parameters)}`, request, call), call));
   }
 
-  /// Stores a mesh under its content; the same mesh has the same id.
+  /// Stores a mesh under its SHA-256; equal meshes have equal ids.
   async store(mesh: Encoded, call: Call = {}): Promise<StoredMesh> {
     const request = { method: 'POST', headers: { 'Content-Type': mesh.type }, body: mesh.bytes };
     return (await this.#send('v1/meshes', request, call)).json() as Promise<StoredMesh>;
   }
 
-  /// What is known of a stored mesh.
+  /// Returns the description of a stored mesh.
   async describe(id: string, call: Call = {}): Promise<StoredMesh> {
     const request = { headers: { Accept: 'application/json' } };
     return (await this.#send(pathOf(id), request, call)).json() as Promise<StoredMesh>;
   }
 
-  /// The bytes that were stored.
+  /// Returns the stored bytes.
   async stored(id: string, call: Call = {}): Promise<Encoded> {
     return encodedOf(await this.#send(pathOf(id), { headers: { Accept: anyMesh } }, call), call);
   }
@@ -187,7 +186,7 @@ export class Client {
     await this.#send(pathOf(id), { method: 'DELETE' }, call);
   }
 
-  /// Refines a stored mesh. `etag`: of an earlier answer; null comes back where that still holds.
+  /// Refines a stored mesh. `etag`: entity tag of an earlier answer; returns null if that is still valid.
   async refineStored(
     id: string,
     parameters: Parameters | string = {},
@@ -195,13 +194,13 @@ export class Client {
   ): Promise<Refined | null> {
     const headers: Record<string, string> = { Accept: anyMesh };
     if (etag !== undefined) headers['If-None-Match'] = etag;
-    // Asked by hand, a 304 is handed over.
+    // With `no-store`, a 304 is passed on.
     const request: RequestInit = { headers, ...(etag !== undefined && { cache: 'no-store' }) };
     const answer = await this.#send(`${pathOf(id)}/refined?${queryOf(parameters)}`, request, call);
     return answer.status === 304 ? null : refinedOf(answer, call);
   }
 
-  /// The same, level by level.
+  /// Refines a stored mesh level by level.
   levelsOfStored(id: string, parameters: Parameters | string = {}, call: Call = {}): Levels {
     const request: RequestInit = { headers: { Accept: 'multipart/mixed' }, cache: 'no-store' };
     return new Levels(levelsOf(this.#send(`${pathOf(id)}/refined?${queryOf(parameters)}`, request, call), call));
@@ -217,7 +216,7 @@ export class Client {
     }
   }
 
-  /// Rejects with a Problem, or with the signal's reason.
+  /// Sends a request. Rejects with a Problem, or with the signal's reason.
   async #send(path: string, request: RequestInit, { signal }: Call): Promise<Response> {
     const headers = new Headers(request.headers);
     const key = this.#key();
@@ -230,8 +229,8 @@ export class Client {
   }
 }
 
-/// A mesh that is refined again and again: stored with the first refinement, so that later ones send parameters alone; where the server's store cannot take it, it
-/// is sent each time.
+/// Mesh to be refined repeatedly: it is stored with the first refinement, so that later ones send only parameters. If
+/// the server's store cannot take it, it is sent each time.
 export class RemoteMesh {
   #id: Promise<string | null> | null = null;
 
@@ -240,14 +239,14 @@ export class RemoteMesh {
     readonly encoded: Encoded,
   ) {}
 
-  /// Stores the mesh unless it is. Null where the server's store cannot take it. Rejects with a Problem where the server
-  /// refuses the mesh, or cannot be asked now.
+  /// Stores the mesh unless it is stored, and returns its id; null if the server's store cannot take it. Rejects with a
+  /// Problem if the server refuses the mesh, or does not answer.
   get id(): Promise<string | null> {
     this.#id ??= this.client.store(this.encoded).then(
       ({ id }) => id,
       (error: unknown) => {
         if (error instanceof Problem && ['store_full', 'store_unavailable'].includes(error.code)) return null;
-        this.#id = null; // the next time it is tried again
+        this.#id = null; // the next call retries
         throw error;
       },
     );
@@ -257,11 +256,11 @@ export class RemoteMesh {
   refine(parameters: Parameters | string, call: Call = {}): Promise<Refined> {
     return this.#asking(async (id) => {
       if (id === null) return this.client.refine(this.encoded, parameters, call);
-      return (await this.client.refineStored(id, parameters, call))!; // null comes for an ETag alone
+      return (await this.client.refineStored(id, parameters, call))!; // null only with an ETag
     }, call);
   }
 
-  /// Hands over the levels as they come, and resolves with what `read` makes of them.
+  /// Passes the levels to `read` as they arrive, and resolves with its result.
   levels<T>(parameters: Parameters | string, read: (levels: Levels) => Promise<T>, call: Call = {}): Promise<T> {
     return this.#asking((id) => {
       if (id === null) return read(this.client.levels(this.encoded, parameters, call));
@@ -269,7 +268,7 @@ export class RemoteMesh {
     }, call);
   }
 
-  /// A mesh that the store has given up is stored again.
+  /// Stores the mesh again if the store has evicted it.
   async #asking<T>(work: (id: string | null) => Promise<T>, { signal }: Call): Promise<T> {
     for (let isAgain = false; ; isAgain = true) {
       const id = await this.id;
@@ -284,8 +283,8 @@ export class RemoteMesh {
   }
 }
 
-/// Asks once more where there is no answer: a connection that was kept may have been closed meanwhile, and no call does
-/// more when it is made twice.
+/// Repeats a call without an answer once: a kept connection may have been closed meanwhile, and all calls are
+/// idempotent.
 async function fetchPatiently(url: string, request: RequestInit, isLast = false): Promise<Response> {
   try {
     return await fetch(url, request);

@@ -1,4 +1,4 @@
-// papilio/detail: packed models, made by `papilio pack`, decoded level by level in a worker.
+// papilio/detail: decoder of packed models, made by `papilio pack`, level by level in a worker.
 
 export { decodeBase, joinPrimitives } from './detail/base.js';
 export type { DracoDecoder } from './detail/base.js';

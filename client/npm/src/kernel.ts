@@ -1,11 +1,11 @@
-// The kernel: Papilio's core as a WebAssembly module, on the thread that calls it. papilio.h (client/c) says what its
-// functions do; here are their structures in the module's memory.
+// Kernel: Papilio's core as a WebAssembly module, on the calling thread. Its functions are documented in papilio.h
+// (client/c); this file defines their structures in the module's memory.
 
 import { queryOf, type Parameters } from './parameters.js';
 
-/// What becomes of an attribute's values: `values` are interpolated, `normals` are those of the refined surface, split
-/// where the input splits them; faces of different `smoothing-groups`, or of group 0, meet at creases; `displacements`
-/// move the refined surface as a morph target moves the coarse mesh.
+/// Kind of an attribute: `values` are interpolated; `normals` are recomputed from the refined surface, and split as in
+/// the input; faces of different `smoothing-groups`, or of group 0, meet at creases; `displacements` of a morph target
+/// are refined as the surface is.
 export type AttributeKind = 'values' | 'normals' | 'smoothing-groups' | 'displacements';
 
 export interface Attribute {
@@ -15,8 +15,8 @@ export interface Attribute {
   values: ArrayLike<number>;
 }
 
-/// Indexed triangles, counter-clockwise seen from outside. Points of equal position are one vertex, and with different
-/// attributes a seam.
+/// Indexed triangles, counter-clockwise seen from outside. Points of equal position are one vertex; with different
+/// attributes they form a seam.
 export interface Triangles {
   /// [points * 3]
   positions: Float32Array;
@@ -30,19 +30,19 @@ export interface RefinedTriangles extends Triangles {
 }
 
 export interface Statistics {
-  /// Of this mesh; 0: the coarse mesh.
+  /// Level of this mesh; 0: the coarse mesh.
   level: number;
-  /// Whether no further level comes; what follows holds of the last level only.
+  /// Whether no further level follows; the members that follow are set for the last level only.
   isLast: boolean;
   stopReason: 'converged' | 'levels' | 'budget' | 'limits';
-  /// Parts of the mesh that the shape rules looked at, and how many of them were taken for mechanical.
+  /// Components of the mesh under the shape rules, and mechanical ones.
   components: number;
   mechanical: number;
-  /// Edges of the coarse mesh kept sharp.
+  /// Creases among the edges of the coarse mesh.
   creases: number;
   /// Largest deviation left, as a share of the coarse mesh's diagonal.
   error: number;
-  /// The same in pixels of the view; 0 without one.
+  /// Largest deviation left in pixels of the view; 0 without a view.
   errorPixels: number;
 }
 
@@ -52,28 +52,30 @@ export interface Refined {
 }
 
 export interface Hooks {
-  /// Called with each level, coarse first; the last is what `refine` returns.
+  /// Function called with each level, coarse first; refine() returns the last.
   onLevel?: (level: Refined) => void;
-  /// Asked every few milliseconds whether to stop.
+  /// Function polled every few milliseconds; true stops the refinement.
   cancelled?: () => boolean;
+  /// Whether attributes are returned as Float32Array, for graphics cards.
+  singlePrecision?: boolean;
 }
 
 export type Fault = 'bad-parameter' | 'unusable-mesh' | 'too-large' | 'cancelled' | 'out-of-memory' | 'internal';
 
-/// A refusal of the kernel: `message` says what is wrong and what to do.
+/// Error of the kernel: `message` states the problem and its remedy.
 export class KernelError extends Error {
   override name = 'KernelError';
   constructor(
     readonly fault: Fault,
     message: string,
-    /// The parameter at fault, or ''.
+    /// Parameter at fault, or ''.
     readonly parameter = '',
   ) {
     super(message);
   }
 }
 
-/// The shortest text of a number, as C++ writes it: 0.25, 20000, 1e+18, 1e-07.
+/// Returns the shortest exact text of a number, as in C++: 0.25, 20000, 1e+18, 1e-07.
 function textOf(value: number): string {
   const scientific = value.toExponential().replace(/e([+-])(\d)$/, 'e$10$2');
   const fixed = String(value);
@@ -102,9 +104,9 @@ interface Exports {
   result_free(result: number): void;
 }
 
-/// A coarse mesh that was opened. Its arrays must not change: they are read again where the kernel starts anew.
+/// Open coarse mesh. Its arrays must not change: they are read again when the kernel restarts.
 export class CoarseMesh {
-  /// Where it lies in the memory of this instance.
+  /// Address in the memory of this instance.
   pointer = 0;
   instance: WebAssembly.Instance | null = null;
   constructor(readonly triangles: Triangles) {}
@@ -117,25 +119,25 @@ export class Kernel {
   #exports!: Exports;
   #hooks: Hooks = {};
 
-  /// `mostBytes`: memory never shrinks, so an instance that has come to hold more than this is given up after the
-  /// refinement, with what it kept for further views.
+  /// `mostBytes`: limit of memory; as it never shrinks, a larger instance is discarded after the refinement, with its
+  /// data for further views.
   constructor(module: WebAssembly.Module, mostBytes = 512 * 2 ** 20) {
     this.#module = module;
     this.#mostBytes = mostBytes;
   }
 
-  /// Compiles papilio.wasm, from its bytes or from what `fetch` gives.
+  /// Compiles papilio.wasm, from its bytes or from a response of `fetch`.
   static async compile(source: BufferSource | Response | Promise<Response>): Promise<WebAssembly.Module> {
     const from = await source;
     return from instanceof Response ? WebAssembly.compileStreaming(from) : WebAssembly.compile(from);
   }
 
-  /// What its instance holds in memory.
+  /// Returns the memory of its instance, in bytes.
   get bytes(): number {
     return this.#instance ? this.#exports.memory.buffer.byteLength : 0;
   }
 
-  /// Throws KernelError where the mesh cannot be refined.
+  /// Opens a mesh. Throws KernelError if it cannot be refined.
   open(triangles: Triangles): CoarseMesh {
     const mesh = new CoarseMesh(triangles);
     this.#guarded(() => this.#place(mesh));
@@ -147,7 +149,7 @@ export class Kernel {
     mesh.instance = null;
   }
 
-  /// Throws KernelError. Further views of a mesh cost less than the first.
+  /// Refines a mesh. Further views of it cost less than the first. Throws KernelError.
   refine(mesh: CoarseMesh, parameters: Parameters | string = {}, hooks: Hooks = {}): Refined {
     this.#hooks = hooks;
     const refined = this.#guarded(() => {
@@ -163,7 +165,7 @@ export class Kernel {
     return refined;
   }
 
-  /// After an error the instance has lost its way: the next call starts another.
+  /// Runs work in the instance. After an error its state is undefined: the next call starts another.
   #guarded<T>(work: () => T): T {
     try {
       this.#start();
@@ -192,12 +194,12 @@ export class Kernel {
       wasi_snapshot_preview1: {
         random_get: (at: number, bytes: number) => {
           const to = new Uint8Array(this.#exports.memory.buffer, at, bytes);
-          // Node 18 has no global crypto; it is for the order of a hash table, on which no result depends.
+          // Node 18 has no global crypto. The bytes seed a hash table, whose order affects no result.
           if (globalThis.crypto) crypto.getRandomValues(to);
           else to.forEach((_, i) => (to[i] = 256 * Math.random()));
           return 0;
         },
-        // The C library's streams, to which nothing is written.
+        // Stubs of the C library's streams, which are not used.
         fd_close: () => 0,
         fd_seek: () => 0,
         fd_write: () => 0,
@@ -207,7 +209,7 @@ export class Kernel {
     this.#exports._initialize();
   }
 
-  /// Copies the mesh into the instance, where it is not there yet.
+  /// Copies the mesh into the instance, unless it is there.
   #place(mesh: CoarseMesh): void {
     if (mesh.instance === this.#instance) return;
     const { positions, triangles, attributes = [] } = mesh.triangles;
@@ -236,7 +238,7 @@ export class Kernel {
     for (const block of blocks) this.#exports.release(block);
   }
 
-  /// Returns where the copy lies.
+  /// Copies values into memory, and returns their address.
   #write(array: ArrayBufferView): number {
     const at = this.#exports.allocate(array.byteLength);
     const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
@@ -249,6 +251,7 @@ export class Kernel {
     const { buffer } = this.#exports.memory;
     const view = new DataView(buffer);
     const word = (at: number) => view.getUint32(at, true);
+    const Values = this.#hooks.singlePrecision ? Float32Array : Float64Array;
     const [points, faces, count, positions, triangles, attributes] = Array.from(
       new Uint32Array(buffer, mesh, trianglesBytes / 4),
     ) as [number, number, number, number, number, number];
@@ -265,7 +268,7 @@ export class Kernel {
           return {
             kind: kinds[kind]!,
             components,
-            values: new Float64Array(buffer, values, points * components).slice(),
+            values: new Values(new Float64Array(buffer, values, points * components)),
           };
         }),
       },
@@ -282,7 +285,7 @@ export class Kernel {
     };
   }
 
-  /// Without a length, up to a 0.
+  /// Returns the text; without a length, up to a 0.
   #text(at: number, length?: number): string {
     const bytes = new Uint8Array(this.#exports.memory.buffer, at);
     return new TextDecoder().decode(bytes.slice(0, length ?? bytes.indexOf(0)));

@@ -1,9 +1,9 @@
-// What the page and its workers tell each other.
+// Messages between the page and its workers.
 
 import type { Fault, Refined, Triangles } from './kernel.js';
 
 export type ToWorker =
-  /// `cancelled`: shared with the page where it may share memory; holds the number of the request to stop.
+  /// `cancelled`: number of the request to stop, in memory shared with the page if that is permitted.
   | { kind: 'start'; module: WebAssembly.Module; cancelled: SharedArrayBuffer | null; mostBytes: number }
   | { kind: 'open'; mesh: number; triangles: Triangles }
   | { kind: 'close'; mesh: number }

@@ -1,17 +1,17 @@
-// Reads a multipart/mixed answer as it arrives: each part as soon as it is whole.
+// Reader of a multipart/mixed answer as it arrives: yields each part as soon as it is complete.
 
 export interface Part {
   headers: Headers;
   body: Uint8Array<ArrayBuffer>;
 }
 
-/// The parameter `boundary` of a Content-Type; null where there is none.
+/// Returns the parameter `boundary` of a Content-Type; null if there is none.
 export function boundaryOf(contentType: string): string | null {
   const match = /;\s*boundary=(?:"([^"]+)"|([^;\s]+))/i.exec(contentType);
   return match?.[1] ?? match?.[2] ?? null;
 }
 
-/// Yields the parts in their order. Each must say its Content-Length. Throws an Error where the answer ends too soon.
+/// Yields the parts in their order. Each must have a Content-Length. Throws an Error if the answer ends too soon.
 export async function* partsOf(stream: ReadableStream<Uint8Array>, boundary: string): AsyncGenerator<Part> {
   const bytes = new Bytes(stream.getReader());
   const delimiter = `--${boundary}`;
@@ -31,7 +31,7 @@ export async function* partsOf(stream: ReadableStream<Uint8Array>, boundary: str
   }
 }
 
-/// What has come of a stream and was not yet taken.
+/// Buffer of received bytes of a stream that were not consumed.
 class Bytes {
   #reader: ReadableStreamDefaultReader<Uint8Array>;
   #chunks: Uint8Array[] = [];
@@ -56,7 +56,7 @@ class Bytes {
     return out;
   }
 
-  /// Up to the next line's end, without it.
+  /// Consumes a line, and returns it without its end.
   async line(): Promise<string> {
     let text = '';
     for (;;) {

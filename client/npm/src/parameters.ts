@@ -1,4 +1,4 @@
-// Parameters of a refinement, as client and kernel take them.
+// Parameters of a refinement, for client and kernel.
 
 type Value = string | number | boolean | readonly number[];
 /// Parameters of a refinement, as in the service's JSON: `{ levels: 3, view: { eye: [0, 0, 3] } }`.
@@ -6,7 +6,7 @@ export interface Parameters {
   [name: string]: Value | { [name: string]: Value };
 }
 
-/// The fields of a query: "levels=3&view.eye=0,0,3". A string is taken to be one.
+/// Returns the parameters as a query: "levels=3&view.eye=0,0,3". A string must be a query.
 export function queryOf(parameters: Parameters | string): string {
   if (typeof parameters === 'string') return parameters;
   const fields: string[] = [];

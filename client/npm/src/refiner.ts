@@ -1,29 +1,28 @@
-// Refinement in workers: the page goes on meanwhile, and may stop what it does not want any more.
+// Refinement in workers, which does not block the page, and can be stopped.
 
 import { Kernel, KernelError, type Refined, type Triangles } from './kernel.js';
 import type { FromWorker, ToWorker } from './messages.js';
 import { queryOf, type Parameters } from './parameters.js';
 
 export interface RefinerOptions {
-  /// papilio.wasm: its bytes, what `fetch` gives, or compiled. Left out: the file beside this one.
+  /// papilio.wasm: its bytes, a response of `fetch`, or a compiled module. Default: the file beside this one.
   wasm?: BufferSource | Response | Promise<Response> | WebAssembly.Module;
-  /// How many refinements may run at once; each worker has its own memory.
+  /// Number of workers, each with its own memory.
   workers?: number;
-  /// A worker whose memory has come to be larger than this gives it back after the refinement, with what it kept of the
-  /// mesh for further views.
+  /// Limit of a worker's memory: a larger one is discarded after the refinement, with its data for further views.
   mostBytes?: number;
 }
 
 export interface RefineOptions {
-  /// Stops the refinement; the promise is rejected with the signal's reason.
+  /// Signal that stops the refinement; the promise is rejected with its reason.
   signal?: AbortSignal;
-  /// Called with each level but the last, coarse first.
+  /// Function called with each level but the last, coarse first.
   onLevel?: (level: Refined) => void;
-  /// Attributes come as Float32Array, as graphics cards take them.
+  /// Whether attributes are returned as Float32Array, for graphics cards.
   singlePrecision?: boolean;
 }
 
-/// A mesh that was opened. Its arrays must not change.
+/// Open mesh. Its arrays must not change.
 export interface OpenMesh {
   readonly triangles: Triangles;
 }
@@ -44,12 +43,12 @@ class Mesh implements OpenMesh {
   ) {}
 }
 
-/// One worker, which does one thing at a time.
+/// Worker, which runs one task at a time.
 class Seat {
   readonly meshes = new Set<Mesh>();
   task: Task | null = null;
   readonly #worker: Worker;
-  /// Where memory can be shared a worker is told to stop; else it is ended.
+  /// Stops the task: by shared memory if that is permitted, else by ending the worker.
   readonly #cancelled = globalThis.crossOriginIsolated ? new SharedArrayBuffer(4) : null;
 
   constructor(module: WebAssembly.Module, mostBytes: number, onMessage: (seat: Seat, message: FromWorker) => void) {
@@ -83,7 +82,7 @@ class Seat {
     if (this.meshes.delete(mesh)) this.#send({ kind: 'close', mesh: mesh.number });
   }
 
-  /// Returns whether the worker goes on; else it has ended.
+  /// Returns whether the worker continues; else it has ended.
   stop(): boolean {
     if (this.#cancelled) Atomics.store(new Int32Array(this.#cancelled), 0, this.task!.request);
     else this.end();
@@ -124,13 +123,13 @@ export class Refiner {
     return new Mesh(++this.#numbers, triangles);
   }
 
-  /// Frees what is kept of the mesh; refinements of it that run or wait go on.
+  /// Frees the data kept for the mesh; pending refinements of it continue.
   forget(mesh: OpenMesh): void {
     for (const seat of this.#seats) seat.forget(mesh as Mesh);
   }
 
-  /// Rejects with KernelError, or with the signal's reason. The same bits as the service gives, before its encoding.
-  /// Further views of a mesh cost less than the first.
+  /// Refines a mesh, bit-identically to the service before its encoding. Further views of a mesh cost less than the
+  /// first. Rejects with KernelError, or with the signal's reason.
   refine(mesh: OpenMesh, parameters: Parameters | string = {}, options: RefineOptions = {}): Promise<Refined> {
     const { signal } = options;
     return new Promise((resolve, reject) => {
@@ -144,7 +143,7 @@ export class Refiner {
     });
   }
 
-  /// Ends the workers. What runs or waits is rejected.
+  /// Ends the workers. Pending refinements are rejected.
   close(): void {
     this.#isClosed = true;
     const tasks = [...this.#seats.flatMap((seat) => seat.task ?? []), ...this.#waiting];
@@ -154,7 +153,7 @@ export class Refiner {
     for (const task of tasks) task.reject(new Error('The refiner was closed.'));
   }
 
-  /// Gives waiting tasks to free workers, rather to one that has the mesh already.
+  /// Assigns waiting tasks to free workers, preferably to one that already has the mesh.
   #assign(): void {
     while (this.#waiting.length > 0) {
       const free = this.#seats.filter((seat) => !seat.task);

@@ -1,4 +1,4 @@
-// The kernel in a worker: refiner.ts starts it.
+// Worker with the kernel, started by refiner.ts.
 
 import { CoarseMesh, Kernel, KernelError, type Refined } from './kernel.js';
 import type { FromWorker, ToWorker } from './messages.js';
@@ -14,24 +14,17 @@ function send(message: FromWorker, level?: Refined): void {
   self.postMessage(message, { transfer: arrays.map((array) => array.buffer as ArrayBuffer) });
 }
 
-function inSingle(level: Refined): Refined {
-  for (const attribute of level.mesh.attributes) attribute.values = new Float32Array(attribute.values);
-  return level;
-}
-
 function refine({ request, mesh, query, wantsLevels, isSingle }: ToWorker & { kind: 'refine' }): void {
   try {
     const refined = kernel.refine(meshes.get(mesh)!, query, {
       ...(wantsLevels && {
         onLevel: (level) => {
-          if (level.statistics.isLast) return;
-          if (isSingle) inSingle(level);
-          send({ kind: 'level', request, level }, level);
+          if (!level.statistics.isLast) send({ kind: 'level', request, level }, level);
         },
       }),
       ...(cancelled && { cancelled: () => Atomics.load(cancelled!, 0) === request }),
+      singlePrecision: isSingle,
     });
-    if (isSingle) inSingle(refined);
     send({ kind: 'done', request, refined }, refined);
   } catch (error) {
     const { fault, message, parameter } =

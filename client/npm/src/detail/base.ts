@@ -1,4 +1,4 @@
-// The base of a packed model: its primitives, decoded and joined.
+// Base of a packed model: its primitives, decoded and joined.
 
 import { Problem } from '../client.js';
 import type { BaseTriangles, DecodedTriangles } from './decoder.js';
@@ -6,17 +6,18 @@ import type { PackedFile } from './packed_file.js';
 
 type Base = PackedFile['base'];
 
-/// Decodes the Draco stream of a primitive: three.js's DRACOLoader, or draco3d. Positions, triangles, and texture coordinates
-/// and colours where it has them, in its order.
+/// Function that decodes the Draco stream of a primitive, by three.js's DRACOLoader or draco3d: positions, triangles,
+/// and texture coordinates and colours if it has any, in the stream's order.
 export type DracoDecoder = (draco: Uint8Array<ArrayBuffer>) => Promise<DecodedTriangles>;
 
-/// Decodes the base for DetailDecoder. Rejects with Problem where it is other than declared, and with what `decodeDraco` throws.
+/// Decodes the base for DetailDecoder. Rejects with Problem if it differs from the declaration, and with errors of
+/// `decodeDraco`.
 export async function decodeBase(base: Base, decodeDraco: DracoDecoder): Promise<BaseTriangles> {
   return joinPrimitives(base, await Promise.all(base.primitives.map(({ draco }) => decodeDraco(draco))));
 }
 
-/// Joins the primitives of a base, one behind the other; if there are several, with the numbers of their parts. Throws Problem
-/// where they are other than declared.
+/// Joins the primitives of a base in their order; several get part numbers. Throws Problem if they differ from the
+/// declaration.
 export function joinPrimitives(base: Base, decoded: readonly DecodedTriangles[]): BaseTriangles {
   for (const [p, primitive] of decoded.entries()) requireAsDeclared(primitive, base, p);
   if (decoded.length === 1) return decoded[0]!;

@@ -1,25 +1,25 @@
-// The container of a packed model: a glTF 2.0 binary file, its JSON and its binary chunk.
+// Container of a packed model: a glTF 2.0 binary file with JSON and a binary chunk.
 
 import { Problem } from '../client.js';
 
-/// A value of the JSON, of which nothing is known.
+/// Unchecked value of the JSON.
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json | undefined };
 
 export interface Container {
   json: Json;
-  /// The binary chunk; of a file that is cut, as much as there is of it.
+  /// Binary chunk; of a cut file, its available part.
   binary: Uint8Array<ArrayBuffer>;
 }
 
 const [glbMagic, jsonChunk, binaryChunk] = [0x46546c67, 0x4e4f534a, 0x004e4942];
 const headBytes = 20;
 
-/// Whether the bytes begin as a .glb file does.
+/// Returns whether the bytes start like a .glb file.
 export function isGlb(bytes: Uint8Array): boolean {
   return bytes.length >= 4 && viewOf(bytes).getUint32(0, true) === glbMagic;
 }
 
-/// `mayBeCut`: the file may end inside its binary chunk. Throws Problem.
+/// Reads a .glb file. `mayBeCut`: whether it may end inside its binary chunk. Throws Problem.
 export function readContainer(bytes: Uint8Array<ArrayBuffer>, mayBeCut: boolean): Container {
   if (!isGlb(bytes)) throw damaged('The bytes do not begin with glTF.');
   if (bytes.length < headBytes)
@@ -52,7 +52,7 @@ export function readContainer(bytes: Uint8Array<ArrayBuffer>, mayBeCut: boolean)
   return { json: parse(json!), binary: binary ?? new Uint8Array() };
 }
 
-/// The bytes of a .glb file.
+/// Returns the bytes of a .glb file.
 export function writeContainer(json: Json, binary: Uint8Array): Uint8Array<ArrayBuffer> {
   const padded = (length: number) => Math.ceil(length / 4) * 4;
   const text = new TextEncoder().encode(JSON.stringify(json));

@@ -1,45 +1,47 @@
-// The decoder of packed models as a WebAssembly module, papilio-detail.wasm, on the thread that calls it. Its structures are
-// those of client/wasm/detail_module.cpp.
+// Decoder of packed models as a WebAssembly module, papilio-detail.wasm, on the calling thread. Its structures are
+// defined in client/wasm/detail_module.cpp.
 
 import { Problem } from '../client.js';
 
 /// Residuals of a level.
 export interface CodedLevel {
   step: number;
-  /// Of the pieces that are there, one behind the other: of each its residuals, then those of its texture coordinates and
-  /// colours.
+  /// Bytes of the present pieces in their order: the residuals of each, followed by those of its texture coordinates
+  /// and colours.
   residuals: Uint8Array;
-  /// Quantization step of the residuals of texture coordinates; of colours 2048 times that. Left out, or 0: there are none.
+  /// Quantization step of the residuals of texture coordinates; for colours, 2048 times this value. Default 0: no
+  /// residuals.
   texcoordStep?: number;
-  /// Of those residuals, among `residuals`.
+  /// Length of the residuals of texture coordinates and colours in `residuals`.
   texcoordBytes?: number;
-  /// Empty: the residuals are one piece. The vertices of one that is missing, and of those that need it, are the smooth
-  /// ones: a piece needs all pieces of the level before with a face at a vertex of its faces of the base, and the first
-  /// of its level.
+  /// Pieces of the residuals; empty for one piece. Vertices of a missing piece, and of pieces that depend on it, are
+  /// predicted only. A piece depends on the pieces of the level before at all vertices of its faces of the base, and on
+  /// the first piece of its level.
   pieces: readonly { bytes: number; texcoordBytes?: number; isMissing?: boolean }[];
 }
 
-/// Indexed triangles, counter-clockwise seen from outside. Points of the same position are one vertex.
+/// Indexed triangles, counter-clockwise seen from outside. Points of equal position are one vertex.
 export interface DecodedTriangles {
   /// [points * 3]
   positions: Float32Array<ArrayBuffer>;
   /// [faces * 3]
   triangles: Uint32Array<ArrayBuffer>;
-  /// [points * 2] as glTF has them, downwards; left out where there are none.
+  /// [points * 2] texture coordinates, downwards as in glTF; absent if there are none.
   texcoords?: Float32Array<ArrayBuffer>;
-  /// [points * 3] red, green and blue, as glTF's COLOR_0 has them; left out where there are none.
+  /// [points * 3] red, green and blue, as in glTF's COLOR_0; absent if there are none.
   colours?: Uint8Array<ArrayBuffer>;
-  /// [points * 3]; left out where there are none.
+  /// [points * 3] normals; absent if there are none.
   normals?: Float32Array<ArrayBuffer>;
 }
 
-/// The base, as joinPrimitives makes it of its Draco streams.
+/// Base as of joinPrimitives().
 export interface BaseTriangles extends DecodedTriangles {
-  /// [points] the number of the part that each is of, where there are several: seams are between parts.
+  /// [points] part numbers, if there are several parts: borders of parts are seams.
   parts?: Uint32Array<ArrayBuffer>;
 }
 
-/// How normals are split: not at all, at creases, or at all edges, which needs none. `absent`: the original has none.
+/// Places where normals are split: nowhere, at creases, or at all edges, which needs no normals. `absent`: the original
+/// has none.
 export type NormalStyle = (typeof normalStyles)[number];
 /// In the order of papilio/detail.h.
 export const normalStyles = ['absent', 'smooth', 'creased', 'faceted'] as const;
@@ -61,13 +63,13 @@ const missingPiece = 2 ** 32 - 1;
 // papilio.h
 const codes = ['bad_parameter', 'mesh_unusable', 'result_too_large', 'cancelled', 'out_of_memory'];
 
-/// Compiles papilio-detail.wasm, from its bytes or from what `fetch` gives.
+/// Compiles papilio-detail.wasm, from its bytes or from a response of `fetch`.
 export async function compileDecoder(source: BufferSource | Response | Promise<Response>): Promise<WebAssembly.Module> {
   const from = await source;
   return from instanceof Response ? WebAssembly.compileStreaming(from) : WebAssembly.compile(from);
 }
 
-/// Decodes the levels of one base. Its arrays must not change.
+/// Decoder of the levels of one base, whose arrays must not change.
 export class DetailDecoder {
   readonly #module: WebAssembly.Module;
   readonly #base: BaseTriangles;
@@ -75,11 +77,11 @@ export class DetailDecoder {
   readonly #mostBytes: number;
   #instance: WebAssembly.Instance | null = null;
   #exports!: Exports;
-  /// In the memory of this instance.
+  /// Address in the memory of this instance.
   #pointer = 0;
 
-  /// `base`: as its Draco streams are decoded. `mostBytes`: memory never shrinks, so an instance that has come to hold more
-  /// than this is given up after it has decoded.
+  /// `base`: the decoded base. `mostBytes`: limit of memory; as it never shrinks, a larger instance is discarded after
+  /// it has decoded.
   constructor(module: WebAssembly.Module, base: BaseTriangles, curves: Uint8Array, mostBytes = 64 * 2 ** 20) {
     this.#module = module;
     this.#base = base;
@@ -87,18 +89,18 @@ export class DetailDecoder {
     this.#mostBytes = mostBytes;
   }
 
-  /// What its instance holds in memory.
+  /// Returns the memory of its instance, in bytes.
   get bytes(): number {
     return this.#instance ? this.#exports.memory.buffer.byteLength : 0;
   }
 
-  /// Edges of the base. Throws Problem where it is not manifold.
+  /// Returns the number of edges of the base. Throws Problem unless it is manifold.
   countEdges(): number {
     return this.#guarded(() => this.#exports.base_edges(this.#pointer));
   }
 
-  /// The surface with these levels, to the bits that the native library decodes, with texture coordinates and colours
-  /// where the base has them. `normals`: those of this style, `smooth` or `creased`, which has points apart at creases. Throws Problem.
+  /// Returns the surface with these levels, bit-identical to the native library's, with the attributes of the base.
+  /// `normals`: style of normals to add, `smooth` or `creased`, which splits points at creases. Throws Problem.
   decode(levels: readonly CodedLevel[], maxFaces = 2 ** 30, normals: NormalStyle = 'absent'): DecodedTriangles {
     const made = this.#guarded(() => {
       const blocks: number[] = [];
@@ -122,12 +124,12 @@ export class DetailDecoder {
     return made;
   }
 
-  /// Gives its memory back; the next call starts anew.
+  /// Discards the instance and its memory; the next call starts another.
   close(): void {
     this.#instance = null;
   }
 
-  /// After an error the instance has lost its way: the next call starts another.
+  /// Runs work in the instance. After an error its state is undefined: the next call starts another.
   #guarded<T>(work: () => T): T {
     try {
       this.#start();
@@ -148,7 +150,7 @@ export class DetailDecoder {
           throw new Problem(codes[fault - 1] ?? 'internal', this.#text(message));
         },
       },
-      // For the order of a hash table, on which no result depends.
+      // Seeds a hash table, whose order affects no result.
       wasi_snapshot_preview1: { random_get: () => 0 },
     });
     this.#exports = this.#instance.exports as unknown as Exports;
@@ -165,7 +167,7 @@ export class DetailDecoder {
     for (const block of [...blocks, base]) if (block !== 0) this.#exports.release(block);
   }
 
-  /// Returns where the copy lies.
+  /// Copies values into memory, and returns their address.
   #write(array: ArrayBufferView): number {
     const at = this.#exports.allocate(array.byteLength);
     const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
@@ -192,14 +194,14 @@ export class DetailDecoder {
     };
   }
 
-  /// Up to a 0.
+  /// Returns the text up to a 0.
   #text(at: number): string {
     const bytes = new Uint8Array(this.#exports.memory.buffer, at);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 }
 
-/// [pieces * 2] the bytes of each piece's residuals, and of those of its texture coordinates and colours.
+/// Returns [pieces * 2] the lengths of each piece's residuals, and of those of its texture coordinates and colours.
 function sizesOf({ residuals, texcoordBytes = 0, pieces }: CodedLevel): Uint32Array {
   if (pieces.length === 0) return new Uint32Array([residuals.length - texcoordBytes, texcoordBytes]);
   return new Uint32Array(

@@ -5,12 +5,12 @@ import type { Json } from './container.js';
 
 export type JsonObject = { [key: string]: Json | undefined };
 
-/// Throws: the document is damaged. `where`: the place in it, such as `bufferViews[2]`.
+/// Throws Problem for a damaged document. `where`: the place in it, such as `bufferViews[2]`.
 export function refuse(where: string, what: string): never {
   throw new Problem('mesh_not_gltf', `The glTF document is damaged: ${where} ${what}.`);
 }
 
-/// Throws: the scene is none that the format allows.
+/// Throws Problem for a scene that the format does not permit.
 export function refuseScene(what: string): never {
   throw new Problem('mesh_unsupported', `The scene has ${what}, so it is no packed model. Make one with papilio pack.`);
 }
@@ -20,14 +20,14 @@ export function objectOf(json: Json | undefined, where: string): JsonObject {
   return json;
 }
 
-/// Empty where there is none.
+/// Returns a top-level array; empty if there is none.
 export function arrayOf(of: JsonObject, key: string): Json[] {
   const array = of[key] ?? [];
   if (!Array.isArray(array)) refuse(key, 'is not an array');
   return array;
 }
 
-/// The only element of an array.
+/// Returns the only element of an array.
 export function only(of: JsonObject, key: string, name: string): JsonObject {
   const array = arrayOf(of, key);
   if (array.length !== 1) refuseScene(`other than one ${name}`);
@@ -47,7 +47,7 @@ export function whole(of: JsonObject, key: string, where: string, otherwise?: nu
   return value;
 }
 
-/// Null where there is none.
+/// Returns a member that is an index; null if it is absent.
 export function index(of: JsonObject, key: string, where: string): number | null {
   return of[key] === undefined ? null : whole(of, key, where);
 }

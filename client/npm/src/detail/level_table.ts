@@ -1,27 +1,27 @@
-// The table of a packed model's streams (proto/detail.md).
+// Table of a packed model's streams (proto/detail.md).
 
 import { refuse } from './document.js';
 
 /// Distances to the original, the larger of both directions, as shares of the diagonal of its bounding box.
 export interface Reach {
-  /// Root mean square.
+  /// Root mean square distance.
   rms: number;
   largest: number;
 }
 
-/// A part of a level that is coded by itself: the residuals below some neighbouring faces of the base. What it says of the
-/// surface is said of that of the last level below those faces.
+/// Independently coded part of a level: the residuals below some neighbouring faces of the base. Its bounds hold for
+/// the last level's surface below those faces.
 export interface Piece {
-  /// Of its residuals.
+  /// Length of its residuals.
   bytes: number;
-  /// Of its residuals of texture coordinates and colours, which follow.
+  /// Length of its residuals of texture coordinates and colours, which follow.
   texcoordBytes: number;
-  /// Upper bound of how far its residuals move a vertex.
+  /// Upper bound of the distance by which its residuals move a vertex.
   largestMove: number;
-  /// A sphere that holds the surface.
+  /// Bounding sphere of the surface.
   centre: [number, number, number];
   radius: number;
-  /// A cone of the surface's normals: their cosine with the axis is no less.
+  /// Cone of the surface's normals: `leastCosine` is a lower bound of their cosine with the axis.
   axis: [number, number, number];
   leastCosine: number;
 }
@@ -29,27 +29,27 @@ export interface Piece {
 export interface LevelRow extends Reach {
   /// Quantization step of the residuals.
   step: number;
-  /// Of the residuals.
+  /// Length of the residuals.
   bytes: number;
-  /// Quantization step of the residuals of texture coordinates, of colours 2048 times that; 0: all of them are 0.
+  /// Quantization step of the residuals of texture coordinates; for colours, 2048 times this value. 0: all are 0.
   texcoordStep: number;
-  /// Of those residuals.
+  /// Length of the residuals of texture coordinates and colours.
   texcoordBytes: number;
-  /// In the order of their bytes. Empty: the level is one.
+  /// Pieces in the order of their bytes; empty for one piece.
   pieces: readonly Piece[];
 }
 
 export interface LevelTable extends Reach {
-  /// Of the base.
+  /// Edges of the base.
   edges: number;
   curveBytes: number;
   /// Whether levels have residuals of texture coordinates or colours.
   hasTexcoords: boolean;
-  /// Coarse first.
+  /// Rows of the levels, coarse first.
   rows: LevelRow[];
 }
 
-/// Bytes from which sizeOfRows knows.
+/// Length of the prefix that sizeOfRows() reads.
 export const leastTableBytes = 18;
 const rowBytes = 16;
 const texcoordRowBytes = 8;
@@ -61,7 +61,7 @@ const mostPieces = 65535;
 const mostCoordinate = 1e18;
 const mostFloat = 2 ** 128;
 
-/// What rows have besides, and their bytes.
+/// Layout of the rows, by the flags of the table.
 interface Layout {
   hasTexcoords: boolean;
   hasPieces: boolean;
@@ -74,7 +74,7 @@ function layoutOf(hasTexcoords: boolean, hasPieces: boolean): Layout {
   return { hasTexcoords, hasPieces, row, piece: pieceBytes + (hasTexcoords ? texcoordPieceBytes : 0) };
 }
 
-/// By the flags of the table.
+/// Returns the layout of the rows by the flags of the table.
 function layoutIn(bytes: Uint8Array): Layout {
   const flags = bytes[1]!;
   if (flags > 3) refuse('the table of levels', 'has unknown flags');
@@ -82,7 +82,8 @@ function layoutIn(bytes: Uint8Array): Layout {
 }
 const nameOf = (level: number) => `the row of level ${level + 1}`;
 
-/// Bytes of a table up to the end of its levels' rows, by its first ones. Throws Problem where it has too many levels.
+/// Returns the length of a table up to the end of its levels' rows, from its prefix. Throws Problem for too many
+/// levels.
 export function sizeOfRows(bytes: Uint8Array): number {
   const levels = bytes[0]!;
   const { row } = layoutIn(bytes);
@@ -90,7 +91,7 @@ export function sizeOfRows(bytes: Uint8Array): number {
   return leastTableBytes + levels * row;
 }
 
-/// Pieces of each level, by the bytes up to the end of the rows; 0 where it is not parted.
+/// Returns the number of pieces of each level, from the bytes up to the end of the rows; 0 for a level without pieces.
 function pieceCounts(bytes: Uint8Array): number[] {
   const { row, hasPieces } = layoutIn(bytes);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
@@ -102,14 +103,15 @@ function pieceCounts(bytes: Uint8Array): number[] {
   });
 }
 
-/// Bytes of a table, by those up to the end of its rows. Throws Problem where a level has no or too many pieces.
+/// Returns the length of a table, from the bytes up to the end of its rows. Throws Problem if a level has no or too
+/// many pieces.
 export function sizeOfTable(bytes: Uint8Array): number {
   const { piece } = layoutIn(bytes);
   return pieceCounts(bytes).reduce((sum, count) => sum + count * piece, sizeOfRows(bytes));
 }
 
-/// Of all its bytes. Throws Problem: mesh_not_gltf (a step, distance or bound out of its range, pieces of other bytes than
-/// their level).
+/// Reads a table. Throws Problem mesh_not_gltf: a step, distance or bound is out of its range, or the bytes of pieces
+/// do not match their level.
 export function readTable(bytes: Uint8Array): LevelTable {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   const layout = layoutIn(bytes);
@@ -136,7 +138,7 @@ function reachAt(view: DataView, at: number, where: string): Reach {
   return { rms, largest };
 }
 
-/// Without its pieces.
+/// Reads a row, without its pieces.
 function rowAt(view: DataView, at: number, { hasTexcoords }: Layout, where: string): LevelRow {
   const stepAt = (place: number, mayBeZero: boolean) => {
     const step = view.getFloat32(place, true);

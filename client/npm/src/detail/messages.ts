@@ -1,4 +1,4 @@
-// What the page and the worker that decodes a packed model tell each other.
+// Messages between the page and the worker that decodes a packed model.
 
 import type { BaseTriangles, DecodedTriangles, NormalStyle } from './decoder.js';
 import type { PackedLevel } from './packed_file.js';

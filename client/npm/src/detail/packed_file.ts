@@ -1,5 +1,5 @@
-// Reads the parts of a packed model (proto/detail.md): the Draco streams of its base, its curves, and the residuals of each
-// level.
+// Reader of the parts of a packed model (proto/detail.md): the Draco streams of its base, its curves, and the residuals
+// of each level.
 
 import { Problem } from '../client.js';
 import { isGlb, readContainer } from './container.js';
@@ -30,25 +30,25 @@ import {
 export type { Piece, Reach };
 
 export interface PackedLevel extends Reach {
-  /// Of the residuals.
+  /// Quantization step of the residuals.
   step: number;
-  /// Of each piece its residuals, then those of its texture coordinates and colours.
+  /// Residuals of each piece, each followed by those of its texture coordinates and colours.
   residuals: Uint8Array<ArrayBuffer>;
-  /// Quantization step of the residuals of texture coordinates, of colours 2048 times that; 0: all of them are 0.
+  /// Quantization step of the residuals of texture coordinates; for colours, 2048 times this value. 0: all are 0.
   texcoordStep: number;
-  /// Of those, among `residuals`.
+  /// Length of the residuals of texture coordinates and colours in `residuals`.
   texcoordBytes: number;
-  /// Parts of the residuals, one behind the other. Empty: they are one.
+  /// Consecutive pieces of the residuals; empty for one piece.
   pieces: readonly Piece[];
-  /// Residuals of the level: the edges that it splits, by the table's count of those of the base.
+  /// Number of residuals of the level: edges that it splits, by the table's count for the base.
   residualCount: number;
-  /// Of the model with the levels up to this one.
+  /// Distances of the model with the levels up to this one.
   faces: number;
-  /// Where its residuals end in the file, which is what a reader of the levels up to this one needs.
+  /// End of its residuals in the file: the bytes that a reader of the levels up to this one requires.
   end: number;
 }
 
-/// Faces of the base with the same material.
+/// Faces of the base with one material.
 export interface PackedPrimitive {
   draco: Uint8Array<ArrayBuffer>;
   vertices: number;
@@ -59,9 +59,9 @@ export interface PackedPrimitive {
 
 export interface PackedFile {
   base: Reach & {
-    /// In the order of the faces.
+    /// Primitives in the order of the faces.
     primitives: readonly PackedPrimitive[];
-    /// Of all primitives: a vertex between two counts in both.
+    /// Points of all primitives: a vertex between two counts in both.
     vertices: number;
     faces: number;
     edges: number;
@@ -69,28 +69,28 @@ export interface PackedFile {
     hasColours: boolean;
     end: number;
   };
-  /// How the original's normals are split.
+  /// Style of the original's normals.
   normals: NormalStyle;
   /// Whether the document has a material for any of the faces.
   hasMaterial: boolean;
-  /// Empty: the base has no creases and no corners.
+  /// Coded curves; empty if the base has no creases and no corners.
   curves: Uint8Array<ArrayBuffer>;
-  /// Whole ones, coarse first.
+  /// Complete levels, coarse first.
   levels: PackedLevel[];
-  /// Levels that the file declares: more than `levels` where it is cut.
+  /// Number of levels that the file declares: more than `levels` if it is cut.
   declaredLevels: number;
   /// Whether levels have residuals of texture coordinates or colours.
   hasTexcoordLevels: boolean;
 }
 
 export interface ReadOptions {
-  /// Most faces of the last level that the file declares.
+  /// Limit of the faces of the last declared level.
   maxFaces?: number;
-  /// Whether the file may end inside the bytes of a level, as a prefix does. Its whole levels are read.
+  /// Whether the file may be a prefix that ends inside a level. Its complete levels are read.
   mayBeCut?: boolean;
 }
 
-/// Of the last level that `papilio pack` makes at most.
+/// Upper bound of the faces of the last level that `papilio pack` makes.
 export const defaultMaxFaces = 8_000_000;
 
 export const dracoExtension = 'KHR_draco_mesh_compression';
@@ -99,7 +99,7 @@ export const placeOf = (primitive: number) => `meshes[0].primitives[${primitive}
 const detailPlace = `${placeOf(0)}.extensions.${detailExtension}`;
 const version = 2;
 
-/// Whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads the JSON alone.
+/// Returns whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads only the JSON.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   if (!isGlb(bytes)) return false;
   try {
@@ -114,8 +114,9 @@ export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
   }
 }
 
-/// Throws Problem: mesh_not_gltf (damaged, truncated, a member out of range), mesh_unsupported (no packed model, another
-/// version, a scene that the format does not allow), result_too_large (more than `maxFaces`).
+/// Reads a packed model. Throws Problem: mesh_not_gltf (damaged, truncated, a member out of range), mesh_unsupported
+/// (no packed model, another version, a scene that the format does not permit), result_too_large (more than
+/// `maxFaces`).
 export function readPacked(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions = {}): PackedFile {
   return new Reader(bytes, options).read();
 }
@@ -125,12 +126,12 @@ export function primitivesOf(json: JsonObject): JsonObject[] {
   if (primitives.length === 0) refuse('meshes[0]', 'has no primitives');
   return primitives.map((primitive, p) => objectOf(primitive, placeOf(p)));
 }
-/// Of the first primitive.
+/// Returns the extension of the first primitive.
 export function detailOf(primitives: readonly JsonObject[]): JsonObject | null {
   return extensionOf(primitives[0]!, detailExtension, placeOf(0));
 }
 
-/// Of whose bytes a file that is cut has the first ones.
+/// View with its bytes, which may be fewer in a cut file.
 interface View {
   name: string;
   offset: number;
@@ -141,10 +142,10 @@ interface View {
 class Reader {
   readonly #json: JsonObject;
   readonly #binary: Uint8Array<ArrayBuffer>;
-  /// Of the binary chunk in the file.
+  /// Offset of the binary chunk in the file.
   readonly #offset: number;
   readonly #options: ReadOptions;
-  /// Of the last view, in the binary chunk.
+  /// End of the last view in the binary chunk.
   #end = 0;
 
   constructor(bytes: Uint8Array<ArrayBuffer>, options: ReadOptions) {
@@ -236,7 +237,7 @@ class Reader {
     return primitives;
   }
 
-  /// Of an accessor.
+  /// Returns the count of an accessor.
   #count(accessor: number | null, place: string): number {
     if (accessor === null) refuse(place, 'lacks an accessor of positions or indices');
     return whole(element(this.#json, 'accessors', accessor), 'count', `accessors[${accessor}]`);
@@ -252,7 +253,7 @@ class Reader {
     return corners / 3;
   }
 
-  /// The Draco stream of a primitive.
+  /// Returns the Draco stream of a primitive.
   #stream(primitive: JsonObject, place: string): Uint8Array<ArrayBuffer> {
     const draco = extensionOf(primitive, dracoExtension, place);
     if (draco === null) refuse(place, `has no base compressed by ${dracoExtension}`);
@@ -261,7 +262,7 @@ class Reader {
     return view.bytes;
   }
 
-  /// A view, which begins at or after the end of the view before.
+  /// Returns a view, which must begin at or after the end of the view before.
   #view(number: number | null, where: string): View {
     if (number === null) refuse(where, 'has no bufferView');
     const name = `bufferViews[${number}]`;
@@ -284,7 +285,7 @@ function attributesOf(primitive: JsonObject, place: string): JsonObject {
   return objectOf(primitive.attributes, `${place}.attributes`);
 }
 
-/// Attributes of the base besides its positions, in its order. Refuses others.
+/// Returns the attributes of the base besides its positions, in its order. Refuses others.
 function valuesOf(primitives: readonly JsonObject[]): string[] {
   const all = primitives.map((primitive, p) => {
     const attributes = attributesOf(primitive, placeOf(p));
@@ -297,7 +298,7 @@ function valuesOf(primitives: readonly JsonObject[]): string[] {
   return all[0]!;
 }
 
-/// Numbers materials in the order of their first use, for the part that each primitive is.
+/// Numbers materials in the order of their first use, for part numbers of primitives.
 function partNumbers(): (primitive: JsonObject, place: string) => number {
   const numbers = new Map<number, number>();
   return (primitive, place) => {
@@ -310,7 +311,7 @@ function partNumbers(): (primitive: JsonObject, place: string) => number {
 
 const sumOf = (numbers: readonly number[]) => numbers.reduce((sum, number) => sum + number, 0);
 
-/// The table at the begin of a view, which it and its streams fill.
+/// Returns the table at the begin of a view, which it and its streams must fill.
 function tableOf({ name, length, bytes }: View): LevelTable {
   const first = (size: number): Uint8Array => {
     if (length < size) refuse(name, 'is too short for its table of levels');
@@ -324,7 +325,8 @@ function tableOf({ name, length, bytes }: View): LevelTable {
   return table;
 }
 
-/// The whole ones. `begin`: of the bytes in the file; `levelsBegin`: of the first level in the bytes.
+/// Reads the complete levels. `begin`: offset of the bytes in the file; `levelsBegin`: offset of the first level in the
+/// bytes.
 function levelsOf(
   table: LevelTable,
   bytes: Uint8Array<ArrayBuffer>,

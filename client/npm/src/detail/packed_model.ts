@@ -1,4 +1,4 @@
-// A packed model that is open: decoded in a worker, level by level.
+// Open packed model, decoded in a worker, level by level.
 
 import { Problem } from '../client.js';
 import { decodeBase, type DracoDecoder } from './base.js';
@@ -8,23 +8,24 @@ import { type PackedFile, type Reach, type ReadOptions, readPacked } from './pac
 
 export interface OpenOptions extends ReadOptions {
   decodeDraco: DracoDecoder;
-  /// papilio-detail.wasm: its bytes, what `fetch` gives, or compiled. Left out: the file beside this one.
+  /// papilio-detail.wasm: its bytes, a response of `fetch`, or a compiled module. Default: the file beside this one.
   wasm?: BufferSource | Response | Promise<Response> | WebAssembly.Module;
 }
 
 export interface LevelInfo extends Reach {
-  /// Of the level's residuals, those of texture coordinates and colours included; of the base its Draco streams and its curves.
+  /// Length of the level's residuals, including texture coordinates and colours; for the base, of its Draco streams and
+  /// curves.
   bytes: number;
-  /// Bytes of the file up to here: what has to come for this level.
+  /// Bytes of the file that this level requires.
   fileBytes: number;
   vertices: number;
   faces: number;
 }
 
 export interface DecodeOptions {
-  /// Gives the levels up; the promise is rejected with the signal's reason.
+  /// Signal that aborts the decoding; the promise is rejected with its reason.
   signal?: AbortSignal;
-  /// How normals are split. Left out: as the original's are, and none where it has none.
+  /// Style of normals. Default: the original's style, and none if it has none.
   normals?: NormalStyle;
 }
 
@@ -38,14 +39,15 @@ interface Task {
 
 let shared: Promise<WebAssembly.Module> | null = null;
 
-/// The module beside this file, fetched with the first model.
+/// Returns the module beside this file, fetched with the first model.
 function sharedModule(): Promise<WebAssembly.Module> {
   shared ??= compileDecoder(fetch(new URL('../papilio-detail.wasm', import.meta.url)));
-  shared.catch(() => (shared = null)); // the next model tries again
+  shared.catch(() => (shared = null)); // the next model retries
   return shared;
 }
 
-/// Rejects with Problem: as readPacked, and mesh_unusable where the base is not manifold or other than declared.
+/// Opens a packed model. Rejects with Problem: as readPacked(), and mesh_unusable if the base is not manifold or
+/// differs from the declaration.
 export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOptions): Promise<PackedModel> {
   const file = readPacked(bytes, options);
   const { wasm } = options;
@@ -64,17 +66,17 @@ export async function openPacked(bytes: Uint8Array<ArrayBuffer>, options: OpenOp
 
 export class PackedModel {
   readonly base: LevelInfo;
-  /// Whole ones, coarse first.
+  /// Complete levels, coarse first.
   readonly levels: readonly LevelInfo[];
-  /// Levels that the file declares: more than `levels` where it is cut.
+  /// Number of levels that the file declares: more than `levels` if it is cut.
   readonly declaredLevels: number;
-  /// How the original's normals are split.
+  /// Style of the original's normals.
   readonly normals: NormalStyle;
   readonly hasTexcoords: boolean;
   readonly hasColours: boolean;
-  /// Whether the file has a material for any of the faces: it is a scene to GLTFLoader, too.
+  /// Whether the file has a material for any face, so that GLTFLoader reads it as a scene, too.
   readonly hasMaterial: boolean;
-  /// Rejects where the base is not what the file declares.
+  /// Promise that is rejected if the base differs from the declaration.
   readonly opened: Promise<void>;
   readonly #module: WebAssembly.Module;
   readonly #file: PackedFile;
@@ -86,7 +88,7 @@ export class PackedModel {
   #isClosed = false;
   #settle!: { resolve: () => void; reject: (reason: unknown) => void };
 
-  /// For openPacked.
+  /// Use openPacked() instead.
   constructor(module: WebAssembly.Module, file: PackedFile, base: BaseTriangles) {
     this.#module = module;
     this.#file = file;
@@ -109,8 +111,8 @@ export class PackedModel {
     this.#start();
   }
 
-  /// The surface with the first `levels` levels, 0 for the base, to the bits that `papilio unpack` writes. Rejects with
-  /// Problem, or with the signal's reason.
+  /// Returns the surface with the first `levels` levels, 0 for the base, bit-identical to that of `papilio unpack`.
+  /// Rejects with Problem, or with the signal's reason.
   decode(levels: number, { signal, normals = this.normals }: DecodeOptions = {}): Promise<DecodedTriangles> {
     return new Promise((resolve, reject) => {
       if (this.#isClosed) return reject(new Error('The packed model was closed.'));
@@ -124,7 +126,7 @@ export class PackedModel {
     });
   }
 
-  /// Ends the worker and gives its memory back. What runs or waits is rejected.
+  /// Ends the worker and frees its memory. Pending calls are rejected.
   close(): void {
     this.#isClosed = true;
     this.#worker?.terminate();
@@ -170,7 +172,7 @@ export class PackedModel {
     this.#next();
   }
 
-  /// Each level splits all edges of the one before.
+  /// Rejects the model unless its counts match the base: each level splits all edges of the one before.
   #check(edges: number): void {
     let { faces } = this.base;
     for (const [l, { residualCount }] of this.#file.levels.entries()) {
@@ -185,7 +187,7 @@ export class PackedModel {
     this.#settle.resolve();
   }
 
-  /// A worker that decodes is ended: it looks at nothing meanwhile.
+  /// Ends a worker that decodes, as it receives no messages meanwhile.
   #abort(task: Task, signal: AbortSignal): void {
     this.#waiting = this.#waiting.filter((one) => one !== task);
     if (this.#running === task) {

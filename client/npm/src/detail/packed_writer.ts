@@ -1,23 +1,23 @@
-// Files made of a packed model: with fewer levels, or with other surfaces in place of all of them.
+// Writer of files from a packed model: with fewer levels, or with other surfaces in place of all levels.
 
 import { type Json, readContainer, writeContainer } from './container.js';
 import { arrayOf, extensionOf, index, type JsonObject, objectOf, whole } from './document.js';
 import { writeTable } from './level_table.js';
 import { detailExtension, detailOf, dracoExtension, placeOf, primitivesOf, readPacked } from './packed_file.js';
 
-/// A surface as Draco, whose unique ids are those of glTF's attributes here.
+/// Surface as Draco, with the unique ids of its glTF attributes.
 export interface DracoSurface {
   draco: Uint8Array;
   points: number;
   faces: number;
-  /// By glTF's names, POSITION among them.
+  /// Unique ids by glTF's names, including POSITION.
   attributes: Readonly<Record<string, number>>;
-  /// Of the positions.
+  /// Bounds of the positions.
   min: readonly number[];
   max: readonly number[];
 }
 
-/// The file of a packed model with its first `count` levels alone. Throws as readPacked.
+/// Returns the file of a packed model with only its first `count` levels. Throws as readPacked().
 export function withLevels(bytes: Uint8Array<ArrayBuffer>, count: number): Uint8Array<ArrayBuffer> {
   const { base, curves, levels, hasTexcoordLevels } = readPacked(bytes, { maxFaces: Infinity });
   const kept = levels.slice(0, count);
@@ -33,8 +33,8 @@ export function withLevels(bytes: Uint8Array<ArrayBuffer>, count: number): Uint8
   return withViews(json, binary, new Map([[view, detail]]));
 }
 
-/// The scene of a packed model, with its materials and images, of these surfaces, one for each of its primitives: no packed
-/// model. Throws as readPacked.
+/// Returns the scene of a packed model with its materials and images, and with other surfaces, one for each of its
+/// primitives. It is no packed model. Throws as readPacked().
 export function withSurfaces(
   bytes: Uint8Array<ArrayBuffer>,
   surfaces: readonly DracoSurface[],
@@ -66,7 +66,7 @@ export function withSurfaces(
   return withViews(json, binary, views);
 }
 
-/// Of an attribute, by glTF's name.
+/// Returns the format of an attribute, by glTF's name.
 function formatOf(name: string): JsonObject {
   if (name.startsWith('COLOR')) return { componentType: 5121, normalized: true, type: 'VEC3' };
   return { componentType: 5126, type: name.startsWith('TEXCOORD') ? 'VEC2' : 'VEC3' };
@@ -77,8 +77,8 @@ function openDocument(bytes: Uint8Array<ArrayBuffer>): { json: JsonObject; binar
   return { json: objectOf(json, 'the JSON'), binary };
 }
 
-/// The file of a document, some of whose views have other bytes, or are left out (null). The others come behind one
-/// another as they did.
+/// Returns the file of a document in which some views have other bytes, or are dropped (null). Other views keep their
+/// order.
 function withViews(
   json: JsonObject,
   binary: Uint8Array,
@@ -103,7 +103,7 @@ function withViews(
   return writeContainer(json, joined(kept.map(({ bytes }) => bytes!)));
 }
 
-/// In all members that name a view.
+/// Renumbers views in all members that refer to one.
 function renumberViews(json: Json | undefined, numbers: ReadonlyMap<number, number>): void {
   if (json === null || typeof json !== 'object') return;
   if (!Array.isArray(json) && typeof json.bufferView === 'number')

@@ -1,4 +1,4 @@
-// The decoder in a worker: packed_model.ts starts it.
+// Worker with the decoder, started by packed_model.ts.
 
 import { Problem } from '../client.js';
 import { DetailDecoder } from './decoder.js';

@@ -1,4 +1,4 @@
-// Geometries of three.js as the kernel takes them, and what it makes of them as geometries.
+// Conversion between geometries of three.js and meshes of the kernel.
 
 import { BufferAttribute, BufferGeometry, type InterleavedBufferAttribute } from 'three';
 
@@ -6,35 +6,35 @@ import type { Attribute, RefinedTriangles, Triangles } from '../kernel.js';
 
 type Values = BufferAttribute | InterleavedBufferAttribute;
 
-/// What one of the kernel's attributes is in the geometries: an attribute, one of its morph targets, or the number of the
-/// geometry that a point is of.
+/// Place of one of the kernel's attributes in the geometries: an attribute, one of its morph targets, or the number of
+/// a point's geometry.
 interface Place {
   name: string;
   target: number | null;
 }
 const part: Place = { name: '', target: null };
 
-/// Arrays of geometries that meet, as one mesh, and where its attributes belong.
+/// Arrays of adjoining geometries as one mesh, and the places of its attributes.
 export interface Arrays {
   triangles: Triangles;
   places: Place[];
   hasNormals: boolean;
 }
 
-/// Marks normals that were computed for the coarse mesh, and say nothing of the surface: refined ones have their own.
+/// Mark of normals that were computed for the coarse mesh: refined meshes get their own.
 export const computedNormals = 'papilioComputedNormals';
 
 export function hasNormals(geometry: BufferGeometry): boolean {
   return geometry.attributes.normal?.itemSize === 3 && geometry.userData[computedNormals] !== true;
 }
 
-/// Whether it has triangles that the kernel can refine; groups of different materials it cannot.
+/// Returns whether the kernel can refine the geometry: it has triangles, and no groups of different materials.
 export function isRefinable(geometry: BufferGeometry): boolean {
   return geometry.attributes.position?.itemSize === 3 && geometry.groups.length === 0 && cornersOf(geometry) > 0;
 }
 
-/// One mesh of geometries that are refinable, all with normals or none. Points at the same place are one vertex, so that
-/// they stay together; what a geometry does not have is 0.
+/// Joins refinable geometries to one mesh; all must have normals, or none. Points of equal position are one vertex, so
+/// that they stay together. Missing values are 0.
 export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
   const counts = geometries.map((geometry) => geometry.attributes.position!.count);
   const points = counts.reduce((sum, count) => sum + count, 0);
@@ -77,7 +77,7 @@ export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
   };
 }
 
-/// What has become of each geometry of `coarse`, which were refined as one mesh.
+/// Returns the refined geometry of each geometry of `coarse`, which were refined as one mesh.
 export function geometriesOf(
   refined: RefinedTriangles,
   { places }: Arrays,
@@ -85,7 +85,7 @@ export function geometriesOf(
 ): BufferGeometry[] {
   const parts = refined.attributes[places.indexOf(part)]?.values;
   return coarse.map((geometry, g) => {
-    // In a face all points are of the same geometry: where geometries meet each has points of its own.
+    // All points of a face belong to one geometry: adjoining geometries have separate points.
     const { points, triangles } =
       parts === undefined ? { points: null, triangles: refined.triangles } : only(refined, parts, g);
     const made = new BufferGeometry();
@@ -94,7 +94,7 @@ export function geometriesOf(
     made.morphTargetsRelative = true;
     const [targets, madeTargets] = [geometry, made].map((one) => one.morphAttributes as Record<string, Values[]>);
     for (const [i, { components, values }] of refined.attributes.entries()) {
-      const place = places[i] ?? { name: 'normal', target: null }; // appended to a mesh without
+      const place = places[i] ?? { name: 'normal', target: null }; // appended to a mesh without normals
       const { name, target } = place;
       const own = target === null ? geometry.attributes[name] : targets![name]?.[target];
       if (place === part || (own === undefined && i < places.length)) continue;
@@ -103,7 +103,7 @@ export function geometriesOf(
       if (target === null) made.setAttribute(name, attribute);
       else (madeTargets![name] ??= [])[target] = attribute;
     }
-    // Found anew it would cost as much as the upload. The surface bulges over the coarse mesh by less than this.
+    // Computing it again would cost as much as the upload. The surface bulges over the coarse mesh by less than this.
     if (geometry.boundingSphere === null) geometry.computeBoundingSphere();
     made.boundingSphere = geometry.boundingSphere!.clone();
     made.boundingSphere.radius *= 1.25;
@@ -111,7 +111,7 @@ export function geometriesOf(
   });
 }
 
-/// The faces of one part, and which points they have.
+/// Faces of one part, and their points.
 function only(
   { positions, triangles }: RefinedTriangles,
   parts: ArrayLike<number>,
@@ -133,7 +133,7 @@ function only(
   return { points: points.subarray(0, pointCount), triangles: corners.slice(0, cornerCount) };
 }
 
-/// The first `size` components of these points; null: of all.
+/// Returns the first `size` components of these points; null: of all points.
 function taken(
   values: Float32Array | Float64Array,
   components: number,
@@ -154,7 +154,7 @@ function cornersOf(geometry: BufferGeometry): number {
   return corners - (corners % 3);
 }
 
-/// [points * components], as numbers, whatever they are stored as.
+/// Returns [points * components] the values as numbers, from any storage type.
 function valuesOf(attribute: Values): Float64Array {
   const { count, itemSize } = attribute;
   const values = new Float64Array(count * itemSize);

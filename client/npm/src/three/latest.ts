@@ -1,4 +1,4 @@
-// Work that is asked for more often than it can be done: the latest wish is next.
+// Work that is requested more often than it can be done: only the latest request is kept.
 
 export class Latest {
   readonly #work: (wish: string) => Promise<void>;
@@ -7,7 +7,8 @@ export class Latest {
   #done: string | null = null;
   #running: Promise<void> | null = null;
 
-  /// `work`: done for one wish at a time. `onFail`: told why one could not be; that one is not tried again by itself.
+  /// `work`: function that serves one request at a time. `onFail`: function called with an error; the request is not
+  /// retried.
   constructor(work: (wish: string) => Promise<void>, onFail: (error: unknown) => void) {
     this.#work = work;
     this.#onFail = onFail;
@@ -18,12 +19,12 @@ export class Latest {
     if (wish !== this.#done) this.#running ??= this.#run();
   }
 
-  /// Resolves once nothing is wished for that was not done.
+  /// Resolves once no request is pending.
   get rest(): Promise<void> {
     return this.#running ?? Promise.resolve();
   }
 
-  /// Does nothing more.
+  /// Drops the pending request, and serves no more.
   stop(): void {
     this.#wish = this.#done;
   }

@@ -1,4 +1,4 @@
-// Loads a model that refines itself.
+// Loader of models that refine themselves.
 
 import {
   type BufferGeometry,
@@ -24,11 +24,11 @@ import { dracoDecoder, geometryOf, sceneNormals, showLevel } from './packed.js';
 import { RefinedModel } from './refined_model.js';
 
 export interface PapilioLoaderOptions {
-  /// Workers to refine in; left out: some that all loaders share.
+  /// Workers to refine in; default: workers shared by all loaders.
   refiner?: Refiner;
-  /// The server that refines instead, or its address; .glb and .drc files alone.
+  /// Server that refines instead, or its address; only for .glb and .drc files.
   server?: Client | string;
-  /// Of the refinement: `{ view: { error_pixels: 1 } }` unless given.
+  /// Parameters of the refinement; default `{ view: { error_pixels: 1 } }`.
   parameters?: Parameters;
   manager?: LoadingManager;
 }
@@ -37,14 +37,15 @@ type Loaded = Pick<GLTF, 'animations'> & { scene: Object3D };
 
 let shared: Promise<Refiner> | null = null;
 
-/// Workers of this page, started with the first model.
+/// Returns the workers of this page, started with the first model.
 function sharedRefiner(): Promise<Refiner> {
   shared ??= Refiner.start({ workers: Math.min(4, Math.max(1, (navigator.hardwareConcurrency ?? 2) - 1)) });
-  shared.catch(() => (shared = null)); // the next model tries again
+  shared.catch(() => (shared = null)); // the next model retries
   return shared;
 }
 
-/// `.glb`, `.gltf` and `.drc` files, and packed models with all their levels: `scene.add(await new PapilioLoader().loadAsync('model.glb'))`.
+/// Loader of `.glb`, `.gltf` and `.drc` files, and of packed models with all their levels:
+/// `scene.add(await new PapilioLoader().loadAsync('model.glb'))`.
 export class PapilioLoader extends Loader<RefinedModel> {
   readonly #options: PapilioLoaderOptions;
   readonly #draco: DRACOLoader;
@@ -57,12 +58,12 @@ export class PapilioLoader extends Loader<RefinedModel> {
     this.#gltf = new GLTFLoader(this.manager).setDRACOLoader(this.#draco).setMeshoptDecoder(MeshoptDecoder);
   }
 
-  /// For what it has no setting for: KTX2 textures, plugins.
+  /// GLTFLoader in use, for settings without an option here: KTX2 textures, plugins.
   get gltfLoader(): GLTFLoader {
     return this.#gltf;
   }
 
-  /// For another place of its decoder.
+  /// DRACOLoader in use, for another path of its decoder.
   get dracoLoader(): DRACOLoader {
     return this.#draco;
   }
@@ -84,7 +85,7 @@ export class PapilioLoader extends Loader<RefinedModel> {
     files.load(url, take, onProgress, onError);
   }
 
-  /// `folder`: where files lie that a .gltf names.
+  /// Parses a file. `folder`: folder of the files that a .gltf refers to.
   async parseAsync(file: ArrayBuffer, folder = ''): Promise<RefinedModel> {
     const { server, parameters } = this.#options;
     const encoded = encodedOf(file);
@@ -106,7 +107,7 @@ export class PapilioLoader extends Loader<RefinedModel> {
     if (type === 'model/gltf-binary' && isPacked(new Uint8Array(file))) return this.#decodePacked(file, folder);
     if (type !== 'application/x-draco') return this.#gltf.parseAsync(file, folder);
     const geometry = await new Promise<BufferGeometry>((resolve, reject) =>
-      // The decoder's worker takes the bytes for good.
+      // The bytes are transferred to the decoder's worker.
       this.#draco.parse(file.slice(0), resolve, () =>
         reject(new Problem('mesh_not_draco', 'This Draco mesh is damaged.')),
       ),
@@ -114,7 +115,7 @@ export class PapilioLoader extends Loader<RefinedModel> {
     return meshOf(geometry);
   }
 
-  /// The surface with all its levels, with the file's material if it has one.
+  /// Returns the surface with all its levels, with the file's material if it has one.
   async #decodePacked(file: ArrayBuffer, folder: string): Promise<Loaded> {
     const model = await openPacked(new Uint8Array(file), { decodeDraco: dracoDecoder(this.#draco) });
     try {
@@ -141,7 +142,7 @@ function meshOf(geometry: BufferGeometry): Loaded {
   return { scene: new Mesh(geometry, material), animations: [] };
 }
 
-/// Null for a .gltf file.
+/// Returns the server's type of a file; null for a .gltf file.
 function encodedOf(file: ArrayBuffer): Encoded | null {
   const magic = new TextDecoder().decode(new Uint8Array(file, 0, Math.min(5, file.byteLength)));
   const bytes = new Uint8Array(file);

@@ -8,7 +8,8 @@ import type { DecodedTriangles, NormalStyle } from '../detail/decoder.js';
 import type { OpenOptions, PackedModel } from '../detail/packed_model.js';
 import { smooth } from './parts.js';
 
-/// What of DRACOLoader GLTFLoader calls, and its types leave out. `parse` would give colours as floats, as of sRGB.
+/// Function of DRACOLoader that GLTFLoader calls, and that its types lack. `parse` would return colours as floats in
+/// sRGB.
 type AttributeDecoder = {
   decodeDracoFile(
     draco: ArrayBuffer,
@@ -21,12 +22,12 @@ type AttributeDecoder = {
 };
 const types = { position: 'Float32Array', uv: 'Float32Array', color: 'Uint8Array', normal: 'Float32Array' };
 
-/// Decodes the base of a packed model, for openPacked.
+/// Decodes the base of a packed model, for openPacked().
 export function dracoDecoder(loader: DRACOLoader): OpenOptions['decodeDraco'] {
   return async (draco) => {
     const geometry = await new Promise<BufferGeometry>((resolve, reject) => {
       const refuse = () => reject(new Problem('mesh_not_draco', 'The base of this packed model is damaged.'));
-      // The decoder's worker takes the bytes for good.
+      // The bytes are transferred to the decoder's worker.
       const { buffer } = draco.slice();
       void (loader as unknown as AttributeDecoder).decodeDracoFile(
         buffer,
@@ -47,7 +48,7 @@ export function dracoDecoder(loader: DRACOLoader): OpenOptions['decodeDraco'] {
   };
 }
 
-/// Without the padding that DRACOLoader puts behind each.
+/// Returns the values without the padding that DRACOLoader puts behind each.
 function coloursOf(color: BufferAttribute | InterleavedBufferAttribute): Uint8Array<ArrayBuffer> {
   const stride = 'data' in color ? color.data.stride : color.itemSize;
   return Uint8Array.from({ length: 3 * color.count }, (_, i) => color.array[Math.floor(i / 3) * stride + (i % 3)]!);
@@ -63,14 +64,15 @@ export function geometryOf({ positions, triangles, texcoords, colours, normals }
   return geometry;
 }
 
-/// Normals of a packed model that is shown as a scene: where its original has none, those of `papilio unpack` for scenes.
+/// Returns the style of a packed model's normals in a scene: if the original has none, the one of `papilio unpack` for
+/// scenes.
 export function sceneNormals({ normals }: PackedModel): NormalStyle {
   return normals === 'absent' ? 'creased' : normals;
 }
 
-/// Shows a level of a packed model in the scene that GLTFLoader makes of its file: each mesh gets the faces below its own,
-/// which come in the order of the meshes. Materials stay, smooth where there are normals. Returns the geometries: that of the only
-/// mesh is the level itself.
+/// Shows a level of a packed model in the scene that GLTFLoader makes of its file: each mesh gets the faces below its
+/// own, in the order of the meshes. Keeps materials, with smooth shading if there are normals. Returns the geometries;
+/// the geometry of a single mesh is the level itself.
 export function showLevel(scene: Object3D, level: BufferGeometry): BufferGeometry[] {
   const meshes: Mesh[] = [];
   scene.traverse((object) => object instanceof Mesh && meshes.push(object as Mesh));
@@ -86,7 +88,7 @@ export function showLevel(scene: Object3D, level: BufferGeometry): BufferGeometr
   });
 }
 
-/// The faces of these corners, with their points alone.
+/// Returns the faces of these corners, with only their points.
 function partOf(level: BufferGeometry, begin: number, end: number): BufferGeometry {
   const corners = level.index!.array.slice(begin, end);
   const numbers = new Uint32Array(level.attributes.position!.count); // 0: not of the part

@@ -1,4 +1,4 @@
-// The meshes of a scene, each opened for refinement in workers.
+// Meshes of a scene, opened for refinement in workers.
 
 import {
   type BufferGeometry,
@@ -14,29 +14,29 @@ import type { Statistics } from '../kernel.js';
 import type { OpenMesh, RefineOptions, Refiner } from '../refiner.js';
 import { type Arrays, arraysOf, geometriesOf, hasNormals, isRefinable } from './arrays.js';
 
-/// Meshes that are refined as one, as they meet: those of a glTF mesh with several materials.
+/// Adjoining meshes that are refined as one: those of a glTF mesh with several materials.
 export interface Part {
   readonly meshes: readonly Mesh[];
-  /// The geometries that they came with.
+  /// Geometries as loaded.
   readonly coarse: readonly BufferGeometry[];
 }
 
-/// What a part has become.
+/// Result of refining a part.
 export interface RefinedPart {
-  /// One for each mesh, the caller's own; with normals, whether the coarse ones have them or not.
+  /// Geometries, one for each mesh, owned by the caller; always with normals.
   geometries: BufferGeometry[];
   statistics: Statistics;
 }
 
 export class Parts {
   readonly all: Part[] = [];
-  /// Meshes that are not refined: moved by a skeleton, without triangles, or with several materials in one geometry.
+  /// Meshes that are not refined: skinned, without triangles, or with several materials in one geometry.
   readonly unrefined: Mesh[] = [];
   readonly #refiner: Refiner;
-  /// Opened once, however often the same geometries are in the scene.
+  /// Open meshes: one for each set of geometries, even if it is in the scene repeatedly.
   readonly #opened = new Map<string, { mesh: OpenMesh; arrays: Arrays }>();
 
-  /// `scene`: as it was loaded; what its meshes show later is not looked at.
+  /// `scene`: scene as loaded; later geometries of its meshes are ignored.
   constructor(scene: Object3D, refiner: Refiner) {
     this.#refiner = refiner;
     const together = new Map<string, Mesh[]>();
@@ -56,7 +56,7 @@ export class Parts {
       this.all.push({ meshes, coarse: meshes.map((mesh) => mesh.geometry as BufferGeometry) });
   }
 
-  /// Rejects with KernelError, or with the signal's reason.
+  /// Refines a part. Rejects with KernelError, or with the signal's reason.
   async refine(part: Part, query: string, options: RefineOptions = {}): Promise<RefinedPart> {
     const { mesh, arrays } = this.#open(part);
     const isAsked = arrays.hasNormals || /(^|&)output\.normals=/.test(query);
@@ -65,7 +65,7 @@ export class Parts {
     return { geometries: geometriesOf(refined.mesh, arrays, part.coarse), statistics: refined.statistics };
   }
 
-  /// Frees what the workers keep.
+  /// Frees the data kept by the workers.
   dispose(): void {
     for (const { mesh } of this.#opened.values()) this.#refiner.forget(mesh);
     this.#opened.clear();
@@ -87,10 +87,10 @@ export function isInstanced(mesh: Mesh): boolean {
   return (mesh as Partial<InstancedMesh>).isInstancedMesh === true;
 }
 
-/// For a mesh that has normals now: what is drawn in facets for want of them is smooth.
+/// Sets smooth shading for a mesh that was faceted without normals, and has normals now.
 export function smooth<T extends Material | Material[]>(material: T): T {
   if (Array.isArray(material) || !(material as unknown as MeshStandardMaterial).flatShading) return material;
-  const copy = material.clone() as MeshStandardMaterial; // others may be drawn with it
+  const copy = material.clone() as MeshStandardMaterial; // other meshes may share it
   copy.flatShading = false;
   return copy as unknown as T;
 }

@@ -1,4 +1,4 @@
-// A scene that refines itself to whichever camera draws it.
+// Scene that refines itself to the camera that draws it.
 
 import { type BufferGeometry, type Camera, Group, Mesh, type Object3D, type Object3DEventMap, Vector4 } from 'three';
 import type { WebGLRenderer } from 'three';
@@ -10,41 +10,41 @@ import { Latest } from './latest.js';
 import { isInstanced, type Part, Parts, smooth } from './parts.js';
 import { viewOf } from './view.js';
 
-/// Who refines: workers of this page, or a server, which is sent the model as it was encoded and whose answers `decode`
-/// makes a scene of again.
+/// Source of refinements: workers of this page; or a server, which receives the encoded model, and whose answers
+/// `decode` converts to a scene.
 export type Source =
   | { refiner: Refiner }
   | { client: Client; encoded: Encoded; decode(encoded: Encoded): Promise<Object3D> };
 
-/// What is shown now, all meshes together.
+/// Statistics of the shown meshes, all together.
 export interface ModelStatistics {
   faces: number;
   vertices: number;
-  /// Largest deviation left, in pixels of the view that it was refined for.
+  /// Largest deviation left, in pixels of the refined view.
   errorPixels: number;
 }
 
 export interface RefinedModelEvents extends Object3DEventMap {
-  /// Something finer, or coarser, is shown: where pictures are drawn on demand, draw.
+  /// Event after finer or coarser meshes are shown: redraw, if pictures are drawn on demand.
   refined: { statistics: ModelStatistics };
-  /// Stays as it was; the next view is tried again.
+  /// Event after a failure: the model is unchanged, and the next view retries.
   failed: { error: unknown };
 }
 
 export class RefinedModel extends Group<RefinedModelEvents> {
-  /// The camera to refine for; null: each that draws it, which is for pictures with one camera.
+  /// Camera to refine for; null: each camera that draws the model, for pictures with one camera.
   camera: Camera | null = null;
-  /// Keeps what it shows, whatever the camera does.
+  /// Whether to keep the shown meshes when the camera moves.
   isFrozen = false;
   #parameters: Parameters;
   readonly #abort = new AbortController();
   readonly #own = new Map<Mesh, { coarse: BufferGeometry; errorPixels: number }>();
   readonly #parts: Parts | null = null;
-  /// What is asked for, by the object in whose coordinates it is seen.
+  /// Requested parameters, by the object in whose coordinates the view is.
   readonly #latest = new Map<Object3D, Latest>();
 
-  /// `parameters`: of the refinement, without where the camera is: `{ view: { error_pixels: 1 } }` unless given. The
-  /// scene's meshes become this model's.
+  /// `parameters`: parameters of the refinement without the camera; default `{ view: { error_pixels: 1 } }`. The model
+  /// takes the scene's meshes.
   constructor(scene: Object3D, source: Source, parameters: Parameters = { view: { error_pixels: 1 } }) {
     super();
     this.#parameters = parameters;
@@ -77,12 +77,12 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     return this.#parameters;
   }
 
-  /// Takes effect with the next picture.
+  /// Sets the parameters for the next picture.
   set parameters(parameters: Parameters) {
     this.#parameters = parameters;
   }
 
-  /// Meshes that stay as they were loaded.
+  /// Returns the meshes that are not refined.
   get unrefined(): readonly Mesh[] {
     return this.#parts?.unrefined ?? [];
   }
@@ -98,12 +98,12 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     return all;
   }
 
-  /// Resolves once all that was asked for is shown.
+  /// Resolves once all requested refinements are shown.
   async settled(): Promise<void> {
     await Promise.all([...this.#latest.values()].map((latest) => latest.rest));
   }
 
-  /// Refines no more, and frees geometries and what workers keep; materials and textures are the caller's.
+  /// Stops refining, and frees geometries and data of the workers. The caller owns materials and textures.
   dispose(): void {
     this.#abort.abort(new Error('The model was disposed of.'));
     for (const latest of this.#latest.values()) latest.stop();
@@ -120,7 +120,7 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     });
   }
 
-  /// Asks for what a camera sees of `object` each time it draws `mesh`.
+  /// Requests the view of a camera on `object` each time it draws `mesh`.
   #watch(mesh: Mesh, object: Object3D): void {
     const before = mesh.onBeforeRender;
     mesh.onBeforeRender = (...drawn) => {
@@ -136,7 +136,7 @@ export class RefinedModel extends Group<RefinedModelEvents> {
   #queryOf(object: Object3D, camera: Camera, renderer: WebGLRenderer): string | null {
     const { view, ...rest } = this.#parameters;
     if (object instanceof Mesh && isInstanced(object)) {
-      // Seen from many sides at once: refined for none of them.
+      // Instances are seen from many sides at once, and are not refined.
       const isTarget = ['tolerance', 'flatness', 'max_faces'].some((name) => name in rest);
       return queryOf(isTarget ? rest : { tolerance: 0.001, ...rest });
     }
@@ -162,7 +162,7 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     (await decode(answer)).traverse((object) => object instanceof Mesh && made.push(object as Mesh));
     this.#abort.signal.throwIfAborted();
     if (made.length !== all.length) throw new Problem('unexpected', 'The answer has other meshes than the model.');
-    // The nodes stay, so that what moves them still does.
+    // Nodes are kept, so that animations still apply.
     for (const [i, mesh] of all.entries()) this.#show(mesh, made[i]!.geometry, answer.summary.error_pixels ?? 0);
     this.dispatchEvent({ type: 'refined', statistics: this.statistics });
   }
@@ -172,7 +172,7 @@ export class RefinedModel extends Group<RefinedModelEvents> {
     if (mesh.geometry !== own.coarse) mesh.geometry.dispose();
     mesh.geometry = geometry;
     own.errorPixels = errorPixels;
-    // What came without normals is drawn in facets, and has normals now.
+    // Meshes without normals are faceted, and have normals now.
     if (!own.coarse.hasAttribute('normal') && geometry.hasAttribute('normal')) mesh.material = smooth(mesh.material);
   }
 }

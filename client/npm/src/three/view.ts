@@ -1,12 +1,11 @@
-// What a camera sees of an object, as parameters of a refinement.
+// View of a camera on an object, as parameters of a refinement.
 
 import { type Camera, Matrix4, type Object3D, Vector3 } from 'three';
 
 import type { Parameters } from '../parameters.js';
 
-/// In the object's own coordinates, which should not be scaled differently along different axes. `pixels`: of the picture,
-/// width and height. Null where the object cannot be seen, being scaled to nothing. The matrices of both must be up to
-/// date.
+/// Returns the view in the object's coordinates, whose scale should be uniform; null if the object is scaled to
+/// nothing. `pixels`: width and height of the picture. The matrices of both must be up to date.
 export function viewOf(object: Object3D, camera: Camera, pixels: readonly [number, number]): Parameters | null {
   const { matrixWorld } = object;
   if (matrixWorld.determinant() === 0) return null;
@@ -14,13 +13,13 @@ export function viewOf(object: Object3D, camera: Camera, pixels: readonly [numbe
   const eye = new Vector3().setFromMatrixPosition(toObject);
   const forward = new Vector3().setFromMatrixColumn(toObject, 2).negate();
   const up = new Vector3().setFromMatrixColumn(toObject, 1);
-  const shrink = forward.length(); // a unit of the world, in the object's
+  const shrink = forward.length(); // length of a world unit in the object's coordinates
   forward.normalize();
   const high = 1 / camera.projectionMatrix.elements[5]!;
   // Perspective divides by depth.
   const isPerspective = camera.projectionMatrix.elements[11] !== 0;
   const fov = isPerspective ? (360 / Math.PI) * Math.atan(high) : 45;
-  // An orthographic picture is as high as a perspective one is at the target.
+  // The height of an orthographic picture equals the perspective one's at the target.
   const distance = isPerspective ? shrink : (high * shrink) / Math.tan((fov * Math.PI) / 360);
   const target = eye.clone().addScaledVector(forward, distance);
   const near = 'near' in camera ? Math.max(0, Number(camera.near)) * shrink : 0;
@@ -34,6 +33,6 @@ export function viewOf(object: Object3D, camera: Camera, pixels: readonly [numbe
   } as unknown as Parameters;
 }
 
-/// Seven digits are more than a screen shows.
+/// Rounds to seven digits, more than a screen shows.
 const number = (n: number) => Number(n.toPrecision(7));
 const numbers = (v: Vector3) => v.toArray().map(number);
