@@ -28,6 +28,10 @@ struct Case {
   std::vector<double> thresholds;  ///< flatness of the middle size
 };
 
+/// Sizes of quadrics' results, as shares of the common size, between which those of equal RMS distance are sought.
+constexpr double quadrics_sizes[] = {1.2, 1, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3};
+constexpr size_t common_size = 1;  // of them
+
 /// Factors of the thresholds' angles for the three sizes.
 constexpr double size_factors[] = {1.5, 1, 1 / 1.5};
 
@@ -60,7 +64,20 @@ struct Measured {
 /// Results of the methods at one size.
 struct Comparison {
   Measured paper, flatness, tolerance, quadrics;
+  double quadrics_faces;  ///< faces of quadrics' result with the RMS distance of `tolerance`
 };
+
+/// Returns the number of faces at which a curve of decreasing RMS distances, given by some of its points, has this one:
+/// interpolated between logarithms.
+double faces_at(const std::vector<Measured>& curve, double rms) {
+  size_t i = 1;
+  while (i + 1 < curve.size() && curve[i].error.rms > rms) ++i;
+  const Measured& coarser = curve[i - 1];
+  const Measured& finer = curve[i];
+  const double at = std::log(coarser.error.rms / rms) / std::log(coarser.error.rms / finer.error.rms);
+  const auto faces = [](const Measured& of) { return static_cast<double>(of.faces); };
+  return faces(coarser) * std::pow(faces(finer) / faces(coarser), at);
+}
 
 bool is_far_off(size_t faces, size_t wanted) {
   return std::abs(static_cast<double>(faces) / static_cast<double>(wanted) - 1) > count_tolerance;
@@ -87,10 +104,13 @@ class Subject {
     ours.flatness = paper.flatness = scaled_thresholds(case_.thresholds, size_factor);
     const TriangleMesh result = refine(coarse_, paper).mesh.triangles();
     const size_t faces = result.triangles.size();
+    const std::vector<Measured> quadrics = quadrics_results(faces);
+    const Measured tolerance = measured(tolerance_result(coarse_, ours, faces));
     return {.paper = measured(result),
             .flatness = measured(flatness_result(coarse_, ours, faces)),
-            .tolerance = measured(tolerance_result(coarse_, ours, faces)),
-            .quadrics = measured(test::collapse_optimally(uniform_, faces))};
+            .tolerance = tolerance,
+            .quadrics = quadrics[quadrics.size() - 1 - common_size],
+            .quadrics_faces = faces_at(quadrics, tolerance.error.rms)};
   }
 
  private:
@@ -100,6 +120,21 @@ class Subject {
     all.scheme = scheme;
     all.tension = Tension::off;
     return all;
+  }
+
+  /// Returns quadrics' results of the sizes about `faces`, the coarsest first.
+  [[nodiscard]] std::vector<Measured> quadrics_results(size_t faces) const {
+    std::vector<size_t> sizes;
+    for (double share : quadrics_sizes) {
+      const auto size = static_cast<size_t>(std::lround(share * static_cast<double>(faces)));
+      sizes.push_back(std::min(size, uniform_.triangles.size()));
+    }
+    std::vector<Measured> results;
+    for (const TriangleMesh& result : collapse_to_sizes(uniform_, sizes, Quadrics::accumulated))
+      results.push_back(measured(result));
+    if (results.size() != sizes.size()) throw std::runtime_error("quadrics cannot make all sizes");
+    std::ranges::reverse(results);
+    return results;
   }
 
   [[nodiscard]] Measured measured(const TriangleMesh& result) const {
@@ -113,7 +148,10 @@ class Subject {
   TriangleMesh uniform_;
 };
 
-/// Measured ratios of RMS.
+/// Returns the faces of red-green by tolerance over those of quadrics at equal RMS distance.
+double faces_ratio(const Comparison& c) { return static_cast<double>(c.tolerance.faces) / c.quadrics_faces; }
+
+/// Measured ratios.
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = 0;
 
@@ -124,7 +162,7 @@ struct Range {
   [[nodiscard]] std::string text() const { return fixed(least, 2) + " to " + fixed(most, 2); }
 };
 struct Summary {
-  Range to_paper, to_quadrics;
+  Range to_paper, to_quadrics, faces_to_quadrics;
   int fair = 0, all = 0;
 
   void include(const Comparison& c) {
@@ -133,6 +171,7 @@ struct Summary {
     ++fair;
     to_paper.include(c.tolerance.error.rms / c.paper.error.rms);
     to_quadrics.include(c.tolerance.error.rms / c.quadrics.error.rms);
+    faces_to_quadrics.include(faces_ratio(c));
   }
 };
 
@@ -155,13 +194,15 @@ class Quality {
     const double share = 100 * static_cast<double>(faces) / static_cast<double>(uniform_faces);
     table_.add({name, std::to_string(faces), fixed(share, 1) + " %", text_of(c.paper, faces),
                 text_of(c.flatness, faces), text_of(c.tolerance, faces), text_of(c.quadrics, faces),
-                ratio_text(c, c.paper), ratio_text(c, c.quadrics)});
+                ratio_text(c, c.paper), ratio_text(c, c.quadrics), is_fair(c) ? fixed(faces_ratio(c), 2) : "-"});
     summary_.include(c);
     const std::string prefix = "quality/" + name + ", " + std::to_string(faces) + "/";
     add_rows(prefix + "flatness, peer: the paper", c.flatness, c.paper);
     if (!is_fair(c)) return;
     add_rows(prefix + "tolerance, peer: the paper", c.tolerance, c.paper);
     add_rows(prefix + "tolerance, peer: quadrics, optimal placement", c.tolerance, c.quadrics);
+    rows_.push_back({prefix + "tolerance, peer: quadrics of equal rms/faces", static_cast<double>(c.tolerance.faces),
+                     c.quadrics_faces, "faces"});
   }
 
   void print() const {
@@ -170,12 +211,12 @@ class Quality {
     std::printf(
         "faces differs, it stands in front; * where by more than %.0f %%. Ratios: RMS of red-green by tolerance\n",
         100 * count_tolerance);
-    std::printf("over that of the other.\n\n");
+    std::printf("over that of the other; in the last column, of its faces over those of quadrics at equal RMS.\n\n");
     table_.print();
     std::printf("\nRed-green by tolerance met %d of %d sizes.\n", summary_.fair, summary_.all);
     if (summary_.fair == 0) return;
-    std::printf("Its ratios: %s to the paper, %s to quadrics.\n", summary_.to_paper.text().c_str(),
-                summary_.to_quadrics.text().c_str());
+    std::printf("Its ratios: %s to the paper, %s to quadrics, %s in faces.\n", summary_.to_paper.text().c_str(),
+                summary_.to_quadrics.text().c_str(), summary_.faces_to_quadrics.text().c_str());
   }
 
   [[nodiscard]] const std::vector<ReportRow>& rows() const { return rows_; }
@@ -189,7 +230,7 @@ class Quality {
 
   MarkdownTable table_{{"", "faces", "of uniform", "in-place by flatness (the paper)", "red-green by flatness",
                         "red-green by tolerance", "quadrics, optimal placement (Garland-Heckbert)", "to the paper",
-                        "to quadrics"}};
+                        "to quadrics", "in faces"}};
   Summary summary_;
   std::vector<ReportRow> rows_;
 };
