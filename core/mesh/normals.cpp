@@ -1,6 +1,7 @@
 #include "mesh/normals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -10,11 +11,26 @@ namespace {
 
 using Two = double __attribute__((vector_size(16)));
 
-/// Normalizes two vectors, so that their roots and divisions overlap; a zero vector stays zero.
-void put_unit(Vec3d a, Vec3d b, Vec3f& unit_a, Vec3f& unit_b) {
-  const Two x{a.x, b.x};
-  const Two y{a.y, b.y};
-  const Two z{a.z, b.z};
+/// Computes the unit normals of two faces, so that their roots and divisions overlap; zero without area. The lanes are
+/// filled from single floats: vectors that a compiler reads back from stored doubles stall.
+void put_unit_normals(const Mesh& mesh, FaceId f, FaceId g, Vec3f& unit_f, Vec3f& unit_g) {
+  const auto corner = [&](uint32_t i) {
+    const Vec3f& p = mesh.positions[mesh.topology.origin[size_t{3} * f + i]];
+    const Vec3f& q = mesh.positions[mesh.topology.origin[size_t{3} * g + i]];
+    return std::array<Two, 3>{Two{p.x, q.x}, Two{p.y, q.y}, Two{p.z, q.z}};
+  };
+  const auto [ax, ay, az] = corner(0);
+  const auto [bx, by, bz] = corner(1);
+  const auto [cx, cy, cz] = corner(2);
+  const Two ux = bx - ax;
+  const Two uy = by - ay;
+  const Two uz = bz - az;
+  const Two vx = cx - ax;
+  const Two vy = cy - ay;
+  const Two vz = cz - az;
+  const Two x = uy * vz - uz * vy;
+  const Two y = uz * vx - ux * vz;
+  const Two z = ux * vy - uy * vx;
   const Two squared = x * x + y * y + z * z;
   const Two length{std::sqrt(squared[0]), std::sqrt(squared[1])};
   const Two scale = 1 / length;
@@ -22,8 +38,8 @@ void put_unit(Vec3d a, Vec3d b, Vec3f& unit_a, Vec3f& unit_b) {
   const Two unit_x = has_area ? scale * x : Two{};
   const Two unit_y = has_area ? scale * y : Two{};
   const Two unit_z = has_area ? scale * z : Two{};
-  unit_a = to_float({unit_x[0], unit_y[0], unit_z[0]});
-  unit_b = to_float({unit_x[1], unit_y[1], unit_z[1]});
+  unit_f = to_float({unit_x[0], unit_y[0], unit_z[0]});
+  unit_g = to_float({unit_x[1], unit_y[1], unit_z[1]});
 }
 
 }  // namespace
@@ -34,7 +50,7 @@ Buffer<Vec3f> face_normals(const Mesh& mesh, int threads) {
   for_each_part(parts_of(count, threads), count, [&](uint32_t, uint32_t first, uint32_t last) {
     for (uint32_t f = first; f < last; f += 2) {
       const uint32_t g = std::min(f + 1, last - 1);
-      put_unit(area_normal(mesh, f), area_normal(mesh, g), normals[f], normals[g]);
+      put_unit_normals(mesh, f, g, normals[f], normals[g]);
     }
   });
   return normals;
