@@ -86,12 +86,10 @@ void require_attribute(const papilio_attribute& attribute) {
 
 TriangleMesh copy_of(const papilio_triangles& from) {
   TriangleMesh to;
-  to.positions.reserve(from.point_count);
-  for (size_t p = 0; p < from.point_count; ++p)
-    to.positions.push_back({from.positions[3 * p], from.positions[3 * p + 1], from.positions[3 * p + 2]});
-  to.triangles.reserve(from.face_count);
-  for (size_t f = 0; f < from.face_count; ++f)
-    to.triangles.push_back({from.triangles[3 * f], from.triangles[3 * f + 1], from.triangles[3 * f + 2]});
+  to.positions = Buffer<Vec3f>::for_overwrite(from.point_count);
+  if (from.point_count > 0) std::copy_n(from.positions, size_t{3} * from.point_count, &to.positions[0].x);
+  to.triangles = Buffer<Triangle>::for_overwrite(from.face_count);
+  if (from.face_count > 0) std::copy_n(from.triangles, size_t{3} * from.face_count, to.triangles[0].data());
   for (size_t a = 0; a < from.attribute_count; ++a) {
     const papilio_attribute& attribute = from.attributes[a];
     require_attribute(attribute);
