@@ -15,6 +15,7 @@ import {
   readMesh,
   root,
   sizeOf,
+  torusWithAttributes,
 } from './requests.mjs';
 
 const { Kernel, KernelError } = await import(path.join(root, 'build/npm/dist/wasm.js'));
@@ -154,6 +155,33 @@ test('memory is returned, and the next refinement has the same result', () => {
   assert.equal(kernel.refine(mesh, { levels: 5 }).mesh.triangles.length, 3 * 1024 * 2000);
   assert.equal(kernel.bytes, 0);
   assert.ok(areSame(kernel.refine(mesh, { levels: 1 }).mesh.positions, small.mesh.positions));
+});
+
+test('a result read in place has the bytes of a copied one, until the next call', () => {
+  const kernel = new Kernel(module);
+  const mesh = kernel.open(torusWithAttributes(12));
+  const parameters = { levels: 2, 'output.normals': true };
+  const copied = kernel.refine(mesh, parameters);
+  for (let i = 0; i < 3; ++i) {
+    const { mesh: viewed, statistics } = kernel.refine(mesh, parameters, { inPlace: true });
+    assert.equal(viewed.positions.buffer.byteLength, kernel.bytes, 'a view of the memory');
+    assert.ok(areSame(viewed.positions, copied.mesh.positions));
+    assert.ok(areSame(viewed.triangles, copied.mesh.triangles));
+    for (const [a, { values }] of viewed.attributes.entries())
+      assert.ok(areSame(values, copied.mesh.attributes[a].values));
+    assert.deepEqual(statistics, copied.statistics);
+  }
+});
+
+test('results read in place are freed by the next call', () => {
+  const kernel = new Kernel(module);
+  const mesh = kernel.open(readMesh('bunny600.obj'));
+  const bytesAfter = (times) => {
+    for (let i = 0; i < times; ++i) kernel.refine(mesh, { levels: 4 }, { inPlace: true });
+    return kernel.bytes;
+  };
+  const first = bytesAfter(3);
+  assert.equal(bytesAfter(20), first);
 });
 
 test('a result beyond the memory is refused with its size before the refinement', () => {

@@ -58,6 +58,9 @@ export interface Hooks {
   cancelled?: () => boolean;
   /// Whether attributes are returned as Float32Array, for graphics cards.
   singlePrecision?: boolean;
+  /// Whether positions, triangles and attributes of double precision are views of the module's memory, which saves their
+  /// copies. They are valid until the next call of the kernel; those of a level, until onLevel returns.
+  inPlace?: boolean;
 }
 
 export type Fault = 'bad-parameter' | 'unusable-mesh' | 'too-large' | 'cancelled' | 'out-of-memory' | 'internal';
@@ -118,6 +121,8 @@ export class Kernel {
   #instance: WebAssembly.Instance | null = null;
   #exports!: Exports;
   #hooks: Hooks = {};
+  /// Address of the result that the caller views; 0: none.
+  #viewed = 0;
 
   /// `mostBytes`: limit of memory; as it never shrinks, a larger instance is discarded after the refinement, with its
   /// data for further views.
@@ -158,7 +163,8 @@ export class Kernel {
       const result = this.#exports.refine(mesh.pointer, text, hooks.onLevel ? 1 : 0);
       this.#exports.release(text);
       const made = this.#read(this.#exports.result_mesh(result), this.#exports.result_statistics(result));
-      this.#exports.result_free(result);
+      if (hooks.inPlace) this.#viewed = result;
+      else this.#exports.result_free(result);
       return made;
     });
     if (this.bytes > this.#mostBytes) this.#instance = null;
@@ -169,6 +175,8 @@ export class Kernel {
   #guarded<T>(work: () => T): T {
     try {
       this.#start();
+      if (this.#viewed) this.#exports.result_free(this.#viewed);
+      this.#viewed = 0;
       return work();
     } catch (error) {
       this.#instance = null;
@@ -180,6 +188,7 @@ export class Kernel {
 
   #start(): void {
     if (this.#instance) return;
+    this.#viewed = 0;
     this.#instance = new WebAssembly.Instance(this.#module, {
       papilio: {
         fault: (fault: number, message: number, parameter: number) => {
@@ -246,30 +255,29 @@ export class Kernel {
     return at;
   }
 
-  /// Copies a level out.
+  /// Returns a level, copied unless it is read in place.
   #read(mesh: number, statistics: number): Refined {
     const { buffer } = this.#exports.memory;
     const view = new DataView(buffer);
     const word = (at: number) => view.getUint32(at, true);
-    const Values = this.#hooks.singlePrecision ? Float32Array : Float64Array;
+    const { singlePrecision, inPlace } = this.#hooks;
+    const given = <T extends Float32Array | Float64Array | Uint32Array>(view: T) =>
+      (inPlace ? view : view.slice()) as T;
     const [points, faces, count, positions, triangles, attributes] = Array.from(
       new Uint32Array(buffer, mesh, trianglesBytes / 4),
     ) as [number, number, number, number, number, number];
     return {
       mesh: {
-        positions: new Float32Array(buffer, positions, 3 * points).slice(),
-        triangles: new Uint32Array(buffer, triangles, 3 * faces).slice(),
+        positions: given(new Float32Array(buffer, positions, 3 * points)),
+        triangles: given(new Uint32Array(buffer, triangles, 3 * faces)),
         attributes: Array.from({ length: count }, (_, a) => {
           const [components, kind, values] = [0, 4, 8].map((o) => word(attributes + a * attributeBytes + o)) as [
             number,
             number,
             number,
           ];
-          return {
-            kind: kinds[kind]!,
-            components,
-            values: new Values(new Float64Array(buffer, values, points * components)),
-          };
+          const all = new Float64Array(buffer, values, points * components);
+          return { kind: kinds[kind]!, components, values: singlePrecision ? new Float32Array(all) : given(all) };
         }),
       },
       statistics: {
