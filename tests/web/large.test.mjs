@@ -20,6 +20,8 @@ import {
 
 const shared = serverAndBrowser();
 const open = (hash) => openPage(shared.browser, shared.server.url, { hash });
+/// Goal for the milliseconds of a task, which the least of several runs reaches on busy machines too.
+const longest = 16;
 const done = (page, mode) => page.locator(`.panel[data-mode=${mode}][data-state=done]`).waitFor();
 
 /// Number of tasks of the page's main thread during `work`, and 2 s after it, that take more than `most` milliseconds of
@@ -42,8 +44,7 @@ test('no task takes long while a mesh of 355,712 faces is opened', async () => {
   const bytes = await run(command, 'fine.drc');
   const { page, faults } = await open('mesh=knot&show=coarse&where=here&look=shaded');
   await done(page, 'coarse');
-  // Half as much again as the goal of 16 ms.
-  const [most, runs] = [24, 6];
+  const [most, runs] = [longest, 6];
   const carried = await Promise.all([...Array(runs).keys()].map((i) => carry(page, [[`fine${i}.drc`, bytes]])));
   const long = await longTasks(page, most, runs, async (i) => {
     await dropCarried(page, carried[i]);
@@ -53,6 +54,26 @@ test('no task takes long while a mesh of 355,712 faces is opened', async () => {
   assert.equal(await facesOf(page, 'coarse'), 355_712);
   assert.equal(long, 0);
   assert.deepEqual(faults, []);
+});
+
+test('no task takes long when the edges of such a mesh are first drawn', async () => {
+  const command = `${join(build, 'papilio')} refine ${join(meshes, 'elephant89k.drc')} -o fine.drc --levels 1`;
+  const bytes = await run(command, 'fine.drc');
+  const [counts, runs] = [[], 4];
+  for (let i = 0; i < runs && counts.at(-1) !== 0; ++i) {
+    const { page, faults, context } = await open('mesh=knot&show=coarse&where=here&look=shaded');
+    await done(page, 'coarse');
+    await drop(page, 'fine.drc', bytes);
+    await page.waitForFunction(() => document.title.startsWith('fine'));
+    await done(page, 'coarse');
+    await page.waitForTimeout(2000); // shaders are compiled in advance
+    const long = await longTasks(page, longest, 1, () => page.locator('input[name=look][value=wireframe]').check());
+    counts.push(long);
+    assert.equal(await facesOf(page, 'coarse'), 355_712);
+    assert.deepEqual(faults, []);
+    await context.close();
+  }
+  assert.equal(Math.min(...counts), 0);
 });
 
 test('distances are measured in a worker', async () => {
@@ -65,7 +86,7 @@ test('distances are measured in a worker', async () => {
   assert.equal(await facesOf(page, 'uniform'), 128_000);
   const names = [];
   page.on('worker', (worker) => names.push(worker.url()));
-  const long = await longTasks(page, 50, 3, async () => {
+  const long = await longTasks(page, longest, 4, async () => {
     await page.locator('input[name=look][value=shaded]').check();
     await page.locator('input[name=look][value=distance]').check();
     await page.locator('.panel[data-mode=view] .legend', { hasText: 'largest here' }).waitFor();

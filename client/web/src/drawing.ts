@@ -21,6 +21,7 @@ import {
 import { measureBounds, positionsOf } from './bounds';
 import { findEdges, foundEdges } from './edges';
 import type { Decoded } from './model';
+import { pause } from './pause';
 
 function material(options: MeshStandardMaterialParameters): MeshStandardMaterial {
   return new MeshStandardMaterial({
@@ -39,6 +40,16 @@ const smoothSurface = material({ color: 0xa9bccd, flatShading: false });
 const facets = material({ color: 0xa9bccd, flatShading: true });
 const colouredFacets = material({ vertexColors: true, flatShading: true, toneMapped: false });
 const lines = new LineBasicMaterial({ color: 0x16344f, transparent: true });
+
+/// Returns a small drawing of each material, whose shaders can be compiled before they are needed.
+export function sampleDrawings(): Object3D[] {
+  const geometry = new BufferGeometry();
+  for (const name of ['position', 'normal', 'color'])
+    geometry.setAttribute(name, new BufferAttribute(new Float32Array(9), 3));
+  const faces = [smoothSurface, facets, colouredFacets].map((one) => new Mesh(geometry, one));
+  faces[2].userData.isColoured = true;
+  return [...faces, new LineSegments(geometry, lines)];
+}
 
 /// Returns a scene with its materials, or a mesh: faceted, or smooth if it has normals.
 export function shaded({ geometry, scene }: Decoded): Object3D {
@@ -145,33 +156,55 @@ function medianLength(
   return lengths.sort((a, b) => a - b)[lengths.length >> 1] ?? 0;
 }
 
-/// Returns the mesh with coloured faces. `shares` [faces]: position of each face on the ramp, 0 to 1.
-export function coloured(geometry: BufferGeometry, shares: ArrayLike<number>): Object3D {
+/// Faces that are coloured between pauses: a few milliseconds.
+const facesOfSlice = 1 << 15;
+
+/// Returns the mesh with coloured faces, made in several tasks if it is large. `shareOf`: position of a face on the
+/// ramp, 0 to 1.
+export async function coloured(geometry: BufferGeometry, shareOf: (face: number) => number): Promise<Object3D> {
   const points = positionsOf(geometry);
   const corners = geometry.index!.array;
   const positions = new Float32Array(3 * corners.length);
-  const colours = new Float32Array(3 * corners.length);
-  const table = Float32Array.from(
-    Array.from({ length: 256 }, (_, i) => new Color(rampColour(i / 255)).toArray()).flat(),
+  const colours = new Uint16Array(3 * corners.length);
+  const table = Uint16Array.from(
+    Array.from({ length: 256 }, (_, i) =>
+      new Color(rampColour(i / 255)).toArray().map((x) => Math.round(65535 * x)),
+    ).flat(),
   );
-  for (let i = 0, to = 0; i < corners.length; ++i, to += 3) {
-    const colour = 3 * Math.round(255 * Math.min(Math.max(shares[Math.floor(i / 3)], 0), 1));
-    const point = 3 * corners[i];
-    colours[to] = table[colour];
-    colours[to + 1] = table[colour + 1];
-    colours[to + 2] = table[colour + 2];
-    positions[to] = points[point];
-    positions[to + 1] = points[point + 1];
-    positions[to + 2] = points[point + 2];
+  for (let from = 0; from < corners.length; from += 3 * facesOfSlice) {
+    if (from > 0) await pause();
+    const end = Math.min(from + 3 * facesOfSlice, corners.length);
+    putCorners(points, corners, positions, from, end);
+    for (let face = from / 3, to = 3 * from; face < end / 3; ++face) {
+      const colour = 3 * Math.round(255 * Math.min(Math.max(shareOf(face), 0), 1));
+      for (let corner = 0; corner < 3; ++corner)
+        for (let channel = 0; channel < 3; ++channel) colours[to++] = table[colour + channel];
+    }
   }
   const faces = new BufferGeometry();
   faces.setAttribute('position', new BufferAttribute(positions, 3));
-  faces.setAttribute('color', new BufferAttribute(colours, 3));
+  faces.setAttribute('color', new BufferAttribute(colours, 3, true));
   if (geometry.boundingSphere === null) measureBounds(geometry);
   faces.boundingSphere = geometry.boundingSphere;
   const made = new Mesh(faces, colouredFacets);
   made.userData.isColoured = true;
   return made;
+}
+
+/// Writes the positions of these corners.
+function putCorners(
+  points: Float32Array,
+  corners: ArrayLike<number>,
+  positions: Float32Array,
+  from: number,
+  end: number,
+): void {
+  for (let i = from; i < end; ++i) {
+    const point = 3 * corners[i];
+    positions[3 * i] = points[point];
+    positions[3 * i + 1] = points[point + 1];
+    positions[3 * i + 2] = points[point + 2];
+  }
 }
 
 // Dark blue through green to yellow, with even steps of lightness: readable without distinguishing hues.

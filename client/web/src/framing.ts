@@ -26,15 +26,19 @@ export function framed(
   const right = up.clone().cross(towards).normalize();
   const above = towards.clone().cross(right);
   // Smallest distance that has all vertices in the picture.
-  const [x, y, z] = center.toArray();
+  const { x, y, z } = center;
+  const { x: aboveX, y: aboveY, z: aboveZ } = above;
+  const { x: rightX, y: rightY, z: rightZ } = right;
+  const { x: nearX, y: nearY, z: nearZ } = towards;
   let distance = 0;
   for (let i = 0; i + 2 < positions.length; i += 3) {
-    const [dx, dy, dz] = [positions[i] - x, positions[i + 1] - y, positions[i + 2] - z];
-    const across = Math.max(
-      Math.abs(dx * above.x + dy * above.y + dz * above.z) / high,
-      Math.abs(dx * right.x + dy * right.y + dz * right.z) / wide,
-    );
-    distance = Math.max(distance, dx * towards.x + dy * towards.y + dz * towards.z + across);
+    const dx = positions[i] - x;
+    const dy = positions[i + 1] - y;
+    const dz = positions[i + 2] - z;
+    const upwards = Math.abs(dx * aboveX + dy * aboveY + dz * aboveZ) / high;
+    const aside = Math.abs(dx * rightX + dy * rightY + dz * rightZ) / wide;
+    const least = dx * nearX + dy * nearY + dz * nearZ + (upwards > aside ? upwards : aside);
+    if (least > distance) distance = least;
   }
   const eye = towards.multiplyScalar(distance).add(center);
   return { eye: eye.toArray(), target: center.toArray() };

@@ -1,6 +1,6 @@
 // Opening of a file as a mesh.
 
-import { measureBounds } from './bounds';
+import { measureBoundsInTasks } from './bounds';
 import { decode } from './decode';
 import { OpenMesh } from './mesh';
 import type { Encoded } from './model';
@@ -12,9 +12,6 @@ export async function openMesh(name: string, encoded: Encoded): Promise<OpenMesh
     if (isPacked(encoded.bytes)) return openPackedMesh(name, encoded.bytes);
   }
   const decoded = await decode(encoded);
-  if (decoded.scene === null) {
-    measureBounds(decoded.geometry);
-    await new Promise((resolve) => setTimeout(resolve)); // the page shows the mesh in a task of its own
-  }
+  if (decoded.scene === null) await measureBoundsInTasks(decoded.geometry);
   return new OpenMesh(name, encoded, decoded);
 }

@@ -58,9 +58,10 @@ export class Pictures {
     this.#abort = new AbortController();
     const { signal } = this.#abort;
     const all = panels.flatMap((panel) => (panel.shown ? [{ panel, shown: panel.shown }] : []));
-    for (const picture of all) if (picture.shown.decoded === colours?.decoded) this.#drawColours(picture, colours);
     const pictures = all.filter(({ shown }) => shown.decoded !== colours?.decoded);
     try {
+      for (const picture of all)
+        if (picture.shown.decoded === colours?.decoded) await this.#drawColours(picture, colours, signal);
       if (look === 'level') await this.#drawLevels(pictures, Math.max(levels, 1), signal);
       else if (look === 'distance' && typeof uniform !== 'string') await this.#drawDistances(pictures, uniform, signal);
       else if (look === 'wireframe') await this.#drawEdges(pictures, signal);
@@ -90,10 +91,10 @@ export class Pictures {
     }
   }
 
-  #drawColours({ panel, shown }: Picture, { id, ofFaces, diagonal }: DistanceColours): void {
-    const most = ofFaces.reduce((a, b) => Math.max(a, b), 0);
-    const shares = () => ofFaces.map((distance) => Math.sqrt(distance / (most || 1)));
-    this.#put({ panel, shown }, `colours ${id}`, () => coloured(shown.geometry, shares()));
+  async #drawColours(picture: Picture, { id, ofFaces, diagonal }: DistanceColours, signal: AbortSignal): Promise<void> {
+    const { panel } = picture;
+    const most = largestOf(ofFaces);
+    await this.#putColours(picture, `colours ${id}`, (face) => Math.sqrt(ofFaces[face] / (most || 1)), signal);
     panel.setLegend(distanceLegend(most / diagonal, most / diagonal));
   }
 
@@ -103,8 +104,7 @@ export class Pictures {
       if (!this.#has({ panel, shown }, how)) {
         const ofFaces = await panel.levelsOfFaces(shown);
         signal.throwIfAborted();
-        const shares = Float32Array.from(ofFaces, (level) => level / levels);
-        this.#put({ panel, shown }, how, () => coloured(shown.geometry, shares));
+        await this.#putColours({ panel, shown }, how, (face) => ofFaces[face] / levels, signal);
       }
       panel.setLegend(levelLegend(levels));
     }
@@ -122,13 +122,13 @@ export class Pictures {
       this.#distances.set(shown, { uniform, faces });
     }
     // One scale for all, so that colours are comparable.
-    const largest = pictures.map(({ shown }) => this.#distances.get(shown)!.faces.reduce((a, b) => Math.max(a, b), 0));
+    const largest = pictures.map(({ shown }) => largestOf(this.#distances.get(shown)!.faces));
     const most = Math.max(...largest) || 1;
     const diagonal = diagonalOf(uniform.mesh);
     for (const [i, { panel, shown }] of pictures.entries()) {
       const { faces } = this.#distances.get(shown)!;
-      const share = (distance: number) => Math.sqrt(distance / most); // square root: makes small distances distinguishable
-      this.#put({ panel, shown }, `distances ${most}`, () => coloured(shown.geometry, faces.map(share)));
+      const shareOf = (face: number) => Math.sqrt(faces[face] / most); // square root: makes small distances distinguishable
+      await this.#putColours({ panel, shown }, `distances ${most}`, shareOf, signal);
       panel.setLegend(distanceLegend(largest[i] / diagonal, most / diagonal));
       await this.stage.drawn(); // one mesh a frame
       signal.throwIfAborted();
@@ -138,6 +138,18 @@ export class Pictures {
   #has({ panel, shown }: Picture, how: string): boolean {
     const drawn = this.#drawn.get(panel);
     return drawn?.shown === shown && drawn.how === how;
+  }
+
+  async #putColours(
+    picture: Picture,
+    how: string,
+    shareOf: (face: number) => number,
+    signal: AbortSignal,
+  ): Promise<void> {
+    if (this.#has(picture, how)) return;
+    const made = await coloured(picture.shown.geometry, shareOf);
+    signal.throwIfAborted();
+    this.#put(picture, how, () => made);
   }
 
   #put(picture: Picture, how: string, make: () => Object3D): void {
@@ -151,6 +163,13 @@ export class Pictures {
 interface Picture {
   panel: Panel;
   shown: Shown;
+}
+
+/// Returns the largest of distances, which are not negative.
+function largestOf(distances: Float32Array): number {
+  let most = 0;
+  for (let i = 0; i < distances.length; ++i) if (distances[i] > most) most = distances[i];
+  return most;
 }
 
 function diagonalOf(mesh: OpenMesh): number {

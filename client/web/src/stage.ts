@@ -70,6 +70,7 @@ export class Stage {
   constructor(canvas: HTMLCanvasElement, surface: HTMLElement) {
     this.#surface = surface;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.#renderer.debug.checkShaderErrors = false; // reading the logs waits for the graphics process
     this.#renderer.toneMapping = ReinhardToneMapping; // keeps shades in white areas
     this.#renderer.toneMappingExposure = 1.6;
     this.#controls = this.#makeControls();
@@ -90,14 +91,7 @@ export class Stage {
   /// Sets the panels on screen; each draws its content at its place. Others keep their content.
   setPanels(elements: HTMLElement[]): void {
     this.#panels = elements;
-    for (const element of elements) {
-      if (this.#views.has(element)) continue;
-      const scene = new Scene();
-      const light = new DirectionalLight(0xffffff, 2.4);
-      const ambient = new AmbientLight(0xffffff, 0.7);
-      scene.add(ambient, light, light.target);
-      this.#views.set(element, { scene, light, ambient, content: null, frustum: null });
-    }
+    for (const element of elements) if (!this.#views.has(element)) this.#views.set(element, makeView());
     this.draw();
   }
 
@@ -107,6 +101,21 @@ export class Stage {
     if (view === undefined) return;
     if (view.content) view.scene.remove(view.content);
     dispose(view.content);
+    this.#fill(view, content);
+    this.draw();
+  }
+
+  /// Compiles the shaders of contents before they are shown, one in each of several tasks.
+  async compile(contents: Object3D[]): Promise<void> {
+    for (const content of contents) {
+      await new Promise((resolve) => setTimeout(resolve, 100)); // after pictures that are due
+      const view = makeView();
+      this.#fill(view, content);
+      await this.#renderer.compileAsync(view.scene, this.#camera);
+    }
+  }
+
+  #fill(view: View, content: Object3D | null): void {
     view.content = content;
     if (content) view.scene.add(content);
     // Metals reflect their surroundings.
@@ -115,7 +124,6 @@ export class Stage {
     view.scene.environmentIntensity = 0.5; // keeps white below saturation
     view.light.intensity = isColoured ? 2.4 : 1.5;
     view.ambient.intensity = isColoured ? 0.7 : 0;
-    this.draw();
   }
 
   /// Draws the frustum of a camera other than the current one; null: none.
@@ -314,6 +322,14 @@ export class Stage {
     const to = { eye: eye.toArray(), target: hit.point.toArray() };
     this.#stopGliding = glide(from, to, (camera) => (this.camera = camera));
   }
+}
+
+function makeView(): View {
+  const scene = new Scene();
+  const light = new DirectionalLight(0xffffff, 2.4);
+  const ambient = new AmbientLight(0xffffff, 0.7);
+  scene.add(ambient, light, light.target);
+  return { scene, light, ambient, content: null, frustum: null };
 }
 
 function aspectOf(element: HTMLElement): number {

@@ -7,6 +7,7 @@ import { commandRows, commandsFor, copy } from './commands';
 import { Controls } from './controls';
 import { defaults } from './defaults';
 import { fetchDecoder } from './draco';
+import { sampleDrawings } from './drawing';
 import { addChoice, find } from './elements';
 import { listenToFiles, listenToKeys } from './input';
 import { askForKey, listenToKey } from './key_form';
@@ -19,6 +20,7 @@ import { openMesh } from './opening';
 import { PackedPanel } from './packed_panel';
 import { Panel } from './panel';
 import { ParameterForm } from './parameter_form';
+import { pause } from './pause';
 import { Pictures } from './pictures';
 import { levelsOf } from './requests';
 import { Results } from './results';
@@ -73,6 +75,7 @@ export class Viewer {
     fetchDecoder().catch(() => {}); // errors are shown by the decoding
     const info = this.#asker.info === null ? this.#fetchInfo() : null;
     await Promise.all([info, this.#mesh === null ? this.#openNamed(this.#state.mesh) : null]);
+    await this.#stage.compile(sampleDrawings());
   }
 
   // Opening
@@ -265,6 +268,8 @@ export class Viewer {
   /// Writes the commands if they are visible: otherwise a mesh refined in this browser would be sent.
   async #writeCommands(mesh: OpenMesh): Promise<void> {
     if (!find<HTMLDetailsElement>('advanced').open) return;
+    await pause(); // sending a large mesh takes several milliseconds
+    if (mesh !== this.#mesh) return;
     const id = await this.#store(mesh);
     if (mesh !== this.#mesh || this.#asker.info === null) return;
     const queryFor = (mode: Mode) => (mode === 'coarse' ? null : this.#asker.queryFor(mode));
