@@ -155,6 +155,11 @@ test('the uniform result has no parameters of selection, and the adaptive one no
   assert.deepEqual([12, 4000, 70_000, 1e6].map(levels), ['3', '3', '1', '1']);
   const pixels = new Map([['view.error_pixels', '0.5']]);
   assert.equal(valuesFor('adaptive', pixels, view, 100).get('tolerance'), '0.0005');
+  // With pixels, a tolerance does not keep the picture from being refined as the camera comes nearer.
+  const both = new Map([...pixels, ['tolerance', '0.001']]);
+  assert.equal(valuesFor('view', both, view, 100).has('tolerance'), false);
+  assert.equal(valuesFor('view', new Map([['tolerance', '0.001']]), view, 100).get('tolerance'), '0.001');
+  assert.equal(valuesFor('adaptive', both, view, 100).get('tolerance'), '0.001');
   // Surfaces are not compared while the camera moves, unless the user says so.
   assert.equal(valuesFor('view', pixels, view, 100).get('view.verify'), 'false');
   assert.equal(valuesFor('view', new Map([...pixels, ['view.verify', 'true']]), view, 100).get('view.verify'), 'true');

@@ -6,7 +6,7 @@ import type { Frozen, Look, Mode, State } from './link';
 import type { OpenMesh } from './mesh';
 import type { Panel, Request } from './panel';
 import { queryOf, type Values } from './parameters';
-import { forMoving, noteFor, valuesFor } from './requests';
+import { forView, noteFor, valuesFor } from './requests';
 import type { Info } from './service';
 
 /// State of the page that decides the requests.
@@ -75,7 +75,7 @@ export class Asker {
     if (state.where !== 'here' || !here || look === 'level' || look === 'distance') return null;
     if (!here.does(state.values)) return null;
     const seen = state.frozen ?? view;
-    const values = forMoving(state.values);
+    const values = forView(state.values);
     return () => here.refine(values, cameraOf(seen, lensOf(values)), seen.pixels);
   }
 }

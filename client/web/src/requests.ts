@@ -27,17 +27,21 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
     if (pixels > 0 && !hasTarget(values)) adaptive.set('tolerance', shortest(pixels / wholePicture));
     return adaptive;
   }
-  const all = forMoving(values);
+  const all = forView(values);
   all.set('view.eye', view.eye.map(shortest).join(','));
   all.set('view.target', view.target.map(shortest).join(','));
   if (!all.has('view.viewport')) all.set('view.viewport', view.pixels.join(','));
   return all;
 }
 
-/// Returns the parameters while the camera moves: surfaces are not verified unless the user requests it.
-export function forMoving(values: Values): Values {
+/// Returns the parameters of the picture that follows the camera. With an accuracy in pixels, the tolerance is left to
+/// the adaptive result: edges below it would stay whole however near the camera comes. Surfaces are not verified unless
+/// the user requests it, as the camera moves.
+export function forView(values: Values): Values {
   const all = new Map(values);
-  return all.has('view.error_pixels') && !all.has('view.verify') ? all.set('view.verify', 'false') : all;
+  if (!(Number(all.get('view.error_pixels') ?? 0) > 0)) return all;
+  all.delete('tolerance');
+  return all.has('view.verify') ? all : all.set('view.verify', 'false');
 }
 
 /// Returns a note for the user; may be empty.
