@@ -45,3 +45,6 @@ extern "C" void abort_message(const char* /*format*/, ...) {
 
 // Called by `throw` before the exception is constructed; each module defines its own __cxa_throw.
 extern "C" void* __cxa_allocate_exception(size_t bytes) { return ::operator new(bytes); }
+
+// Called with the destructors of static objects, which are never destroyed.
+extern "C" int __cxa_atexit(void (* /*destroy*/)(void*), void* /*object*/, void* /*module*/) { return 0; }
