@@ -120,7 +120,7 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_share * wanted_);
+    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_share * wanted_, poller());
     require_manifold(mesh);
     normals_ = mark_detail_curves(mesh);
     require_whole_parts(mesh);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@ constexpr double least_thickness = 0.05;
 constexpr double least_cosine = 0.5;
 /// Upper bound of a move, a share of the mean edge, so that a regular mesh stays unchanged.
 constexpr double most_of_edge = 0.1;
+constexpr uint32_t faces_between_polls = 4096;
 
 struct Face {
   Vec3d a, b, c;
@@ -42,9 +44,10 @@ double mean_edge_length(const Mesh& mesh) {
 
 class SliverRemover {
  public:
-  SliverRemover(Mesh& mesh, double distance)
+  SliverRemover(Mesh& mesh, double distance, const std::function<void()>& poll)
       : positions_(mesh.positions),
         distance_(distance),
+        poll_(poll),
         origin_(mesh.topology.origin),
         twin_(mesh.topology.twin),
         point_(mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point),
@@ -53,10 +56,13 @@ class SliverRemover {
 
   /// Returns whether a face changed.
   bool run() {
-    for (auto f = static_cast<uint32_t>(is_alive_.size()); f-- > 0;)
+    for (auto f = static_cast<uint32_t>(is_alive_.size()); f-- > 0;) {
+      count_step();
       if (is_removable(f)) waiting_.push_back(f);
+    }
     bool is_changed = false;
     while (!waiting_.empty()) {
+      count_step();
       const uint32_t f = waiting_.back();
       waiting_.pop_back();
       if (is_alive_[f] && is_removable(f) && remove(f)) is_changed = true;
@@ -82,6 +88,10 @@ class SliverRemover {
     [[nodiscard]] bool has_spare_face() const { return neighbours.size() > (is_closed() ? 3 : 2); }
     [[nodiscard]] bool has(uint32_t v) const { return std::ranges::find(neighbours, v) != neighbours.end(); }
   };
+
+  void count_step() {
+    if (poll_ && ++steps_ % faces_between_polls == 0) poll_();
+  }
 
   [[nodiscard]] static uint32_t next(uint32_t h) { return Topology::next(h); }
   [[nodiscard]] static uint32_t previous(uint32_t h) { return Topology::previous(h); }
@@ -278,6 +288,8 @@ class SliverRemover {
 
   const Buffer<Vec3f>& positions_;
   double distance_;
+  const std::function<void()>& poll_;
+  uint32_t steps_ = 0;
   Buffer<uint32_t> origin_;        // [H]
   Buffer<uint32_t> twin_;          // [H]
   Buffer<uint32_t> point_;         // [H] points, or vertices without attributes
@@ -288,9 +300,9 @@ class SliverRemover {
 
 }  // namespace
 
-Mesh remove_slivers(Mesh mesh, double distance) {
+Mesh remove_slivers(Mesh mesh, double distance, const std::function<void()>& poll) {
   distance = std::min(distance, most_of_edge * mean_edge_length(mesh));
-  SliverRemover remover(mesh, distance);
+  SliverRemover remover(mesh, distance, poll);
   if (!remover.run()) return mesh;
   TriangleMesh made = std::move(mesh).triangles();
   made.triangles = remover.triangles();

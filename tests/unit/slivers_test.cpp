@@ -83,6 +83,22 @@ TEST(Slivers, SliversLargerThanTheDistanceAreKept) {
   EXPECT_EQ(remove_slivers(thin, 1e-7).triangles(), thin.triangles());
 }
 
+TEST(Slivers, RemovalIsPolledAllAlongAndStops) {
+  const Mesh thin = build_mesh(with_slivers(test::bumpy_sphere(4), 1, 1e-4F));
+  ASSERT_GT(thin.topology.face_count(), 40'000U);
+  int calls = 0;
+  (void)remove_slivers(thin, 1e-3, [&] { ++calls; });
+  EXPECT_GT(calls, 12);  // while faces are looked at, and while slivers are removed
+  struct Stop {};
+  for (int left = 0; left < calls; left += 3) {
+    int until = left;
+    const auto stop = [&] {
+      if (until-- == 0) throw Stop();
+    };
+    EXPECT_THROW((void)remove_slivers(thin, 1e-3, stop), Stop) << left;
+  }
+}
+
 TEST(Slivers, SliversAtBoundariesAreRemoved) {
   TriangleMesh sheet = test::grid(4, 4);
   const auto [a, b, c] = sheet.triangles[0];
