@@ -1,6 +1,9 @@
 #include "detail/optimal_collapse.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +11,7 @@
 #include "base/disjoint_sets.h"
 #include "detail/quadric.h"
 #include "papilio/mesh.h"
+#include "papilio/triangle_distance.h"
 
 namespace papilio {
 namespace {
@@ -53,11 +57,25 @@ std::vector<Triangle> cut_into_sheets(const Topology& t) {
 
 class Simplifier {
  public:
-  Simplifier(const Mesh& mesh, Quadrics quadrics)
-      : quadrics_are_(quadrics), faces_(cut_into_sheets(mesh.topology)), face_count_(mesh.topology.face_count()) {
+  Simplifier(const Mesh& mesh, Quadrics quadrics, double largest)
+      : quadrics_are_(quadrics),
+        squared_largest_(largest * largest),
+        faces_(cut_into_sheets(mesh.topology)),
+        face_count_(mesh.topology.face_count()) {
     const Topology& t = mesh.topology;
     for (uint32_t h = 0; h < t.half_edge_count(); ++h)
       if (corner(h) == places_.size()) places_.push_back(to_double(mesh.positions[t.origin[h]]));
+    if (std::isfinite(largest)) {
+      points_ = places_;
+      points_of_.resize(faces_.size());
+      std::vector<bool> is_put(points_.size());
+      for (uint32_t f = 0; f < faces_.size(); ++f)
+        for (const uint32_t v : faces_[f])
+          if (!is_put[v]) {
+            is_put[v] = true;
+            points_of_[f].push_back(v);
+          }
+    }
     faces_of_.resize(places_.size());
     quadrics_.resize(places_.size());
     ages_.resize(places_.size());
@@ -168,8 +186,8 @@ class Simplifier {
   [[nodiscard]] bool has(uint32_t face, uint32_t v) const {
     return std::ranges::find(faces_[face], v) != faces_[face].end();
   }
-  [[nodiscard]] bool is_allowed(const PairCollapse& c) const {
-    return keeps_topology(c.kept, c.removed) && turns_no_face(c);
+  [[nodiscard]] bool is_allowed(const PairCollapse& c) {
+    return keeps_topology(c.kept, c.removed) && turns_no_face(c) && keeps_points(c);
   }
 
   /// Returns whether the link condition holds: the only common neighbours of both ends are the apexes of the edge's
@@ -200,7 +218,42 @@ class Simplifier {
     return is_kept_upright(c.kept, c.removed) && is_kept_upright(c.removed, c.kept);
   }
 
+  /// Finds the nearest faces, after a collapse, of the points at the faces that it changes. Returns whether all are
+  /// within the largest distance.
+  [[nodiscard]] bool keeps_points(const PairCollapse& c) {
+    moved_points_.clear();
+    if (points_.empty()) return true;
+    changed_.clear();
+    for (const uint32_t v : {c.kept, c.removed})
+      for (const uint32_t f : faces_of_[v])
+        if (v == c.kept || !has(f, c.kept)) changed_.push_back(f);
+    const auto corner_at = [&](uint32_t v) { return v == c.kept || v == c.removed ? c.place : places_[v]; };
+    const auto is_kept = [&](uint32_t f) { return !(has(f, c.kept) && has(f, c.removed)); };
+    for (const uint32_t f : changed_)
+      for (const uint32_t point : points_of_[f]) {
+        double nearest = std::numeric_limits<double>::infinity();
+        uint32_t on = none;
+        for (const uint32_t to : changed_) {
+          if (!is_kept(to)) continue;
+          const Triangle& t = faces_[to];
+          const double squared = squared_distance(points_[point], {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])});
+          if (squared < nearest) nearest = squared, on = to;
+        }
+        if (!(nearest <= squared_largest_)) return false;
+        moved_points_.emplace_back(point, on);
+      }
+    return true;
+  }
+
+  /// Moves the points to the faces that keeps_points() has found.
+  void move_points() {
+    if (points_.empty()) return;
+    for (const uint32_t f : changed_) points_of_[f].clear();
+    for (const auto& [point, face] : moved_points_) points_of_[face].push_back(point);
+  }
+
   void apply(const PairCollapse& c) {
+    move_points();
     for (const uint32_t f : faces_of_[c.removed]) {
       if (has(f, c.kept)) {
         for (const uint32_t v : faces_[f])
@@ -238,7 +291,12 @@ class Simplifier {
   }
 
   Quadrics quadrics_are_;
-  std::vector<Triangle> faces_;  ///< faces; the corners of a removed one are equal
+  double squared_largest_;
+  std::vector<Vec3d> points_;                     ///< vertices of the original; none without a largest distance
+  std::vector<std::vector<uint32_t>> points_of_;  ///< [F] points for which the face is the nearest around
+  std::vector<uint32_t> changed_;                 ///< faces of the collapse that was looked at last
+  std::vector<std::pair<uint32_t, uint32_t>> moved_points_;  ///< its points, and their faces after it
+  std::vector<Triangle> faces_;                              ///< faces; the corners of a removed one are equal
   std::vector<Vec3d> places_;
   std::vector<std::vector<uint32_t>> faces_of_;
   std::vector<Quadric> quadrics_;
@@ -252,8 +310,8 @@ class Simplifier {
 }  // namespace
 
 std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces, Quadrics quadrics,
-                                            const std::function<void()>& poll) {
-  Simplifier simplifier(build_mesh(mesh), quadrics);
+                                            const std::function<void()>& poll, double largest) {
+  Simplifier simplifier(build_mesh(mesh), quadrics, largest);
   std::vector<TriangleMesh> results;
   for (const size_t count : faces) {
     if (!simplifier.reaches(count, poll)) break;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,11 @@ enum class Quadrics {
 ///
 /// Points of equal position are merged. Non-manifold surfaces are cut into manifold sheets, whose borders move
 /// separately. Collapses that change the topology or turn a face over are refused. `poll` is called every few thousand
-/// collapses and may throw to stop.
+/// collapses and may throw to stop. Refused, too, are collapses after which a vertex of the original is farther than
+/// `largest` from the faces that have replaced those around it.
 [[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
                                                           Quadrics quadrics = Quadrics::accumulated,
-                                                          const std::function<void()>& poll = {});
+                                                          const std::function<void()>& poll = {},
+                                                          double largest = std::numeric_limits<double>::infinity());
 
 }  // namespace papilio

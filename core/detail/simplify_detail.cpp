@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "detail/optimal_collapse.h"
+#include "detail/step_search.h"
 #include "detail/surface_distance.h"
+#include "detail/vertex_fit.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
 
@@ -14,11 +16,25 @@ namespace {
 /// Factor between the sizes of candidates.
 constexpr double ratio_of_sizes = 0.87;
 constexpr size_t fewest_faces = 12;
-/// Number of coded candidates: the smallest ones that reach the distance before quantization.
-constexpr int coded_sizes = 4;
-constexpr int fewest_bits = 6, most_bits = 18;
-/// RMS distance of quantized positions along normals, a share of the grid's step.
-constexpr double rms_of_step = 0.2;
+/// RMS distance of the first candidate, in target distances: its vertices are moved nearer.
+constexpr double first_rms = 1.1;
+/// Upper bound of a candidate's RMS distance before its vertices are rounded, in target distances.
+constexpr double largest_floor = 0.97;
+/// The search for a size ends after so many in a row that take more bytes.
+constexpr int most_worse_sizes = 2;
+/// Step of the grid to start with, in target distances, attempts to find it, and the share of the target distance that
+/// ends the search.
+constexpr double first_step = 5;
+constexpr int step_attempts = 5;
+constexpr double least_share = 0.985;
+/// Factor of a step that leaves the RMS distance, but not the largest one.
+constexpr double step_of_farther = 0.7;
+constexpr int most_bits = 20;
+/// Upper bound of the distances that collapses leave, a share of the largest allowed: rounding moves vertices, too.
+constexpr double share_of_largest = 0.8;
+constexpr int passes_of_fit = 2;
+/// Samples of a fit, per face, and their bounds.
+constexpr uint32_t samples_a_face = 6, least_samples = 20'000, most_samples = 400'000;
 constexpr uint32_t few_samples = 20'000, many_samples = 60'000;
 
 class Simplification {
@@ -38,16 +54,19 @@ class Simplification {
       sizes.push_back(faces);
       faces = static_cast<size_t>(ratio_of_sizes * static_cast<double>(faces));
     }
-    const std::vector<TriangleMesh> meshes =
-        collapse_to_sizes(tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); });
+    const std::vector<TriangleMesh> meshes = collapse_to_sizes(
+        tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); }, share_of_largest * most_);
     // Finds the first size that is too far; distances are nearly ascending.
     const auto first_beyond = std::ranges::partition_point(
-        meshes, [&](const TriangleMesh& mesh) { return is_near(distance_to(mesh, few_samples)); });
+        meshes, [&](const TriangleMesh& mesh) { return distance_to(mesh, few_samples).rms <= first_rms * wanted_; });
     std::optional<SimplifiedDetail> best;
-    const auto count = std::min<std::ptrdiff_t>(coded_sizes, first_beyond - meshes.begin());
-    for (std::ptrdiff_t i = 1; i <= count; ++i) {
-      std::optional<SimplifiedDetail> made = with_fewest_bits(*(first_beyond - i));
-      if (made && (!best || made->bytes < best->bytes)) best = std::move(made);
+    int worse = 0;
+    for (auto mesh = first_beyond; mesh != meshes.begin() && worse < most_worse_sizes;) {
+      std::optional<SimplifiedDetail> made = on_coarsest_grid(*--mesh);
+      if (!made) continue;
+      const bool is_best = !best || made->bytes < best->bytes;
+      worse = is_best ? 0 : worse + 1;
+      if (is_best) best = std::move(made);
     }
     return best;
   }
@@ -69,22 +88,52 @@ class Simplification {
     return distance.rms <= wanted_ && distance.largest <= most_;
   }
 
-  [[nodiscard]] std::optional<SimplifiedDetail> with_fewest_bits(const TriangleMesh& mesh) const {
+  /// Moves the vertices of a mesh, and codes it on the coarsest grid found that leaves the target distance.
+  [[nodiscard]] std::optional<SimplifiedDetail> on_coarsest_grid(const TriangleMesh& mesh) const {
+    const auto faces = static_cast<uint32_t>(mesh.triangles.size());
+    VertexFit fit(tree_, mesh, std::clamp(samples_a_face * faces, least_samples, most_samples), [this] { poll(); });
+    fit.improve(passes_of_fit);
+    const SurfaceDistance floor = distance_to(fit.mesh(), many_samples);
+    if (floor.rms > largest_floor * wanted_ || floor.largest > most_) return std::nullopt;
+    std::optional<TriangleMesh> best;
+    PositionGrid best_grid;
+    double step = first_step * wanted_;
+    for (int i = 0; i < step_attempts; ++i) {
+      const std::optional<PositionGrid> grid = grid_of(step);
+      if (!grid) break;
+      TriangleMesh rounded = fit.on_grid(*grid);
+      const SurfaceDistance distance = distance_to(rounded, many_samples);
+      if (is_near(distance) && (!best || grid->step > best_grid.step)) {
+        best = std::move(rounded);
+        best_grid = *grid;
+      }
+      if (is_near(distance) && distance.rms >= least_share * wanted_) break;
+      const double next = expected_step(step, distance.rms, floor.rms, wanted_);
+      step = distance.rms <= wanted_ && distance.largest > most_ ? step_of_farther * step : next;
+    }
+    if (!best) return std::nullopt;
+    return coded(*best, best_grid);
+  }
+
+  /// Returns the grid of a step whose origin is the lowest corner of the original's box; nothing if it is too fine.
+  [[nodiscard]] std::optional<PositionGrid> grid_of(double step) const {
     const Vec3d size = to_double(box_.max) - to_double(box_.min);
     const double longest = std::max({size.x, size.y, size.z});
-    int bits = fewest_bits;
-    while (bits < most_bits && rms_of_step * longest / std::exp2(bits) > wanted_) ++bits;
-    for (; bits <= most_bits; ++bits) {
-      poll();
-      CodedBase coded = code_(mesh, bits);
-      if (coded.triangles.triangles.empty()) continue;
-      const SurfaceDistance distance = distance_to(coded.triangles, many_samples);
-      if (!is_near(distance)) continue;
-      const double diagonal = box_.diagonal();
-      return SimplifiedDetail{
-          std::move(coded.triangles), {distance.rms / diagonal, distance.largest / diagonal}, coded.bytes, bits};
-    }
-    return std::nullopt;
+    int bits = 1;
+    while (bits <= most_bits && (std::exp2(bits) - 1) * step < longest) ++bits;
+    if (bits > most_bits) return std::nullopt;
+    return PositionGrid{box_.min, static_cast<float>(step), bits};
+  }
+
+  /// Returns nothing if the decoded mesh is farther, as faces without area are lost.
+  [[nodiscard]] std::optional<SimplifiedDetail> coded(const TriangleMesh& rounded, const PositionGrid& grid) const {
+    CodedBase coded = code_(rounded, grid);
+    if (coded.triangles.triangles.empty()) return std::nullopt;
+    const SurfaceDistance distance = distance_to(coded.triangles, many_samples);
+    if (!is_near(distance)) return std::nullopt;
+    const double diagonal = box_.diagonal();
+    return SimplifiedDetail{
+        std::move(coded.triangles), {distance.rms / diagonal, distance.largest / diagonal}, coded.bytes, grid};
   }
 
   const SimplifyOptions& options_;

@@ -4,36 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "detail/surface_samples.h"
+
 namespace papilio {
 namespace {
 
-double fraction(double x) { return x - std::floor(x); }
-
-/// Calls visit(point) for samples of a surface. In a triangle they follow the plastic number's sequence, folded at the
-/// diagonal [Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018].
-template <class Visit>
-void for_each_sample(const SurfaceTree& surface, uint32_t samples, const Visit& visit) {
-  const auto faces = static_cast<uint32_t>(surface.surface().triangles.size());
-  const auto area = [&](const TriangleCorners& c) { return length(cross(c.b - c.a, c.c - c.a)); };
-  double total = 0;
-  for (uint32_t f = 0; f < faces; ++f) total += area(surface.corners(f));
-  double sum = 0;
-  uint32_t taken = 0;
-  for (uint32_t f = 0; f < faces; ++f) {
-    const TriangleCorners c = surface.corners(f);
-    sum += area(c);
-    for (; taken < samples && sum * samples > (taken + 0.5) * total; ++taken) {
-      double u = fraction(0.5 + taken * 0.7548776662466927);
-      double v = fraction(0.5 + taken * 0.5698402909980532);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      visit(c.a + u * (c.b - c.a) + v * (c.c - c.a));
-    }
-  }
-}
-
 void measure(const SurfaceTree& from, const SurfaceTree& to, uint32_t samples, SurfaceDistance& found) {
   double sum = 0, largest = 0;
-  for_each_sample(from, samples, [&](Vec3d point) {
+  for_each_sample(from, samples, [&](uint32_t, Vec3d point) {
     const double squared = to.nearest(point).squared_distance;
     sum += squared;
     largest = std::max(largest, squared);

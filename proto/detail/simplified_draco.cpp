@@ -18,29 +18,29 @@ constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit}
 /// Coder of several meshes, which keeps the smallest stream of each.
 class SmallestDraco {
  public:
-  CodedBase code(const TriangleMesh& triangles, int bits) {
+  CodedBase code(const TriangleMesh& triangles, const PositionGrid& grid) {
     const Mesh mesh = build_mesh(triangles);
-    const QuantizationBox grid = tight_box(bounding_box(mesh.positions));
+    const QuantizationBox box{grid.origin, grid.step * static_cast<float>((1 << grid.bits) - 1)};
     std::string smallest;
     for (const int speed : {0, 3}) {
-      std::string stream = write_draco(mesh, grid, {.position_bits = bits, .speed = speed});
+      std::string stream = write_draco(mesh, box, {.position_bits = grid.bits, .speed = speed});
       if (smallest.empty() || stream.size() < smallest.size()) smallest = std::move(stream);
     }
     CodedBase coded{read_draco(smallest, no_limits), smallest.size()};
-    streams_.emplace_back(bits, std::move(smallest));
+    streams_.emplace_back(grid, std::move(smallest));
     return coded;
   }
 
   [[nodiscard]] const std::string& stream_of(const SimplifiedDetail& made) const {
-    for (const auto& [bits, stream] : streams_)
-      if (bits == made.position_bits && stream.size() == made.bytes &&
+    for (const auto& [grid, stream] : streams_)
+      if (grid == made.grid && stream.size() == made.bytes &&
           static_cast<const TriangleMesh&>(read_draco(stream, no_limits)) == made.triangles)
         return stream;
     throw std::logic_error("stream_of: this mesh was not coded here");
   }
 
  private:
-  std::vector<std::pair<int, std::string>> streams_;
+  std::vector<std::pair<PositionGrid, std::string>> streams_;
 };
 
 }  // namespace
@@ -48,12 +48,12 @@ class SmallestDraco {
 std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, const SimplifyOptions& options,
                                                       NormalStyle normals) {
   SmallestDraco coder;
-  const std::optional<SimplifiedDetail> made =
-      simplify_detail(original, options, [&](const TriangleMesh& mesh, int bits) { return coder.code(mesh, bits); });
+  const std::optional<SimplifiedDetail> made = simplify_detail(
+      original, options, [&](const TriangleMesh& mesh, const PositionGrid& grid) { return coder.code(mesh, grid); });
   if (!made) return std::nullopt;
   SimplifiedDraco simplified{.glb = write_plain(made->triangles, {coder.stream_of(*made)}, normals),
                              .faces = made->triangles.triangles.size(),
-                             .position_bits = made->position_bits,
+                             .position_bits = made->grid.bits,
                              .reach = made->reach};
   simplified.bytes = simplified.glb.size();
   return simplified;

@@ -4,12 +4,14 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "client/lib/compare.h"
 #include "core/detail/quadric.h"
+#include "core/detail/surface_distance.h"
 #include "papilio/refine.h"
 #include "tests/support/collapse_optimally.h"
 #include "tests/support/invariants.h"
@@ -123,6 +125,23 @@ TEST(OptimalCollapse, MemorylessQuadricsKeepTheBoundary) {
   const TriangleMesh square = grid(12, 12);
   const TriangleMesh result = collapse_optimally(square, 2, Quadrics::memoryless);
   EXPECT_LT(client::compare(square, result, {.samples = 2000}).hausdorff, 1e-6);
+}
+
+TEST(OptimalCollapse, VerticesStayWithinTheLargestDistance) {
+  TriangleMesh spiked = grid(20, 20);
+  spiked.positions[210].z = 0.06F;
+  const auto collapsed = [&](size_t faces, double largest) {
+    return collapse_to_sizes(spiked, std::array{faces}, Quadrics::memoryless, {}, largest);
+  };
+  const auto farthest = [&](const TriangleMesh& mesh) {
+    return vertex_distance(SurfaceTree(spiked), SurfaceTree(mesh));
+  };
+  const auto lost = collapsed(2, 1), kept = collapsed(40, 0.05);
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_GT(farthest(lost[0]), 0.05);
+  EXPECT_TRUE(collapsed(2, 0.05).empty());
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_LE(farthest(kept[0]), 0.05);
 }
 
 TEST(OptimalCollapse, NonManifoldMeshIsSplitIntoSheets) {

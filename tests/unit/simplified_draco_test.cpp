@@ -7,6 +7,9 @@
 #include "papilio/error.h"
 #include "papilio/refine.h"
 #include "proto/detail/pack.h"
+#include "tests/support/bumpy_sphere.h"
+#include "tests/support/detail_baseline.h"
+#include "tests/support/rate_curve.h"
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
 
@@ -55,6 +58,18 @@ TEST(SimplifiedDraco, StatedDistanceEqualsTheMeasured) {
     const test::SampledDistance distance = test::SampledSurface(original, 40'000).distance_to(read->mesh);
     EXPECT_NEAR(distance.rms / 100, made->reach.rms, 0.05 * made->reach.rms);
   }
+}
+
+TEST(SimplifiedDraco, StreamIsSmallerThanThatOfTheBestBaseline) {
+  constexpr double container = 600;  // lower bound: the document and the headers of its chunks
+  const TriangleMesh original = test::bumpy_sphere(4);
+  const test::DetailSubject subject("bumpy sphere", original, 40'000);
+  const double rms = 3e-4;
+  const auto best =
+      test::at_rms(test::lower_envelope(test::quadrics_and_draco(subject, Quadrics::memoryless)), 100 * rms);
+  const auto made = write_simplified_draco(original, {.rms = rms});
+  ASSERT_TRUE(made && best);
+  EXPECT_LT(static_cast<double>(made->bytes) - container, 0.9 * best->bytes);
 }
 
 TEST(SimplifiedDraco, CancellationStopsSimplification) {

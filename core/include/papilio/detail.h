@@ -231,19 +231,29 @@ struct SimplifyOptions {
   std::function<bool()> cancelled{};  ///< polled between steps; true stops with `Fault::cancelled`
 };
 
+/// Grid of positions: `origin` + whole numbers times `step`.
+struct PositionGrid {
+  Vec3f origin{};
+  float step = 0;  ///< > 0
+  int bits = 0;    ///< bits of a coordinate; those of few points may lie beyond 0..2^bits - 1
+
+  friend bool operator==(const PositionGrid&, const PositionGrid&) = default;
+};
+
 /// Decoded mesh without levels.
 struct SimplifiedDetail {
   TriangleMesh triangles;
   DetailReach reach;
-  uint64_t bytes = 0;     ///< length of its code
-  int position_bits = 0;  ///< bits of a coordinate
+  uint64_t bytes = 0;  ///< length of its code
+  PositionGrid grid;   ///< grid of its positions
 };
-/// Function that codes and decodes a mesh; its second argument is the number of bits of a coordinate.
-using MeshCoder = std::function<CodedBase(const TriangleMesh&, int)>;
+/// Function that codes and decodes a mesh whose positions are on a grid.
+using MeshCoder = std::function<CodedBase(const TriangleMesh&, const PositionGrid&)>;
 
-/// Simplifies an original, without its attributes, as the alternative to levels: by quadrics with optimal placement.
-/// Returns the candidate with the fewest bytes within both bounds; nothing if none is. Throws `Error`:
-/// bad_option, cancelled, out_of_memory, and errors of build_mesh().
+/// Simplifies an original, without its attributes, as the alternative to levels: by quadrics with optimal placement,
+/// whose vertices are then moved, onto a grid, to where the squared distance is least. Returns the candidate with the
+/// fewest bytes within both bounds; nothing if none is. Throws `Error`: bad_option, cancelled, out_of_memory, and
+/// errors of build_mesh().
 [[nodiscard]] std::optional<SimplifiedDetail> simplify_detail(const TriangleMesh& original,
                                                               const SimplifyOptions& options, const MeshCoder& code);
 
