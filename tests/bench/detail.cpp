@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -31,20 +32,34 @@ using test::RatePoint;
 constexpr size_t fewest_faces = 20'000;
 constexpr double distances[] = {0.05, 0.02, 0.01, 0.005};  // RMS, % of the diagonal
 
-/// Packs the model for each distance. Counts the Draco stream of the base and the streams of the levels without the
-/// container, which other methods lack too. Returns nothing if pack() writes plain Draco.
+/// Returns the length of the binary chunk of a file.
+double chunk_bytes(const std::string& glb) {
+  const auto number_at = [&](size_t at) {
+    uint32_t number = 0;
+    std::memcpy(&number, glb.data() + at, sizeof(number));  // little-endian, as this machine
+    return number;
+  };
+  return number_at(20 + number_at(12));
+}
+
+/// Packs the model for each distance, as the command line does: the file has levels, or a simplified mesh, or plain
+/// Draco. Counts the binary chunk, table included, without the container, which other methods lack too.
 std::vector<RatePoint> packed_points(const DetailSubject& subject) {
   std::vector<RatePoint> points;
   for (const double rms : distances) {
-    const auto packed = proto::detail::pack(subject.original, {.rms = rms / 100});
-    if (!packed.model) continue;
-    uint64_t bytes = packed.model->base_bytes;
-    for (const auto& level : packed.model->levels) bytes += level.stream.bytes.size();
-    const TriangleMesh decoded = decode_detail(packed.model->base, packed.model->streams());
+    const auto packed = proto::detail::pack(subject.original, {.rms = rms / 100, .simplifies = true});
+    TriangleMesh decoded;
+    if (packed.model)
+      decoded = decode_detail(packed.model->base, packed.model->streams());
+    else
+      decoded = proto::detail::read_plain_draco(packed.glb, {}).value().mesh;
     const test::SampledDistance distance = subject.surface.distance_to(decoded);
-    points.push_back({static_cast<double>(bytes), distance.rms, distance.largest});
-    std::cerr << "detail: " << subject.name << ", " << rms << " %: " << bytes << " bytes, " << packed.folds
-              << " faces turned over\n";
+    points.push_back({chunk_bytes(packed.glb), distance.rms, distance.largest});
+    const bool is_simplified = !packed.model && packed.simplified && packed.simplified->bytes == packed.glb.size();
+    std::cerr << "\ndetail: " << subject.name << ", " << rms << " %: " << fixed(points.back().bytes, 0) << " bytes, "
+              << (packed.model    ? std::to_string(packed.folds) + " faces turned over"
+                  : is_simplified ? "simplified; " + packed.reason
+                                  : "plain Draco; " + packed.reason);
   }
   return points;
 }
