@@ -22,6 +22,8 @@ constexpr double first_rms = 1.1;
 constexpr double largest_floor = 0.97;
 /// The search for a size ends after so many in a row that take more bytes.
 constexpr int most_worse_sizes = 2;
+/// Upper bound of the sizes looked at, as meshes that are too far after all cost time, too.
+constexpr int most_sizes = 8;
 /// Step of the grid to start with, in target distances, attempts to find it, and the share of the target distance that
 /// ends the search.
 constexpr double first_step = 5;
@@ -61,7 +63,9 @@ class Simplification {
         meshes, [&](const TriangleMesh& mesh) { return distance_to(mesh, few_samples).rms <= first_rms * wanted_; });
     std::optional<SimplifiedDetail> best;
     int worse = 0;
-    for (auto mesh = first_beyond; mesh != meshes.begin() && worse < most_worse_sizes;) {
+    auto mesh = first_beyond;
+    for (int sizes_tried = 0; mesh != meshes.begin() && worse < most_worse_sizes && sizes_tried < most_sizes;
+         ++sizes_tried) {
       std::optional<SimplifiedDetail> made = on_coarsest_grid(*--mesh);
       if (!made) continue;
       const bool is_best = !best || made->bytes < best->bytes;
