@@ -4,158 +4,19 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <random>
 
 #include "core/criteria/camera.h"
-#include "core/criteria/view_culling.h"
 #include "core/mesh/normals.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
+#include "tests/support/simplified.h"
 
 namespace papilio {
 namespace {
 
 using namespace test;
-
-using Place = std::array<float, 3>;
-Place place(Vec3f p) { return {p.x, p.y, p.z}; }
-
-std::vector<bool> hidden_from(const Mesh& mesh, const View& view) {
-  return hidden_faces(mesh, face_normals(mesh), Camera(view));
-}
-
-size_t count(const std::vector<bool>& flags) { return static_cast<size_t>(std::ranges::count(flags, true)); }
-
-View looking_at(const Mesh& mesh, Vec3d direction, double distance) {
-  const Box box = bounding_box(mesh.positions);
-  View view;
-  view.target = 0.5 * (to_double(box.min) + to_double(box.max));
-  view.eye = view.target + (distance * box.diagonal()) * direction;
-  return view;
-}
-
-/// View with the mesh behind the eye.
-View looking_elsewhere(const Mesh& mesh) {
-  View view = looking_at(mesh, {0, 0, 1}, 2);
-  view.target = view.eye + Vec3d{0, 0, 1};
-  return view;
-}
-
-View orthographic(View view) {
-  view.projection = Projection::orthographic;
-  return view;
-}
-
-/// Views of the whole mesh, of its front in parallel projection, and of a small part from nearby.
-std::vector<View> views_of(const Mesh& mesh) {
-  return {looking_at(mesh, {0.6, 0.4, 1}, 1), orthographic(looking_at(mesh, {-1, 0.3, 0.2}, 1)),
-          looking_at(mesh, {0.1, 0.2, 0.9}, 0.25)};
-}
-
-/// Returns the boundary half-edges by the positions of their ends.
-std::multiset<std::array<Place, 2>> open_half_edges(const Mesh& mesh) {
-  std::multiset<std::array<Place, 2>> open;
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
-    if (mesh.topology.twin[h] == none)
-      open.insert({place(mesh.positions[mesh.topology.origin[h]]), place(mesh.positions[mesh.topology.tip(h)])});
-  return open;
-}
-
-std::set<Place> places(const Mesh& mesh, const std::vector<uint32_t>& vertices) {
-  std::set<Place> found;
-  for (uint32_t v : vertices) found.insert(place(mesh.positions[v]));
-  return found;
-}
-
-std::set<std::array<Place, 2>> creases(const Mesh& mesh) {
-  std::set<std::array<Place, 2>> found;
-  for (uint32_t e = 0; e < mesh.topology.edge_count(); ++e) {
-    const uint32_t h = mesh.topology.half_edge[e];
-    const Place a = place(mesh.positions[mesh.topology.origin[h]]);
-    const Place b = place(mesh.positions[mesh.topology.tip(h)]);
-    if (mesh.topology.kind[e] == EdgeKind::crease) found.insert({std::min(a, b), std::max(a, b)});
-  }
-  return found;
-}
-
-size_t faces_without_normal(const Mesh& mesh) {
-  return static_cast<size_t>(std::ranges::count_if(face_normals(mesh), [](Vec3f n) { return !has_normal(n); }));
-}
-
-/// Returns the number of faces whose normal opposes the original surface's at each of their corners.
-size_t flipped_faces(const Mesh& before, const Mesh& after) {
-  std::map<Place, Vec3f> surface;
-  const Buffer<Vec3f> vertex = vertex_normals(before);
-  for (size_t v = 0; v < vertex.size(); ++v) surface[place(before.positions[v])] = vertex[v];
-  const Buffer<Vec3f> normals = face_normals(after);
-  size_t flipped = 0;
-  for (uint32_t f = 0; f < normals.size(); ++f) {
-    bool against = true;
-    for (uint32_t i = 0; i < 3; ++i)
-      against &= dot(normals[f], surface.at(place(after.positions[after.topology.origin[3 * f + i]]))) < 0;
-    flipped += against ? 1 : 0;
-  }
-  return flipped;
-}
-
-/// Positions and attribute values at the corners of a visible face.
-void expect_visible_faces_kept(const Mesh& before, const std::vector<bool>& hidden, const Mesh& after) {
-  uint32_t g = 0;  // the face of the result
-  size_t differing = 0;
-  for (uint32_t f = 0; f < before.topology.face_count(); ++f) {
-    if (hidden[f]) continue;
-    ASSERT_LT(g, after.topology.face_count());
-    for (uint32_t i = 0; i < 3; ++i) {
-      const uint32_t a = 3 * f + i;
-      const uint32_t b = 3 * g + i;
-      differing += before.positions[before.topology.origin[a]] != after.positions[after.topology.origin[b]] ? 1 : 0;
-      for (size_t k = 0; k < before.attributes.attributes.size(); ++k) {
-        const Attribute& was = before.attributes.attributes[k];
-        const Attribute& is = after.attributes.attributes[k];
-        for (size_t c = 0; c < was.components; ++c)
-          differing += was.values[was.components * before.attributes.point[a] + c] !=
-                               is.values[was.components * after.attributes.point[b] + c]
-                           ? 1
-                           : 0;
-      }
-    }
-    ++g;
-  }
-  EXPECT_EQ(differing, 0U);
-}
-
-/// Simplifies and checks all invariants. Returns the result.
-Mesh simplify_checked(const Mesh& mesh, const View& view, double error = default_hidden_error) {
-  const Camera camera(view);
-  Mesh result = simplify_hidden(mesh, camera, error);
-  expect_visible_faces_kept(mesh, hidden_from(mesh, view), result);
-
-  Mesh bare{result.topology, result.positions};
-  EXPECT_TRUE(is_consistent(bare));
-  EXPECT_EQ(result.topology.euler_characteristic(), mesh.topology.euler_characteristic());
-  EXPECT_EQ(open_half_edges(result), open_half_edges(mesh));
-  EXPECT_EQ(places(result, result.topology.pinched), places(mesh, mesh.topology.pinched));
-  EXPECT_EQ(places(result, result.topology.darts), places(mesh, mesh.topology.darts));
-  EXPECT_EQ(creases(result), creases(mesh));
-  EXPECT_LE(faces_without_normal(result), faces_without_normal(mesh));
-  EXPECT_LE(flipped_faces(mesh, result), flipped_faces(mesh, mesh));
-  size_t next = 0;  // remaining vertices keep their order
-  for (const Vec3f& p : mesh.positions)
-    if (next < result.positions.size() && result.positions[next] == p) ++next;
-  EXPECT_EQ(next, result.positions.size());
-
-  const Mesh again = simplify_hidden(mesh, camera, error);
-  EXPECT_EQ(again.topology.origin, result.topology.origin);
-  EXPECT_EQ(again.positions, result.positions);
-  return result;
-}
-
-/// Returns the remaining share of the hidden faces.
-double share_left(const Mesh& before, const View& view, const Mesh& after) {
-  const auto hidden = static_cast<double>(count(hidden_from(before, view)));
-  return 1 - (before.topology.face_count() - after.topology.face_count()) / hidden;
-}
 
 class SimplifyRealMesh : public ::testing::TestWithParam<const char*> {};
 
@@ -178,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SimplifyRealMesh,
 TEST(SimplifyHidden, FullyVisibleMeshIsUnchanged) {
   const Mesh mesh = build_mesh(grid(10, 10));
   const View view = looking_at(mesh, {0, 0, 1}, 2);
-  ASSERT_EQ(count(hidden_from(mesh, view)), 0U);
+  ASSERT_EQ(count_true(hidden_from(mesh, view)), 0U);
   const Mesh result = simplify_hidden(mesh, Camera(view));
   EXPECT_EQ(result.topology.origin, mesh.topology.origin);
   EXPECT_EQ(result.topology.kind, mesh.topology.kind);
@@ -190,7 +51,7 @@ TEST(SimplifyHidden, FullyHiddenMeshIsSimplified) {
        {torus(60, 30), grid(40, 40), join(torus(40, 20), torus(50, 20), 5), icosahedron()}) {
     const Mesh mesh = build_mesh(shape);
     const View view = looking_elsewhere(mesh);
-    ASSERT_EQ(count(hidden_from(mesh, view)), mesh.topology.face_count());
+    ASSERT_EQ(count_true(hidden_from(mesh, view)), mesh.topology.face_count());
     const Mesh result = simplify_checked(mesh, view);
     EXPECT_LT(share_left(mesh, view, result), mesh.topology.face_count() > 20 ? 0.5 : 1.1);
   }
@@ -262,100 +123,6 @@ TEST(SimplifyHidden, CreasesAndDartsAreKept) {
   EXPECT_LT(result.topology.face_count(), mesh.topology.face_count() * 3 / 4);
 }
 
-/// Returns a mesh with a chart per value of `chart_of(centroid)`; attributes are the position and the chart.
-template <class ChartOf>
-Mesh charted(const TriangleMesh& shape, const ChartOf& chart_of) {
-  Mesh mesh = build_mesh(shape);
-  Attribute position{3, false, {}};
-  Attribute chart{1, false, {}};
-  std::map<std::pair<uint32_t, int>, uint32_t> points;
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
-    const auto corner = [&](uint32_t i) { return mesh.positions[mesh.topology.origin[h - h % 3 + i]]; };
-    const int c = chart_of((1.0F / 3) * (corner(0) + corner(1) + corner(2)));
-    const auto number = static_cast<uint32_t>(points.size());
-    const auto [at, is_new] = points.try_emplace({mesh.topology.origin[h], c}, number);
-    if (is_new) {
-      const Vec3f p = mesh.positions[mesh.topology.origin[h]];
-      position.values.insert(position.values.end(), {p.x, p.y, p.z});
-      chart.values.push_back(c);
-    }
-    mesh.attributes.point.push_back(at->second);
-  }
-  mesh.attributes.point_count = static_cast<uint32_t>(points.size());
-  mesh.attributes.attributes = {position, chart};
-  return mesh;
-}
-
-void expect_charts_whole(const Mesh& mesh) {
-  const PointAttributes& attributes = mesh.attributes;
-  ASSERT_EQ(attributes.point.size(), mesh.topology.half_edge_count());
-  ASSERT_EQ(attributes.attributes.size(), 2U);
-  ASSERT_EQ(attributes.attributes[0].values.size(), size_t{3} * attributes.point_count);
-  ASSERT_EQ(attributes.attributes[1].values.size(), attributes.point_count);
-  const std::set<uint32_t> used(attributes.point.begin(), attributes.point.end());
-  EXPECT_EQ(used.size(), attributes.point_count);
-  EXPECT_LT(*used.rbegin(), attributes.point_count);
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
-    const uint32_t p = attributes.point[h];
-    const double* values = &attributes.attributes[0].values[size_t{3} * p];
-    ASSERT_EQ(to_double(mesh.positions[mesh.topology.origin[h]]), (Vec3d{values[0], values[1], values[2]}));
-    ASSERT_EQ(attributes.attributes[1].values[p],
-              attributes.attributes[1].values[attributes.point[Topology::next(h)]]);  // a face is in one chart
-  }
-}
-
-/// Returns the edges between two charts by the positions of their ends.
-std::set<std::array<Place, 2>> seams(const Mesh& mesh) {
-  std::set<std::array<Place, 2>> found;
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h) {
-    const uint32_t t = mesh.topology.twin[h];
-    if (t != none && mesh.attributes.point[h] != mesh.attributes.point[Topology::next(t)])
-      found.insert({place(mesh.positions[mesh.topology.origin[h]]), place(mesh.positions[mesh.topology.tip(h)])});
-  }
-  return found;
-}
-
-TEST(SimplifyHidden, ChartsKeepTheirAttributes) {
-  const auto halves = [](Vec3f p) { return p.x < 0.1F ? 1 : 2; };
-  const auto patches = [](Vec3f p) {
-    return static_cast<int>(10 + std::floor(4 * p.x) + 20 * std::floor(4 * p.y) + 400 * std::floor(4 * p.z));
-  };
-  for (const Mesh& mesh : {charted(torus(80, 40), halves), charted(torus(80, 40), patches),
-                           charted(real_mesh("cgal/lion-head.off"), patches)}) {
-    expect_charts_whole(mesh);
-    std::vector<View> views = views_of(mesh);
-    views.push_back(looking_elsewhere(mesh));
-    for (const View& view : views) {
-      const Mesh result = simplify_checked(mesh, view);
-      expect_charts_whole(result);
-      EXPECT_EQ(seams(result), seams(mesh));
-      EXPECT_LT(share_left(mesh, view, result), 0.8);
-    }
-  }
-}
-
-// At the end of the seam, an edge has two points at one of its vertices.
-TEST(SimplifyHidden, SeamThatEndsInsideIsKept) {
-  Mesh mesh = charted(grid(20, 20), [](Vec3f) { return 0; });
-  const Topology& topology = mesh.topology;
-  for (uint32_t h = 0; h < topology.half_edge_count(); ++h) {
-    const Vec3f p = mesh.positions[topology.origin[h]];
-    const Vec3f middle = 0.5F * (mesh.positions[topology.tip(h)] + mesh.positions[topology.apex(h)]);
-    if (p.x != 10 || p.y < 5 || p.y > 15 || middle.x < 10) continue;  // the right side of a slit
-    mesh.attributes.point[h] = mesh.attributes.point_count + static_cast<uint32_t>(p.y) - 5;
-  }
-  for (int y = 5; y <= 15; ++y) {
-    mesh.attributes.attributes[0].values.insert(mesh.attributes.attributes[0].values.end(), {10, double(y), 0});
-    mesh.attributes.attributes[1].values.push_back(0);
-  }
-  mesh.attributes.point_count += 11;
-  expect_charts_whole(mesh);
-  const Mesh result = simplify_checked(mesh, looking_elsewhere(mesh));
-  expect_charts_whole(result);
-  EXPECT_EQ(seams(result), seams(mesh));
-  EXPECT_LT(share_left(mesh, looking_elsewhere(mesh), result), 0.5);
-}
-
 TEST(SimplifyHidden, ResultDoesNotDependOnScale) {
   const Mesh unit = build_mesh(torus(60, 30));
   const Mesh expected = simplify_checked(unit, looking_at(unit, {0, 0.3, 1}, 1));
@@ -418,12 +185,12 @@ TEST(HiddenFaces, BackFacesAndFacesOutsideAreHidden) {
   const Mesh mesh = build_mesh(cube());
   View view = looking_at(mesh, {0, 0, 1}, 4);
   const std::vector<bool> hidden = hidden_from(mesh, view);
-  EXPECT_EQ(count(hidden), 10U);
+  EXPECT_EQ(count_true(hidden), 10U);
   const Buffer<Vec3f> normals = face_normals(mesh);
   for (uint32_t f = 0; f < hidden.size(); ++f) EXPECT_EQ(hidden[f], normals[f].z < 0.5F);
   const Mesh flat = build_mesh({{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
-  EXPECT_EQ(count(hidden_from(flat, looking_at(flat, {0, 0, 1}, 2))), 0U);  // no normal: never back-facing
-  EXPECT_EQ(count(hidden_from(flat, looking_elsewhere(flat))), 1U);
+  EXPECT_EQ(count_true(hidden_from(flat, looking_at(flat, {0, 0, 1}, 2))), 0U);  // no normal: never back-facing
+  EXPECT_EQ(count_true(hidden_from(flat, looking_elsewhere(flat))), 1U);
 }
 
 }  // namespace
