@@ -65,26 +65,6 @@ Camera::Camera(const View& view)
              Plane{forward_, dot(forward_, eye_) + near_}};
 }
 
-std::vector<Camera::Plane> Camera::planes_through(const Box& box) const {
-  constexpr double margin = 1e-9;
-  const auto least = [&](const Plane& p) {
-    double sum = -p.offset;
-    double size = std::abs(p.offset);
-    const auto add = [&](double n, double low, double high) {
-      sum += std::min(n * low, n * high);
-      size += std::abs(n) * std::max(std::abs(low), std::abs(high));
-    };
-    add(p.normal.x, box.min.x, box.max.x);
-    add(p.normal.y, box.min.y, box.max.y);
-    add(p.normal.z, box.min.z, box.max.z);
-    return sum - margin * size;
-  };
-  std::vector<Plane> through;
-  for (const Plane& plane : planes_)
-    if (!(least(plane) > 0)) through.push_back(plane);
-  return through;
-}
-
 double Camera::highest_pixels_per_unit(const Box& box) const {
   constexpr double rounding = 1 + 1e-9;
   double depth = -dot(forward_, eye_);
@@ -108,21 +88,16 @@ std::array<double, 2> Camera::project(Vec3d relative) const {
 }
 
 double Camera::projected_length(Vec3d a, Vec3d b) const {
-  const auto [x, y] = projected_difference(a, b);
-  return hypotenuse(x, y);
-}
-
-std::array<double, 2> Camera::projected_difference(Vec3d a, Vec3d b) const {
   a -= eye_;
   b -= eye_;
   const double depth_a = dot(forward_, a);
   const double depth_b = dot(forward_, b);
-  if (depth_a < near_ && depth_b < near_) return {0, 0};
+  if (depth_a < near_ && depth_b < near_) return 0;
   if (depth_a < near_) a += ((near_ - depth_a) / (depth_b - depth_a)) * (b - a);
   if (depth_b < near_) b += ((near_ - depth_b) / (depth_a - depth_b)) * (a - b);
   const auto [ax, ay] = project(a);
   const auto [bx, by] = project(b);
-  return {bx - ax, by - ay};
+  return hypotenuse(bx - ax, by - ay);
 }
 
 }  // namespace papilio

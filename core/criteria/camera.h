@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
-#include <vector>
 
 #include "papilio/mesh.h"
 #include "papilio/view.h"
@@ -16,18 +14,11 @@ class Camera {
  public:
   explicit Camera(const View& view);
 
-  struct Plane {
-    Vec3d normal;   ///< unit normal, pointing inward
-    double offset;  ///< distance from the origin: a point p is inside if normal.p >= offset
-  };
-  /// Returns whether the sphere lies outside one of the planes.
-  [[nodiscard]] static bool is_outside(std::span<const Plane> planes, Vec3d centre, double radius) {
-    for (const Plane& plane : planes)
-      if (dot(plane.normal, centre) - plane.offset < -radius) return true;
-    return false;
-  }
   /// Returns whether the sphere lies outside one of the view's five planes (four sides, near): section 3.2.1.
-  [[nodiscard]] bool is_outside(Vec3d centre, double radius) const { return is_outside(planes_, centre, radius); }
+  [[nodiscard]] bool is_outside(Vec3d centre, double radius) const {
+    return std::ranges::any_of(planes_,
+                               [&](const Plane& plane) { return dot(plane.normal, centre) - plane.offset < -radius; });
+  }
   /// Returns whether a face through `point` with unit normal `normal` is turned away from the viewer: section 3.2.2. In
   /// a perspective projection, the direction to the point replaces the view direction.
   [[nodiscard]] bool is_away(Vec3d point, Vec3d normal) const {
@@ -47,13 +38,14 @@ class Camera {
   [[nodiscard]] double pixels_per_unit(Vec3d point) const { return pixels_per_unit_at(dot(forward_, point - eye_)); }
   /// Returns an upper bound of pixels_per_unit() in the box.
   [[nodiscard]] double highest_pixels_per_unit(const Box& box) const;
-  /// Returns the view's planes that may cut the box, or exclude it.
-  [[nodiscard]] std::vector<Plane> planes_through(const Box& box) const;
 
  private:
+  struct Plane {
+    Vec3d normal;   ///< unit normal, pointing inward
+    double offset;  ///< distance from the origin: a point p is inside if normal.p >= offset
+  };
   [[nodiscard]] Vec3d sight_to(Vec3d point) const { return perspective_ ? point - eye_ : forward_; }
   [[nodiscard]] std::array<double, 2> project(Vec3d relative) const;
-  [[nodiscard]] std::array<double, 2> projected_difference(Vec3d a, Vec3d b) const;
   [[nodiscard]] double pixels_per_unit_at(double depth) const {
     return std::min(most_pixels_per_unit, perspective_ ? pixels_per_unit_ / std::max(near_, depth) : pixels_per_unit_);
   }

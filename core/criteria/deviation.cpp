@@ -103,14 +103,6 @@ ErrorMeasure::ErrorMeasure(double tolerance, double diagonal, const View* view, 
     threshold_ = static_cast<float>(tolerated_ > 0 ? tolerance : tolerated_pixels_);
 }
 
-float ErrorMeasure::most_error(double distance, double scale) const {
-  if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0))
-    return to_finite(diagonal_ > 0 ? distance / diagonal_ : 0);
-  if (!view_->lights.empty()) return std::numeric_limits<float>::infinity();
-  const double seen = distance * scale;
-  return to_finite(tolerated_ == 0 ? seen : std::min(distance / tolerated_, seen / tolerated_pixels_));
-}
-
 double ErrorMeasure::least_deviation(float error, double scale) const {
   constexpr double rounding = 1 - 1e-6;
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0)) return rounding * error * diagonal_;

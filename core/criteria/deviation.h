@@ -44,9 +44,6 @@ class ErrorMeasure {
   [[nodiscard]] float threshold() const { return threshold_; }
   /// Returns the error of a deviation at the edge. `normals` [F].
   [[nodiscard]] float error(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId edge, double distance) const;
-  /// Returns an upper bound of the error of deviations up to `distance`, at most `scale` pixels per unit. Infinite with
-  /// lights, whose weight has no bound.
-  [[nodiscard]] float most_error(double distance, double scale) const;
   /// Returns a lower bound of the deviations whose error reaches `error`, at most `scale` pixels per unit.
   [[nodiscard]] double least_deviation(float error, double scale) const;
   /// Returns whether the error is monotonic in the deviation at an edge. Not guaranteed with lights.

@@ -114,10 +114,10 @@ bool Selection::later_level_is_finer(int level) const {
   return false;
 }
 
-EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
+EdgesShown Selection::shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest,
                             const Buffer<uint32_t>& shared) const {
   if (!camera_) return {};
-  return {mesh, trial.normals, longest, box, *camera_, shared};
+  return {mesh, trial.normals, longest, *camera_, shared};
 }
 
 Marks Selection::curved(const Mesh& mesh, const Trial& trial, int level, const Region& region) const {
@@ -134,8 +134,7 @@ Buffer<uint32_t> Selection::candidates(const Mesh& mesh, const Trial& trial, int
     // A kept level stores its deviations for all views, whether this view shows the edge or not.
     if (trial.is_kept) keep_if(edges, [&](EdgeId e) { return trial.deviation_at(mesh, e) >= needed; });
   }
-  shown.keep_shown(region, edges);
-  if (camera_) keep_long(mesh, *camera_, options_.view->edge_pixels, edges);
+  if (camera_) keep_if(edges, [&](EdgeId e) { return !is_kept_by_view(mesh, shown, e); });
   return edges;
 }
 
@@ -149,17 +148,12 @@ bool Selection::may_have_long_halves(const Mesh& mesh, EdgeId edge) const {
 }
 
 Buffer<float> Selection::errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& candidates,
-                                const Box& box, float threshold) const {
+                                float threshold) const {
   Buffer<float> errors(mesh.topology.edge_count(), never);
-  const double scale = highest_pixels_per_unit(box);
   const auto error = [&](EdgeId e, double distance) { return measure_.error(mesh, trial.normals, e, distance); };
   for (EdgeId e : candidates) {
-    const double most = trial.deviation_bound(mesh, e);
-    errors[e] = measure_.most_error(most, scale);
-    if (errors[e] < threshold) continue;
-    errors[e] = error(e, most);
-    if (errors[e] < threshold) continue;
-    errors[e] = error(e, trial.deviation_at(mesh, e));
+    errors[e] = error(e, trial.deviation_bound(mesh, e));
+    if (errors[e] >= threshold) errors[e] = error(e, trial.deviation_at(mesh, e));
   }
   return errors;
 }

@@ -100,12 +100,12 @@ class Selection {
   }
 
   /// Returns the edges that the view shows, whatever their size; all edges without a view. `longest` [V] edges
-  /// (view_culling.h), `box` of the vertices; `shared`: half-edges at shared edges.
-  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest, const Box& box,
+  /// (view_culling.h); `shared`: half-edges at shared edges.
+  [[nodiscard]] EdgesShown shown(const Mesh& mesh, const Trial& trial, const Buffer<double>& longest,
                                  const Buffer<uint32_t>& shared) const;
   /// Returns the region's edges selected by flatness (with growth) and view, in the order of the paper's method.
-  /// Edges whose error (errors()) is surely below `least` are left out. `level` is the level to be made, from 1.
-  /// In ascending order.
+  /// Edges whose error (errors()) is surely below `least` are left out. `level` is the level to be made, from 1; `box`
+  /// of the vertices. In ascending order.
   [[nodiscard]] Buffer<uint32_t> candidates(const Mesh& mesh, const Trial& trial, int level, const Region& region,
                                             const EdgesShown& shown, const Box& box, float least) const;
 
@@ -120,9 +120,8 @@ class Selection {
 
   /// Returns the error of each edge in `candidates`, which must have been tried; minus infinity elsewhere. [E]
   /// An error below `threshold` may be replaced by an upper bound that is also below it, which costs less.
-  /// `box` of the vertices.
   [[nodiscard]] Buffer<float> errors(const Mesh& mesh, const Trial& trial, const Buffer<uint32_t>& candidates,
-                                     const Box& box, float threshold) const;
+                                     float threshold) const;
   /// Returns the error of the edge for this deviation; infinity where that is unknown (lights).
   [[nodiscard]] float error_of(const Mesh& mesh, const Trial& trial, EdgeId edge, double distance) const;
 

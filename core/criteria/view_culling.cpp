@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "mesh/four_children.h"
 #include "mesh/normals.h"
@@ -10,47 +9,42 @@
 namespace papilio {
 namespace {
 
-enum : uint8_t { is_inside = 1, is_towards = 2, seen = 3 };
+enum : uint8_t { is_inside = 1, is_towards = 2, unknown = 2 };
 
-/// Visibility of faces in the view.
+}  // namespace
+
+/// Visibility of faces in a view. Each face and each vertex is tested once.
 class FaceVisibility {
  public:
-  /// `longest` [V] edges; `box` of the vertices.
-  FaceVisibility(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
-                 const Camera& camera)
+  /// `normals` [F]; `longest` [V] edges.
+  FaceVisibility(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Camera& camera)
       : mesh_(mesh),
         normals_(normals),
         longest_(longest),
         camera_(camera),
-        planes_(camera.planes_through(box)),
-        inside_(planes_.empty() ? 0 : mesh.topology.vertex_count, unknown) {}
+        of_face_(mesh.topology.face_count(), 0),
+        inside_(mesh.topology.vertex_count, unknown) {}
 
-  /// Returns which of the bits `is_towards` and `is_inside` hold for a face.
+  [[nodiscard]] const Topology& mesh() const { return mesh_.topology; }
+  /// Returns `EdgesShown::is_known` and those of the bits `is_towards` and `is_inside` that hold for a face.
   [[nodiscard]] uint8_t of_face(FaceId f) {
-    uint8_t visibility = is_face_away(f) ? 0 : is_towards;
-    return visibility | (is_inside_somewhere(f) ? is_inside : 0);
+    if (of_face_[f] == 0)
+      of_face_[f] = EdgesShown::is_known | (is_away(f) ? 0 : is_towards) | (is_inside_somewhere(f) ? is_inside : 0);
+    return of_face_[f];
   }
-  /// Tests all vertices at once, in their order: cheaper if most of them will be tested.
-  void test_vertices() {
-    for (VertexId v = 0; v < inside_.size(); ++v)
-      inside_[v] = Camera::is_outside(planes_, position(v), longest_[v]) ? 0 : is_inside;
-  }
+  [[nodiscard]] bool is_hidden(FaceId f) { return of_face(f) != EdgesShown::shown; }
 
  private:
-  static constexpr uint8_t unknown = 2;
-
   [[nodiscard]] Vec3d position(VertexId v) const { return to_double(mesh_.positions[v]); }
-  [[nodiscard]] bool is_vertex_inside(VertexId v) {
-    if (inside_[v] == unknown) inside_[v] = Camera::is_outside(planes_, position(v), longest_[v]) ? 0 : is_inside;
-    return inside_[v] != 0;
+  [[nodiscard]] uint8_t is_vertex_inside(VertexId v) {
+    if (inside_[v] == unknown) inside_[v] = camera_.is_outside(position(v), longest_[v]) ? 0 : 1;
+    return inside_[v];
   }
   [[nodiscard]] bool is_inside_somewhere(FaceId f) {
-    if (planes_.empty()) return true;
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
-    const bool are_inside[3] = {is_vertex_inside(corner[0]), is_vertex_inside(corner[1]), is_vertex_inside(corner[2])};
-    return are_inside[0] | are_inside[1] | are_inside[2];
+    return (is_vertex_inside(corner[0]) | is_vertex_inside(corner[1]) | is_vertex_inside(corner[2])) != 0;
   }
-  [[nodiscard]] bool is_face_away(FaceId f) const {
+  [[nodiscard]] bool is_away(FaceId f) const {
     if (camera_.shows_backs()) return false;
     const uint32_t* corner = &mesh_.topology.origin[size_t{3} * f];
     const Vec3d centroid = (1.0 / 3) * (position(corner[0]) + position(corner[1]) + position(corner[2]));
@@ -61,17 +55,15 @@ class FaceVisibility {
   const Buffer<Vec3f>& normals_;
   const Buffer<double>& longest_;
   const Camera& camera_;
-  const std::vector<Camera::Plane> planes_;  ///< planes that part of the mesh may be outside of
-  Buffer<uint8_t> inside_;                   ///< [V] `is_inside`, 0 or `unknown`; empty if all are inside
+  Buffer<uint8_t> of_face_;  ///< [F] bits; 0 if not tested
+  Buffer<uint8_t> inside_;   ///< [V] 0, 1 or `unknown`
 };
-
-}  // namespace
 
 std::vector<bool> hidden_faces(const Mesh& mesh, const Buffer<Vec3f>& normals, const Camera& camera) {
   const Buffer<double> longest = longest_edges(mesh);
-  FaceVisibility visibility(mesh, normals, longest, bounding_box(mesh.positions), camera);
+  FaceVisibility visibility(mesh, normals, longest, camera);
   std::vector<bool> hidden(mesh.topology.face_count());
-  for (FaceId f = 0; f < hidden.size(); ++f) hidden[f] = visibility.of_face(f) != seen;
+  for (FaceId f = 0; f < hidden.size(); ++f) hidden[f] = visibility.is_hidden(f);
   return hidden;
 }
 
@@ -113,56 +105,17 @@ Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>&
   return longest;
 }
 
-/// Cache of the bits of faces.
-class EdgesShown::Cache {
- public:
-  Cache(const Mesh& mesh, FaceVisibility visibility)
-      : mesh_(mesh.topology), visibility_(std::move(visibility)), of_face_(mesh_.face_count(), 0) {}
-
-  [[nodiscard]] const Topology& mesh() const { return mesh_; }
-  [[nodiscard]] uint8_t of_face(FaceId f) {
-    if (of_face_[f] == 0) of_face_[f] = is_known | visibility_.of_face(f);
-    return of_face_[f];
-  }
-  /// Tests a region's faces in their order: cheaper if most of its edges will be tested.
-  void test(const Region& region, uint8_t* of_edge) {
-    if (region.faces.size() > mesh_.vertex_count) visibility_.test_vertices();
-    const uint32_t* const edges = mesh_.edge.data();
-    for (FaceId f : region.faces) {
-      const uint8_t visibility = visibility_.of_face(f);
-      for (EdgeId e : {edges[3 * f], edges[3 * f + 1], edges[3 * f + 2]})
-        of_edge[e] |= visibility | region.has_edge[e] * is_known;
-    }
-  }
-
- private:
-  const Topology& mesh_;
-  FaceVisibility visibility_;
-  Buffer<uint8_t> of_face_;  ///< [F] bits of the face, and `is_known`; 0 if not tested
-};
-
-EdgesShown::EdgesShown() = default;
-EdgesShown::EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
+EdgesShown::EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest,
                        const Camera& camera, const Buffer<uint32_t>& shared)
-    : cache_(std::make_unique<Cache>(mesh, FaceVisibility(mesh, normals, longest, box, camera))),
+    : faces_(std::make_shared<FaceVisibility>(mesh, normals, longest, camera)),
       of_edge_(mesh.topology.edge_count(), 0) {
-  for (HalfEdgeId h : shared) of_edge_[mesh.topology.edge[h]] |= cache_->of_face(h.face());
+  for (HalfEdgeId h : shared) of_edge_[mesh.topology.edge[h]] |= faces_->of_face(h.face());
 }
-EdgesShown::EdgesShown(EdgesShown&& other) noexcept = default;
-EdgesShown& EdgesShown::operator=(EdgesShown&& other) noexcept = default;
-EdgesShown::~EdgesShown() = default;
 
 uint8_t EdgesShown::find(EdgeId edge) const {
-  const HalfEdgeId h = cache_->mesh().half_edge[edge];
-  const HalfEdgeId t = cache_->mesh().twin[h];
-  return of_edge_[edge] = cache_->of_face(h.face()) | cache_->of_face(Topology::face(t != none ? t : h));
-}
-
-void EdgesShown::keep_shown(const Region& region, Buffer<uint32_t>& edges) const {
-  constexpr size_t many = 3;  // edges for four faces: about every second edge
-  if (cache_ == nullptr) return;
-  if (edges.size() * 4 > region.faces.size() * many) cache_->test(region, of_edge_.data());
-  keep_if(edges, [this](EdgeId e) { return (*this)[e]; });
+  const HalfEdgeId h = faces_->mesh().half_edge[edge];
+  const HalfEdgeId t = faces_->mesh().twin[h];
+  return of_edge_[edge] = faces_->of_face(h.face()) | faces_->of_face(Topology::face(t != none ? t : h));
 }
 
 bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, EdgeId edge) {
@@ -170,10 +123,6 @@ bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, EdgeId 
   const HalfEdgeId h = mesh.topology.half_edge[edge];
   return edge_pixels == 0 ||
          camera.projected_length(end(mesh.topology.origin[h]), end(mesh.topology.tip(h))) >= edge_pixels;
-}
-
-void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges) {
-  if (edge_pixels > 0) keep_if(edges, [&](EdgeId e) { return is_long(mesh, camera, edge_pixels, e); });
 }
 
 }  // namespace papilio

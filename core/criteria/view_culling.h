@@ -5,8 +5,7 @@
 
 #include "base/ids.h"
 #include "criteria/camera.h"
-#include "mesh/marks.h"
-#include "mesh/region.h"
+#include "papilio/buffer.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -21,6 +20,8 @@ namespace papilio {
 /// its positions. [V]
 [[nodiscard]] Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>& positions);
 
+class FaceVisibility;
+
 /// Edges that a view shows, the paper's section 3.2. An edge is hidden if all its faces have all three vertices outside
 /// (a vertex has its longest edge as radius). It is also hidden if all its faces are turned away: edges on the
 /// silhouette are shown, and a face without normal is never away. A face is tested when one of its edges is first
@@ -28,36 +29,27 @@ namespace papilio {
 class EdgesShown {
  public:
   /// All edges are shown.
-  EdgesShown();
-  /// Shapes: normals [F], longest [V]; `box` of the vertices; `shared`: half-edges at shared edges.
-  EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Box& box,
-             const Camera& camera, const Buffer<uint32_t>& shared);
-  EdgesShown(EdgesShown&& other) noexcept;
-  EdgesShown& operator=(EdgesShown&& other) noexcept;
-  EdgesShown(const EdgesShown&) = delete;
-  EdgesShown& operator=(const EdgesShown&) = delete;
-  ~EdgesShown();
+  EdgesShown() = default;
+  /// Shapes: normals [F], longest [V]; `shared`: half-edges at shared edges.
+  EdgesShown(const Mesh& mesh, const Buffer<Vec3f>& normals, const Buffer<double>& longest, const Camera& camera,
+             const Buffer<uint32_t>& shared);
 
   [[nodiscard]] bool operator[](EdgeId edge) const {
-    if (cache_ == nullptr) return true;
+    if (faces_ == nullptr) return true;
     return (of_edge_[edge] >= is_known ? of_edge_[edge] : find(edge)) == shown;
   }
-  /// Keeps the shown edges of the list, all of which must be in the region.
-  void keep_shown(const Region& region, Buffer<uint32_t>& edges) const;
 
  private:
-  class Cache;
+  friend class FaceVisibility;
   static constexpr uint8_t is_known = 4, shown = is_known | 3;  ///< besides the bits found for faces
   /// Computes the bits of an edge from its faces.
   [[nodiscard]] uint8_t find(EdgeId edge) const;
 
-  std::unique_ptr<Cache> cache_;     ///< null: all edges are shown
-  mutable Buffer<uint8_t> of_edge_;  ///< [E] bits of the edge's faces; below `is_known` unless all were tested
+  std::shared_ptr<FaceVisibility> faces_;  ///< null: all edges are shown
+  mutable Buffer<uint8_t> of_edge_;        ///< [E] bits of the edge's faces; below `is_known` unless all were tested
 };
 
 /// Returns whether the length of an edge is at least `edge_pixels` in pixels.
 [[nodiscard]] bool is_long(const Mesh& mesh, const Camera& camera, double edge_pixels, EdgeId edge);
-/// Keeps the edges of the list that are long (is_long()).
-void keep_long(const Mesh& mesh, const Camera& camera, double edge_pixels, Buffer<uint32_t>& edges);
 
 }  // namespace papilio

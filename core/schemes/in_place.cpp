@@ -53,7 +53,7 @@ class InPlace {
     region_ = whole_region(mesh_.topology);
     box_ = bounding_box(mesh_.positions);
     if (selection_.camera() != nullptr) longest_ = longest_edges(mesh_);
-    shown_ = selection_.shown(mesh_, *trial_, longest_, box_, shared_half_edges(mesh_.topology));
+    shown_ = selection_.shown(mesh_, *trial_, longest_, shared_half_edges(mesh_.topology));
     const float least = options_.max_faces > 0 ? 0 : selection_.threshold();
     for (int level = result_.levels + 1; level <= options_.levels; ++level) {
       const Buffer<uint32_t> candidates = selection_.candidates(mesh_, *trial_, level, region_, shown_, box_, least);
@@ -73,7 +73,7 @@ class InPlace {
 
   void keep_largest_errors(const Buffer<uint32_t>& candidates) {
     float threshold = selection_.threshold();
-    const Buffer<float> errors = selection_.errors(mesh_, *trial_, candidates, box_, threshold);
+    const Buffer<float> errors = selection_.errors(mesh_, *trial_, candidates, threshold);
     if (options_.max_faces > 0) {
       Buffer<WeighedEdge> edges;
       append_edges(mesh_.topology, region_, errors, threshold, edges);

@@ -98,7 +98,7 @@ class RedGreen {
   void weigh_edges() {
     LevelChoice& choice = choices_.back();
     const HierarchyLevel& level = *choice.level;
-    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.box, level.shared);
+    choice.shown = selection_.shown(level.mesh, level.trial, level.longest, level.shared);
     const float least = options_.max_faces > 0 ? 0 : threshold_;
     Buffer<uint32_t> candidates = selection_.candidates(level.mesh, level.trial, static_cast<int>(choices_.size()),
                                                         choice.region, choice.shown, level.box, least);
@@ -106,7 +106,7 @@ class RedGreen {
       choice.candidates = std::move(candidates);
       return;
     }
-    choice.error = selection_.errors(level.mesh, level.trial, candidates, level.box, least);
+    choice.error = selection_.errors(level.mesh, level.trial, candidates, least);
     choice.candidates = std::move(candidates);
     keep_if(choice.candidates, [&](EdgeId e) { return choice.error[e] >= least_error_; });
   }

@@ -27,17 +27,6 @@ inline Vec3fa lesser(Vec3fa a, Vec3fa b) { return {a.v < b.v ? a.v : b.v}; }
 /// Returns the sum of squares of the first three lanes.
 inline float squared_length(Vec3fa a) { return a.v[0] * a.v[0] + a.v[1] * a.v[1] + a.v[2] * a.v[2]; }
 
-/// Returns the dot products of a vector with three others in the first three lanes, each bit-identical to dot().
-inline Vec3fa dots(Vec3fa a, Vec3fa b, Vec3fa c, Vec3fa d) {
-  const Vec3fa::Register ab = a.v * b.v;
-  const Vec3fa::Register ac = a.v * c.v;
-  const Vec3fa::Register ad = a.v * d.v;
-  const auto front = __builtin_shufflevector(ab, ac, 0, 4, 1, 5);
-  const auto back = __builtin_shufflevector(ab, ac, 2, 6, 3, 7);
-  return {__builtin_shufflevector(front, ad, 0, 1, 4, 4) + __builtin_shufflevector(front, ad, 2, 3, 5, 5) +
-          __builtin_shufflevector(back, ad, 0, 1, 6, 6)};
-}
-
 /// Vector type of the rules' arithmetic: `Vec3fa` for float, `Vec3d` where a test checks the arithmetic in double.
 template <class Real>
 struct WideOf {

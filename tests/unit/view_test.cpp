@@ -41,14 +41,9 @@ Marks seen(const Mesh& mesh, const View& view, double edge_pixels = 0) {
   const Camera camera(view);
   const Buffer<Vec3f> normals = face_normals(mesh);
   const Buffer<double> longest = longest_edges(mesh);
-  const EdgesShown shown(mesh, normals, longest, bounding_box(mesh.positions), camera,
-                         shared_half_edges(mesh.topology));
-  const Region all = whole_region(mesh.topology);
-  Buffer<uint32_t> edges = all.edges();
-  shown.keep_shown(all, edges);
-  keep_long(mesh, camera, edge_pixels, edges);
+  const EdgesShown shown(mesh, normals, longest, camera, shared_half_edges(mesh.topology));
   Marks marks(mesh.topology.edge_count(), 0);
-  for (uint32_t e : edges) marks[e] = 1;
+  for (uint32_t e = 0; e < marks.size(); ++e) marks[e] = shown[e] && is_long(mesh, camera, edge_pixels, e) ? 1 : 0;
   return marks;
 }
 
@@ -119,32 +114,6 @@ TEST(Camera, BackFacingDependsOnPositionInPerspective) {
   EXPECT_TRUE(camera.is_away({0, 0, 0}, normal));
   EXPECT_FALSE(camera.is_away({5, 0, 0}, normal));
   EXPECT_FALSE(camera.is_away({0, 0, 0}, {1, 0, 0}));  // edge on
-}
-
-TEST(Camera, PlanesThroughABoxSufficeForItsPoints) {
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> within(-1, 1);
-  const auto anywhere = [&](double far) { return far * Vec3d{within(random), within(random), within(random)}; };
-  size_t outside = 0, spared = 0;
-  for (int i = 0; i < 500; ++i) {
-    View view;
-    view.eye = anywhere(3);
-    view.target = anywhere(1);
-    view.up = anywhere(1);
-    view.projection = i % 3 == 0 ? Projection::orthographic : Projection::perspective;
-    const Camera camera(view);
-    Buffer<Vec3f> points;
-    for (int k = 0; k < 10; ++k) points.push_back(to_float(anywhere(0.5)));
-    const std::vector<Camera::Plane> planes = camera.planes_through(bounding_box(points));
-    spared += 5 - planes.size();
-    for (const Vec3f& p : points) {
-      const double radius = i % 2 == 0 ? 0 : 0.1 * std::abs(within(random));
-      EXPECT_EQ(Camera::is_outside(planes, to_double(p), radius), camera.is_outside(to_double(p), radius));
-      outside += camera.is_outside(to_double(p), radius) ? 1 : 0;
-    }
-  }
-  EXPECT_GT(outside, 500U);
-  EXPECT_GT(spared, 500U);
 }
 
 TEST(EdgesShown, FrontEdgesAndSilhouetteAreShown) {
