@@ -141,7 +141,7 @@ Decoded* module_decode(const DetailBase* base, uint32_t level_count, const Level
   std::vector<DetailStream> streams;
   streams.reserve(level_count);
   for (uint32_t l = 0; l < level_count; ++l) streams.push_back(levels[l].stream());
-  papilio::Mesh mesh = papilio::decode_detail_mesh(*base, streams, face_limit);
+  papilio::Mesh mesh = papilio::decode_detail(*base, streams, face_limit);
   papilio::add_detail_normals(mesh, static_cast<papilio::NormalStyle>(normals));
   auto* made = new Decoded{.mesh = std::move(mesh).triangles()};
   made->point_count = static_cast<uint32_t>(made->mesh.positions.size());

@@ -30,13 +30,8 @@ void make_vertices(const Mesh& mesh, const Buffer<Vec3f>& normals, const Options
   std::optional<Features> found;
   if (context.features == nullptr) found = find_features(mesh.topology);
   const Features& features = found ? *found : *context.features;
-  if (context.parents != nullptr) {
-    if (context.part != nullptr)
-      butterfly_below(*context.parents, *context.part, features, positions, made, context.threads);
-    else
-      butterfly_below(*context.parents, features, positions, made, context.threads);
-    return;
-  }
+  if (context.parents != nullptr)
+    return butterfly_below(*context.parents, context.part, features, positions, made, context.threads);
   std::optional<TensionField> field;
   if (options.tension != Tension::off) field = tension_field(mesh, normals, options.tension);
   butterfly<float>(mesh.topology, features, positions, made,
@@ -60,10 +55,6 @@ Trial try_split(const Mesh& mesh, const Options& options, const TrialContext& co
 void Trial::forget() {
   deviations = LazyValues<double>(made.size(), unknown);
   bounds = LazyValues<float>(made.size(), infinity);
-}
-
-void Trial::prepare_errors(const Options& options) {
-  if (is_by_error(options)) forget();
 }
 
 void Trial::keep() {

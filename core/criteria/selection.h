@@ -64,8 +64,6 @@ struct Trial {
   [[nodiscard]] float stored_deviation_bound(EdgeId edge) const {
     return bounds.empty() ? std::numeric_limits<float>::infinity() : bounds.get(edge);
   }
-  /// Makes room for deviations if errors decide.
-  void prepare_errors(const Options& options);
 };
 
 /// Writes to `made` [E] the new vertices of all edges for which they can be computed, under the options' tension and w;
@@ -152,21 +150,16 @@ class ErrorLeft {
   }
   /// Adds a deviation without a view.
   void add_distance(double distance) { distance_ = std::max(distance_, distance); }
-  [[nodiscard]] double distance() const { return distance_; }
   /// Returns whether a deviation of at most `most` may be the largest.
-  [[nodiscard]] bool may_grow_by(double most, double scale) const {
-    return may_grow_by_distance(most) || may_grow_by_pixels(most * scale);
-  }
+  [[nodiscard]] bool may_grow_by(double most, double scale) const { return most > distance_ || most * scale > pixels_; }
   /// Returns whether a deviation of at most `most` at the edge may be the largest, by the scale at the edge.
   [[nodiscard]] bool may_grow_at(const Mesh& mesh, EdgeId edge, double most) const {
-    return may_grow_by_distance(most) || may_grow_by_pixels(measure_->pixels(mesh, edge, most));
+    return most > distance_ || measure_->pixels(mesh, edge, most) > pixels_;
   }
   /// Returns a lower bound of the largest deviation: smaller ones do not count. `scale`: see add().
   [[nodiscard]] double least_that_matters(double scale) const {
     return scale > 0 ? std::min(distance_, pixels_ / scale) : distance_;
   }
-  [[nodiscard]] bool may_grow_by_distance(double most) const { return most > distance_; }
-  [[nodiscard]] bool may_grow_by_pixels(double most) const { return most > pixels_; }
   [[nodiscard]] double error() const { return measure_->diagonal() > 0 ? distance_ / measure_->diagonal() : 0; }
   [[nodiscard]] double pixels() const { return pixels_; }
 

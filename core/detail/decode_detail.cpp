@@ -5,8 +5,8 @@
 
 namespace papilio {
 
-Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
-                        const std::function<bool()>& cancelled) {
+Mesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
+                   const std::function<bool()>& cancelled) {
   LevelDecoder decoder(mesh_of_base(base), true);
   check_levels(decoder.topology().face_count(), levels, face_limit);
   for (const DetailStream& stream : levels) {
@@ -14,21 +14,6 @@ Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> le
     decoder.decode(stream);
   }
   return decoder.take_mesh();
-}
-
-std::vector<std::vector<uint8_t>> decodable_pieces(const DetailBase& base, std::span<const DetailStream> levels) {
-  const Mesh mesh = mesh_of_base(base);
-  check_levels(mesh.topology.face_count(), levels, face_count_limit);
-  const PieceOrder order(mesh);
-  PieceNeeds needs(mesh.topology.vertex_count);
-  std::vector<std::vector<uint8_t>> made;
-  for (const DetailStream& stream : levels) made.push_back(needs.next(order, pieces_of(stream)));
-  return made;
-}
-
-TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels, uint64_t face_limit,
-                           const std::function<bool()>& cancelled) {
-  return decode_detail_mesh(base, levels, face_limit, cancelled).triangles();
 }
 
 }  // namespace papilio

@@ -27,21 +27,13 @@ Buffer<uint32_t> Exploration::faces_to_look_into(const std::vector<LevelChoice>&
       if (limit ? allowed_[f] < AllowedDistance::any : choice.may_divide(f) && may_have_detail_below(choice, f, error))
         touch(f);
   }
-  const auto is_touched = [&](FaceId f) {
-    const uint32_t* corner = &mesh.origin[size_t{3} * f];
-    return (touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) != 0;
-  };
-  if (mesh.shape.is_mechanical) {
-    Buffer<uint32_t> near = choice.region.faces;
-    keep_if(near, is_touched);
-    for (FaceId f : near) touch(f);
-  }
-  Buffer<uint32_t> faces = choice.region.faces;
-  keep_if(faces, [&](FaceId f) {
+  const auto is_near = [&](FaceId f) { return is_touched(mesh, touched, f); };
+  if (mesh.shape.is_mechanical)
+    for (FaceId f : chosen(choice.region.faces, is_near)) touch(f);
+  return chosen(choice.region.faces, [&](FaceId f) {
     const bool may_divide = choice.may_divide(f);
-    return is_touched(f) & may_divide;
+    return is_near(f) & may_divide;
   });
-  return faces;
 }
 
 Buffer<uint8_t> Exploration::vertices_that_may_leave(const std::vector<LevelChoice>& choices,

@@ -225,10 +225,7 @@ Buffer<uint8_t> with_neighbours(const Topology& mesh, const Buffer<uint8_t>& fac
   for (FaceId f : marked(faces))
     for (uint32_t i = 0; i < 3; ++i) touched[mesh.origin[3 * f + i]] = 1;
   Buffer<uint8_t> marks(faces.size());
-  for (FaceId f = 0; f < faces.size(); ++f) {
-    const uint32_t* corner = &mesh.origin[size_t{3} * f];
-    marks[f] = touched[corner[0]] | touched[corner[1]] | touched[corner[2]];
-  }
+  for (FaceId f = 0; f < faces.size(); ++f) marks[f] = is_touched(mesh, touched, f) ? 1 : 0;
   return marks;
 }
 

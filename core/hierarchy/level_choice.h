@@ -37,6 +37,9 @@ struct LevelChoice {
     split[edge] = 1;
     split_edges.push_back(edge);
   }
+  void divide(FaceId face) {
+    for (HalfEdgeId h = 3 * face; h < 3 * face + 3; ++h) split_edge(level->mesh.topology.edge[h]);
+  }
   /// Splits `edges`, no edge twice. No edge may be split yet.
   void split_first(Buffer<uint32_t> edges) {
     for (EdgeId e : edges) split[e] = 1;

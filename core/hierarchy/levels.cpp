@@ -46,7 +46,7 @@ Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
   if (options.view) level->longest = longest_edges(level->mesh);
   const TrialContext context{.features = &level->features, .threads = progress.threads()};
   level->trial = try_level(*level, level->mesh, options, context, progress.cancelled());
-  level->trial.prepare_errors(options);
+  if (is_by_error(options)) level->trial.forget();
   levels_.push_back(std::move(level));
 }
 
@@ -160,8 +160,8 @@ void Levels::add_level(Buffer<uint8_t> red, Retention retention) {
   level->trial = try_level(*level, levels_[0]->mesh, options_, context, progress_.cancelled());
   if (is_kept)
     level->trial.keep();
-  else
-    level->trial.prepare_errors(options_);
+  else if (is_by_error(options_))
+    level->trial.forget();
   levels_.push_back(level);
   to_keep_ += is_kept ? 1 : 0;
   has_grown_ |= is_kept;

@@ -15,12 +15,8 @@ Buffer<uint32_t> faces_at_outline(const LevelChoice& choice, int level, const Se
   for (EdgeId e : choice.candidates)
     if (const HalfEdgeId h = mesh.half_edge[e]; selection.may_have_long_halves(choice.level->mesh, e))
       has_candidate[mesh.origin[h]] = has_candidate[mesh.tip(h)] = 1;
-  const auto touches = [&](const Buffer<uint8_t>& vertices, FaceId f) {
-    const uint32_t* corner = &mesh.origin[size_t{3} * f];
-    return (vertices[corner[0]] | vertices[corner[1]] | vertices[corner[2]]) != 0;
-  };
-  Buffer<uint32_t> faces =
-      chosen(choice.region.faces, [&](FaceId f) { return choice.split_mask(f) != 7 && touches(has_candidate, f); });
+  Buffer<uint32_t> faces = chosen(
+      choice.region.faces, [&](FaceId f) { return choice.split_mask(f) != 7 && is_touched(mesh, has_candidate, f); });
   Buffer<uint8_t> is_on_outline(mesh.vertex_count, 0);  // [V] at such a candidate and at an edge that is not shown
   for (FaceId f : faces)
     for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
@@ -34,7 +30,7 @@ Buffer<uint32_t> faces_at_outline(const LevelChoice& choice, int level, const Se
   keep_if(faces, [&](FaceId f) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
     const bool may_divide = (is_curved[edge[0]] & is_curved[edge[1]] & is_curved[edge[2]]) != 0;
-    return touches(is_on_outline, f) && may_divide && std::any_of(edge, edge + 3, is_kept_by_view);
+    return is_touched(mesh, is_on_outline, f) && may_divide && std::any_of(edge, edge + 3, is_kept_by_view);
   });
   return faces;
 }
@@ -53,8 +49,7 @@ void divide_at_outlines(std::span<LevelChoice> levels, double most_cosine) {
     LevelChoice& above = levels[k - 1];
     const size_t before = above.split_edges.size();
     for (FaceId f : above.at_outline)
-      if (levels[k].splits_below(f))
-        for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) above.split_edge(above.level->mesh.topology.edge[h]);
+      if (levels[k].splits_below(f)) above.divide(f);
     if (above.split_edges.size() == before) return;
     avoid_slivers(above, most_cosine);
   }

@@ -79,8 +79,7 @@ void Repair::look_again() {
     for (EdgeId e : choice.split_edges) touch(e);
     for (EdgeId e : before_[k]) touch(e);
     for (FaceId f : choice.region.faces) {
-      const uint32_t* corner = &mesh.origin[size_t{3} * f];
-      if ((touched[corner[0]] | touched[corner[1]] | touched[corner[2]]) == 0) continue;
+      if (!is_touched(mesh, touched, f)) continue;
       near_[k][f] = 0;
       if (k > 0) near_[k - 1][choice.level->parent_of(f)] = 0;
     }

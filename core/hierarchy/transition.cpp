@@ -82,7 +82,7 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
 
 uint32_t judge(const HierarchyLevel& level, FaceId face, unsigned mask, double most_cosine) {
   const SplitFace split(level, face, mask);
-  uint32_t found = Transition::is_known;
+  uint32_t found = Transition::is_judged;
   const auto [cosine_of_first, second] = cosines_of_pieces(split);
   double cosine = cosine_of_first;
   if (split.has_two) {
@@ -144,7 +144,7 @@ void avoid_slivers(LevelChoice& choice, double most_cosine) {
   while (!faces.empty()) {
     const FaceId f = faces.back();
     faces.pop_back();
-    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) choice.split_edge(mesh.edge[h]);
+    choice.divide(f);
     for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
       if (const HalfEdgeId t = mesh.twin[h]; t != none && must_be_divided(t.face())) faces.push_back(t.face());
   }

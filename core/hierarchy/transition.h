@@ -13,7 +13,7 @@ namespace papilio {
 
 /// Judgement of a face with one or two split edges, `mask` (bit i: edge i).
 struct Transition {
-  enum : uint32_t { is_known = 1, second_diagonal = 2, has_sliver = 4 };
+  enum : uint32_t { is_judged = 1, second_diagonal = 2, has_sliver = 4 };
 
   /// Packs the judgement and its mask, as stored in `LevelChoice::transitions`.
   [[nodiscard]] static uint8_t with_mask(uint32_t bits, unsigned mask) { return static_cast<uint8_t>(8 * mask | bits); }

@@ -2,7 +2,8 @@
 
 #include <cstdint>
 
-#include "papilio/buffer.h"
+#include "base/ids.h"
+#include "papilio/mesh.h"
 
 // Subsets of the faces, edges or vertices of a mesh: marks, or numbers in ascending order.
 
@@ -32,6 +33,11 @@ void keep_if(Buffer<uint32_t>& numbers, const IsKept& is_kept) {
 /// Returns the marked numbers in ascending order. Marks are 0 or 1.
 [[nodiscard]] Buffer<uint32_t> marked(const Marks& marks);
 
+/// Returns whether a corner of the face is marked. `marks` [V]
+[[nodiscard]] inline bool is_touched(const Topology& mesh, const Buffer<uint8_t>& marks, FaceId face) {
+  const uint32_t* corner = &mesh.origin[size_t{3} * face];
+  return (marks[corner[0]] | marks[corner[1]] | marks[corner[2]]) != 0;
+}
 /// Marks the corners or edges of some faces: `of` [H] is the vertex or edge of each half-edge, below `count`.
 [[nodiscard]] Marks used_by_faces(const Buffer<uint32_t>& faces, const Buffer<uint32_t>& of, uint32_t count);
 

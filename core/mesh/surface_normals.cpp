@@ -80,17 +80,6 @@ std::vector<uint32_t> find_sectors(const Topology& mesh, uint32_t& count) {
   return sector;
 }
 
-/// Returns [count] the area-weighted sums of face normals over groups of corners; of(h) is the group, below `count`.
-template <class Of>
-std::vector<Vec3d> sum_normals(const Mesh& mesh, uint32_t count, const Of& of) {
-  std::vector<Vec3d> sums(count);
-  for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
-    const Vec3d normal = area_normal(mesh, f);
-    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += normal;
-  }
-  return sums;
-}
-
 /// Returns the angle of a face at a corner, in radians.
 double angle_at(const Mesh& mesh, HalfEdgeId h) {
   const Vec3d place = to_double(mesh.positions[mesh.topology.origin[h]]);
@@ -102,15 +91,16 @@ double angle_at(const Mesh& mesh, HalfEdgeId h) {
   return cosine < 0 ? std::numbers::pi - arc_cosine(-cosine) : arc_cosine(cosine);
 }
 
-/// Returns [count] the sums of unit face normals weighted by the angles at the corners, as sum_normals().
+/// Returns [count] the weighted sums of face normals over groups of corners; of(h) is the group, below `count`.
 template <class Of>
-std::vector<Vec3d> sum_by_angle(const Mesh& mesh, uint32_t count, const Of& of) {
+std::vector<Vec3d> sum_normals(const Mesh& mesh, uint32_t count, FaceWeight weight, const Of& of) {
   std::vector<Vec3d> sums(count);
   for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
     const Vec3d normal = area_normal(mesh, f);
     const double size = length(normal);
     if (!(size > 0)) continue;
-    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) sums[of(h)] += angle_at(mesh, h) / size * normal;
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
+      sums[of(h)] += weight == FaceWeight::area ? normal : angle_at(mesh, h) / size * normal;
   }
   return sums;
 }
@@ -122,7 +112,7 @@ void renew_normals(Mesh& mesh, size_t number) {
   const Buffer<uint32_t>& point = mesh.attributes.point;
   const std::vector<uint32_t> equal = find_equal_points(mesh, attribute);
   const std::vector<Vec3d> sums =
-      sum_normals(mesh, mesh.attributes.point_count, [&](HalfEdgeId h) { return equal[point[h]]; });
+      sum_normals(mesh, mesh.attributes.point_count, FaceWeight::area, [&](HalfEdgeId h) { return equal[point[h]]; });
   double agreement = 0;
   for (uint32_t p = 0; p < sums.size(); ++p) agreement += dot(sums[p], vector_at(attribute, p));
   for (uint32_t p = 0; p < sums.size(); ++p) {
@@ -167,9 +157,7 @@ void add_weighted_normals(Mesh& mesh, FaceWeight weight) {
     }
     attribute.values = std::move(values);
   }
-  const auto sector_at = [&](HalfEdgeId h) { return sector[h]; };
-  const std::vector<Vec3d> sums =
-      weight == FaceWeight::area ? sum_normals(mesh, sectors, sector_at) : sum_by_angle(mesh, sectors, sector_at);
+  const std::vector<Vec3d> sums = sum_normals(mesh, sectors, weight, [&](HalfEdgeId h) { return sector[h]; });
   Attribute normals{.components = 3, .unit_length = true, .values = std::vector<double>(3 * sector_of.size())};
   for (uint32_t p = 0; p < sector_of.size(); ++p) {
     const Vec3d sum = sums[sector_of[p]];

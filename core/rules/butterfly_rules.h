@@ -283,10 +283,8 @@ class ButterflyRules {
   /// is as round as its rims. (The published rule is the midpoint, which leaves the wall faceted.)
   [[nodiscard]] Point across_strip(const CurveNeighbours& curves, HalfEdgeId h) const {
     const auto [one, other] = sides_of_strip(mesh_, h);
-    const auto moved = [&](uint32_t side) {
-      return along_curve(curves, mesh_.edge[side]) - Real(0.5) * (at(mesh_.origin[side]) + at(mesh_.tip(side)));
-    };
-    return Real(0.5) * (at(mesh_.origin[h]) + at(mesh_.tip(h))) + Real(0.5) * (moved(one) + moved(other));
+    const auto moved = [&](uint32_t side) { return along_curve(curves, mesh_.edge[side]) - middle(side); };
+    return middle(h) + Real(0.5) * (moved(one) + moved(other));
   }
 
   /// Returns the vertex across the edge of h from h's face.
@@ -299,7 +297,7 @@ class ButterflyRules {
   }
   [[nodiscard]] Point eight_points(HalfEdgeId h, HalfEdgeId t,
                                    const stencil::FaceShare<Real>& share = stencil::FaceShare<Real>()) const {
-    return sum(face_share(h, t, share), face_share(t, h, share));
+    return face_share(h, t, share) + face_share(t, h, share);
   }
   [[nodiscard]] Point face_share(HalfEdgeId h, HalfEdgeId t, const stencil::FaceShare<Real>& share) const {
     return share(at(mesh_.origin[h]), at(mesh_.origin[t]), at(mesh_.apex(h)), wing(h.next()), wing(h.previous()));
@@ -334,7 +332,6 @@ class ButterflyRules {
   }
 
   [[nodiscard]] Wide<Real> wide(VertexId vertex) const { return papilio::widen(p_[vertex]); }
-  static Point sum(Point one, Point other) { return one + other; }
   static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 

@@ -70,15 +70,13 @@ void split_families(const Topology& parents, const IndexRange& faces, const Numb
 
 }  // namespace
 
-void butterfly_below(const Topology& parents, const Features& features, const Vec3f* positions, Vec3f* made,
-                     int threads) {
-  split_families(parents, IndexRange(parents.face_count()), OwnNumbers(parents.edge_count()), features, positions, made,
-                 threads);
-}
-
-void butterfly_below(const Topology& parents, const Part& part, const Features& features, const Vec3f* positions,
+void butterfly_below(const Topology& parents, const Part* part, const Features& features, const Vec3f* positions,
                      Vec3f* made, int threads) {
-  split_families(parents, IndexRange(part.faces.numbers()), PartNumbers(part), features, positions, made, threads);
+  if (part == nullptr)
+    split_families(parents, IndexRange(parents.face_count()), OwnNumbers(parents.edge_count()), features, positions,
+                   made, threads);
+  else
+    split_families(parents, IndexRange(part->faces.numbers()), PartNumbers(*part), features, positions, made, threads);
 }
 
 }  // namespace papilio

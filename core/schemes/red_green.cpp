@@ -164,11 +164,8 @@ class RedGreen {
 
   static void carry_marks_up(const LevelChoice& below, LevelChoice& above) {
     if (below.split_edges.empty()) return;
-    below.visit_parents([&](uint32_t parent, const uint32_t* edges) {
-      unsigned any = 0;
-      for (uint32_t i = 0; i < 12; ++i) any |= below.split[edges[i]];
-      if (any == 0) return;
-      for (uint32_t i = 0; i < 3; ++i) above.split_edge(above.level->mesh.topology.edge[3 * parent + i]);
+    below.visit_parents([&](uint32_t parent, const uint32_t* /*edges*/) {
+      if (below.splits_below(parent)) above.divide(parent);
     });
   }
 

@@ -5,7 +5,7 @@
 namespace papilio::proto::detail {
 
 FormattedMesh decode_packed(const PackedModel& model, const DecodeOptions& options) {
-  Mesh decoded = decode_detail_mesh(model.base, model.streams(), options.face_limit, options.cancelled);
+  Mesh decoded = decode_detail(model.base, model.streams(), options.face_limit, options.cancelled);
   FormattedMesh mesh;
   mesh.format = base_format(decoded.attributes.attributes);
   turn_over(decoded.attributes.attributes);

@@ -16,6 +16,7 @@
 #include "tests/bench/markdown_table.h"
 #include "tests/bench/pairs.h"
 #include "tests/bench/report.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/detail_baseline.h"
 #include "tests/support/real_mesh.h"
 
@@ -50,7 +51,7 @@ std::vector<RatePoint> packed_points(const DetailSubject& subject) {
     const auto packed = proto::detail::pack(subject.original, {.rms = rms / 100, .simplifies = true});
     TriangleMesh decoded;
     if (packed.model)
-      decoded = decode_detail(packed.model->base, packed.model->streams());
+      decoded = test::decoded_triangles(packed.model->base, packed.model->streams());
     else
       decoded = proto::detail::read_plain_draco(packed.glb, {}).value().mesh;
     const test::SampledDistance distance = subject.surface.distance_to(decoded);

@@ -6,6 +6,7 @@
 #include "proto/detail/packed_reader.h"
 #include "proto/gltf/container.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/support/decoded_detail.h"
 
 // A document and its binary chunk, apart by a zero, as a packed model: what is read has whole levels, and decodes to
 // the faces that it declares, with their values. The first byte: whether the file may be cut, and how many levels are
@@ -34,7 +35,7 @@ void read_and_decode(uint8_t choice, std::string_view text) {
   fuzz::require(proto::detail::is_packed(glb), "what is read is packed");
   fuzz::require(model.levels.size() <= levels && model.levels.size() <= model.declared_levels, "no level is invented");
   fuzz::require(may_be_cut || model.levels.size() == std::min(levels, model.declared_levels), "no level is lost");
-  const TriangleMesh fine = decode_detail(model.base, model.streams(), limits.max_output_faces);
+  const TriangleMesh fine = test::decoded_triangles(model.base, model.streams(), limits.max_output_faces);
   const uint64_t faces = model.levels.empty() ? model.base.triangles.triangles.size() : model.levels.back().faces;
   fuzz::require(fine.triangles.size() == faces, "the faces are those declared");
   const auto values = [](const TriangleMesh& mesh) {  // not the numbers of parts, which follow from the base's faces

@@ -12,6 +12,7 @@
 #include "papilio/detail.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/packed_levels.h"
 #include "tests/support/shapes.h"
 #include "tests/support/textured_shapes.h"
@@ -66,7 +67,7 @@ DetailSource packed_levels_of_torus() { return pack_levels(coloured_torus(), {.t
 
 TEST(DetailColours, DecodedColoursEqualTheOriginalsAtVertices) {
   const DetailSource source = packed_levels_of_torus();
-  const TriangleMesh fine = decode_detail(source.base, source.levels);
+  const TriangleMesh fine = test::decoded_triangles(source.base, source.levels);
   ASSERT_EQ(fine.attributes.size(), 1U);
   EXPECT_EQ(fine.positions.size(), build_mesh(fine).topology.vertex_count) << "no seams";
   // Colours of the original are linear between vertices: error of a quarter of the squared longest edge times
@@ -80,7 +81,7 @@ TEST(DetailColours, DecodedColoursEqualTheOriginalsAtVertices) {
 TEST(DetailColours, SmallerStepLowersTheError) {
   const auto error_with = [](float texcoord_step) {
     const DetailSource source = pack_levels(coloured_torus(), {.texcoord_step = texcoord_step});
-    return largest_error(decode_detail(source.base, source.levels));
+    return largest_error(test::decoded_triangles(source.base, source.levels));
   };
   EXPECT_LT(error_with(colour_step), 0.5 * error_with(16 * colour_step));
 }
@@ -93,19 +94,19 @@ TEST(DetailColours, OneColourTakesNoBytes) {
     EXPECT_TRUE(level.texcoords.bytes.empty());
     EXPECT_EQ(level.texcoords.step, 0);
   }
-  const TriangleMesh fine = decode_detail(source.base, source.levels);
+  const TriangleMesh fine = test::decoded_triangles(source.base, source.levels);
   for (const double value : fine.attributes.at(0).values) EXPECT_NEAR(value, 77, 1e-3);
 }
 
 TEST(DetailColours, ColoursLeaveTextureCoordinatesUnchanged) {
   const TriangleMesh tube = test::textured_tube(48, 16);
   const DetailSource both = pack_levels(coloured(tube));
-  const TriangleMesh fine = decode_detail(both.base, both.levels);
+  const TriangleMesh fine = test::decoded_triangles(both.base, both.levels);
   ASSERT_EQ(fine.attributes.size(), 2U);
   EXPECT_LT(largest_error(fine), most_missed + 4);
   // Texture coordinates equal those packed without colours.
   const DetailSource alone = pack_levels(tube);
-  const TriangleMesh uncoloured = decode_detail(alone.base, alone.levels);
+  const TriangleMesh uncoloured = test::decoded_triangles(alone.base, alone.levels);
   EXPECT_EQ(fine.attributes[0], uncoloured.attributes.at(0));
   EXPECT_EQ(fine.positions, uncoloured.positions);
 }
@@ -124,7 +125,7 @@ TEST(DetailColours, RefinedLevelsHaveTheDecodersColours) {
       }
       return found;
     };
-    const auto whole = colours_at_places(decode_detail(source.base, source.levels));
+    const auto whole = colours_at_places(test::decoded_triangles(source.base, source.levels));
     Options options;
     options.levels = 4;
     EXPECT_EQ(colours_at_places(refine(base, options).mesh.triangles()), whole);
@@ -143,7 +144,7 @@ TEST(DetailColours, AnyBytesDecodeDeterministically) {
       level.texcoords.bytes.resize(40);
       for (uint8_t& byte : level.texcoords.bytes) byte = static_cast<uint8_t>(random());
     }
-    const auto decode = [&] { return decode_detail(source.base, source.levels); };
+    const auto decode = [&] { return test::decoded_triangles(source.base, source.levels); };
     EXPECT_EQ(decode(), decode());
   }
 }
@@ -151,10 +152,10 @@ TEST(DetailColours, AnyBytesDecodeDeterministically) {
 TEST(DetailColours, OverflowingColoursAreRefused) {
   DetailSource source = packed_levels_of_torus();
   source.levels[0].texcoords = {1e16F, {}};  // bits that are all 1
-  EXPECT_THROW((void)decode_detail(source.base, source.levels), Error);
+  EXPECT_THROW((void)test::decoded_triangles(source.base, source.levels), Error);
   source = packed_levels_of_torus();
   source.base.triangles.attributes[0].values[2] = 1e19;
-  EXPECT_THROW((void)decode_detail(source.base, source.levels), Error);
+  EXPECT_THROW((void)test::decoded_triangles(source.base, source.levels), Error);
 }
 
 }  // namespace

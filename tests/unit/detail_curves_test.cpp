@@ -17,6 +17,7 @@
 #include "core/mesh/crease.h"
 #include "papilio/detail.h"
 #include "papilio/error.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/invariants.h"
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
@@ -279,7 +280,7 @@ TEST_P(CurvedCollapses, EncodingHasTheStatedDistance) {
   options.rms = 2e-3;
   const EncodedDetail encoded = encode_detail(triangles, options, unchanged_base);
   EXPECT_LE(encoded.reach.back().rms, options.rms);
-  const TriangleMesh decoded = decode_detail(encoded.base, encoded.levels);
+  const TriangleMesh decoded = test::decoded_triangles(encoded.base, encoded.levels);
   const test::SampledDistance distance = test::SampledSurface(triangles, 40'000).distance_to(decoded);
   EXPECT_LT(distance.rms / 100, 1.1 * options.rms);
   EXPECT_LT(distance.largest / 100, 1.5 * std::max(encoded.reach.back().largest, options.rms));

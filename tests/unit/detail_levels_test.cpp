@@ -6,6 +6,7 @@
 
 #include "papilio/detail.h"
 #include "papilio/refine.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/shapes.h"
 #include "tests/support/streamed_detail.h"
 #include "tests/support/two_sided_distance.h"
@@ -36,9 +37,9 @@ DetailSource detail_with_late_bump() {
 }
 
 TriangleMesh decoded(const DetailSource& source, int levels) {
-  return decode_detail(source.base, std::span(source.levels).first(static_cast<size_t>(levels)));
+  return test::decoded_triangles(source.base, std::span(source.levels).first(static_cast<size_t>(levels)));
 }
-TriangleMesh decoded(const DetailSource& source) { return decode_detail(source.base, source.levels); }
+TriangleMesh decoded(const DetailSource& source) { return test::decoded_triangles(source.base, source.levels); }
 
 double diagonal_of(const DetailSource& source) { return bounding_box(source.base.triangles.positions).diagonal(); }
 

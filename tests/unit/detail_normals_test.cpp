@@ -68,7 +68,7 @@ Mesh encode_and_decode(const TriangleMesh& original, NormalStyle expected) {
       });
   EXPECT_EQ(encoded.normals, expected);
   EXPECT_TRUE(encoded.base.triangles.attributes.empty());
-  Mesh decoded = decode_detail_mesh(encoded.base, encoded.levels);
+  Mesh decoded = decode_detail(encoded.base, encoded.levels);
   add_detail_normals(decoded, encoded.normals);
   return decoded;
 }

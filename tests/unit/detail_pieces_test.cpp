@@ -10,6 +10,7 @@
 #include "core/detail/level_decoder.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/packed_levels.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
@@ -20,6 +21,16 @@
 
 namespace papilio {
 namespace {
+
+/// Returns [level][piece] whether decode_detail() decodes the piece.
+std::vector<std::vector<uint8_t>> decodable_pieces(const DetailBase& base, std::span<const DetailStream> levels) {
+  const Mesh mesh = mesh_of_base(base);
+  const PieceOrder order(mesh);
+  PieceNeeds needs(mesh.topology.vertex_count);
+  std::vector<std::vector<uint8_t>> made;
+  for (const DetailStream& stream : levels) made.push_back(needs.next(order, pieces_of(stream)));
+  return made;
+}
 
 /// Removes the bytes of the pieces for which `is_missing(level, piece)` holds.
 template <class IsMissing>
@@ -157,8 +168,8 @@ TEST(DetailPieces, LevelsWithoutPiecesEqualTheButterfly) {
   options.shape = Shape::plain;
   options.tension = Tension::off;
   const Mesh smooth = refine(build_mesh(all.base.triangles), options).mesh;
-  EXPECT_EQ(decode_detail_mesh(none.base, none.levels).positions, smooth.positions);
-  EXPECT_NE(decode_detail_mesh(all.base, all.levels).positions, smooth.positions);
+  EXPECT_EQ(decode_detail(none.base, none.levels).positions, smooth.positions);
+  EXPECT_NE(decode_detail(all.base, all.levels).positions, smooth.positions);
 }
 
 /// The last level in groups of about 32 faces of the base.
@@ -170,7 +181,8 @@ TEST(DetailPieces, PiecesTakeFewMoreBytesThanOneStream) {
   };
   const DetailSource one = packed(1'000'000);
   const DetailSource pieces = packed(600);
-  EXPECT_EQ(decode_detail(one.base, one.levels).positions, decode_detail(pieces.base, pieces.levels).positions);
+  EXPECT_EQ(test::decoded_triangles(one.base, one.levels).positions,
+            test::decoded_triangles(pieces.base, pieces.levels).positions);
   EXPECT_GE(pieces.levels.back().pieces.size(), 6U);
   const auto bytes_of = [](const DetailSource& source) {
     double bytes = 0;
@@ -186,7 +198,7 @@ TEST(DetailPieces, StatedBoundsHold) {
     const DetailSource all = test::pack_levels(bent(shape), {.base_faces = 90, .levels = 3, .piece_bytes = 100});
     const Mesh base = mesh_of_base(all.base);
     const PieceOrder order(base);
-    const TriangleMesh fine = decode_detail(all.base, all.levels);
+    const TriangleMesh fine = test::decoded_triangles(all.base, all.levels);
     for (uint32_t l = 0; l < all.levels.size(); ++l) {
       const std::vector<DetailPiece>& pieces = all.levels[l].pieces;
       const auto count = static_cast<uint32_t>(pieces.size());
@@ -230,7 +242,7 @@ TEST(DetailPieces, PiecesThatDoNotMatchTheBytesAreRefused) {
     DetailSource changed = whole;
     change(changed.levels[0]);
     try {
-      (void)decode_detail(changed.base, changed.levels);
+      (void)test::decoded_triangles(changed.base, changed.levels);
       return false;
     } catch (const Error& error) {
       return error.fault() == Fault::bad_option;
@@ -258,7 +270,7 @@ TEST(DetailPieces, AnyBytesDecode) {
         for (uint32_t i = 0; i < piece.bytes; ++i) level.bytes.push_back(static_cast<uint8_t>(random()));
       }
     }
-    EXPECT_EQ(decode_detail({base, {}}, levels).triangles.size(), 20U << (2 * levels.size()));
+    EXPECT_EQ(test::decoded_triangles({base, {}}, levels).triangles.size(), 20U << (2 * levels.size()));
   }
 }
 

@@ -17,6 +17,7 @@
 #include "papilio/refine.h"
 #include "server/sha256.h"
 #include "tests/support/bumpy_sphere.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
@@ -44,7 +45,7 @@ void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, do
   const test::SampledSurface surface(original, 40'000);
   const double diagonal = bounding_box(original.positions).diagonal();
   for (size_t levels = 0; levels < encoded.reach.size(); ++levels) {
-    const TriangleMesh decoded = decode_detail(encoded.base, std::span(encoded.levels).first(levels));
+    const TriangleMesh decoded = test::decoded_triangles(encoded.base, std::span(encoded.levels).first(levels));
     EXPECT_EQ(decoded.triangles.size(), encoded.base.triangles.triangles.size() << (2 * levels));
     const test::SampledDistance distance = surface.distance_to(decoded);
     const DetailReach& stated = encoded.reach[levels];
@@ -88,7 +89,7 @@ TEST(Detail, EncodingKeepsTheTopology) {
   DetailOptions options;
   options.rms = 4e-3;
   const EncodedDetail encoded = encode_detail(original, options, keep_base);
-  const Mesh decoded = build_mesh(decode_detail(encoded.base, encoded.levels));
+  const Mesh decoded = build_mesh(test::decoded_triangles(encoded.base, encoded.levels));
   EXPECT_EQ(decoded.topology.euler_characteristic(), 2);
   EXPECT_TRUE(std::ranges::all_of(decoded.topology.kind, [](EdgeKind kind) { return kind == EdgeKind::smooth; }));
 }
@@ -101,7 +102,7 @@ TEST(Detail, EncodingIsDeterministic) {
   const EncodedDetail two = encode_detail(original, options, keep_base);
   ASSERT_EQ(one.levels.size(), two.levels.size());
   for (size_t l = 0; l < one.levels.size(); ++l) EXPECT_EQ(one.levels[l].bytes, two.levels[l].bytes);
-  EXPECT_EQ(decode_detail(one.base, one.levels), decode_detail(two.base, two.levels));
+  EXPECT_EQ(test::decoded_triangles(one.base, one.levels), test::decoded_triangles(two.base, two.levels));
 }
 
 /// Positions of vertices do not depend on the number of later levels.
@@ -110,9 +111,9 @@ TEST(Detail, VerticesKeepTheirPositions) {
   DetailOptions options;
   options.rms = 2e-3;
   const EncodedDetail encoded = encode_detail(original, options, keep_base);
-  const TriangleMesh all = decode_detail(encoded.base, encoded.levels);
+  const TriangleMesh all = test::decoded_triangles(encoded.base, encoded.levels);
   for (size_t levels = 0; levels < encoded.levels.size(); ++levels) {
-    const TriangleMesh some = decode_detail(encoded.base, std::span(encoded.levels).first(levels));
+    const TriangleMesh some = test::decoded_triangles(encoded.base, std::span(encoded.levels).first(levels));
     for (size_t v = 0; v < some.positions.size(); ++v) ASSERT_EQ(some.positions[v], all.positions[v]);
   }
 }
@@ -175,7 +176,7 @@ TEST(Detail, AnyStreamsDecodeOrAreRefused) {
       for (uint8_t& byte : level.bytes) byte = static_cast<uint8_t>(random());
     }
     try {
-      const TriangleMesh decoded = decode_detail({base, curves}, levels);
+      const TriangleMesh decoded = test::decoded_triangles({base, curves}, levels);
       EXPECT_EQ(decoded.triangles.size(), base.triangles.size() << (2 * levels.size()));
       for (const Vec3f p : decoded.positions) ASSERT_LE(std::abs(p.x), coordinate_limit);
     } catch (const Error& error) {
@@ -192,7 +193,7 @@ TEST(Detail, LevelsWithoutResidualsEqualTheButterfly) {
   const TriangleMesh smooth = refine(build_mesh(base), options).mesh.triangles();
   std::vector<DetailStream> still = levels;
   for (DetailStream& level : still) level.step = std::numeric_limits<float>::min();
-  const TriangleMesh decoded = decode_detail({base}, still);
+  const TriangleMesh decoded = test::decoded_triangles({base}, still);
   ASSERT_EQ(decoded.positions.size(), smooth.positions.size());
   for (size_t v = 0; v < smooth.positions.size(); ++v)
     EXPECT_LT(length(to_double(decoded.positions[v]) - to_double(smooth.positions[v])), 1e-6);
@@ -208,7 +209,7 @@ TEST(Detail, DecodedPositionsEqualTheRecordedHash) {
     level.bytes.resize(2000);
     for (uint8_t& byte : level.bytes) byte = static_cast<uint8_t>(random());
   }
-  const TriangleMesh decoded = decode_detail({test::icosahedron()}, levels);
+  const TriangleMesh decoded = test::decoded_triangles({test::icosahedron()}, levels);
   EXPECT_EQ(server::sha256({reinterpret_cast<const char*>(decoded.positions.data()), 12 * decoded.positions.size()}),
             "057533a8e38f0e39e63a105ffc55102d4f3a78ce1288f489805524f34729ce0b");
 }
@@ -223,13 +224,17 @@ TEST(Detail, UnsupportedOriginalsAreRefused) {
     EXPECT_EQ(fault_of([&] { (void)encode_detail(sphere, wrong, keep_base); }), Fault::bad_option);
   }
   const DetailStream level{.step = 1, .bytes = {}};
-  EXPECT_EQ(fault_of([&] { (void)decode_detail({test::join(test::fan(3, true), test::fan(4, true), 0)}, {}); }),
-            Fault::bad_surface);
-  EXPECT_EQ(fault_of([&] { (void)decode_detail({sphere}, std::vector(11, level)); }), Fault::bad_option);
-  EXPECT_EQ(fault_of([&] { (void)decode_detail({sphere}, std::vector(2, level), 15 * sphere.triangles.size()); }),
-            Fault::result_too_large);
+  EXPECT_EQ(
+      fault_of([&] { (void)test::decoded_triangles({test::join(test::fan(3, true), test::fan(4, true), 0)}, {}); }),
+      Fault::bad_surface);
+  EXPECT_EQ(fault_of([&] { (void)test::decoded_triangles({sphere}, std::vector(11, level)); }), Fault::bad_option);
+  EXPECT_EQ(
+      fault_of([&] { (void)test::decoded_triangles({sphere}, std::vector(2, level), 15 * sphere.triangles.size()); }),
+      Fault::result_too_large);
   for (const float step : {0.0F, -1.0F, std::nanf(""), INFINITY})
-    EXPECT_EQ(fault_of([&] { (void)decode_detail({sphere}, std::vector<DetailStream>{{.step = step, .bytes = {}}}); }),
+    EXPECT_EQ(fault_of([&] {
+                (void)test::decoded_triangles({sphere}, std::vector<DetailStream>{{.step = step, .bytes = {}}});
+              }),
               Fault::bad_option);
 }
 
@@ -243,7 +248,7 @@ TEST(Detail, CancellationStopsEncodingAndDecoding) {
     EXPECT_EQ(fault_of([&] { (void)encode_detail(sphere, options, keep_base); }), Fault::cancelled) << calls;
   }
   const std::vector<DetailStream> levels(1, {.step = 1, .bytes = {}});
-  EXPECT_EQ(fault_of([&] { (void)decode_detail({sphere}, levels, face_count_limit, [] { return true; }); }),
+  EXPECT_EQ(fault_of([&] { (void)test::decoded_triangles({sphere}, levels, face_count_limit, [] { return true; }); }),
             Fault::cancelled);
 }
 
@@ -252,7 +257,7 @@ TEST(Detail, SmallestSurfacesAreEncoded) {
     DetailOptions options;
     options.rms = 0.01;
     const EncodedDetail encoded = encode_detail(original, options, keep_base);
-    EXPECT_FALSE(decode_detail(encoded.base, encoded.levels).triangles.empty());
+    EXPECT_FALSE(test::decoded_triangles(encoded.base, encoded.levels).triangles.empty());
   }
 }
 

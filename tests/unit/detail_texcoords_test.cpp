@@ -18,6 +18,7 @@
 #include "papilio/detail.h"
 #include "papilio/error.h"
 #include "papilio/refine.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/packed_levels.h"
 #include "tests/support/shapes.h"
 #include "tests/support/textured_shapes.h"
@@ -40,7 +41,7 @@ using test::with_texcoords;
 constexpr float usual_step = 1.0F / 2048;
 constexpr double largest_miss = 0.75 / 2048;
 
-TriangleMesh decode_all(const DetailSource& source) { return decode_detail(source.base, source.levels); }
+TriangleMesh decode_all(const DetailSource& source) { return test::decoded_triangles(source.base, source.levels); }
 size_t texcoord_bytes(const DetailSource& source) {
   size_t bytes = 0;
   for (const DetailStream& level : source.levels) bytes += level.texcoords.bytes.size();
@@ -238,7 +239,7 @@ TEST(DetailTexcoords, EncoderWritesAndCountsTexcoords) {
   uint64_t bytes = 0;
   for (const DetailStream& level : made.levels) bytes += level.texcoords.bytes.size();
   EXPECT_EQ(made.texcoord_bytes, bytes);
-  EXPECT_LT(largest_error(decode_detail(made.base, made.levels), error_on_tube), 0.01);
+  EXPECT_LT(largest_error(test::decoded_triangles(made.base, made.levels), error_on_tube), 0.01);
 }
 
 /// Texture coordinates of all points, with their positions.
@@ -265,7 +266,7 @@ TEST(DetailTexcoords, RefinedLevelsHaveTheDecodersTexcoords) {
     for (options.levels = 0; options.levels <= 4; ++options.levels) {
       const auto levels = std::span(source.levels).first(static_cast<size_t>(options.levels));
       EXPECT_EQ(texcoords_at_places(refine(with_levels(source), options).mesh.triangles()),
-                texcoords_at_places(decode_detail(source.base, levels)));
+                texcoords_at_places(test::decoded_triangles(source.base, levels)));
     }
   }
 }
@@ -294,7 +295,7 @@ TEST(DetailTexcoords, OtherAttributesAreRefused) {
   const TriangleMesh box = charted_box(3);
   const auto expect_refused = [](const TriangleMesh& mesh) {
     EXPECT_THROW((void)encode_detail(mesh, {}, [](const TriangleMesh& base) { return CodedBase{base, 1}; }), Error);
-    EXPECT_THROW((void)decode_detail({mesh}, {}), Error);
+    EXPECT_THROW((void)test::decoded_triangles({mesh}, {}), Error);
   };
   TriangleMesh mesh = box;
   mesh.attributes.push_back(mesh.attributes[0]);
@@ -303,7 +304,7 @@ TEST(DetailTexcoords, OtherAttributesAreRefused) {
   mesh.attributes = {parts, box.attributes[0]};
   expect_refused(mesh);
   mesh.attributes = {box.attributes[0], parts};
-  EXPECT_NO_THROW((void)decode_detail({mesh}, {}));
+  EXPECT_NO_THROW((void)test::decoded_triangles({mesh}, {}));
   mesh.attributes[1].values[0] = 1;
   expect_refused(mesh);
 }

@@ -12,6 +12,7 @@
 #include "proto/gltf/container.h"
 #include "proto/gltf/flattening.h"
 #include "proto/problem.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/gltf_scene.h"
 #include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
@@ -259,7 +260,7 @@ TEST(PackedModel, CountsOfAnOpenBaseEqualTheDecoded) {
   made.detail.base.curves = {1, 2, 3};
   const PackedModel model = read_packed(write_packed(made.detail, {made.base_stream}));
   EXPECT_EQ(model.base, made.detail.base);
-  const TriangleMesh fine = decode_detail(model.base, model.streams());
+  const TriangleMesh fine = test::decoded_triangles(model.base, model.streams());
   ASSERT_EQ(model.levels.size(), 3U);
   uint64_t vertices = model.base.triangles.positions.size();
   for (const PackedLevel& level : model.levels) vertices += level.vertices;

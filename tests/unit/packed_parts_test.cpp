@@ -19,6 +19,7 @@
 #include "proto/gltf/material_attribute.h"
 #include "proto/problem.h"
 #include "proto/refinement.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/gltf_refinement.h"
 #include "tests/support/packed_model.h"
 #include "tests/support/parted_torus.h"
@@ -201,7 +202,7 @@ TEST(PackedParts, SurfaceIsSmoothAcrossBorders) {
   const std::string glb = packed_torus();
   const PackedModel model = read_packed(glb);
   EXPECT_TRUE(model.base.curves.empty());
-  const Mesh fine = decode_detail_mesh(model.base, model.streams());
+  const Mesh fine = decode_detail(model.base, model.streams());
   for (const EdgeKind kind : fine.topology.kind) ASSERT_EQ(kind, EdgeKind::smooth);
 }
 
@@ -277,7 +278,8 @@ TEST(PackedParts, PartsRoundTripExactly) {
   EXPECT_EQ(model.base, made.detail.base);
   EXPECT_EQ(model.base_bytes, made.base_streams[0].size() + made.base_streams[1].size());
   EXPECT_EQ(model.levels.at(0).vertices, 12U);
-  EXPECT_EQ(decode_detail(model.base, model.streams()), decode_detail(made.detail.base, model.streams()));
+  EXPECT_EQ(test::decoded_triangles(model.base, model.streams()),
+            test::decoded_triangles(made.detail.base, model.streams()));
 }
 
 TEST(PackedParts, PartsOfOneMaterialHaveNoBorder) {
@@ -287,7 +289,7 @@ TEST(PackedParts, PartsOfOneMaterialHaveNoBorder) {
   }));
   DetailBase whole = model.base;
   whole.triangles = {whole.triangles.positions, whole.triangles.triangles};
-  const auto positions_of = [&](const DetailBase& base) { return decode_detail_mesh(base, model.streams()).positions; };
+  const auto positions_of = [&](const DetailBase& base) { return decode_detail(base, model.streams()).positions; };
   EXPECT_EQ(positions_of(model.base), positions_of(whole));
   EXPECT_NE(positions_of(made.detail.base), positions_of(whole)) << "residuals at borders are those of a curve";
 }

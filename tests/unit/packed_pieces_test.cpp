@@ -9,6 +9,7 @@
 #include "proto/detail/pack.h"
 #include "proto/detail/packed_reader.h"
 #include "proto/problem.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/gltf_scene.h"
 #include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
@@ -121,7 +122,7 @@ TEST(PackedPieces, PrefixGivesItsCompletePieces) {
           EXPECT_EQ(last.missing_pieces, count - p);
           EXPECT_EQ(last.stream.pieces[p - 1], level.pieces[p - 1]);
           EXPECT_TRUE(last.stream.pieces[p].is_missing);
-          const TriangleMesh decoded = decode_detail(model.base, model.streams());
+          const TriangleMesh decoded = test::decoded_triangles(model.base, model.streams());
           EXPECT_EQ(decoded.triangles.size(), model.levels.back().faces);
         }
         end += bytes;

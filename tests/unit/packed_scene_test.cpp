@@ -11,6 +11,7 @@
 #include "proto/gltf/packing.h"
 #include "proto/problem.h"
 #include "proto/quantization_box.h"
+#include "tests/support/decoded_detail.h"
 #include "tests/support/gltf_refinement.h"
 #include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
@@ -41,7 +42,7 @@ TriangleMesh triangles_of(const std::string& glb) { return gltf::flatten_scene(g
 
 TriangleMesh decoded_to(const PackedModel& model, int levels) {
   const std::vector<DetailStream> streams = model.streams();
-  return decode_detail(model.base, std::span(streams).first(static_cast<size_t>(levels)));
+  return test::decoded_triangles(model.base, std::span(streams).first(static_cast<size_t>(levels)));
 }
 
 std::string packed_scene() { return test::packed_fixture(test::icosahedron(), 2, view_bytes).glb; }
@@ -126,7 +127,7 @@ TEST(PackedScene, TinyToleranceEndsAtTheFinestLevel) {
   EXPECT_EQ(made.statistics.error, 0);
   EXPECT_EQ(made.statistics.unreached, "");
   const PackedModel model = read_packed(packed_scene());
-  EXPECT_EQ(sorted_faces(triangles_of(made.bytes)), sorted_faces(decode_detail(model.base, model.streams())));
+  EXPECT_EQ(sorted_faces(triangles_of(made.bytes)), sorted_faces(test::decoded_triangles(model.base, model.streams())));
 }
 
 TEST(PackedScene, MeshRequestsEqualTheDecodersLevels) {

@@ -158,7 +158,7 @@ TEST(Butterfly, VerticesFromTheLevelAboveAreBitIdentical) {
       Buffer<Vec3f> expected(level.mesh.topology.edge_count());
       butterfly(level.mesh.topology, level.features, positions, expected.data());
       Buffer<Vec3f> made(expected.size());
-      butterfly_below(level.parents, features, positions, made.data());
+      butterfly_below(level.parents, nullptr, features, positions, made.data());
       EXPECT_EQ(made, expected);
       ++compared;
       features = level.features;

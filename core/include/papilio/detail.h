@@ -88,28 +88,19 @@ struct DetailReach {
   double largest = 0;  ///< largest distance of either direction
 };
 
-/// Decodes base and streams to a mesh with the attributes of the base. `base` must be manifold. Each face of the base
-/// becomes 4^n consecutive faces of its part, where n is the number of streams. Any bytes are decoded to some mesh.
+/// Decodes base and streams to a mesh with edges and with the attributes of the base, whose curves are its boundaries
+/// and creases. `base` must be manifold. Each face of the base becomes 4^n consecutive faces of its part, where n is
+/// the number of streams. Any bytes are decoded to some mesh.
 ///
-/// The result is bit-identical on every processor. A vertex of a decodable piece (decodable_pieces()) does not depend
-/// on which other pieces are present. Throws `Error`: bad_option (no step, too many levels, other attributes, pieces
-/// that do not match the bytes), not_finite, result_too_large (beyond `face_limit`), cancelled, and errors of
-/// build_mesh(). O(result).
-[[nodiscard]] TriangleMesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
-                                         uint64_t face_limit = face_count_limit,
-                                         const std::function<bool()>& cancelled = {});
-
-/// Returns the mesh of decode_detail() with edges. Its boundaries and creases come from the base's curves. Throws as
-/// decode_detail().
-[[nodiscard]] Mesh decode_detail_mesh(const DetailBase& base, std::span<const DetailStream> levels,
-                                      uint64_t face_limit = face_count_limit,
-                                      const std::function<bool()>& cancelled = {});
-
-/// Returns [level][piece] whether decode_detail() decodes the piece. Three conditions hold: its bytes are present; the
-/// first piece of its level and of each level before is decoded; and so is each piece of the level before with a face
-/// at a vertex of one of the piece's faces of the base. Throws as decode_detail().
-[[nodiscard]] std::vector<std::vector<uint8_t>> decodable_pieces(const DetailBase& base,
-                                                                 std::span<const DetailStream> levels);
+/// A piece is decoded if three conditions hold: its bytes are present; the first piece of its level and of each level
+/// before is decoded; and so is each piece of the level before with a face at a vertex of one of the piece's faces of
+/// the base. Its vertices do not depend on which other pieces are present.
+///
+/// The result is bit-identical on every processor. Throws `Error`: bad_option (no step, too many levels, other
+/// attributes, pieces that do not match the bytes), not_finite, result_too_large (beyond `face_limit`), cancelled, and
+/// errors of build_mesh(). O(result).
+[[nodiscard]] Mesh decode_detail(const DetailBase& base, std::span<const DetailStream> levels,
+                                 uint64_t face_limit = face_count_limit, const std::function<bool()>& cancelled = {});
 
 /// Texture coordinates of a point.
 using Texcoord = std::array<float, 2>;
