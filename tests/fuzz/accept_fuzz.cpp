@@ -3,7 +3,7 @@
 #include "server/accept.h"
 #include "tests/fuzz/fuzz.h"
 
-// Any text as the field Accept: the answer is one of those offered.
+// Any text as the Accept field: one of the offered formats is chosen.
 
 using namespace papilio;
 

@@ -11,7 +11,7 @@ double ByteSource::between(double low, double high) {
   const auto kind = raw<uint8_t>();
   if (kind < 16) return low;
   if (kind < 32) return high;
-  if (kind < 64) return low + (high - low) * 1e-6 * raw<uint16_t>();  // ranges end far from what is usual
+  if (kind < 64) return low + (high - low) * 1e-6 * raw<uint16_t>();  // usual values are close to the lower bound
   return low + (high - low) * raw<uint16_t>() / 65535;
 }
 

@@ -9,7 +9,7 @@
 
 namespace papilio::fuzz {
 
-/// Takes values off an input's front; zeros once it is used up, so that every input means something.
+/// Reads values from the front of an input; zeros at its end, so that every input is valid.
 class ByteSource {
  public:
   ByteSource(const uint8_t* data, size_t size) : bytes_(data, size) {}
@@ -26,11 +26,11 @@ class ByteSource {
   }
 
   bool flag() { return (raw<uint8_t>() & 1U) != 0; }
-  /// 0 to `most`.
+  /// Returns a number in 0..`most`.
   uint32_t up_to(uint32_t most);
-  /// Between the two, often one of them.
+  /// Returns a number between the two, often one of the bounds.
   double between(double low, double high);
-  /// Any number: small integers, which coincide, fractions, or whatever the bits are.
+  /// Returns any number: a small integer, a fraction, or arbitrary bits.
   float coordinate();
   std::string_view rest();
 

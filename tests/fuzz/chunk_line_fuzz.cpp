@@ -4,7 +4,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-// Any text as the line before a chunk: an accepted line has no byte that another reader could take for its end.
+// Any text as the line before a chunk: an accepted line contains no byte that another parser could take for its end.
 
 using namespace papilio;
 

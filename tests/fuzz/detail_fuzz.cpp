@@ -8,9 +8,8 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/decoded_detail.h"
 
-// A document and its binary chunk, apart by a zero, as a packed model: what is read has whole levels, and decodes to
-// the faces that it declares, with their values. The first byte: whether the file may be cut, and how many levels are
-// read.
+// A document and its binary chunk, separated by a zero, as a packed model: what is read has whole levels, and decodes
+// to the declared faces and values. The first byte selects whether the file may be truncated, and the number of levels.
 
 using namespace papilio;
 
@@ -38,7 +37,7 @@ void read_and_decode(uint8_t choice, std::string_view text) {
   const TriangleMesh fine = test::decoded_triangles(model.base, model.streams(), limits.max_output_faces);
   const uint64_t faces = model.levels.empty() ? model.base.triangles.triangles.size() : model.levels.back().faces;
   fuzz::require(fine.triangles.size() == faces, "the faces are those declared");
-  const auto values = [](const TriangleMesh& mesh) {  // not the numbers of parts, which follow from the base's faces
+  const auto values = [](const TriangleMesh& mesh) {  // without part numbers, which the base's faces determine
     return std::ranges::count_if(mesh.attributes, [](const Attribute& attribute) { return attribute.components > 1; });
   };
   fuzz::require(values(fine) == values(model.base.triangles), "texture coordinates and colours are kept");

@@ -1,6 +1,6 @@
-# Draco from the source of Debian's package (tests/support/library_source.sh), instrumented as the rest is, so that the
-# fuzzer sees its way through the decoder. Without undefined-behaviour checks: signed numbers that overflow are how it
-# decodes damaged streams. Without the transcoder, which nothing here uses.
+# Draco from the source of Debian's package (tests/support/library_source.sh), instrumented, so that the fuzzer
+# measures coverage of the decoder. Without undefined-behaviour checks: its arithmetic overflows on damaged streams.
+# Without the transcoder, which is not used.
 
 file(READ /usr/include/draco/draco_features.h FEATURES)
 string(REPLACE "#define DRACO_TRANSCODER_SUPPORTED" "" FEATURES "${FEATURES}")

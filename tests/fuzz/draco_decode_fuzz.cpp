@@ -2,7 +2,7 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/soup.h"
 
-// Any bytes as a mesh: what the service does with a body before it refines anything.
+// Any bytes as a mesh: reading of a request body, as the service does.
 
 using namespace papilio;
 

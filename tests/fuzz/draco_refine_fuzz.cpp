@@ -2,8 +2,8 @@
 #include "proto/refinement.h"
 #include "tests/fuzz/fuzz.h"
 
-// The service's whole way: whatever is taken as a mesh is refined once, and the answer can be read. The input's size
-// says how it is encoded.
+// The whole path of the service: every accepted mesh is refined once, and the answer is readable. The input's size
+// selects the encoding.
 
 using namespace papilio;
 

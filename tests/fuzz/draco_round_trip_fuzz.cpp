@@ -10,8 +10,8 @@
 #include "tests/support/draco_faces.h"
 #include "tests/support/libdraco_writer.h"
 
-// What is written can be read: the same faces, positions no further off than half a cell of the grid, and to the bit
-// where they are sent exactly. And libdraco's stream has the same faces, with the same values of attributes.
+// Written streams can be read: faces are equal, and positions within half a cell of the grid, or bit-identical if sent
+// exactly. The stream of libdraco has equal faces and attribute values.
 
 using namespace papilio;
 
@@ -36,7 +36,7 @@ void require_libdracos_faces(const Mesh& mesh, const proto::QuantizationBox& box
                 "our faces are libdraco's");
 }
 
-/// Few faces are written in another way than many.
+/// Small meshes are written by another method than large ones.
 void write_refined(const proto::FormattedMesh& soup, const proto::OutputOptions& output) {
   Mesh mesh = build_mesh(soup);
   const proto::QuantizationBox box = proto::quantization_box(mesh.positions);

@@ -1,7 +1,7 @@
 #include "server/http/form.h"
 #include "tests/fuzz/fuzz.h"
 
-// A line as Content-Type, the rest as a form's body.
+// The first line as Content-Type, the rest as the body of a form.
 
 using namespace papilio;
 

@@ -8,10 +8,10 @@
 
 #include "proto/problem.h"
 
-// What the targets share. A finding is a program that ends: by a sanitizer, an exception that no header promises, or
+// Shared by the targets. A finding aborts the program: a sanitizer report, an undocumented exception, or a failed
 // `require`.
 
-/// What libFuzzer calls with each input, and `replay.cpp` with each case.
+/// Entry point that libFuzzer calls with each input, and replay.cpp with each case.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 namespace papilio::fuzz {
@@ -20,7 +20,7 @@ inline std::string_view text_of(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// The text up to `separator`, and what comes after it.
+/// Splits the text at the first `separator`.
 inline std::pair<std::string_view, std::string_view> cut(std::string_view text, char separator) {
   const size_t at = text.find(separator);
   if (at == std::string_view::npos) return {text, {}};
@@ -33,7 +33,7 @@ inline void require(bool condition, const char* what) {
   std::abort();
 }
 
-/// Runs what may refuse its input; the refusal must then be one that can be answered with. Returns whether it did not.
+/// Runs work that may refuse its input with a `Problem` that can be sent. Returns whether the input was accepted.
 template <class Work>
 bool unless_refused(Work work) {
   try {

@@ -1,7 +1,7 @@
 #include "proto/gltf/document_writer.h"
 #include "tests/fuzz/fuzz.h"
 
-// Bytes as a .glb or .gltf file: what is read can be written as either, and is then read the same.
+// Any bytes as a .glb or .gltf file: what is read can be written as either, and is equal when read again.
 
 using namespace papilio;
 using namespace papilio::proto::gltf;

@@ -8,8 +8,8 @@
 #include "proto/gltf/vertices.h"
 #include "tests/fuzz/fuzz.h"
 
-// The JSON of a scene, a zero, its binary chunk: geometry that is read can be written in its own place, under each
-// compression, and is then read the same. A scene that can be flattened, with its materials, can be made a scene again.
+// The JSON of a scene, a zero, its binary chunk: geometry that is read can be replaced under each compression, and is
+// equal when read again. A scene that can be flattened, with its materials, can be converted to a scene again.
 
 using namespace papilio;
 using namespace papilio::proto::gltf;
@@ -27,7 +27,7 @@ std::vector<MeshGeometry> read_all(const Document& document) {
   return all;
 }
 
-/// Bits of the positions of all corners; of a Draco stream, which is written anew, their number alone.
+/// Returns the bits of the positions of all corners; for a Draco stream, which is encoded again, only their number.
 std::vector<std::array<uint32_t, 3>> corners(const MeshGeometry& geometry) {
   std::vector<std::array<uint32_t, 3>> all;
   for (const TrianglePrimitive& primitive : geometry.primitives) {
@@ -40,7 +40,7 @@ std::vector<std::array<uint32_t, 3>> corners(const MeshGeometry& geometry) {
   return all;
 }
 
-/// Writes all geometry anew in its own place, and reads it again.
+/// Replaces all geometry by itself, and reads it again.
 std::vector<MeshGeometry> rewritten(Document document, const std::vector<MeshGeometry>& before,
                                     Compression compression) {
   std::vector<EncodedGeometry> same;
@@ -65,7 +65,7 @@ void round_trip(const std::string& glb) {
   const std::vector<MeshGeometry> meshopt = rewritten(document, before, Compression::meshopt);
   for (size_t m = 0; m < before.size(); ++m)
     fuzz::require(corners(meshopt[m]).size() == corners(before[m]).size(), "triangles survive");
-  (void)rewritten(document, before, Compression::draco);  // without triangles that have no area
+  (void)rewritten(document, before, Compression::draco);  // without degenerate triangles
 }
 
 void flatten(const std::string& glb) {

@@ -5,14 +5,14 @@
 #include "client/mesh_file/mtl.h"
 #include "tests/fuzz/fuzz.h"
 
-// A byte as the format, the rest as a file of it: what can be read can be written, and is then read the same. The fifth
-// format is that of material libraries.
+// The first byte as the format, the rest as a file: what can be read can be written, and is equal when read again. The
+// fifth format is material libraries.
 
 using namespace papilio;
 
 namespace {
 
-/// The positions of all corners, bit by bit.
+/// Returns the bits of the positions of all corners.
 std::vector<std::array<uint32_t, 3>> corners(const TriangleMesh& mesh) {
   std::vector<std::array<uint32_t, 3>> all;
   for (const Triangle& triangle : mesh.triangles)
@@ -45,7 +45,7 @@ bool is_finite(const TriangleMesh& mesh) {
                              [](Vec3f p) { return p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0; });
 }
 
-/// Reads a library and, where names fit on a line, writes it and reads it again.
+/// Reads a library and, if names fit on a line, writes it and reads it again.
 void check_library(std::string_view bytes) {
   const std::vector<client::MtlMaterial> materials = client::parse_mtl(bytes);
   std::vector<client::MtlMaterial> plain = materials;

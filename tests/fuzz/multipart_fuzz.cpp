@@ -3,7 +3,8 @@
 #include "proto/multipart.h"
 #include "tests/fuzz/fuzz.h"
 
-// A byte as the size of the pieces, a line as Content-Type, the rest as an answer's body: pieces make no difference.
+// The first byte as the size of chunks, a line as Content-Type, the rest as the body of an answer: the result does not
+// depend on the chunks.
 
 using namespace papilio;
 

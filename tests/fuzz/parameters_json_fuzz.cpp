@@ -1,7 +1,7 @@
 #include "proto/parameters.h"
 #include "tests/fuzz/fuzz.h"
 
-// Any text as parameters in JSON: what is taken has a canonical form that means the same.
+// Any text as parameters in JSON: accepted parameters have an equivalent canonical form.
 
 using namespace papilio;
 

@@ -1,7 +1,8 @@
 #include "proto/parameters.h"
 #include "tests/fuzz/fuzz.h"
 
-// Any fields of a query, as name=value&name=value: what is taken has a canonical form that means the same.
+// Any fields of a query, as name=value&name=value: accepted parameters have an equivalent
+// canonical form.
 
 using namespace papilio;
 

@@ -5,13 +5,13 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/soup.h"
 
-// Any triangles with any parameters: what comes out is sound and within its budgets.
+// Any triangles with any parameters: the result is valid and within its budgets.
 
 using namespace papilio;
 
 namespace {
 
-/// Ends the program if closing gaps makes a defect, or a face from nothing.
+/// Aborts if closing gaps makes a defect, or a face without an original.
 void require_no_worse(const TriangleMesh& soup, const BuildReport& exact, double gap) {
   BuildReport found;
   const Mesh closed = build_mesh(soup, &found, gap);

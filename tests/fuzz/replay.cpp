@@ -8,7 +8,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-// TARGET_fuzz FOLDER: gives each file of the folder to the target, which ends the program where one is a finding.
+// TARGET_fuzz FOLDER: runs the target on each file of the folder; it aborts on a finding.
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;

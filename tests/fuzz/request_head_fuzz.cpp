@@ -4,7 +4,7 @@
 #include "server/http/head.h"
 #include "tests/fuzz/fuzz.h"
 
-// Any text as the head of a request: what is taken holds nothing that could break a log or a header.
+// Any text as the head of a request: an accepted head contains nothing that could break a log or a header.
 
 using namespace papilio;
 

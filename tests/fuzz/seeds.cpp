@@ -15,7 +15,7 @@
 #include "tests/support/packed_model.h"
 #include "tests/support/shapes.h"
 
-// fuzz_seeds FOLDER: writes what each target starts from into FOLDER/TARGET, and FOLDER/words, a dictionary.
+// fuzz_seeds FOLDER: writes the seeds of each target to FOLDER/TARGET, and the dictionary FOLDER/words.
 
 namespace papilio::fuzz {
 namespace {
@@ -30,7 +30,7 @@ class Seeds {
     fs::create_directories(folder_ / target);
     write(folder_ / target / ("seed" + std::to_string(number_++)), bytes);
   }
-  /// As libFuzzer reads dictionaries: "word" in quotes.
+  /// Writes an entry in the dictionary format of libFuzzer: "word" in quotes.
   void add_words(const std::vector<std::string>& words) {
     std::string lines;
     for (const std::string& word : words) lines.append("\"").append(word).append("\"\n");
@@ -60,7 +60,7 @@ void add_meshes(Seeds& seeds) {
     streams.push_back(test::encode_with_draco(shape, test::Method::edgebreaker, true));
     streams.push_back(test::encode_with_draco(shape, test::Method::sequential));
     streams.push_back(proto::write_draco_exact(shape));
-    for (const int speed : {0, 3, 5, 10}) {  // each has its own traversal and prediction
+    for (const int speed : {0, 3, 5, 10}) {  // each uses another traversal and prediction
       const proto::FormattedMesh charted = test::charted_cube();
       const Mesh mesh = build_mesh(charted);
       streams.push_back(proto::write_draco(mesh, proto::quantization_box(mesh.positions), {.speed = speed},
@@ -93,7 +93,7 @@ void add_mesh_files(Seeds& seeds) {
       "norm .\\n.png\nmap_Pr -imfchan g p.png\nmap_Bump -bm 2 \"b.png\"\nnewmtl\nKd xyz 1 1 1\n");
 }
 
-/// A document and its binary chunk, apart by a zero.
+/// Joins a document and its binary chunk with a zero.
 std::string apart(const test::GltfScene& scene) {
   test::GltfScene::Json json = scene.json;
   json["buffers"] = {{{"byteLength", scene.binary.size()}}};
@@ -141,10 +141,10 @@ void add_scenes(Seeds& seeds) {
   }
 }
 
-/// Packed models whose residuals are random, with the byte that chooses how they are read.
+/// Writes packed models with random residuals, each after the byte that selects how it is read.
 void add_packed_models(Seeds& seeds) {
   TriangleMesh charted = test::charted_cube();
-  charted.attributes.erase(charted.attributes.begin());  // texture coordinates are left
+  charted.attributes.erase(charted.attributes.begin());  // keeps the texture coordinates
   std::vector<std::string> models{test::parted_fixture().glb};
   TriangleMesh coloured = test::icosahedron();
   coloured.attributes.push_back({.components = 3, .values = std::vector<double>(3 * coloured.positions.size(), 99)});
@@ -214,7 +214,7 @@ void add_messages(Seeds& seeds) {
   seeds.add("accept", "multipart/mixed;q=0.5, application/*, */*;q=0.1");
 }
 
-/// Of targets that make their own sense of bytes.
+/// Writes seeds of targets that interpret arbitrary bytes.
 void add_noise(Seeds& seeds) {
   std::mt19937 random(1);
   for (const char* target : {"refine_soup", "draco_round_trip"})

@@ -27,7 +27,7 @@ void take_attribute(ByteSource& bytes, proto::FormattedMesh& mesh) {
   mesh.format.attributes.push_back(std::move(format));
 }
 
-/// A value of the row as text; whether views define a picture is for the parser to say.
+/// Returns a value of the row as text. The parser decides whether a view defines a picture.
 std::string take_value(ByteSource& bytes, const ParameterInfo& info) {
   if (info.type == ParameterType::boolean) return bytes.flag() ? "true" : "false";
   if (info.type == ParameterType::choice)

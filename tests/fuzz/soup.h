@@ -6,15 +6,15 @@
 
 namespace papilio::fuzz {
 
-/// Triangles in any arrangement: of coinciding, flat, huge or not-a-number positions, repeated, degenerate, and with up
-/// to two attributes of any kind. Indices are in range but for a rare case.
+/// Returns triangles in any arrangement: coinciding, flat, huge or NaN positions, repeated and degenerate faces, and up
+/// to two attributes of any kind. Indices are rarely out of range.
 [[nodiscard]] proto::FormattedMesh take_soup(ByteSource& bytes);
 
-/// Any values of the parameters of the table, each in its range; at most `most_levels`. Throws `Problem` where they do
-/// not go together.
+/// Returns any values of the parameters of the table, each in its range, with at most `most_levels` levels. Throws
+/// `Problem` if the combination is invalid.
 [[nodiscard]] proto::Parameters take_parameters(ByteSource& bytes, int most_levels);
 
-/// Ends the program unless indices are in range and agree, and positions are finite.
+/// Aborts unless indices are in range and consistent, and positions are finite.
 void require_sound(const Mesh& mesh);
 
 }  // namespace papilio::fuzz

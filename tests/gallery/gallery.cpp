@@ -1,7 +1,7 @@
-// gallery FOLDER MODEL...: what refinement makes of models, for people to look at. Of each it draws, in
-// FOLDER/NAME.png, the coarse mesh, the plain scheme and the shape rules, above with flat faces, below with normals
-// that are apart at creases; and prints a row of figures. gallery --sheet FILE MODEL...: only draws, all into one
-// picture, a row each, with flat faces.
+// gallery FOLDER MODEL...: draws refined models for visual inspection. FOLDER/NAME.png shows the coarse mesh, the plain
+// scheme and the shape rules: above with flat shading, below with normals that are split at creases. Also prints a row
+// of figures for each model. gallery --sheet FILE MODEL...: draws all models into one picture, one row each, with flat
+// shading.
 
 #include <png.h>
 
@@ -33,7 +33,7 @@ View view_of(const Mesh& mesh) {
   return view;
 }
 
-/// The same with corners of its own for each face, which is flat then.
+/// Returns the mesh with separate vertices for each face, for flat shading.
 Mesh faceted(const Mesh& mesh) {
   Mesh out;
   const uint32_t corners = mesh.topology.half_edge_count();
@@ -45,7 +45,7 @@ Mesh faceted(const Mesh& mesh) {
   return out;
 }
 
-/// The same with a vertex for each of its normals, as a result has them: smooth, apart at creases.
+/// Returns the mesh with a vertex for each normal: smooth, split at creases.
 Mesh parted_at_creases(Mesh mesh) {
   mesh.attributes = {};
   add_normals(mesh);
@@ -58,7 +58,7 @@ Mesh parted_at_creases(Mesh mesh) {
   return out;
 }
 
-/// Pictures side by side, row below row.
+/// Grid of pictures.
 class Sheet {
  public:
   Sheet(uint32_t columns, uint32_t rows)
@@ -69,7 +69,7 @@ class Sheet {
       for (uint32_t x = 0; x < side; ++x)
         grey_[(size_t{row} * side + y) * width_ + column * side + x] = shade_of(image.at(x, y));
   }
-  /// Of light; where nothing is drawn, white.
+  /// Brightness of the pixels; white in the background.
   [[nodiscard]] static uint8_t shade_of(float light) {
     return light == 0 ? 255 : static_cast<uint8_t>(std::lround(25 + 205 * light));
   }
@@ -138,7 +138,7 @@ void draw_sheet(const std::filesystem::path& to, const std::vector<std::string>&
   sheet.write(to);
 }
 
-/// Goes on after a model that cannot be read. Returns whether there was none.
+/// Skips models that cannot be read. Returns whether all were read.
 bool show_all(const std::string& folder, const std::vector<std::string>& files) {
   std::filesystem::create_directories(folder);
   std::printf("%-28s %7s %13s  %13s  %15s  %7s  %s\n", "% of the diagonal; plain, ours", "faces", "folds", "overshoot",

@@ -11,7 +11,7 @@
 namespace papilio::test {
 namespace {
 
-constexpr double fold_cosine = -0.5;  // of 120 degrees
+constexpr double fold_cosine = -0.5;  // cosine of 120 degrees
 
 double overshoot(const Box& coarse, const Box& fine) {
   const std::array<float, 6> out{coarse.min.x - fine.min.x, coarse.min.y - fine.min.y, coarse.min.z - fine.min.z,

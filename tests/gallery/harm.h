@@ -6,22 +6,22 @@
 
 namespace papilio::test {
 
-/// What refining did to a mesh that it should not. Distances are shares of the coarse mesh's diagonal.
+/// Artefacts of a refinement. Distances are shares of the coarse mesh's diagonal.
 struct Harm {
   uint32_t folds =
       0;  ///< edges at which the surface turns by over 120 degrees, less those that are parts of coarse ones
-  double overshoot = 0;  ///< how far the surface leaves the coarse mesh's box
+  double overshoot = 0;  ///< largest distance of the surface outside the coarse mesh's box
   double distance = 0;   ///< root mean square distance of the middles of its faces from the coarse surface
 };
 
-/// The edges at which the surface turns by over 120 degrees.
+/// Returns the edges at which the surface turns by over 120 degrees.
 [[nodiscard]] uint32_t count_folds(const Mesh& mesh);
 
-/// `fine` is `coarse` after so many uniform levels.
+/// Measures `fine`, which is `coarse` after a number of uniform levels.
 [[nodiscard]] Harm harm_of(const Mesh& coarse, const Mesh& fine, int levels);
 
-/// Root mean square distance of the middles of the first mesh's faces, weighted by area, from the second's surface, as
-/// a share of the second's diagonal.
+/// Returns the area-weighted root mean square distance of the first mesh's face centres from the second's surface, as a
+/// share of the second's diagonal.
 [[nodiscard]] double rms_distance(const Mesh& from, const Mesh& to);
 
 }  // namespace papilio::test

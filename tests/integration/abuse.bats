@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
-# Traps that others fell into, each against the real server: first those of HTTP libraries, then those of Draco's decoder.
-# More rows are in errors.bats, service.bats, nginx.bats and the unit tests of server/http.
+# Known attacks on HTTP libraries and on Draco's decoder, against the real server. More are in errors.bats, service.bats,
+# nginx.bats and the unit tests of server/http.
 
 bats_require_minimum_version 1.5.0
 load helpers
@@ -17,10 +17,10 @@ port() { echo "${url##*:}"; }
 post() { request -H "$draco" --data-binary @"$1" "${@:2}"; }
 peak_kilobytes() { sed -n 's/^VmHWM:[[:space:]]*\([0-9]*\) kB/\1/p' "/proc/$server_pid/status"; }
 
-# stays_within MEGABYTES COMMAND...: how much more memory the server ever held than before.
+# stays_within MEGABYTES COMMAND...: bounds the growth of the server's peak memory during a command.
 stays_within() {
   local before after allowed=$1
-  # The thread sanitizer keeps four bytes of its own for each of the program's, and as many again for its history.
+  # The thread sanitizer adds about eight bytes for each byte of the program, including its history.
   ! grep -qa __tsan_init "$server" || allowed=$((8 * allowed))
   before=$(peak_kilobytes)
   "${@:2}"
@@ -90,7 +90,7 @@ stays_within() {
   kill -TERM "$server_pid"
   cat <&5 >>"$BATS_TEST_TMPDIR/whole"
   exec 5<&-
-  wait "$running"    # curl says when a stream is cut short
+  wait "$running"    # curl fails if a stream is truncated
   wait "$server_pid" # 0: nothing was
   server_pid=
   [ "$(grep -ac '^Papilio-Faces: ' "$BATS_TEST_TMPDIR/whole")" = 7 ]
@@ -109,7 +109,7 @@ stays_within() {
   expect_problem 415 unsupported_media_type
 }
 
-# post_form BOUNDARY-PARAMETER FORM: the form as printf reads it, the mesh in place of MESH.
+# post_form BOUNDARY-PARAMETER FORM: posts the form, with escapes of printf and MESH replaced by the mesh.
 post_form() {
   # shellcheck disable=SC2059
   { printf -- "${2%MESH*}"; cat "$coarse"; printf -- "${2#*MESH}"; } >"$BATS_TEST_TMPDIR/form"
@@ -122,12 +122,12 @@ post_form() {
   local mesh='Content-Disposition: form-data; name="mesh"' params='\r\nContent-Disposition: form-data; name=params\r\n\r\n{"levels": 1}\r\n'
   local shapes=(
     "boundary=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\n"
-    "boundary=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--"                                    # no line's end at the end
+    "boundary=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--"                                    # no final line end
     "boundary=b|preamble\r\n\r\n--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\nepilogue --b"
-    "boundary=b|--b  \t\r\n$mesh\r\n\r\nMESH\r\n--b \r\n${params#'\r\n'}--b-- \r\n"             # white space after it
+    "boundary=b|--b  \t\r\n$mesh\r\n\r\nMESH\r\n--b \r\n${params#'\r\n'}--b-- \r\n"             # trailing white space
     "boundary=\"a (b)+c?=/:.\"|--a (b)+c?=/:.\r\n$mesh\r\n\r\nMESH\r\n--a (b)+c?=/:.$params--a (b)+c?=/:.--\r\n"
     "charset=utf-8; BOUNDARY=b|--b\r\n$mesh\r\n\r\nMESH\r\n--b$params--b--\r\n"
-    "boundary=b|--b$params--b\r\n$mesh\r\n\r\nMESH\r\n--b--\r\n"                                 # the other order
+    "boundary=b|--b$params--b\r\n$mesh\r\n\r\nMESH\r\n--b--\r\n"                                 # other order
     "boundary=b|--b\r\ncontent-type: x/y\r\ncontent-disposition:form-data;filename=\"a;name=no.drc\";name=mesh\r\nX-Else: 1\r\n\r\nMESH\r\n--b$params--b--\r\n"
     "boundary=b|--b\r\n$mesh; filename=\"\\\\\"--b.drc\"; filename*=UTF-8''%%e2%%82%%ac\r\n\r\nMESH\r\n--b$params--b--\r\n"
     "boundary=$(printf 'x%.0s' {1..70})|--$(printf 'x%.0s' {1..70})\r\n$mesh\r\n\r\nMESH\r\n--$(printf 'x%.0s' {1..70})$params--$(printf 'x%.0s' {1..70})--\r\n"
@@ -153,7 +153,7 @@ post_form() {
 
 # Draco
 
-# stream NAME: a file with that stream of tests/support/draco_bytes.py; its name goes to $stream.
+# stream NAME: writes the stream of tests/support/draco_bytes.py to a file; sets $stream to its name.
 stream() {
   stream=$BATS_TEST_TMPDIR/$1.drc
   python3 "$BATS_TEST_DIRNAME/../support/draco_bytes.py" "$1" >"$stream"
@@ -180,7 +180,7 @@ stream() {
     stays_within 20 post "$stream" "$url/v1/refine"
     expect_problem 413 mesh_too_large
   done
-  # That they are alive: Draco's own program dies of them with a gigabyte to spend.
+  # The streams are effective: Draco's own program fails on them with a gigabyte of memory.
   for name in bomb_1.0 bomb_1.5 bomb_2.1 bomb_edgebreaker; do
     stream "$name"
     run bash -c "ulimit -c 0 -v 1000000; exec draco_decoder -i '$stream' -o '$BATS_TEST_TMPDIR/out.obj'"

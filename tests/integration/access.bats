@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Who may do what: keys, their rights and their reload; pages of other origins; listening beyond loopback.
+# Access control: keys, their rights and their reload; other origins; listening beyond loopback.
 
 load helpers
 
@@ -13,10 +13,10 @@ setup_file() {
 }
 teardown_file() { stop_server; }
 
-# as NAME ARGUMENT...: a request with that one's key.
+# as NAME ARGUMENT...: sends a request with the key of NAME.
 as() { request -H "Authorization: Bearer $1-key-0123456789" "${@:2}"; }
 
-# The table of endpoints and what they need: METHOD PATH OPEN|USE|MANAGE.
+# Table of endpoints and required rights: METHOD PATH OPEN|USE|MANAGE.
 endpoints() {
   cat <<END
 POST /v1/refine use
@@ -53,7 +53,7 @@ END
     [[ $status != 401 && $status != 403 ]]
     count=$((count + 1))
   done < <(endpoints)
-  # None is left out: the document has as many operations, and GET of a mesh stands for HEAD.
+  # The table is complete: the document has as many operations. GET of a mesh also represents HEAD.
   request "$url/openapi.json"
   [ "$(field 'paths | map(length) | add')" = $((count - 1)) ]
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# The C functions as a shared library of others: installed, linked by a C compiler, bound by another language.
+# The C functions as a shared library: installed, linked by a C compiler, called from another language.
 
 load helpers
 

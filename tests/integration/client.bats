@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# The command line: refine here and there, info, convert, compare.
+# The command line: refine (local and remote), info, convert, compare.
 
 load helpers
 
@@ -8,7 +8,7 @@ teardown_file() { stop_server; }
 setup() { cd "$BATS_TEST_TMPDIR" || return; }
 teardown() { [[ -z ${stub_pid:-} ]] || kill "$stub_pid"; }
 
-# nan_mesh: an OBJ file with a coordinate that is no number.
+# nan_mesh: writes an OBJ file with a NaN coordinate.
 nan_mesh() { printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n'; }
 
 @test "local and remote results have the same bytes, from each input format to each output format" {
@@ -50,7 +50,7 @@ END
     "$papilio" refine square.obj -o there.drc --server "$url" $flags
     cmp here.drc there.drc
     draco_decoder -i here.drc -o seen.obj
-    # 25 vertices, and 4 more texture coordinates along the seam: it meets the other chart in one corner.
+    # 25 vertices, and 4 more texture coordinates along the seam, which meets the other chart in one corner.
     [ "$(grep -c '^v ' seen.obj)" = 25 ]
     [ "$(grep -c '^vn ' seen.obj)" -gt 0 ]
   done
@@ -146,7 +146,7 @@ END
 }
 
 @test "smoothing groups of OBJ stay sharp and are written again, locally and remotely" {
-  # A pyramid of five faces over a square: a smooth mantle in group 1, a floor that is off.
+  # A pyramid of five faces over a square: smooth sides in group 1, a base without a group.
   pyramid() { printf 'v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 0.5\n%bf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n%bf 4 3 2 1\n' "$@"; }
   pyramid 's 1\n' 's off\n' >groups.obj
   pyramid 's 1\n' '' >one.obj
@@ -158,7 +158,7 @@ END
   "$papilio" refine groups.obj -o here.drc --levels 2 --shape organic
   "$papilio" refine groups.obj -o there.drc --levels 2 --shape organic --server "$url"
   cmp here.drc there.drc
-  # The floor stays in its plane, and its rim is the one line of creases of the result.
+  # The base stays planar, and its rim is the only crease of the result.
   "$papilio" refine groups.obj -o fine.obj --levels 2 --shape organic
   "$papilio" refine one.obj -o smooth.obj --levels 2 --shape organic
   ! cmp -s fine.obj smooth.obj
@@ -179,7 +179,7 @@ v 0 4 0
 f 5 6 7 8 1 2 3 4
 END
   "$papilio" refine plate.obj -o fine.obj --levels 3
-  # Shoelace over all faces: the area of a U, and no face turned over.
+  # Signed area of all faces (shoelace formula): the area of a U, with no inverted face.
   awk '$1 == "v" { x[++n] = $2; y[n] = $3 }
     $1 == "f" { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); i = a[1]; j = b[1]; k = c[1]
       s = ((x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i])) / 2; sum += s; if (s < 0) turned++ }

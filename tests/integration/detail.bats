@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Packed models: pack and unpack, what the other commands make of them, and files that are none.
+# Packed models: pack, unpack, the other commands on packed models, and invalid files.
 
 bats_require_minimum_version 1.5.0
 load helpers
@@ -14,11 +14,11 @@ setup() {
   cp "$BATS_FILE_TMPDIR/model.glb" "$BATS_FILE_TMPDIR/report.json" .
 }
 
-# distance A B KEY: a distance between two surfaces as a share of the first one's diagonal.
+# distance A B KEY: prints a distance between two surfaces, as a share of the diagonal of A.
 distance() { "$papilio" compare --json "$1" "$2" | jq ".$3 / .diagonal"; }
-# attributes SCENE: those of its first mesh.
+# attributes SCENE: prints the attributes of its first mesh.
 attributes() { "$papilio" info --json "$1" | jq -c '.meshes[0].attributes'; }
-# is_within A B: A is at most B.
+# is_within A B: tests that A is at most B.
 is_within() { jq -ne "$1 <= $2" >/dev/null || { echo "$1 > $2"; return 1; }; }
 report() { jq -r "$1" report.json; }
 
@@ -29,7 +29,7 @@ report() { jq -r "$1" report.json; }
   for ((level = 0; level <= levels; ++level)); do
     "$papilio" unpack model.glb -o "level$level.ply" --levels "$level"
     stated=$(report "([.base] + .levels)[$level]")
-    # The report is measured by samples, as this is.
+    # Both the report and this test sample the distance.
     is_within "$(distance "$fine" "level$level.ply" rms)" "1.1 * $(jq .rms <<<"$stated")"
     is_within "$(distance "$fine" "level$level.ply" hausdorff)" "1.3 * $(jq .largest <<<"$stated")"
     [ "$("$papilio" info --json "level$level.ply" | jq -c '[.faces, .closed, .euler_characteristic]')" = \
@@ -48,7 +48,7 @@ report() { jq -r "$1" report.json; }
     "$papilio" unpack model.glb -o "out.$kind"
     is_within "$(distance out.obj "out.$kind" hausdorff)" 1e-12
   done
-  # An original without normals has them in scenes, which viewers show in facets else.
+  # Scenes get normals even without those of an original, as viewers would show facets otherwise.
   ! grep -q '^vn ' out.obj
   for kind in glb gltf; do [ "$(attributes "out.$kind")" = '["NORMAL","POSITION"]' ]; done
   "$papilio" unpack model.glb -o flat.glb --normals false --levels 1
@@ -58,7 +58,7 @@ report() { jq -r "$1" report.json; }
   "$papilio" unpack - -o - --to obj <model.glb | cmp - out.obj
 }
 
-# ball: a small closed surface.
+# ball: writes a small closed surface.
 ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahedron.obj" -o ball.obj --levels 4; }
 
 # bats test_tags=many_encodings
@@ -299,7 +299,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   [[ $stderr == *"other attributes than texture coordinates, colours and normals are left out"* ]]
 }
 
-# textured_ball: a small surface with a texture, whose charts meet at seams.
+# textured_ball: writes a small surface with a texture whose charts meet at seams.
 textured_ball() {
   printf '\x89PNG\r\n\x1a\n' >wood.png
   printf '%s\n' 'newmtl wood' 'Kd 0.8 0.6 0.4' 'map_Kd wood.png' >cube.mtl
@@ -334,7 +334,7 @@ textured_ball() {
   "$papilio" unpack ball.glb -o out.glb
   [ "$("$papilio" info --json out.glb | jq -c '[.materials, .images, .meshes[0].attributes]')" = \
     '[1,1,["NORMAL","POSITION","TEXCOORD_0"]]' ]
-  # What refine makes of all levels, as a scene and as a mesh.
+  # All levels by refine, as a scene and as a mesh.
   levels=$("$papilio" info --json ball.glb | jq '.detail.levels | length')
   "$papilio" refine ball.glb -o refined.glb --levels "$levels" --compress none
   "$papilio" convert refined.glb refined.obj
@@ -373,9 +373,9 @@ textured_ball() {
   is_within "$(distance scan.ply out.ply rms)" 0.0033
 }
 
-# faces_of FILE MATERIAL: faces of an .obj file that have the material.
+# faces_of FILE MATERIAL: prints the number of faces of an .obj file with the material.
 faces_of() { awk -v name="$2" '$1 == "usemtl" { material = $2 } $1 == "f" && material == name' "$1" | wc -l; }
-# two_materials: a cube of wood at its ends and of steel round it, behind a crumb of wood that a coarse grid loses.
+# two_materials: writes a cube of wood at its ends and steel around it, and a speck of wood that a coarse grid drops.
 two_materials() {
   printf '%s\n' 'newmtl wood' 'Kd 0.8 0.6 0.4' 'newmtl steel' 'Kd 0.5 0.5 0.5' >two.mtl
   printf '%s\n' 'mtllib two.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 0 0 1' 'v 1 0 1' 'v 1 1 1' 'v 0 1 1' \

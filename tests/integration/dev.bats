@@ -1,11 +1,11 @@
 #!/usr/bin/env bats
-# What ./dev promises beyond the product: its checks, its set-up, its demo.
+# ./dev: its checks, its set-up, its demo.
 
 load helpers
 
 support=$BATS_TEST_DIRNAME/../support
 
-# clang_stubs VERSION: programs first in PATH that say they are of that version.
+# clang_stubs VERSION: puts programs first in PATH that report this version.
 clang_stubs() {
   local name
   mkdir -p "$BATS_TEST_TMPDIR/stubs"
@@ -36,7 +36,7 @@ clang_stubs() {
   cmake -G Ninja -S "$BATS_TEST_DIRNAME/../.." -B "$BATS_TEST_TMPDIR/build" "${options[@]}" \
     -DPAPILIO_TESTS=OFF -DPAPILIO_WEB=OFF -DPAPILIO_DEMO=ON -DPAPILIO_UNITY=OFF >/dev/null
   ! grep -qi openmesh "$BATS_TEST_TMPDIR/build/CMakeCache.txt"
-  # How much there is to compile is said before it begins; nothing is compiled here.
+  # The number of files to compile is printed first; nothing is compiled here.
   mkdir "$BATS_TEST_TMPDIR/stubs"
   printf '#!/bin/sh\n' >"$BATS_TEST_TMPDIR/stubs/cmake"
   chmod +x "$BATS_TEST_TMPDIR/stubs/cmake"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each refusal: its status, its code, words that help; and the server goes on.
+# Each refusal has a status, a code and a helpful message, and the server continues.
 
 load helpers
 
@@ -83,7 +83,7 @@ post() { request -H "$draco" --data-binary @"${file:-$coarse}" "$@"; }
 }
 
 @test "length_required" {
-  # curl always sends a length or chunks; speak for ourselves.
+  # curl always sends a length or chunks: send the request directly.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\n\r\n' >&5
   answer=$(timeout 20 cat <&5)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Clients that others' generators make out of the OpenAPI document: they compile under strict TypeScript and refine a mesh.
+# Clients generated from the OpenAPI document compile under strict TypeScript and refine a mesh.
 
 load helpers
 
@@ -16,7 +16,7 @@ setup() {
   cd "$clients"
 }
 
-# same_as_curl FILE: what a client received is what curl receives for the same parameters.
+# same_as_curl FILE: expects the bytes that curl receives for equal parameters.
 same_as_curl() {
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?levels=2&flatness=0.8,0.9&view.eye=0,0,3"
   [ "$status" = 200 ]

@@ -1,12 +1,12 @@
 #!/usr/bin/env bats
-# The core as a library of others: installed, found, linked; and its tree of folders.
+# The core as a library: installed, found, linked; and its tree of folders.
 
 load helpers
 
 setup_file() {
   export PREFIX=$BATS_FILE_TMPDIR/prefix
   cmake --install "$PAPILIO_BUILD" --prefix "$PREFIX" >/dev/null
-  # The sanitizers of the build at hand, if any, are what the library needs to link.
+  # The library links with the sanitizers of this build, if any.
   SANITIZERS=$(sed -n 's/^PAPILIO_SANITIZE:STRING=\(..*\)$/-fsanitize=\1/p' "$PAPILIO_BUILD/CMakeCache.txt")
   export SANITIZERS
 }
@@ -69,7 +69,7 @@ build_examples() {
   cmake --build core >/dev/null
   cmake --install core --prefix "$PWD/alone" >/dev/null
   build_examples "$PWD/alone" ""
-  # Both ways install the same headers and the same version.
+  # Both ways install equal headers and versions.
   diff -r {alone,"$PREFIX"}/include/papilio
   cmp {alone,"$PREFIX"}/lib/cmake/papilio/papilioConfigVersion.cmake
   cmp {alone,"$PREFIX"}/lib/pkgconfig/papilio.pc

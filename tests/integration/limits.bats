@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# What one request, and all together, may cost: time, memory, bodies; and that the next one is served.
+# Limits of one request and of all together: time, memory, bodies. Later requests are served.
 
 load helpers
 
@@ -19,7 +19,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
   [ "$status" = 200 ]
   grep -aq '"code": "takes_too_long"' "$body"
   grep -aq 'Papilio-Levels: 0' "$body" # which had left before
-  # Its status was sent before: the log and the metrics tell what became of it.
+  # The status was sent before: log and metrics have the outcome.
   eventually grep -q "msg=stream id=$(header X-Request-Id) code=takes_too_long detail=" "$BATS_FILE_TMPDIR/server.log"
   both_counted() { request "$url/metrics" && grep -q '^papilio_problems_total{code="takes_too_long"} 2' "$body"; }
   eventually both_counted
@@ -56,7 +56,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 @test "bodies have a common limit: one body above it is refused, the others continue" {
   start_server --max-body-bytes 3000000 --max-held-bytes 3000000 --read-seconds 60
   head -c 2000000 /dev/urandom >"$BATS_TEST_TMPDIR/bytes"
-  # One holds two of three megabytes, and waits with the rest.
+  # One request holds two of three megabytes, and delays the rest of its body.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   { printf 'POST /v1/refine HTTP/1.1\r\nHost: x\r\nContent-Type: application/x-draco\r\nContent-Length: 2000001\r\n\r\n'
     cat "$BATS_TEST_TMPDIR/bytes"; } >&5
@@ -110,7 +110,7 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
 
 @test "a stream's slot is free before a slow client has read the stream" {
   start_server --slots 1 --queue 0
-  # The answer of megabytes is not read at all, and fits into no socket's buffer.
+  # The answer has megabytes, more than socket buffers hold, and is not read.
   exec 5<>"/dev/tcp/127.0.0.1/${url##*:}"
   { printf 'POST /v1/refine?levels=6&output.position_bits=16 HTTP/1.1\r\nHost: x\r\nAccept: multipart/mixed\r\n'
     printf 'Content-Type: application/x-draco\r\nContent-Length: %d\r\n\r\n' "$(stat -c %s "$coarse")"
@@ -163,6 +163,6 @@ is_sanitized() { grep -qaE '__(asan|tsan)_init' "$server"; }
       [ "$(gone)" = "$leavers" ]
     done
   done
-  # None was carried out to its end.
+  # No request was completed.
   grep -q '^papilio_stage_seconds_count{stage="encode"} 0$' "$body"
 }

@@ -1,12 +1,12 @@
 #!/usr/bin/env bats
-# docker/nginx.conf in a real nginx in front of a real server: what it refuses, and what it lets through unharmed.
+# docker/nginx.conf in a real nginx in front of a real server: requests that it refuses, and those that it forwards.
 
 bats_require_minimum_version 1.5.0
 load helpers
 PATH=$PATH:/usr/sbin # where nginx is
 
-# start_proxy NAME [SED-EXPRESSION]...: nginx with the shipped files, on a free port, in front of $url; sets $proxy and
-# $proxy_pid. The expressions change nginx.conf or limits.conf, and each must.
+# start_proxy NAME [SED-EXPRESSION]...: starts nginx with the shipped files, on a free port, in front of $url; sets $proxy
+# and $proxy_pid. Each expression must change nginx.conf or limits.conf.
 start_proxy() {
   local folder=$BATS_FILE_TMPDIR/$1 before
   shift
@@ -45,7 +45,7 @@ stop_proxy() {
   wait "$1" 2>/dev/null || true
 }
 
-# One server and one proxy for most tests: its times are shorter, and one address may ask more than 20 times a second.
+# One server and one proxy for most tests, with shorter timeouts and more than 20 requests a second for an address.
 setup_file() {
   start_server --max-body-bytes 70000000 --read-seconds 2 --slots 1 --queue 0
   start_proxy main 's/\(client_header_timeout\|client_body_timeout\) 10s/\1 2s/' 's/keepalive_timeout 15s/keepalive_timeout 1s/' \
@@ -210,7 +210,7 @@ for _ in range(150):
   run ! logged metrics
 }
 
-# beside NAME URL COMMAND...: runs the command with $proxy a second nginx in front of the URL.
+# beside NAME URL COMMAND...: runs the command with a second nginx, $proxy, in front of the URL.
 beside() {
   local name=$1 kept_url=$url kept_proxy=$proxy kept_pid=$proxy_pid outcome=0
   url=$2
@@ -223,7 +223,7 @@ beside() {
   return "$outcome"
 }
 
-# beside_stub NAME COMMAND...: in front of tests/support/stub_server.py.
+# beside_stub NAME COMMAND...: as beside, in front of tests/support/stub_server.py.
 beside_stub() {
   local outcome=0
   python3 "$BATS_TEST_DIRNAME/../support/stub_server.py" >"$BATS_TEST_TMPDIR/stub" 3>&- &
@@ -257,7 +257,7 @@ request_to() { request "${@:2}" "$proxy$1"; }
 }
 
 @test "an unreachable server is skipped, including for POST" {
-  # A socket whose queue is full takes no connection, and refuses none.
+  # A socket with a full queue neither accepts nor refuses connections.
   python3 -c 'import socket, time
 full = socket.socket()
 full.bind(("127.0.0.1", 0))
@@ -347,7 +347,7 @@ revalidate() {
   exec 5<"$BATS_TEST_TMPDIR/stream"
   first=$(head -c 1000 <&5 | tr -d '\0')
   [[ $first == *'Papilio-Faces: 600'* ]]
-  # We leave: had the last level been made already, nothing would be cut short.
+  # Disconnect: if the last level had been made already, nothing would be truncated.
   kill -KILL "$running"
   wait "$running" || true
   exec 5<&-
@@ -379,7 +379,7 @@ at_work() { request "$url/metrics" && grep -q '^papilio_slots_busy 1$' "$body"; 
   eventually logged 'id=leaver .* status=499 .*code=cancelled'
 }
 
-# smuggle NAME HEAD BODY: sends both (escapes as printf's). It is one request, whose body looks like another, or none.
+# smuggle NAME HEAD BODY: sends both, with escapes of printf: one request whose body looks like another, or none.
 smuggle() {
   # shellcheck disable=SC2059
   printf "$2\r\n\r\n$3" | exchange "$proxy_port" >"$BATS_TEST_TMPDIR/answer"
@@ -392,7 +392,7 @@ smuggle() {
 }
 
 @test "no request is smuggled through nginx" {
-  # That an honest request of this name would be seen:
+  # Control: a regular request with this name is logged.
   request "$proxy/admin-smuggled-control"
   eventually logged admin-smuggled-control
   local hidden='GET /admin-smuggled HTTP/1.1\r\nHost: x\r\n\r\n' length chunk post
@@ -466,8 +466,8 @@ smuggle() {
   [[ $(head -1 "$headers") == HTTP/2* ]]
 }
 
-# start_pair: two servers on $first_port and $second_port that say where they are, or 503 while the file of that name is
-# in $BATS_TEST_TMPDIR; sets $pair_pid.
+# start_pair: starts two servers on $first_port and $second_port; sets $pair_pid. Each answers its name, or 503 while the
+# file of that name is in $BATS_TEST_TMPDIR.
 start_pair() {
   first_port=$(free_port) second_port=$(free_port)
   python3 - "$BATS_TEST_TMPDIR" "$first_port" "$second_port" <<'END' 2>"$BATS_TEST_TMPDIR/pair.log" 3>&- &
@@ -491,7 +491,7 @@ END
   eventually curl -s --noproxy '*' -o /dev/null "http://127.0.0.1:$second_port/"
 }
 
-# start_pair_proxy: docker/nginx before that pair, in the place of $proxy; sets $pair_proxy_pid.
+# start_pair_proxy: starts nginx in front of the pair, as $proxy; sets $pair_proxy_pid.
 start_pair_proxy() {
   local folder=$BATS_FILE_TMPDIR/pair as_root=()
   start_proxy pair 's/^worker_processes auto/worker_processes 1/' # a worker counts failures for itself
@@ -505,7 +505,7 @@ start_pair_proxy() {
   eventually curl -s --noproxy '*' -o /dev/null "http://127.0.0.1:$proxy_port/health"
 }
 
-# statuses: of four requests through that proxy.
+# statuses: prints the statuses of four requests through that proxy.
 statuses() {
   for _ in 1 2 3 4; do curl -sS --noproxy '*' -o /dev/null -w '%{http_code} ' "http://127.0.0.1:$proxy_port/health"; done
 }
@@ -537,7 +537,7 @@ statuses() {
 }
 
 @test "the cache holds keys for as many results as its size allows" {
-  # nginx counts blocks of 4 KB; a key takes 128 bytes. Otherwise it answers 500 when a view too many is asked for.
+  # nginx counts blocks of 4 KB; a key takes 128 bytes. With a smaller zone it would answer 500 once the zone is full.
   local zone size
   read -r zone size < <(sed -nE 's/.*proxy_cache_path .*keys_zone=refined:([0-9]+)m max_size=([0-9]+)g .*/\1 \2/p' \
     "$BATS_TEST_DIRNAME/../../docker/nginx.conf")

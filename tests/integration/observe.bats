@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# What operators see: metrics, logs, the OpenAPI document.
+# Metrics, logs, and the OpenAPI document.
 
 load helpers
 
@@ -36,7 +36,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   [ "$(metric store_meshes)" = 1 ]
   (($(metric 'cache_bytes{cache="results"}') > 1000))
   grep -q '^process_resident_memory_bytes [1-9]' "$body"
-  # What a scraper expects of the format: each name is described before it is used.
+  # The format of scrapers: each name is described before it is used.
   ! grep -vE '^(# .*|[a-z_]+(\{([a-z_]+="[^"]*",?)+\})? [0-9.e+-]+|[a-z_]+_bucket\{.*\} [0-9]+)$' "$body" | grep .
 }
 
@@ -82,7 +82,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
     [[ $status != 405 && $(field code 2>/dev/null || true) != not_found ]]
     request -X OPTIONS "$address"
     [[ ", $(header Allow)," == *" $method,"* ]]
-    # No method is there that the document does not have, but for those it says are everywhere.
+    # There is no method that the document lacks, except those that it declares for all paths.
     for allowed in $(header Allow | tr -d ,); do
       [[ $allowed == OPTIONS || $allowed == HEAD ]] || grep -qxF "${allowed,,} $path" "$BATS_TEST_TMPDIR/operations"
     done
@@ -106,11 +106,11 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
         and ([$json.minimum, $json.maximum] | range) == $range and $json.enum == $p.choices]
     | length > 20 and all' "$BATS_TEST_TMPDIR/openapi.json"
   [ "$(field 'parameters | length')" = "$(jq '[.components.parameters[] | select(.in == "query")] | length' "$BATS_TEST_TMPDIR/openapi.json")" ]
-  # Every limit, by its value here.
+  # Every limit has its configured value.
   jq -e --slurpfile info "$body" '.components.schemas.Info.properties.limits.properties
     | map_values(.const) | . == $info[0].limits and .max_output_faces == 100000 and .max_input_faces == 5000' \
     "$BATS_TEST_TMPDIR/openapi.json"
-  # Errors that come are among those of their operation.
+  # Actual errors are documented for their operation.
   declared() { jq -e --arg path "$1" --arg method "$2" --arg status "$3" --arg code "$4" \
     '.paths[$path][$method].responses[$status].description | contains($code + ":")' "$BATS_TEST_TMPDIR/openapi.json"; }
   request "$url/v1/refine?levels=9" -H "$draco" --data-binary @"$coarse"
@@ -123,7 +123,7 @@ metric() { sed -n "s/^papilio_$1 //p" "$body"; }
   declared '/v1/meshes/{id}' delete "$status" "$(field code)"
   request -H 'Accept: text/html' "$url/v1/meshes/x/refined"
   declared '/v1/meshes/{id}/refined' get "$status" "$(field code)"
-  # What was stored under wider limits.
+  # Meshes that were stored under wider limits.
   start_server --store "directory:$BATS_TEST_TMPDIR/meshes"
   upload
   stop_server

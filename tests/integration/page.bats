@@ -1,12 +1,12 @@
 #!/usr/bin/env bats
-# The viewer as the server sends it, and the meshes that it offers. What it does in a browser: tests/web.
+# The viewer's files and sample meshes, as served. Its behaviour in a browser is tested in tests/web.
 
 load helpers
 
 setup_file() { start_server; }
 teardown_file() { stop_server; }
 
-# asset PATTERN: the name of a built file.
+# asset PATTERN: prints the name of a built file.
 asset() { (cd "$PAPILIO_BUILD/web/assets" && compgen -G "$1" | head -1); }
 
 @test "the page is revalidated each time, and loads nothing from other origins" {

@@ -5,7 +5,7 @@ load helpers
 
 older='glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2'
 
-# A sum over many sines of the C library.
+# Prints a sum of many sines of the C library.
 sum_of_sines() {
   python3 -c 'import hashlib, math
 print(hashlib.sha256("".join(math.sin(i / 1e4).hex() for i in range(200000)).encode()).hexdigest())'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# POST /v1/refine: every kind of request and answer.
+# POST /v1/refine: all kinds of requests and answers.
 
 load helpers
 
@@ -105,8 +105,7 @@ teardown_file() { stop_server; }
 }
 
 @test "gaps from rounding and T-junctions are closed and counted" {
-  # A cube. Its lid has corners of its own, three ten-millionths too high; on the side of its floor lies a corner of two
-  # faces of the front.
+  # A cube. Its lid has separate corners, 3e-7 too high. A corner of two front faces lies on an edge of its floor.
   cat >"$BATS_TEST_TMPDIR/torn.obj" <<'END'
 v 0 0 0
 v 1 0 0
@@ -167,7 +166,7 @@ END
   [[ $(header Content-Type) =~ ^multipart/mixed\;\ boundary=(.+)$ ]]
   [ "$(header Transfer-Encoding)" = chunked ]
   boundary=${BASH_REMATCH[1]}
-  # Independent of our own reader: cut at the boundary with python's mail parser.
+  # Independent of this project's reader: split by python's mail parser.
   python3 - "$body" "$boundary" "$BATS_TEST_TMPDIR" <<'PY'
 import email.parser, email.policy, sys
 body, boundary, folder = sys.argv[1:]
@@ -177,7 +176,7 @@ parts = message.get_payload()
 assert [p.get_content_type() for p in parts] == ["application/x-draco"] * 3 + ["application/json"], parts
 assert [p["Papilio-Faces"] for p in parts[:3]] == ["600", "2400", "9600"]
 assert [p["Papilio-Levels"] for p in parts[:3]] == ["0", "1", "2"]
-# The mail parser folds line ends inside binary parts; cut by Content-Length instead.
+# The mail parser changes line ends in binary parts: split by Content-Length instead.
 raw = open(body, "rb").read()
 at = 0
 for i, part in enumerate(parts):

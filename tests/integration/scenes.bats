@@ -14,7 +14,7 @@ setup() {
   "$papilio" convert "$coarse" in.glb
 }
 
-# two_nodes: a scene that shows the mesh of in.glb twice, as two.gltf with two.bin.
+# two_nodes: writes a scene that shows the mesh of in.glb twice, as two.gltf with two.bin.
 two_nodes() {
   "$papilio" convert in.glb two.gltf
   jq '.nodes += [{mesh: 0, translation: [0, 50, 0], extras: "kept"}] | .scenes[0].nodes = [0, 1]' two.gltf >edited.gltf
@@ -71,8 +71,8 @@ two_nodes() {
   done
 }
 
-# cube: an OBJ file of two materials in smoothing groups, its library and two images, one of a pixel, one of a kind that
-# glTF lacks.
+# cube: writes an OBJ file with two materials in smoothing groups, its library and two images: one pixel, and a format
+# that glTF lacks.
 cube() {
   base64 -d >wood.png <<'END'
 iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==
@@ -84,7 +84,7 @@ END
     'usemtl pale metal' 's 2' 'f 1/1 2/2 6/3 5/4' 'f 2/1 3/2 7/3 6/4' 'f 3/1 4/2 8/3 7/4' 'f 4/1 1/2 5/3 8/4' >cube.obj
 }
 
-# json_of SCENE: its document.
+# json_of SCENE: prints its document.
 json_of() {
   "$papilio" convert "$1" "$BATS_TEST_TMPDIR/document.gltf"
   cat "$BATS_TEST_TMPDIR/document.gltf"
@@ -140,7 +140,7 @@ json_of() {
   [ "$(json_of here.glb | jq -c '[.materials[].name, .images[0].mimeType]')" = '["wood","pale metal","image/png"]' ]
   [ "$("$papilio" info --json here.glb | jq -c '[.faces, .meshes[0].primitives]')" = '[192,2]' ]
   [ "$("$papilio" convert here.glb flat.ply && "$papilio" info --json flat.ply | jq .closed)" = true ]
-  # Smoothing groups are creases as before: without them the cube becomes another shape.
+  # Smoothing groups are creases: without them the cube would have another shape.
   sed '/^s /d' cube.obj >smooth.obj
   "$papilio" refine cube.obj -o groups.glb --levels 2 --shape organic
   "$papilio" refine smooth.obj -o smooth.glb --levels 2 --shape organic
@@ -219,7 +219,7 @@ json_of() {
   expect_problem 406 not_acceptable
 }
 
-# glb_parts BODY: how many parts of it are scenes.
+# glb_parts BODY: prints the number of parts that are scenes.
 glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
 
 @test "the levels of a scene arrive separately, posted and stored, the last equal to the single answer" {

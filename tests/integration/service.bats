@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# The server as a program: settings, start, health, load, draining, log.
+# The server program: settings, start, health, load, draining, log.
 
 load helpers
 
@@ -84,14 +84,14 @@ teardown() {
   [[ $output == *PAPILIO_PORT=99999* && $output == *PAPILIO_STORE* && $output != *secret* ]]
 }
 
-# long_request ID QUERY: starts one in the background; sets $running, its process, whose status goes to the file "code".
+# long_request ID QUERY: starts a request in the background; sets $running to its process. Its status goes to file "code".
 long_request() {
   curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/fine.drc" -w '%{http_code}' -H "$draco" -H "X-Request-Id: $1" \
     --data-binary @"$coarse" "$url/v1/refine?$2" >"$BATS_TEST_TMPDIR/code" 3>&- &
   running=$!
 }
 
-# until_busy [WAITING]: returns once one request computes, and WAITING (0) wait.
+# until_busy [WAITING]: returns once one request computes and WAITING (default 0) requests wait.
 until_busy() {
   for _ in {1..500}; do
     request "$url/metrics"
@@ -100,7 +100,7 @@ until_busy() {
   return 1
 }
 
-# leave PROCESS: the client goes away without a word.
+# leave PROCESS: kills the client without closing its connection in order.
 leave() {
   kill -KILL "$1"
   wait "$1" || true
@@ -129,7 +129,7 @@ leave() {
   long_request long "levels=$large_levels&flatness=1&growth=2&output.normals=true"
   first=$running
   until_busy
-  # Each of these holds the express slot until it turns out to be large, and is then refused.
+  # Each holds the express slot until it is found to be large, and is then refused.
   curl -s --noproxy '*' --parallel --parallel-max 4 -o /dev/null -H "$draco" --data-binary @"$coarse" \
     "$url/v1/refine?levels=$large_levels&flatness=1&growth=2&w=0.0[01-40]" 3>&- &
   running=$!
@@ -156,7 +156,7 @@ leave() {
   for query in 'levels=2' 'levels=8&tolerance=0.01'; do
     curl -sS --noproxy '*' -o "$BATS_TEST_TMPDIR/#1.drc" -w '%{http_code}\n' -H "$draco" \
       --data-binary @"$coarse" "$url/v1/refine?$query&crease_angle=[101-125]" >>"$BATS_TEST_TMPDIR/small"
-    # How many of the large ones were through when these were; under sanitizers, whose steps take seconds, all may be.
+    # Number of large requests that were finished by then; under sanitizers, which are slow, all may be.
     large_ones_done=$(cat "$BATS_TEST_TMPDIR"/large* | wc -l)
     [[ $PAPILIO_BUILD != */release ]] || ((large_ones_done < 6))
   done
@@ -250,7 +250,7 @@ time.sleep(600)' "${url##*:}" "$most" >"$BATS_TEST_TMPDIR/silent" 3>&- &
   [ "$(grep -c 'id=log-me ' "$log")" = 1 ]
   grep -q 'id=log-me method=POST path="/v1/refine" status=507 .*code=result_too_large' "$log"
   grep -q 'id=bad-one .*status=400 .*code=bad_parameter' "$log"
-  # What a client sends stays inside its quotes.
+  # Text from the client stays inside its quotes.
   grep -q 'detail="Unknown parameter \\"a\\" status=200' "$log"
   ! grep -q alive-question "$log"
 }

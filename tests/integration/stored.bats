@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Stored meshes: the routes, entity tags and caches, and each kind of store.
+# Stored meshes: routes, entity tags, caches, and each kind of store.
 
 load helpers
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Where meshes are stored, and what becomes of them: memory, a directory, a real Redis; results made once.
+# Stores of meshes: memory, a directory, a real Redis. Results are computed once.
 
 bats_require_minimum_version 1.5.0
 load helpers
@@ -77,7 +77,7 @@ teardown() {
   [ -z "$(find "$store" -name '*.part')" ]
 }
 
-# acknowledged_again: a POST of the coarse mesh stores it, and what was acknowledged is there.
+# acknowledged_again: expects that a POST of the coarse mesh stores it, and that acknowledged meshes exist.
 acknowledged_again() {
   upload
   [ "$status" = 201 ] || { echo "status $status"; return 1; }
@@ -269,7 +269,7 @@ stop_redis() {
   done
 }
 
-# start_pair: a primary and a replica, and in front of them an address that leads to the one in the file `primary`.
+# start_pair: starts a primary and a replica behind an address that forwards to the one named in the file `primary`.
 start_pair() {
   for name in a b; do
     redis_port=$(free_port)
@@ -289,7 +289,7 @@ start_pair() {
 follows() { redis-cli -p "$1" info replication | grep -q '^master_link_status:up'; }
 leads() { redis-cli -p "$1" role | grep -q '^master'; }
 
-# write_until_told NAME FILE: deletes and stores a mesh again and again; NAME.code has the status of the last POST.
+# write_until_told NAME FILE: deletes and stores a mesh repeatedly; NAME.code has the status of the last POST.
 write_until_told() {
   for _ in {1..3000}; do
     curl -s --noproxy '*' -o /dev/null -X DELETE "$url/v1/meshes/$(sha256sum <"$2" | cut -d' ' -f1)" || true
@@ -298,7 +298,7 @@ write_until_told() {
   done
 }
 
-# is_written_anew: the coarse mesh can be deleted and stored.
+# is_written_anew: tests that the coarse mesh can be deleted and stored.
 is_written_anew() {
   request -X DELETE "$url/v1/meshes/$(coarse_id)"
   [[ $status == 204 || $status == 404 ]] || return 1

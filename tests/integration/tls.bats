@@ -1,9 +1,9 @@
 #!/usr/bin/env bats
-# HTTPS: the same service with certificates, and clients that speak something else.
+# HTTPS: the service with certificates, and clients with other protocols.
 
 load helpers
 
-# make_authority NAME: a certificate that signs others.
+# make_authority NAME: makes a certificate authority.
 make_authority() {
   openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj "/CN=$1" \
     -keyout "$certificates/$1.key" -out "$certificates/$1.pem" 2>"$certificates/log"
@@ -31,7 +31,7 @@ start_https() {
   port=${url##*:}
 }
 
-# handshake ARGUMENT...: what openssl's client makes of the server.
+# handshake ARGUMENT...: runs openssl's client against the server.
 handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>&1; }
 
 @test "HTTPS answers the same bytes as HTTP, and no plain port is open" {
@@ -76,7 +76,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   start_https
   [[ $(handshake -tls1_3) == *'New, TLSv1.3'* ]]
   [[ $(handshake -tls1_2) == *'New, TLSv1.2, Cipher is ECDHE-ECDSA-'* ]]
-  # SECLEVEL=0, or this client would not even ask.
+  # SECLEVEL=0: otherwise this client would not offer them.
   for version in tls1 tls1_1; do
     run handshake "-$version" -cipher DEFAULT@SECLEVEL=0
     [[ $output == *'alert protocol version'* ]]
@@ -164,7 +164,7 @@ handshake() { timeout 20 openssl s_client -connect "$address" "$@" </dev/null 2>
   exec 5<"$BATS_TEST_TMPDIR/stream"
   first=$(head -c 1000 <&5 | tr -d '\0')
   [[ $first == *'Papilio-Faces: 600'* ]]
-  # We leave: had the last level been made already, nothing would be cut short.
+  # Disconnect: if the last level had been made already, nothing would be truncated.
   kill -KILL "$running"
   wait "$running" || true
   exec 5<&-

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int longest_answer_seconds = 120;
 
-/// What is wrong with a refusal; "" when nothing is.
+/// Returns what is wrong with a refusal; empty if nothing is.
 std::string fault_of_problem(const httplib::Response& answer, std::string& code) {
   if (answer.get_header_value("Content-Type") != "application/problem+json") return "a refusal that is no problem";
   const auto document = nlohmann::json::parse(answer.body, nullptr, false);

@@ -12,28 +12,28 @@
 
 namespace papilio::soak {
 
-/// One client: its connection, which is kept, and its judgement of what comes over it.
+/// Client with a keep-alive connection, which checks all answers.
 class Client {
  public:
   Client(const World& world, Tally& tally, std::string kind, uint32_t seed);
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] std::mt19937& random() { return random_; }
-  /// One of them.
+  /// Returns one of the items at random.
   template <class List>
   const auto& pick(const List& list) {
     return list[random_() % list.size()];
   }
 
-  /// Sends a request; a connection that the server closed while it was idle is opened again.
+  /// Sends a request. Reconnects if the server closed the idle connection.
   httplib::Result ask(const std::string& method, const std::string& path, const httplib::Headers& headers = {},
                       const std::string& body = {});
-  /// The same with a form.
+  /// Sends a request with a form as its body.
   httplib::Result ask(const std::string& path, const httplib::MultipartFormDataItems& form);
 
-  /// Counts the answer; true when there is one of an allowed status, with all that belongs to a refusal if it is one.
+  /// Counts the answer. Returns whether its status is allowed and, if it is a refusal, whether it is complete.
   bool expect(const httplib::Result& answer, std::initializer_list<int> allowed);
-  /// An answer of status 200 is a mesh; `bytes` is what it must be, empty if that is not known.
+  /// Checks that an answer of status 200 is a mesh; `bytes`: the expected body, or empty if it is not known.
   void expect_mesh(const httplib::Result& answer, std::string_view bytes);
   void count(int status, const std::string& code = {}) { tally_.count(kind_, status, code); }
   void count_without_answer() { tally_.count_without_answer(kind_); }

@@ -32,7 +32,7 @@ void refine_form(Client& client) {
   if (client.expect(answer, {200, 429})) client.expect_mesh(answer, {});
 }
 
-/// The last mesh of the stream must be the one that comes without streaming.
+/// Expects the last mesh of a stream to equal the answer without streaming.
 void refine_levels(Client& client) {
   const Order& order = client.pick(client.world().small());
   const httplib::Result answer = client.ask("POST", "/v1/refine?" + order.query,
@@ -57,7 +57,8 @@ void look(Client& client) {
   constexpr std::array paths{"/v1/info", "/health", "/ready", "/metrics", "/openapi.json"};
   const std::string path = client.pick(paths);
   const httplib::Result answer = client.ask(client.random()() % 4 == 0 ? "HEAD" : "GET", path);
-  if (answer && answer->status == 503 && path == "/ready")  // it is asked for; an answer to HEAD has no body to judge
+  if (answer && answer->status == 503 &&
+      path == "/ready")  // allowed under load; an answer to HEAD has no body to check
     client.count(503, "not_ready");
   else
     client.expect(answer, {200});

@@ -6,7 +6,7 @@
 
 namespace papilio::soak {
 
-/// A kind of client: what it does in a turn, and how many there are.
+/// Kind of client: its action in a turn, and the number of such clients.
 struct Kind {
   const char* name;
   int clients;
@@ -16,6 +16,6 @@ struct Kind {
 [[nodiscard]] std::vector<Kind> decent_kinds();  ///< one-shot refinements, in every form
 [[nodiscard]] std::vector<Kind> stored_kinds();  ///< stored meshes, their views and revalidation
 [[nodiscard]] std::vector<Kind> wrong_kinds();   ///< requests that must be refused, each with its status
-[[nodiscard]] std::vector<Kind> rude_kinds();    ///< those who leave, stall, or send what is no HTTP
+[[nodiscard]] std::vector<Kind> rude_kinds();    ///< clients that disconnect, stall or violate HTTP
 
 }  // namespace papilio::soak

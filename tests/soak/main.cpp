@@ -10,8 +10,8 @@
 #include "tests/soak/memory.h"
 #include "tests/soak/pace.h"
 
-// papilio-soak: all kinds of clients at once, for a while, against a server on loopback. Every so often all keep still
-// while the server's memory is looked at. Exit status 0 when nothing was wrong, 1 when something was.
+// papilio-soak: runs all kinds of clients at once against a server on loopback. At intervals all clients pause while
+// the memory of the server is sampled. The exit status is 0 if there was no failure, else 1.
 
 namespace papilio::soak {
 namespace {
@@ -24,7 +24,7 @@ struct Settings {
   double seconds = 60;
   std::string mesh;
   uint64_t max_body_bytes = 0;
-  double most_growth = 0;  ///< of memory, as a share; 0: whatever it is
+  double most_growth = 0;  ///< upper bound of the growth of memory, as a share; 0: no bound
   uint32_t seed = 1;
 };
 
@@ -47,11 +47,11 @@ std::vector<Kind> all_kinds() {
   return all;
 }
 
-/// Returns when the time is over.
+/// Blocks until the time is over.
 void watch_memory(const Settings& settings, Pace& pace, Memory& memory) {
   const auto began = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  const double warm_up = std::max(20.0, 0.3 * settings.seconds);  // what is kept fills slowly
+  const double warm_up = std::max(20.0, 0.3 * settings.seconds);  // caches fill slowly
   const double between = std::max(8.0, settings.seconds / 30);
   while (elapsed() < settings.seconds) {
     std::this_thread::sleep_for(std::chrono::duration<double>(between));

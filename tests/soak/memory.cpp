@@ -10,7 +10,7 @@ namespace papilio::soak {
 namespace {
 
 constexpr auto settling = std::chrono::seconds(
-    12);  // idle connections close after 5 s, their threads a second later, memory goes back within 5
+    12);  // idle connections close after 5 s and their threads after 6 s; memory is released within another 5 s
 constexpr int samples = 5;
 constexpr ptrdiff_t looks = 3;
 

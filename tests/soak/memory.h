@@ -5,14 +5,14 @@
 
 namespace papilio::soak {
 
-/// The resident memory of the server, looked at while it has nothing to do.
+/// Resident memory of the server, sampled while it is idle.
 class Memory {
  public:
   explicit Memory(int pid) : pid_(pid) {}
 
-  /// Takes the average of a few samples; `warm` when the warm-up is over. Takes some thirteen seconds.
+  /// Adds the mean of a few samples; `warm`: the warm-up is over. Takes about 13 seconds.
   void look(bool warm);
-  /// MiB: averages of the first and of the last three looks after the warm-up. 0 where there are fewer than six.
+  /// Means of the first and of the last three samples after the warm-up, in MiB; 0 if there are fewer than six.
   [[nodiscard]] double at_start() const;
   [[nodiscard]] double at_end() const;
   [[nodiscard]] double growth() const { return at_start() > 0 ? at_end() / at_start() - 1 : 0; }

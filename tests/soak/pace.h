@@ -5,10 +5,10 @@
 
 namespace papilio::soak {
 
-/// Lets the clients take their turns, or keeps them all still.
+/// Gate at which all clients can be paused.
 class Pace {
  public:
-  /// Waits while all keep still. False when it is over: no further turn.
+  /// Blocks while clients are paused. Returns false once the run is over.
   bool begin_turn() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !still_ || over_; });
@@ -20,7 +20,7 @@ class Pace {
     --running_;
     changed_.notify_all();
   }
-  /// Returns when no turn is under way; none begins until `go_on`.
+  /// Pauses all clients: returns when no turn is in progress. No turn begins until go_on().
   void keep_still() {
     std::unique_lock lock(mutex_);
     still_ = true;

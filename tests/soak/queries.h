@@ -7,10 +7,10 @@
 
 namespace papilio::soak {
 
-/// A query that every mesh about the origin can be refined with: any of the schemes, criteria and forms of the answer.
+/// Returns a query that is valid for every mesh around the origin, with any scheme, criteria and answer format.
 [[nodiscard]] std::string random_query(std::mt19937& random, int most_levels);
 
-/// The fields of a query in which nothing is encoded.
+/// Returns the fields of a query without percent-encoding.
 [[nodiscard]] proto::QueryFields fields_of(const std::string& query);
 
 }  // namespace papilio::soak

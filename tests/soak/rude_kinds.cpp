@@ -23,7 +23,7 @@ void pause(Client& client, unsigned most_milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(client.random()() % most_milliseconds));
 }
 
-/// Counts the answer; where none is allowed it may be missing.
+/// Counts the answer. It may be missing if no status is allowed.
 void expect_refusal(Client& client, Socket& socket, bool or_none) {
   std::string code;
   const int status = socket.status(patience, &code);
@@ -35,7 +35,7 @@ void expect_refusal(Client& client, Socket& socket, bool or_none) {
     client.violate("status " + std::to_string(status) + " " + code + " where a refusal was due");
 }
 
-/// Leaves at any moment: within the head, the body, the work, or the answer.
+/// Disconnects at any moment: during the head, the body, the computation or the answer.
 void leave(Client& client) {
   Socket socket(client.world().port());
   const bool streamed = client.random()() % 2 == 0;
@@ -76,7 +76,7 @@ void send_garbage(Client& client) {
   expect_refusal(client, socket, choice >= garbage.size());
 }
 
-/// Byte after byte, but fast enough.
+/// Sends single bytes, fast enough for the deadlines.
 void send_slowly(Client& client) {
   Socket socket(client.world().port());
   const Order& order = client.pick(client.world().small());
@@ -94,7 +94,7 @@ void send_slowly(Client& client) {
     client.violate("status " + std::to_string(status) + " for a slow sender");
 }
 
-/// Stops in the middle, and waits for the server to lose its patience.
+/// Stalls in the middle of a request until the server times out.
 void stall(Client& client) {
   Socket socket(client.world().port());
   std::string request = with_length("/v1/refine?levels=1", client.world().coarse());

@@ -6,7 +6,7 @@
 
 namespace papilio::soak {
 
-/// A bare connection to 127.0.0.1, for what no decent client sends.
+/// Raw connection to 127.0.0.1, for invalid requests.
 class Socket {
  public:
   explicit Socket(int port);
@@ -14,17 +14,17 @@ class Socket {
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
-  /// False when the other side has gone.
+  /// Returns false if the peer has disconnected.
   bool send(std::string_view bytes) const;
-  /// Says that nothing more will be sent.
+  /// Shuts down the sending side.
   void finish() const;
-  /// The status of the answer; 0 when there is none within the time, -1 when it is no HTTP. Its problem's code is
+  /// Returns the status of the answer; 0 on a timeout, -1 if it is not HTTP. The code of its problem document is
   /// appended to `code`.
   int status(std::chrono::seconds longest, std::string* code = nullptr);
-  /// Waits for the first bytes and throws them away.
+  /// Waits for the first bytes and discards them.
   void skip(size_t most, std::chrono::seconds longest);
   void close();
-  /// Ends the connection with a reset.
+  /// Resets the connection.
   void reset();
 
  private:

@@ -7,7 +7,7 @@
 namespace papilio::soak {
 namespace {
 
-/// Uploads the mesh; its path, "" when the server was too busy.
+/// Uploads the mesh. Returns its path; empty if the server was busy.
 std::string upload(Client& client, const std::string& mesh) {
   const httplib::Result answer = client.ask("POST", "/v1/meshes", as_draco, mesh);
   if (!client.expect(answer, {200, 201, 429}) || answer->status == 429) return {};
@@ -17,7 +17,7 @@ std::string upload(Client& client, const std::string& mesh) {
   return answer->get_header_value("Location");
 }
 
-/// Asks for one view twice: with the entity tag of the first answer the second is 304.
+/// Requests one view twice: with the entity tag of the first answer, the second is 304.
 void ask_twice(Client& client, const std::string& path, const std::string& mesh) {
   const std::string query = random_query(client.random(), 3);
   const httplib::Result answer = client.ask("GET", path + "/refined?" + query);
@@ -45,7 +45,7 @@ void walk_round(Client& client) {
   client.expect(client.ask("GET", path + "/refined"), {404});
 }
 
-/// Fills the store and the caches: what was used longest ago must give way.
+/// Fills the store and the caches, so that the least recently used entries are evicted.
 void hoard(Client& client) {
   const std::string path = upload(client, World::own_mesh(client.random()));
   if (path.empty()) return;
@@ -53,7 +53,7 @@ void hoard(Client& client) {
   if (client.expect(answer, {200, 429})) client.expect_mesh(answer, {});
 }
 
-/// Many ask for the same: from the cache, or from one computation.
+/// Equal requests of many clients: answered from the cache or by one computation.
 void share(Client& client) {
   const std::string path = upload(client, client.world().coarse());
   if (path.empty()) return;

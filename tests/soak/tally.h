@@ -8,20 +8,20 @@
 
 namespace papilio::soak {
 
-/// What has come of all requests so far. Threads share it.
+/// Outcomes of all requests so far. Thread-safe.
 class Tally {
  public:
-  /// An answer that is allowed: its status, and its problem's public code if it is one ("" if not).
+  /// Counts an allowed answer by its status and the code of its problem document; empty: it has none.
   void count(const std::string& kind, int status, const std::string& code = {});
-  /// A connection that was left, or that the server closed, where that is allowed.
+  /// Counts a connection that either side closed early, where that is allowed.
   void count_without_answer(const std::string& kind);
-  /// Something that must not happen; the first few are kept word for word.
+  /// Counts a failure; keeps the text of the first few.
   void violate(const std::string& kind, const std::string& what);
-  /// Seconds that a small request took.
+  /// Adds the time of a small request, in seconds.
   void time(double seconds);
 
   [[nodiscard]] uint64_t violations() const;
-  /// The table of kinds, failures by code, and the percentiles, for people.
+  /// Prints a table of kinds, failures by code, and percentiles.
   void print() const;
 
  private:

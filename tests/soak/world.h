@@ -10,18 +10,18 @@
 
 namespace papilio::soak {
 
-/// A refinement, and what must come of it.
+/// Refinement and its expected answer.
 struct Order {
   const std::string* mesh;  ///< Draco
   std::string query;
   proto::Parameters parameters;
-  std::string answer;  ///< what `proto::Refinement` makes of it here
+  std::string answer;  ///< expected bytes, by `proto::Refinement` in this process
 };
 
-/// What all clients know; made before they begin, then only read.
+/// Data shared by all clients; constant once they run.
 class World {
  public:
-  /// `coarse`: the Draco mesh that refinements begin with.
+  /// `coarse`: Draco mesh to refine.
   World(int port, uint64_t max_body_bytes, std::string coarse, uint32_t seed);
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -31,7 +31,7 @@ class World {
   [[nodiscard]] const std::string& coarse() const { return coarse_; }
   [[nodiscard]] const std::vector<Order>& small() const { return small_; }    ///< milliseconds each
   [[nodiscard]] const std::vector<Order>& medium() const { return medium_; }  ///< a tenth of a second or so each
-  /// A mesh that nobody else has: an octahedron, its vertices moved a little.
+  /// Returns a unique mesh: an octahedron with jittered vertices.
   [[nodiscard]] static std::string own_mesh(std::mt19937& random);
 
  private:

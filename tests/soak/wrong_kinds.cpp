@@ -32,7 +32,7 @@ void ask_wrongly(Client& client) {
                 {wrong.status, 429});
 }
 
-/// The only failure of the server's own that is asked for.
+/// The only server error that is provoked.
 void ask_too_much(Client& client) {
   const std::string levels = std::to_string(8 + client.random()() % 3);
   client.expect(
@@ -40,7 +40,7 @@ void ask_too_much(Client& client) {
       {507, 429});
 }
 
-/// A mesh of which a few bytes are others: it may still be one.
+/// Sends a mesh with a few changed bytes, which may still be valid.
 void send_damaged(Client& client) {
   std::string mesh = client.world().coarse();
   for (unsigned times = 1 + client.random()() % 8; times > 0; --times)
