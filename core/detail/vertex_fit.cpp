@@ -215,8 +215,8 @@ TriangleMesh VertexFit::on_grid(const PositionGrid& grid) {
       double best = energy(at);
       Vec3d best_move = at;
       for (int i = 0; i < 27; ++i) {
-        const Vec3d steps{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
-        const Vec3d move = at + step * steps;
+        const std::array<int, 3> steps{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        const Vec3d move = at + step * Vec3d{1.0 * steps[0], 1.0 * steps[1], 1.0 * steps[2]};
         const double value = energy(move);
         if (!(value < best) || turns_face(v, places_[v] + move, places)) continue;
         best = value;
