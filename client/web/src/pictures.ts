@@ -4,7 +4,7 @@ import type { Object3D } from 'three';
 
 import { measureBounds } from './bounds';
 import { distancesToUniform } from './distance';
-import { coloured, findEdgesOf, hasFoundEdges, rampColour, shaded, withEdges } from './drawing';
+import { coloured, findEdgesOf, hasFoundEdges, rampColour, sampleDrawings, shaded, withEdges } from './drawing';
 import { element } from './elements';
 import type { Look } from './link';
 import type { OpenMesh } from './mesh';
@@ -33,6 +33,11 @@ export class Pictures {
   #drawn = new Map<Panel, { shown: Shown; how: string }>();
 
   constructor(readonly stage: Stage) {}
+
+  /// Compiles the shaders of all looks before they are first shown.
+  compileLooks(): Promise<void> {
+    return this.stage.compile(sampleDrawings());
+  }
 
   set hidden(paths: ReadonlySet<Path>) {
     this.#hidden = paths;

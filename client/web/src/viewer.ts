@@ -7,7 +7,6 @@ import { commandRows, commandsFor, copy } from './commands';
 import { Controls } from './controls';
 import { defaults } from './defaults';
 import { fetchDecoder } from './draco';
-import { sampleDrawings } from './drawing';
 import { addChoice, find } from './elements';
 import { listenToFiles, listenToKeys } from './input';
 import { askForKey, listenToKey } from './key_form';
@@ -75,7 +74,7 @@ export class Viewer {
     fetchDecoder().catch(() => {}); // errors are shown by the decoding
     const info = this.#asker.info === null ? this.#fetchInfo() : null;
     await Promise.all([info, this.#mesh === null ? this.#openNamed(this.#state.mesh) : null]);
-    await this.#stage.compile(sampleDrawings());
+    await this.#pictures.compileLooks();
   }
 
   // Opening
