@@ -34,6 +34,8 @@ constexpr double step_of_farther = 0.7;
 constexpr int most_bits = 20;
 /// Upper bound of the distances that collapses leave, a share of the largest allowed: rounding moves vertices, too.
 constexpr double share_of_largest = 0.8;
+/// The same for moved vertices.
+constexpr double share_after_fit = 0.9;
 constexpr int passes_of_fit = 2;
 /// Samples of a fit, per face, and their bounds.
 constexpr uint32_t samples_a_face = 6, least_samples = 20'000, most_samples = 400'000;
@@ -97,7 +99,11 @@ class Simplification {
     const auto faces = static_cast<uint32_t>(mesh.triangles.size());
     VertexFit fit(tree_, mesh, std::clamp(samples_a_face * faces, least_samples, most_samples), [this] { poll(); });
     fit.improve(passes_of_fit);
-    const SurfaceDistance floor = distance_to(fit.mesh(), many_samples);
+    SurfaceDistance floor = distance_to(fit.mesh(), many_samples);
+    if (floor.rms <= largest_floor * wanted_ && floor.largest > most_) {
+      fit.retreat(share_after_fit * most_);
+      floor = distance_to(fit.mesh(), many_samples);
+    }
     if (floor.rms > largest_floor * wanted_ || floor.largest > most_) return std::nullopt;
     std::optional<TriangleMesh> best;
     PositionGrid best_grid;

@@ -22,6 +22,8 @@ constexpr double least_squared_sine = 1e-14;
 constexpr uint32_t samples_between_polls = 4096;
 /// With fewer, vertices of small faces would follow one sample too far.
 constexpr uint32_t least_samples_a_face = 4;
+/// Halvings of moves that lead too far; the last one undoes them.
+constexpr int most_retreats = 4;
 /// Upper bound of a move, in RMS distances.
 constexpr double most_move = 3;
 
@@ -69,6 +71,7 @@ VertexFit::VertexFit(const SurfaceTree& original, const TriangleMesh& mesh, uint
       poll_(std::move(poll)) {
   faces_.assign(mesh.triangles.begin(), mesh.triangles.end());
   for (const Vec3f& p : mesh.positions) places_.push_back(to_double(p));
+  first_places_ = places_;
   connect();
 }
 
@@ -189,6 +192,53 @@ void VertexFit::improve_once() {
   for (uint32_t v = 0; v < places_.size(); ++v)
     if (!turns_face(v, places_[v] + moves[v], places)) places[v] = places_[v] + moves[v];
   places_ = std::move(places);
+}
+
+std::vector<bool> VertexFit::far_vertices(double most) const {
+  std::vector<bool> is_far(places_.size());
+  const SurfaceTree surface(mesh());
+  const double squared_most = most * most;
+  uint32_t steps = 0;
+  const auto count_step = [&] {
+    if (poll_ && ++steps % samples_between_polls == 0) poll_();
+  };
+  const auto mark = [&](uint32_t face) {
+    for (const uint32_t v : faces_[face]) is_far[v] = true;
+  };
+  const auto look_from_original = [&](Vec3d point) {
+    count_step();
+    const Nearest near = surface.nearest(point);
+    if (near.squared_distance > squared_most) mark(near.face);
+  };
+  for_each_sample(original_, samples_, [&](uint32_t, Vec3d point) { look_from_original(point); });
+  for (const Vec3f& p : original_.surface().positions) look_from_original(to_double(p));
+  const auto look_from_mesh = [&](uint32_t face, Vec3d point) {
+    count_step();
+    if (original_.nearest(point).squared_distance > squared_most) mark(face);
+  };
+  for_each_sample(surface, samples_, look_from_mesh);
+  for (uint32_t f = 0; f < faces_.size(); ++f)
+    for (const uint32_t v : faces_[f]) look_from_mesh(f, places_[v]);
+  return is_far;
+}
+
+void VertexFit::retreat(double most) {
+  for (int i = 1; i <= most_retreats; ++i) {
+    const std::vector<bool> is_far = far_vertices(most);
+    bool is_moved = false;
+    std::vector<Vec3d> places = places_;
+    for (uint32_t v = 0; v < places_.size(); ++v) {
+      if (!is_far[v] || places_[v] == first_places_[v]) continue;
+      const double share = i < most_retreats ? 0.5 : 1;
+      const Vec3d place = places_[v] + share * (first_places_[v] - places_[v]);
+      if (turns_face(v, place, places)) continue;
+      places[v] = place;
+      is_moved = true;
+    }
+    if (!is_moved) return;
+    places_ = std::move(places);
+    is_measured_ = false;
+  }
 }
 
 TriangleMesh VertexFit::on_grid(const PositionGrid& grid) {

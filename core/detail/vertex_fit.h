@@ -22,6 +22,10 @@ class VertexFit {
   /// turn a face are left out.
   void improve(int passes);
 
+  /// Moves vertices back to their first places, halfway at a time, where samples or vertices of either surface are
+  /// farther than `most` from the other. Moves that would turn a face are left out.
+  void retreat(double most);
+
   /// Returns the mesh with each vertex on a grid point near it. Of the grid points around, those are taken that leave
   /// the least squared distances, which are the nearest ones only across the surface. So a coarser grid serves.
   [[nodiscard]] TriangleMesh on_grid(const PositionGrid& grid);
@@ -40,6 +44,8 @@ class VertexFit {
 
   void improve_once();
   void connect();
+  /// Returns for each vertex whether a face of it is farther than `most` from the original, or the original from it.
+  [[nodiscard]] std::vector<bool> far_vertices(double most) const;
   /// Samples both surfaces for the quadratic function, unless that is done.
   void measure();
   void add_sample(uint32_t face, Vec3d at, Vec3d to, Vec3d normal, double weight);
@@ -50,7 +56,7 @@ class VertexFit {
   const SurfaceTree& original_;
   double diagonal_;
   std::vector<Triangle> faces_;
-  std::vector<Vec3d> places_;
+  std::vector<Vec3d> places_, first_places_;
   uint32_t samples_;
   double rms_ = 0;  ///< distance from the original's samples
   std::function<void()> poll_;

@@ -23,8 +23,6 @@ namespace {
 /// Typical largest distance of the measured models, in RMS distances: start of a search for it, and bound of a
 /// simplified mesh.
 constexpr double largest_of_rms = 8;
-/// The same bound where no packed model reaches the RMS distance.
-constexpr double largest_of_rms_alone = 16;
 /// Lower bound of the faces of an original to be simplified: with fewer, each may be a feature, and few bytes are
 /// saved.
 constexpr size_t fewest_to_simplify = 5000;
@@ -123,8 +121,7 @@ class Packer {
   /// does.
   [[nodiscard]] double most_of_simplified() const {
     const bool reaches = best_ && reach_of(best_->model).rms <= options_.rms;
-    if (!reaches) return largest_of_rms_alone * options_.rms;
-    return std::max(largest_of_rms * options_.rms, reach_of(best_->model).largest);
+    return std::max(largest_of_rms * options_.rms, reaches ? reach_of(best_->model).largest : 0);
   }
 
   /// Returns whether a simplified mesh is the smallest file.

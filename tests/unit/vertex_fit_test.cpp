@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/detail/surface_distance.h"
@@ -19,6 +20,11 @@ constexpr uint32_t fit_samples = 20'000, measured_samples = 50'000;
 
 double rms_between(const SurfaceTree& original, const TriangleMesh& mesh) {
   return surface_distance(original, SurfaceTree(mesh), measured_samples).rms;
+}
+
+double largest_between(const SurfaceTree& original, const TriangleMesh& mesh) {
+  const SurfaceTree surface(mesh);
+  return std::max(surface_distance(original, surface, fit_samples).largest, vertex_distance(original, surface));
 }
 
 TriangleMesh rounded_to(const PositionGrid& grid, TriangleMesh mesh) {
@@ -67,6 +73,21 @@ TEST(VertexFit, SharpEdgesAndBoundariesStay) {
     fit.improve(2);
     const double diagonal = bounding_box(mesh.positions).diagonal();
     EXPECT_LT(vertex_distance(original, SurfaceTree(fit.mesh())), 1e-4 * diagonal);
+  }
+}
+
+TEST(VertexFit, RetreatEndsWithinTheLargestDistance) {
+  const SurfaceTree original(test::bumpy_sphere(4));
+  for (const size_t faces : {200, 400, 800}) {
+    const TriangleMesh simplified = test::collapse_optimally(original.surface(), faces, Quadrics::memoryless);
+    const double most = largest_between(original, simplified);
+    VertexFit fit(original, simplified, fit_samples);
+    fit.improve(2);
+    const double improved = rms_between(original, fit.mesh());
+    EXPECT_GT(largest_between(original, fit.mesh()), most) << faces;
+    fit.retreat(most);
+    EXPECT_LE(largest_between(original, fit.mesh()), 1.0001 * most) << faces;
+    EXPECT_LT(rms_between(original, fit.mesh()), 0.5 * (improved + rms_between(original, simplified))) << faces;
   }
 }
 
