@@ -20,8 +20,9 @@ MemoryPlan::MemoryPlan(const Mesh& coarse, const Options& options)
       coarse_points_(coarse.attributes.empty() ? coarse.topology.vertex_count : coarse.attributes.point_count),
       output_(options.output) {
   if (coarse.detail) detail_levels_ = coarse.detail->level_count();
+  const bool has_seams = !coarse.attributes.empty();
   for (HalfEdgeId h = 0; h < coarse.topology.half_edge_count(); ++h)
-    open_ += coarse.topology.twin[h] == none || is_seam(coarse.topology, coarse.attributes, h) ? 1 : 0;
+    open_ += coarse.topology.twin[h] == none || (has_seams && is_seam(coarse.topology, coarse.attributes, h)) ? 1 : 0;
   for (const Attribute& attribute : coarse.attributes.attributes)
     point_bytes_ += (attribute.is_displacement ? 2 : 1) * growth * attribute.components * sizeof(double);
   if (!coarse.attributes.empty()) corner_bytes_ = 6 * sizeof(uint32_t);  // points at a face's corners and on its edges
