@@ -12,6 +12,5 @@ COPY tests/openapi/package.json tests/openapi/package-lock.json tests/openapi/.n
 COPY tests/scenes/package.json tests/scenes/package-lock.json tests/scenes/.npmrc tests/scenes/
 RUN tests/support/setup.sh build wasm test && tests/support/library_source.sh meshoptimizer libmeshoptimizer-dev
 COPY . .
-ENV PAPILIO_UNITY=ON
 ARG PAPILIO_TEST_UNITS=yes
 RUN --mount=type=cache,target=/root/.cache/ccache ./dev test
