@@ -8,8 +8,6 @@
 namespace papilio::proto {
 namespace {
 
-constexpr double least_range = 1e-30;  // below, steps per unit overflow in Draco
-
 /// Returns the edge length of the cube for a box of this size.
 double grid_range(Vec3d size) { return 1.25 * std::max({size.x, size.y, size.z}); }
 

@@ -11,6 +11,9 @@ struct QuantizationBox {
   float range = 0;  ///< edge length
 };
 
+/// Lower bound of a cube's edge: below, steps per unit overflow in Draco.
+inline constexpr double least_range = 1e-30;
+
 /// Returns the cube about the centre of the bounding box. Its edge is the longest side of the box, padded by an eighth
 /// at both ends because refinement expands the surface. Draco's grid also encodes positions beyond the cube. Throws
 /// `Problem` mesh_unusable for a mesh smaller than 1e-30.

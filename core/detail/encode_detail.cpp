@@ -42,14 +42,14 @@ constexpr double least_last_faces = 7, most_last_faces = 50;
 constexpr double largest_floor_of_candidate = 0.8, floor_of_enough_levels = 0.4;
 /// Steps, in target distances: to measure the floor of a level, and to start the search for the step.
 constexpr double fine_step = 1, first_step = 4;
-constexpr int step_attempts = 3, step_attempts_at_last = 4;
+constexpr int attempts_of_candidate = 3, attempts_at_last = 4;
 /// Lower bound of a distance that ends the search for the step, a share of the target.
-constexpr double least_share = 0.96;
+constexpr double least_share_of_target = 0.96;
 constexpr int turns_of_candidate = 2, turns_at_last = 5;  // turns per level
 constexpr double rate_weight = 2;
 constexpr int weighting_passes = 3;
 /// Samples for the distance of a candidate, per face of the original, and their bounds.
-constexpr uint32_t samples_a_face = 2, least_samples = 5'000, most_samples = 20'000;
+constexpr uint32_t samples_of_candidate_a_face = 2, least_samples = 5'000, most_samples = 20'000;
 constexpr uint32_t samples_at_last = 3;  ///< factor of the samples at the end
 /// Upper bound of the bases at the end, the larger ones if more samples show that the distance is not reached.
 constexpr int most_last_bases = 3;
@@ -59,7 +59,7 @@ constexpr double sheet_reach = 2;
 constexpr double parting_share = 0.1;
 /// Size of removed slivers, a share of the target distance. Collapses cannot remove them: their normals are random, and
 /// they unfold to nothing.
-constexpr double sliver_share = 0.1;
+constexpr double sliver_size = 0.1;
 
 void check(const DetailOptions& options) {
   if (!(options.rms >= 1e-6 && options.rms <= 0.1))
@@ -91,8 +91,8 @@ class DetailEncoder {
         code_base_(code_base),
         wanted_(options.rms * bounding_box(triangles.positions).diagonal()),
         original_(prepare(triangles)),
-        samples_of_candidate_(
-            std::clamp(samples_a_face * original_.mesh().topology.face_count(), least_samples, most_samples)),
+        samples_of_candidate_(std::clamp(samples_of_candidate_a_face * original_.mesh().topology.face_count(),
+                                         least_samples, most_samples)),
         first_step_(first_step * wanted_) {}
 
   EncodedDetail run() {
@@ -105,7 +105,7 @@ class DetailEncoder {
       CandidateBase& last = candidate(at);
       lift(last);
       std::optional<ResidualFit> fit =
-          find_step(last, turns_at_last, samples_at_last * samples_of_candidate_, step_attempts_at_last);
+          find_step(last, turns_at_last, samples_at_last * samples_of_candidate_, attempts_at_last);
       if (best == nullptr || is_better_result(last.chosen.outcome, best->chosen.outcome)) {
         best = &last;
         best_fit.emplace(std::move(*fit));
@@ -120,7 +120,7 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_share * wanted_, poller());
+    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller());
     require_manifold(mesh);
     normals_ = mark_detail_curves(mesh);
     require_whole_parts(mesh);
@@ -240,14 +240,14 @@ class DetailEncoder {
 
   /// Finds the step, and adds levels as long as they are expected to save bytes.
   void choose(CandidateBase& candidate) {
-    find_step(candidate, turns_of_candidate, samples_of_candidate_, step_attempts);
+    find_step(candidate, turns_of_candidate, samples_of_candidate_, attempts_of_candidate);
     while (candidate.chosen.levels < candidate.most_levels &&
            candidate.chosen.floor > floor_of_enough_levels * wanted_) {
       const CandidateBase::Choice before = candidate.chosen;
       ++candidate.chosen.levels;
       candidate.chosen.floor = floor_of(candidate);
       candidate.chosen.outcome = {};
-      find_step(candidate, turns_of_candidate, samples_of_candidate_, step_attempts);
+      find_step(candidate, turns_of_candidate, samples_of_candidate_, attempts_of_candidate);
       if (is_better(candidate.chosen.outcome, before.outcome)) continue;
       candidate.chosen = before;
       return;
@@ -293,7 +293,7 @@ class DetailEncoder {
         candidate.chosen.outcome = {.rms = rms, .is_reached = is_reached};
         best.emplace(std::move(made));
       }
-      if (is_reached && rms >= least_share * wanted_) break;
+      if (is_reached && rms >= least_share_of_target * wanted_) break;
       step = expected_step(step, rms, candidate.chosen.floor, wanted_);
     }
     const uint64_t streams = bytes_of(candidate, *best);

@@ -8,11 +8,11 @@
 namespace papilio {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float above_all = std::numeric_limits<float>::infinity();
 /// Margin of the bounds against rounding, a share.
-constexpr double margin = 1e-6;
+constexpr double rounding_margin = 1e-6;
 
-float rounded_up(double value) { return std::nextafter(static_cast<float>(value * (1 + margin)), infinity); }
+float rounded_up(double value) { return std::nextafter(static_cast<float>(value * (1 + rounding_margin)), above_all); }
 
 /// Returns, for each piece, an upper bound of the distance by which its residuals move a vertex.
 std::vector<float> largest_moves(const DetailLevel& level, const Residuals& residuals, const EdgePieces& pieces) {
@@ -73,7 +73,7 @@ std::vector<PieceBounds> bounds_of(const TriangleMesh& surface, size_t levels, c
     for (const Vec3f p : corners)
       bounds.radius = std::max(bounds.radius, rounded_up(length(to_double(p) - to_double(bounds.centre))));
     if (length(normal) == 0) return;
-    const double cosine = dot(normal, to_double(bounds.axis)) - margin;
+    const double cosine = dot(normal, to_double(bounds.axis)) - rounding_margin;
     bounds.least_cosine = std::min(bounds.least_cosine, std::max(-1.0F, -rounded_up(-cosine)));
   });
   return made;

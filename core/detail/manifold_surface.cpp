@@ -12,7 +12,7 @@ namespace papilio {
 namespace {
 
 /// Upper bound of the rounds: a moved vertex may land on another, which takes a further round.
-constexpr int most_rounds = 4;
+constexpr int most_rounds_of_parting = 4;
 /// Upper bound of a vertex's move, a share of the way to its neighbours.
 constexpr double most_of_way = 0.25;
 
@@ -103,7 +103,7 @@ class FanParter {
 
 ManifoldSurface manifold_surface(const TriangleMesh& triangles, double distance) {
   ManifoldSurface made{.mesh = build_mesh(triangles)};
-  for (int round = 0; round < most_rounds && needs_parting(made.mesh.topology); ++round) {
+  for (int round = 0; round < most_rounds_of_parting && needs_parting(made.mesh.topology); ++round) {
     FanParter parter(made.mesh, distance);
     const TriangleMesh parted = parter.run();
     made.parted = std::max(made.parted, parter.parted());

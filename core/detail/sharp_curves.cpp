@@ -21,7 +21,7 @@ constexpr double corner_angle = 50 * degree;
 constexpr double least_clean_share = 0.5;
 /// Share of hard edges in the length of sharp edges from which on only hard edges count.
 constexpr double decisive_hard_share = 0.5;
-constexpr int most_rounds = 4;
+constexpr int most_rounds_of_noise = 4;
 
 /// Sharp edges of a surface, grouped in rows that become curves.
 class SharpEdges {
@@ -45,7 +45,7 @@ class SharpEdges {
 
   void mark() {
     const double before = length_of_all();
-    for (int round = 0; round < most_rounds && drop_noise(); ++round) {
+    for (int round = 0; round < most_rounds_of_noise && drop_noise(); ++round) {
     }
     if (length_of_all() < least_clean_share * before) return;
     for (uint32_t e = 0; e < topology_.edge_count(); ++e)

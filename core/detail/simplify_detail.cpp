@@ -26,9 +26,9 @@ constexpr int most_worse_sizes = 2;
 constexpr int most_sizes = 8;
 /// Step of the grid to start with, in target distances, attempts to find it, and the share of the target distance that
 /// ends the search.
-constexpr double first_step = 5;
+constexpr double first_grid_step = 5;
 constexpr int step_attempts = 5;
-constexpr double least_share = 0.985;
+constexpr double near_share = 0.985;
 /// Factor of a step that leaves the RMS distance, but not the largest one.
 constexpr double step_of_farther = 0.7;
 constexpr int most_bits = 20;
@@ -38,7 +38,7 @@ constexpr double share_of_largest = 0.8;
 constexpr double share_after_fit = 0.9;
 constexpr int passes_of_fit = 2;
 /// Samples of a fit, per face, and their bounds.
-constexpr uint32_t samples_a_face = 6, least_samples = 20'000, most_samples = 400'000;
+constexpr uint32_t fit_samples_a_face = 6, least_fit_samples = 20'000, most_fit_samples = 400'000;
 constexpr uint32_t few_samples = 20'000, many_samples = 60'000;
 
 class Simplification {
@@ -97,7 +97,8 @@ class Simplification {
   /// Moves the vertices of a mesh, and codes it on the coarsest grid found that leaves the target distance.
   [[nodiscard]] std::optional<SimplifiedDetail> on_coarsest_grid(const TriangleMesh& mesh) const {
     const auto faces = static_cast<uint32_t>(mesh.triangles.size());
-    VertexFit fit(tree_, mesh, std::clamp(samples_a_face * faces, least_samples, most_samples), [this] { poll(); });
+    VertexFit fit(tree_, mesh, std::clamp(fit_samples_a_face * faces, least_fit_samples, most_fit_samples),
+                  [this] { poll(); });
     fit.improve(passes_of_fit);
     SurfaceDistance floor = distance_to(fit.mesh(), many_samples);
     if (floor.rms <= largest_floor * wanted_ && floor.largest > most_) {
@@ -107,7 +108,7 @@ class Simplification {
     if (floor.rms > largest_floor * wanted_ || floor.largest > most_) return std::nullopt;
     std::optional<TriangleMesh> best;
     PositionGrid best_grid;
-    double step = first_step * wanted_;
+    double step = first_grid_step * wanted_;
     for (int i = 0; i < step_attempts; ++i) {
       const std::optional<PositionGrid> grid = grid_of(step);
       if (!grid) break;
@@ -117,7 +118,7 @@ class Simplification {
         best = std::move(rounded);
         best_grid = *grid;
       }
-      if (is_near(distance) && distance.rms >= least_share * wanted_) break;
+      if (is_near(distance) && distance.rms >= near_share * wanted_) break;
       const double next = expected_step(step, distance.rms, floor.rms, wanted_);
       step = distance.rms <= wanted_ && distance.largest > most_ ? step_of_farther * step : next;
     }

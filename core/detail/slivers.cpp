@@ -11,9 +11,9 @@ namespace {
 
 /// Lower bound of the thickness of a face that is no sliver: twice its area over its longest side's square. An
 /// equilateral face has 0.87.
-constexpr double least_thickness = 0.05;
+constexpr double sliver_thickness = 0.05;
 /// Lower bound of the cosine between the normals before and after, of a face that is no sliver.
-constexpr double least_cosine = 0.5;
+constexpr double least_cosine_of_whole = 0.5;
 /// Upper bound of a move, a share of the mean edge, so that a regular mesh stays unchanged.
 constexpr double most_of_edge = 0.1;
 constexpr uint32_t faces_between_polls = 4096;
@@ -105,7 +105,7 @@ class SliverRemover {
   /// Returns whether a face is to be removed: it is a sliver, or all its sides are short.
   [[nodiscard]] bool is_removable(uint32_t f) const {
     const Face at = face(f);
-    return at.thickness() < least_thickness || at.longest() <= distance_;
+    return at.thickness() < sliver_thickness || at.longest() <= distance_;
   }
   [[nodiscard]] bool is_seam(uint32_t h) const {
     const uint32_t t = twin_[h];
@@ -194,9 +194,9 @@ class SliverRemover {
       if (tip(spoke) == onto || apex(spoke) == onto) continue;
       const Face before = face(spoke / 3);
       const Face after{place(onto), place(tip(spoke)), place(apex(spoke))};
-      const bool was_sliver = before.thickness() < least_thickness || before.longest() <= distance_;
-      const bool is_sliver = after.thickness() < least_thickness;
-      if (!was_sliver && (is_sliver || cosine(before.normal(), after.normal()) < least_cosine)) return false;
+      const bool was_sliver = before.thickness() < sliver_thickness || before.longest() <= distance_;
+      const bool is_sliver = after.thickness() < sliver_thickness;
+      if (!was_sliver && (is_sliver || cosine(before.normal(), after.normal()) < least_cosine_of_whole)) return false;
       if (was_sliver && !is_sliver && !(dot(after.normal(), normal) > 0)) return false;
     }
     return true;
@@ -248,12 +248,12 @@ class SliverRemover {
     const Face beyond = face(t / 3);
     const std::array<Face, 2> made{Face{place(c), place(a), place(d)}, Face{place(d), place(b), place(c)}};
     const double before = std::min(face(h / 3).thickness(), beyond.thickness());
-    const bool is_beyond_thin = beyond.thickness() < least_thickness;
+    const bool is_beyond_thin = beyond.thickness() < sliver_thickness;
     const Vec3d normal = is_beyond_thin ? normal_of(ring_at(previous(h))) : beyond.normal();
     for (const Face& f : made) {
       const double thickness = f.thickness();
       if (!(thickness > before)) return false;
-      if (thickness >= least_thickness && !(cosine(f.normal(), normal) > (is_beyond_thin ? 0 : least_cosine)))
+      if (thickness >= sliver_thickness && !(cosine(f.normal(), normal) > (is_beyond_thin ? 0 : least_cosine_of_whole)))
         return false;
     }
     moved_[c] = moved;

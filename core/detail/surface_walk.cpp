@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t most_steps = 1000;
 /// Lower bound of the cosine between a face's normal and the line: below it, the face turns away.
-constexpr double least_cosine = 0.1;
+constexpr double least_cosine_to_line = 0.1;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ std::optional<LineHit> walk_to_line(const Mesh& surface, uint32_t start_face, Ve
     for (uint32_t i = 0; i < 3; ++i) corner[i] = to_double(surface.positions[t.origin[size_t{3} * face + i]]) - point;
     const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double along = dot(normal, direction);
-    if (!(along > least_cosine * length(normal))) return std::nullopt;
+    if (!(along > least_cosine_to_line * length(normal))) return std::nullopt;
     // Finds the side that the line is farthest beyond, seen along the line.
     double least = 0;
     uint32_t out = none;

@@ -13,7 +13,7 @@ namespace papilio {
 namespace {
 
 /// Lower bound of twice a face's area in the fan, over the sum of its sides' squares.
-constexpr double least_thickness = 0.01;
+constexpr double least_unfolded_thickness = 0.01;
 constexpr size_t unfoldings_between_polls = 4096;
 
 struct Point {
@@ -71,7 +71,7 @@ bool Unfolding::is_valid() const {
     if (i == 0 || i + 1 == faces_.size()) continue;
     const Point side = b - at(0);
     const Point other = c - at(0);
-    if (!(cross(side, other) > least_thickness * (squared(side) + squared(other)))) return false;
+    if (!(cross(side, other) > least_unfolded_thickness * (squared(side) + squared(other)))) return false;
   }
   return true;
 }

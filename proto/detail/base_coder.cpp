@@ -9,11 +9,10 @@
 
 #include "papilio/error.h"
 #include "proto/problem.h"
+#include "proto/quantization_box.h"
 
 namespace papilio::proto::detail {
 namespace {
-
-constexpr double least_range = 1e-30;  // below, steps per unit overflow in Draco
 
 double longest_side(const Box& box) {
   const Vec3d size = to_double(box.max) - to_double(box.min);

@@ -12,7 +12,7 @@ constexpr double narrow_enough = 0.01;  // upper bound of the ratio of the brack
 /// Ratio of the two distances of a round to the distance at which the goal is expected.
 constexpr double spread_without_bracket = 1.3, spread_in_bracket = 1.03;
 /// Lower bound of the gap between a new distance and the bracket's ends, a share of the bracket in logarithms.
-constexpr double margin = 0.1;
+constexpr double bracket_margin = 0.1;
 
 /// Axis of distances: the logarithm, with the sign that makes values grow along it.
 class Axis {
@@ -85,8 +85,10 @@ class Search {
     const double at_a = axis_.excess(*below_);
     const double at_b = axis_.excess(*above_);
     const double root = a - at_a * (b - a) / (at_b - at_a);
-    const double half = std::min(std::log(spread_in_bracket), margin * (b - a));
-    const auto inside = [&](double at) { return std::clamp(at, a + margin * (b - a), b - margin * (b - a)); };
+    const double half = std::min(std::log(spread_in_bracket), bracket_margin * (b - a));
+    const auto inside = [&](double at) {
+      return std::clamp(at, a + bracket_margin * (b - a), b - bracket_margin * (b - a));
+    };
     return {inside(root - half), inside(root + half)};
   }
 

@@ -23,9 +23,6 @@ namespace {
 using gltf::ComponentType;
 using gltf::Json;
 
-/// Smallest index that restarts primitives where indices have 16 bits.
-constexpr size_t restart_index_16 = 65535;
-
 /// Returns the number with the fewest digits whose nearest float is `value`.
 double shortest(float value) {
   std::array<char, 32> text{};
@@ -60,7 +57,8 @@ struct Scene {  // NOLINT(bugprone-exception-escape): moving JSON cannot throw
   /// Adds a primitive with its Draco stream.
   void add_primitive(const TriangleMesh& mesh, std::string_view stream) {
     const Box box = bounding_box(mesh.positions);
-    const auto index = mesh.positions.size() <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+    const auto index =
+        mesh.positions.size() <= gltf::most_vertices_of_16_bits ? ComponentType::uint16 : ComponentType::uint32;
     constexpr auto number = static_cast<uint32_t>(ComponentType::float32);
     Json attributes{{"POSITION", add_accessor({{"componentType", number},
                                                {"count", mesh.positions.size()},

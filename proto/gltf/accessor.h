@@ -18,6 +18,8 @@ enum class ComponentType : uint32_t {
   uint32 = 5125,
   float32 = 5126
 };
+/// Upper bound of the vertices whose indices fit 16 bits: the largest number restarts a primitive.
+inline constexpr uint64_t most_vertices_of_16_bits = 65535;
 
 [[nodiscard]] uint32_t bytes_of(ComponentType type);
 [[nodiscard]] bool is_signed(ComponentType type);

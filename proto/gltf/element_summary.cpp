@@ -5,9 +5,6 @@
 namespace papilio::proto::gltf {
 namespace {
 
-/// Smallest index that restarts primitives where indices have 16 bits.
-constexpr uint64_t restart_index_16 = 65535;
-
 Json bound(const Elements& elements, bool upper) {
   std::vector<double> extremes(elements.format.components);
   for (uint32_t c = 0; c < extremes.size(); ++c) {
@@ -48,7 +45,7 @@ ElementSummary summarize(const Json& document, std::optional<uint32_t> old, cons
 }
 
 Elements index_elements(const Buffer<Triangle>& triangles, uint64_t vertices) {
-  const ComponentType type = vertices <= restart_index_16 ? ComponentType::uint16 : ComponentType::uint32;
+  const ComponentType type = vertices <= most_vertices_of_16_bits ? ComponentType::uint16 : ComponentType::uint32;
   Elements out = zero_elements({type, 1, false}, 3 * triangles.size());
   for (size_t i = 0; i < 3 * triangles.size(); ++i) out.set_number(i, 0, triangles[i / 3][i % 3]);
   return out;

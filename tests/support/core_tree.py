@@ -5,6 +5,7 @@
 - Public headers include only public headers and the standard library, and define no macro.
 - proto/, server/ and client/ include only the core's public headers.
 - Processor instructions are named in core/simd alone.
+- No two sources of a library have a private constant or type of one name: several are compiled as one.
 - No file of core/ is longer than 400 lines, and each folder has a README.md.
 """
 
@@ -65,6 +66,24 @@ def check_user(path):
             found.append(f"{path}: only the core includes its private header {name}")
 
 
+def private_names(text):
+    """The constants and types that a source declares for itself, at the start of a line."""
+    for line in re.findall(r"^constexpr [^;]*;", text, re.MULTILINE):
+        yield from re.findall(r"(\w+)(?=(?:\[\w*\])* = )", line)
+    yield from re.findall(r"^(?:class|struct|enum class) (\w+) (?:final )?[:{]", text, re.MULTILINE)
+
+
+def check_private_names(library):
+    known = {}
+    for path in sources(library):
+        if path.suffix != ".cpp" or {"node_modules", "wasm", "c"} & set(path.parts):
+            continue
+        for name in set(private_names(path.read_text())):
+            if name in known:
+                found.append(f"{path}: {name} is a private name of {known[name]}, too")
+            known[name] = path
+
+
 def main():
     for path in sources("core"):
         check_core(path)
@@ -72,6 +91,8 @@ def main():
         for path in sources(folder):
             if "node_modules" not in path.parts:
                 check_user(path)
+    for library in ("core", "proto", "server", "client"):
+        check_private_names(library)
     for folder in (*BELOW, "include"):
         if not pathlib.Path("core", folder, "README.md").exists():
             found.append(f"core/{folder}: has no README.md")
