@@ -38,7 +38,7 @@ echo "clang-format: ${#sources[@]} files"
 "$clang_format" --dry-run --Werror "${sources[@]}" || failed+=(clang-format)
 
 echo "clang-tidy: ${#analysed[@]} files"
-cmake --preset release -B build/check -DPAPILIO_UNITY=OFF -DPAPILIO_WEB=OFF >build/configure.log || cat build/configure.log
+cmake --preset release -B build/check -DPAPILIO_UNITY=OFF -DPAPILIO_TESTS=ON -DPAPILIO_WEB=OFF >build/configure.log || cat build/configure.log
 python3 tests/support/tidy.py "$clang_tidy" "${analysed[@]}" || failed+=(clang-tidy)
 
 mapfile -t web < <(files client/{web,npm} tests/{web,npm,scenes,container,openapi} | grep -E '\.(ts|mjs|json|html|css)$' | grep -v package-lock)
