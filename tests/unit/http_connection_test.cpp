@@ -162,6 +162,9 @@ TEST_F(HttpServerTest, OldestAnswerIsCutBeyondTheBudget) {
     clients.back()->send(get("/large", "X-Request-Id: client-" + std::to_string(i) + "\r\n"));
     EXPECT_TRUE(eventually([&] { return inside_ == i + 1; }));
     EXPECT_TRUE(eventually([&] { return server_->held().answers == std::min(i + 1, 2) * large_size; }));
+    if (i == 2) {
+      EXPECT_EQ(finished(1).size(), 1U) << "reported before the next is cut";
+    }
   }
   const auto cut = finished(2);
   ASSERT_EQ(cut.size(), 2U);
