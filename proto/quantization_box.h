@@ -11,7 +11,7 @@ struct QuantizationBox {
   float range = 0;  ///< edge length
 };
 
-/// Lower bound of a cube's edge: below, steps per unit overflow in Draco.
+/// Lower bound of a grid's edge length: below, steps per unit overflow in Draco.
 inline constexpr double least_range = 1e-30;
 
 /// Returns the cube about the centre of the bounding box. Its edge is the longest side of the box, padded by an eighth

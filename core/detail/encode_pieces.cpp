@@ -8,11 +8,12 @@
 namespace papilio {
 namespace {
 
-constexpr float above_all = std::numeric_limits<float>::infinity();
 /// Margin of the bounds against rounding, a share.
 constexpr double rounding_margin = 1e-6;
 
-float rounded_up(double value) { return std::nextafter(static_cast<float>(value * (1 + rounding_margin)), above_all); }
+float rounded_up(double value) {
+  return std::nextafter(static_cast<float>(value * (1 + rounding_margin)), std::numeric_limits<float>::infinity());
+}
 
 /// Returns, for each piece, an upper bound of the distance by which its residuals move a vertex.
 std::vector<float> largest_moves(const DetailLevel& level, const Residuals& residuals, const EdgePieces& pieces) {

@@ -13,7 +13,7 @@ namespace {
 /// equilateral face has 0.87.
 constexpr double sliver_thickness = 0.05;
 /// Lower bound of the cosine between the normals before and after, of a face that is no sliver.
-constexpr double least_cosine_of_whole = 0.5;
+constexpr double least_cosine_of_wide_face = 0.5;
 /// Upper bound of a move, a share of the mean edge, so that a regular mesh stays unchanged.
 constexpr double most_of_edge = 0.1;
 constexpr uint32_t faces_between_polls = 4096;
@@ -196,7 +196,8 @@ class SliverRemover {
       const Face after{place(onto), place(tip(spoke)), place(apex(spoke))};
       const bool was_sliver = before.thickness() < sliver_thickness || before.longest() <= distance_;
       const bool is_sliver = after.thickness() < sliver_thickness;
-      if (!was_sliver && (is_sliver || cosine(before.normal(), after.normal()) < least_cosine_of_whole)) return false;
+      if (!was_sliver && (is_sliver || cosine(before.normal(), after.normal()) < least_cosine_of_wide_face))
+        return false;
       if (was_sliver && !is_sliver && !(dot(after.normal(), normal) > 0)) return false;
     }
     return true;
@@ -253,7 +254,8 @@ class SliverRemover {
     for (const Face& f : made) {
       const double thickness = f.thickness();
       if (!(thickness > before)) return false;
-      if (thickness >= sliver_thickness && !(cosine(f.normal(), normal) > (is_beyond_thin ? 0 : least_cosine_of_whole)))
+      if (thickness >= sliver_thickness &&
+          !(cosine(f.normal(), normal) > (is_beyond_thin ? 0 : least_cosine_of_wide_face)))
         return false;
     }
     moved_[c] = moved;

@@ -103,20 +103,20 @@ void VertexFit::connect() {
   }
 }
 
+void VertexFit::count_sample() const {
+  if (poll_ && ++counted_ % samples_between_polls == 0) poll_();
+}
+
 void VertexFit::measure() {
   if (std::exchange(is_measured_, true)) return;
   own_.assign(places_.size(), {});
   shared_.assign(neighbours_.size(), {});
   pulls_.assign(places_.size(), {});
   const SurfaceTree surface(mesh());
-  uint32_t steps = 0;
-  const auto count_step = [&] {
-    if (poll_ && ++steps % samples_between_polls == 0) poll_();
-  };
   const double of_original = 1.0 / samples_;
   double sum = 0;
   for_each_sample(original_, samples_, [&](uint32_t, Vec3d point) {
-    count_step();
+    count_sample();
     const Nearest near = surface.nearest(point);
     sum += of_original * near.squared_distance;
     add_sample(near.face, near.point, point, surface.unit_normal(near.face), of_original);
@@ -128,7 +128,7 @@ void VertexFit::measure() {
     const double share = area_of(c) / total;
     const uint32_t count = std::max(least_samples_a_face, static_cast<uint32_t>(share * samples_));
     for (uint32_t i = 0; i < count; ++i) {
-      count_step();
+      count_sample();
       const Vec3d point = sample_of(c, i);
       const Nearest near = original_.nearest(point);
       add_sample(f, point, near.point, original_.unit_normal(near.face), share / count);
@@ -198,27 +198,26 @@ std::vector<bool> VertexFit::far_vertices(double most) const {
   std::vector<bool> is_far(places_.size());
   const SurfaceTree surface(mesh());
   const double squared_most = most * most;
-  uint32_t steps = 0;
-  const auto count_step = [&] {
-    if (poll_ && ++steps % samples_between_polls == 0) poll_();
-  };
   const auto mark = [&](uint32_t face) {
     for (const uint32_t v : faces_[face]) is_far[v] = true;
   };
   const auto look_from_original = [&](Vec3d point) {
-    count_step();
+    count_sample();
     const Nearest near = surface.nearest(point);
     if (near.squared_distance > squared_most) mark(near.face);
   };
   for_each_sample(original_, samples_, [&](uint32_t, Vec3d point) { look_from_original(point); });
   for (const Vec3f& p : original_.surface().positions) look_from_original(to_double(p));
-  const auto look_from_mesh = [&](uint32_t face, Vec3d point) {
-    count_step();
-    if (original_.nearest(point).squared_distance > squared_most) mark(face);
+  const auto is_far_from_original = [&](Vec3d point) {
+    count_sample();
+    return original_.nearest(point).squared_distance > squared_most;
   };
-  for_each_sample(surface, samples_, look_from_mesh);
-  for (uint32_t f = 0; f < faces_.size(); ++f)
-    for (const uint32_t v : faces_[f]) look_from_mesh(f, places_[v]);
+  for_each_sample(surface, samples_, [&](uint32_t face, Vec3d point) {
+    if (is_far_from_original(point)) mark(face);
+  });
+  for (uint32_t v = 0; v < places_.size(); ++v)
+    if (is_far_from_original(places_[v]))
+      for (uint32_t i = first_face_[v]; i < first_face_[v + 1]; ++i) mark(faces_of_[i]);
   return is_far;
 }
 

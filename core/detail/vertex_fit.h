@@ -43,6 +43,8 @@ class VertexFit {
   };
 
   void improve_once();
+  /// Polls once in a few thousand calls.
+  void count_sample() const;
   void connect();
   /// Returns for each vertex whether a face of it is farther than `most` from the original, or the original from it.
   [[nodiscard]] std::vector<bool> far_vertices(double most) const;
@@ -60,6 +62,7 @@ class VertexFit {
   uint32_t samples_;
   double rms_ = 0;  ///< distance from the original's samples
   std::function<void()> poll_;
+  mutable uint32_t counted_ = 0;      ///< calls of count_sample()
   std::vector<uint32_t> first_;       ///< [V + 1] first of a vertex's neighbours
   std::vector<uint32_t> neighbours_;  ///< in ascending order for each vertex
   std::vector<uint32_t> first_face_;  ///< [V + 1]
