@@ -47,13 +47,31 @@ export async function startServer(...args) {
   };
 }
 
-/// Without `smooth`, edges of triangles are not smoothed (multisampled), which takes most of what drawing in software does.
+/// Without `smooth`, edges of triangles are not smoothed (multisampled), and ambient light is filtered from few samples:
+/// both take most of what drawing in software does.
 export async function launch({ smooth = false } = {}) {
   const program = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
   const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
   if (!smooth) args.push('--webgl-antialiasing-mode=none');
   if (process.getuid() === 0) args.push('--no-sandbox'); // which root cannot have
-  return chromium.launch({ executablePath: program, args });
+  const browser = await chromium.launch({ executablePath: program, args });
+  if (smooth) return browser;
+  const newContext = browser.newContext.bind(browser);
+  browser.newContext = async (options) => {
+    const context = await newContext(options);
+    await context.addInitScript(filterFewSamples);
+    return context;
+  };
+  return browser;
+}
+
+/// Runs in pages: three.js's filters of environments take 2 and 4 samples of each point in place of 20 and 256.
+function filterFewSamples() {
+  const { shaderSource } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
+    const few = source.replace('#define SAMPLES 20', '#define SAMPLES 2');
+    shaderSource.call(this, shader, few.replace('#define GGX_SAMPLES 256u', '#define GGX_SAMPLES 4u'));
+  };
 }
 
 /// One of each for all tests of a file, from before the first to after the last.
