@@ -61,7 +61,8 @@ TEST(SplitPattern, EveryPatternTilesItsTriangle) {
 TEST(Split, AllEdgesGiveFourTimesTheFaces) {
   Mesh mesh = build_mesh(icosahedron());
   for (uint32_t level = 1; level <= 4; ++level) {
-    mesh = split_at_midpoints(std::move(mesh), Marks(mesh.topology.edge_count(), 1));
+    const Marks all(mesh.topology.edge_count(), 1);
+    mesh = split_at_midpoints(std::move(mesh), all);
     ASSERT_EQ(mesh.topology.face_count(), 20U << (2 * level));
     ASSERT_EQ(mesh.topology.edge_count(), 30U << (2 * level));
     ASSERT_TRUE(is_consistent(mesh));
@@ -90,7 +91,8 @@ TEST(Split, SharedEdgesStayShared) {
   Mesh book =
       build_mesh({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}});
   for (int level = 0; level < 3; ++level) {
-    book = split_at_midpoints(std::move(book), Marks(book.topology.edge_count(), 1));
+    const Marks all(book.topology.edge_count(), 1);
+    book = split_at_midpoints(std::move(book), all);
     ASSERT_TRUE(is_consistent(book));
   }
   EXPECT_EQ(count_edges(book.triangles()).irregular, 8U);
