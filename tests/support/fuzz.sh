@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# fuzz.sh SECONDS: runs every target of build/fuzz in turn, two at a time with two cores, for SECONDS in total.
+# fuzz.sh SECONDS: runs every fuzzer of build/asan in turn, two at a time with two cores, for SECONDS in total.
 #   build/fuzz-seeds     initial inputs, regenerated each time, in addition to tests/fuzz/cases
 #   build/fuzz-corpus    inputs that increased coverage; kept for the next run
 #   build/fuzz-findings  failing inputs, and each target's log
@@ -15,10 +15,10 @@ export ASAN_OPTIONS=$ASAN_OPTIONS:detect_stack_use_after_return=0
 
 rm -rf build/fuzz-seeds build/fuzz-findings
 mkdir -p build/fuzz-seeds build/fuzz-findings
-build/fuzz/fuzz_seeds build/fuzz-seeds
+build/asan/fuzz_seeds build/fuzz-seeds
 
 targets=()
-for program in build/fuzz/*_fuzz; do
+for program in build/asan/*_fuzz; do
   target=${program##*/}
   targets+=("${target%_fuzz}")
 done
@@ -31,7 +31,7 @@ export each=$((seconds * at_once / ${#targets[@]}))
 run() {
   local status=0 findings=build/fuzz-findings/$1 folders=("build/fuzz-corpus/$1" "build/fuzz-seeds/$1" "tests/fuzz/cases/$1")
   mkdir -p "$findings" "${folders[@]}"
-  "build/fuzz/$1_fuzz" -max_total_time="$each" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+  "build/asan/$1_fuzz" -max_total_time="$each" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
     -dict=build/fuzz-seeds/words -artifact_prefix="$findings/" "${folders[@]}" >"$findings.log" 2>&1 || status=$?
   echo "exit status $status" >>"$findings.log"
 }
@@ -57,7 +57,7 @@ for target in "${broken[@]}"; do
   grep -E '^(SUMMARY|does not hold|==[0-9]+==ERROR|terminate called|  what\(\)|.*runtime error)' "$log" | head -5 || tail -5 "$log"
   for input in "build/fuzz-findings/$target"/*; do
     [[ -f $input ]] || continue
-    printf '%s\n' "$input" "  again:       build/fuzz/${target}_fuzz $input" \
+    printf '%s\n' "$input" "  again:       build/asan/${target}_fuzz $input" \
       "  as a case:   cp $input tests/fuzz/cases/$target/WHAT-IT-WAS    (./dev test FuzzCases replays it)"
   done
 done

@@ -281,7 +281,7 @@ class HttpServerTest : public ::testing::Test {
     server_->add("GET", "/throw", [](Request&) -> Response { throw std::runtime_error("the secret"); });
     server_->add("GET", "/throw-odd", [](Request&) -> Response { throw 42; });
     server_->add("POST", "/twice", [](Request& r) {
-      r.read_body();
+      (void)r.read_body();
       return text(r.read_body().bytes);
     });
     server_->add("GET", "/query", [](Request& r) {

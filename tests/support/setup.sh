@@ -42,7 +42,7 @@ for purpose in "$@"; do
     bench) meshes=(cgal bunny) libraries=yes packages+=(ca-certificates) ;;
     screenshots) packages+=(webp) ;;
     check) page=yes libraries=yes packages+=(clang-format clang-tidy shellcheck git jq ca-certificates) ;;
-    fuzz) packages+=(libgtest-dev clang libclang-rt-dev dpkg-dev ca-certificates) ;;
+    fuzz) packages+=(libgtest-dev clang-19 libclang-rt-19-dev dpkg-dev ca-certificates) ;;
     soak) meshes=(cgal bunny) libraries=yes packages+=(wrk curl jq ca-certificates) ;;
     container)
       meshes=(cgal bunny) libraries=yes manifests=yes

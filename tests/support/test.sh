@@ -23,7 +23,9 @@ if [[ -n $filter ]]; then unit+=(-R "$filter"); else unit+=(--no-tests=error); f
 one_thread='DetailLevels\.Boundaries|DracoAttributes|Growth|Tolerance\.(ToleranceHolds|TenLevels|Error)|.*RedGreen(OnReal|Real)Mesh'
 [[ $preset != tsan ]] || unit+=(-E "^($one_thread)")
 # Long tests are excluded under the address sanitizer: other tests cover the memory of their functions.
-[[ $preset != asan ]] || unit+=(-E '^(DetailBaseline|Edgebreaker/EdgebreakerAtSpeed|Growth|Pack\.SmallerSimplified)')
+long='DetailBaseline|Edgebreaker/EdgebreakerAtSpeed|Growth|Pack\.(SmallerSimplified|SimplifiedMeshKeeps)'
+long+='|Refine\.(Bunny|ClosedRealMesh)EqualsOpenMesh|VerifiedView\.PixelErrorHoldsForRealMeshes'
+[[ $preset != asan ]] || unit+=(-E "^($long)")
 [[ ${PAPILIO_TEST_UNITS:-yes} != yes ]] || "${unit[@]}" || failed=1
 
 integration='bats --tap'

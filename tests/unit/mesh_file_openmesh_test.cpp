@@ -1,5 +1,7 @@
 // Under the sanitizers g++ warns of uninitialised points, which OpenMesh fills in later.
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 

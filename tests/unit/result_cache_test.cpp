@@ -96,7 +96,6 @@ TEST(ResultCache, ComputationIsAbandonedOnlyWithoutWaiters) {
   EXPECT_THROW((void)cache.get_or_make("a", give_up, [] { return true; }), Problem);
 
   std::latch begun(1);
-  std::atomic<bool> joined = false;
   const auto wait_for_company = [&](const ResultCache::Question& abandoned) {
     begun.count_down();
     while (abandoned()) std::this_thread::yield();  // until a request waits
