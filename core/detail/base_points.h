@@ -1,11 +1,18 @@
 #pragma once
 
+#include <vector>
+
 #include "detail/collapse_sequence.h"
+#include "detail/original_surface.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
 
 /// Returns a base with the attributes of the original, for its coder: a vertex on a seam has several points.
 [[nodiscard]] TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original);
+
+/// Returns, for each point of points_of_base(), the original's unit normal; zero where the point must not slide along
+/// the surface: on curves, and on originals with attributes.
+[[nodiscard]] std::vector<Vec3d> sliding_normals(const BaseMesh& base, const OriginalSurface& original);
 
 }  // namespace papilio

@@ -215,7 +215,7 @@ class DetailEncoder {
     const BaseMesh& base = bases_[size];
     CandidateBase candidate;
     candidate.base = &base;
-    candidate.coded = code_base_(points_of_base(base, original_.mesh()));
+    candidate.coded = code_base_(points_of_base(base, original_.mesh()), sliding_normals(base, original_));
     candidate.most_levels = most_levels(base.face.size());
     lift(candidate);
     candidate.curves = encode_base_curves(candidate.lifted.mesh.topology);

@@ -14,6 +14,85 @@
 namespace papilio::proto::detail {
 namespace {
 
+/// Grid points that are tried around the nearest one, in each direction.
+constexpr int cells_around = 2;
+/// Weight of the distance from a vertex to its grid point, if it may slide. That across the surface weighs 1.
+constexpr double weight_of_slide = 0.02;
+
+/// Grid of positions, as Draco has it.
+struct Grid {
+  QuantizationBox box;
+  int bits = 0;
+
+  [[nodiscard]] int last() const { return (1 << bits) - 1; }
+  [[nodiscard]] double step() const { return double{box.range} / last(); }
+};
+
+/// Returns the grid point nearest to a position.
+Vec3f nearest_point(Vec3f position, const Grid& grid) {
+  const Vec3d origin = to_double(grid.box.origin);
+  const Vec3d from = 1 / grid.step() * (to_double(position) - origin);
+  return to_float(origin + grid.step() * Vec3d{std::round(from.x), std::round(from.y), std::round(from.z)});
+}
+
+/// Returns, of the grid points around a position on a surface with a unit normal, the one nearest across the surface:
+/// along it, any serves. Nothing if none is within `most_move` across the surface and `most_slide` in all.
+std::optional<Vec3f> point_on_surface(Vec3f position, Vec3d normal, const Grid& grid, double most_move,
+                                      double most_slide) {
+  const Vec3d origin = to_double(grid.box.origin);
+  const Vec3d from = to_double(position) - origin;
+  const double step = grid.step();
+  // Calls visit(x) for the grid lines around a coordinate.
+  const auto for_each_line = [&](double coordinate, const auto& visit) {
+    const auto nearest = static_cast<int>(std::lround(coordinate / step));
+    const int last = std::min(nearest + cells_around, grid.last());
+    for (int i = std::max(nearest - cells_around, 0); i <= last; ++i) visit(step * i);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<Vec3f> best;
+  for_each_line(from.x, [&](double x) {
+    for_each_line(from.y, [&](double y) {
+      for_each_line(from.z, [&](double z) {
+        const Vec3d move = Vec3d{x, y, z} - from;
+        const double far = length(move), across = std::abs(dot(move, normal));
+        const double cost = across + weight_of_slide * far;
+        if (across > most_move || far > most_slide || cost >= least) return;
+        least = cost;
+        best = to_float(origin + Vec3d{x, y, z});
+      });
+    });
+  });
+  return best;
+}
+
+/// Returns the positions moved onto the grid; nothing if it is too coarse. If a vertex has no normal (zero), the grid
+/// must move no position by more than `most_move`.
+std::optional<Buffer<Vec3f>> on_grid(const Buffer<Vec3f>& positions, const std::vector<Vec3d>& normals,
+                                     const Grid& grid, double most_move, double most_slide) {
+  const bool is_fine = 0.5 * std::sqrt(3.0) * grid.step() <= most_move;
+  Buffer<Vec3f> moved(positions.size());
+  for (size_t v = 0; v < positions.size(); ++v) {
+    if (dot(normals[v], normals[v]) == 0) {
+      if (!is_fine) return std::nullopt;
+      moved[v] = nearest_point(positions[v], grid);
+      continue;
+    }
+    const std::optional<Vec3f> point = point_on_surface(positions[v], normals[v], grid, most_move, most_slide);
+    if (!point) return std::nullopt;
+    moved[v] = *point;
+  }
+  return moved;
+}
+
+/// Returns the normals [V] in the order of the mesh that was built of the base.
+std::vector<Vec3d> reordered(std::span<const Vec3d> normals, const TriangleMesh& base, const Mesh& mesh) {
+  std::vector<Vec3d> by_vertex(mesh.positions.size());
+  if (normals.empty() || mesh.topology.face_count() != base.triangles.size()) return by_vertex;
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+    by_vertex[mesh.topology.origin[h]] = normals[base.triangles[h / 3][h % 3]];
+  return by_vertex;
+}
+
 double longest_side(const Box& box) {
   const Vec3d size = to_double(box.max) - to_double(box.min);
   return std::max({size.x, size.y, size.z});
@@ -54,16 +133,20 @@ double tight_grid_distance(const Box& box, int position_bits) {
   return 0.5 * std::sqrt(3.0) * longest_side(box) / ((1 << position_bits) - 1);
 }
 
-CodedBase DracoBaseCoder::code(const TriangleMesh& base) {
+CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> normals) {
   const Mesh mesh = build_mesh(base);
-  const Box box = bounding_box(mesh.positions);
-  const double most_move = std::min(most_move_, 0.5 * shortest_edge(mesh));
-  int bits = fewest_position_bits;
-  while (bits < most_position_bits && tight_grid_distance(box, bits) > most_move) ++bits;
-  for (;; ++bits) {
+  const std::vector<Vec3d> normal_of = reordered(normals, base, mesh);
+  const QuantizationBox box = tight_box(bounding_box(mesh.positions));
+  const double half_edge = 0.5 * shortest_edge(mesh);
+  for (int bits = fewest_position_bits;; ++bits) {
+    const std::optional<Buffer<Vec3f>> moved = on_grid(
+        mesh.positions, normal_of, {box, bits}, std::min(most_move_, half_edge), std::min(most_slide_, half_edge));
+    if (!moved && bits < most_position_bits) continue;
+    Mesh rounded = mesh;
+    if (moved) rounded.positions = *moved;
     std::optional<PartStreams> smallest;
     for (const int speed : {0, 3}) {
-      PartStreams coded = write_parts(mesh, {.position_bits = bits, .speed = speed});
+      PartStreams coded = write_parts(rounded, box, {.position_bits = bits, .speed = speed});
       if (keeps_surface(mesh, coded.decoded) && (!smallest || coded.bytes() < smallest->bytes()))
         smallest = std::move(coded);
     }

@@ -17,9 +17,9 @@ struct PartStreams {
   [[nodiscard]] uint64_t bytes() const;
 };
 
-/// Codes and decodes a mesh with attributes of base_format(). All parts share one grid of positions, so that their
+/// Codes and decodes a mesh with attributes of base_format(). All parts share the grid of positions, so that their
 /// borders fit. `poll` is called regularly; it may throw to stop. Throws `Problem`.
-[[nodiscard]] PartStreams write_parts(const Mesh& mesh, const OutputOptions& options,
+[[nodiscard]] PartStreams write_parts(const Mesh& mesh, const QuantizationBox& grid, const OutputOptions& options,
                                       const std::function<void()>& poll = {});
 
 }  // namespace papilio::proto::detail

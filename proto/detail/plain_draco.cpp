@@ -84,7 +84,8 @@ PlainDraco write_plain_draco(const Mesh& mesh, double rms, const PlainOptions& o
 
 PlainDraco write_plain_grid(const Mesh& mesh, int position_bits, const PlainOptions& options) {
   PlainDraco plain{.position_bits = position_bits, .rms = grid_rms(mesh, position_bits)};
-  const PartStreams coded = write_parts(mesh, {.position_bits = plain.position_bits, .speed = 0}, options.poll);
+  const PartStreams coded = write_parts(mesh, tight_box(bounding_box(mesh.positions)),
+                                        {.position_bits = plain.position_bits, .speed = 0}, options.poll);
   plain.glb = write_plain(coded.decoded, coded.streams, options.normals,
                           options.materials == nullptr ? gltf::Materials() : *options.materials);
   return plain;

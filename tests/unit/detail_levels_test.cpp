@@ -109,7 +109,9 @@ void expect_tolerance(const DetailSource& source, double tolerance) {
 DetailSource encoded(const TriangleMesh& original, double rms) {
   DetailOptions options;
   options.rms = rms;
-  EncodedDetail made = encode_detail(original, options, [](const TriangleMesh& base) { return CodedBase{base, 1}; });
+  EncodedDetail made = encode_detail(original, options, [](const TriangleMesh& base, std::span<const Vec3d>) {
+    return CodedBase{base, 1};
+  });
   return {std::move(made.base), std::move(made.levels)};
 }
 

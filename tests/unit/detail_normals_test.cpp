@@ -63,7 +63,7 @@ double mean_angle_to_caps(const Mesh& mesh) {
 /// Encodes an original and decodes it with normals of its style.
 Mesh encode_and_decode(const TriangleMesh& original, NormalStyle expected) {
   const EncodedDetail encoded =
-      encode_detail(original, {.rms = 1e-3, .face_limit = 8000}, [](const TriangleMesh& base) {
+      encode_detail(original, {.rms = 1e-3, .face_limit = 8000}, [](const TriangleMesh& base, std::span<const Vec3d>) {
         return CodedBase{base, 9 * base.positions.size()};
       });
   EXPECT_EQ(encoded.normals, expected);

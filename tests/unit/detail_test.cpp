@@ -26,7 +26,7 @@ namespace papilio {
 namespace {
 
 /// Returns the base unchanged, at nine bytes per vertex.
-CodedBase keep_base(const TriangleMesh& base) { return {base, 9 * base.positions.size()}; }
+CodedBase keep_base(const TriangleMesh& base, std::span<const Vec3d> = {}) { return {base, 9 * base.positions.size()}; }
 
 Fault fault_of(const std::function<void()>& call) {
   try {

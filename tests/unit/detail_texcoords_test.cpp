@@ -232,9 +232,10 @@ TEST(DetailTexcoords, OverflowingTexcoordsAreRefused) {
 
 TEST(DetailTexcoords, EncoderWritesAndCountsTexcoords) {
   const DetailOptions options{.rms = 5e-3, .face_limit = 2000};
-  const EncodedDetail made = encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base) {
-    return CodedBase{base, 9 * base.positions.size()};
-  });
+  const EncodedDetail made =
+      encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base, std::span<const Vec3d>) {
+        return CodedBase{base, 9 * base.positions.size()};
+      });
   EXPECT_EQ(made.base.triangles.attributes.size(), 1U);
   uint64_t bytes = 0;
   for (const DetailStream& level : made.levels) bytes += level.texcoords.bytes.size();
@@ -294,7 +295,11 @@ TEST(DetailTexcoords, LevelsBelowTheLastInterpolateTexcoords) {
 TEST(DetailTexcoords, OtherAttributesAreRefused) {
   const TriangleMesh box = charted_box(3);
   const auto expect_refused = [](const TriangleMesh& mesh) {
-    EXPECT_THROW((void)encode_detail(mesh, {}, [](const TriangleMesh& base) { return CodedBase{base, 1}; }), Error);
+    EXPECT_THROW((void)encode_detail(mesh, {},
+                                     [](const TriangleMesh& base, std::span<const Vec3d>) {
+                                       return CodedBase{base, 1};
+                                     }),
+                 Error);
     EXPECT_THROW((void)test::decoded_triangles({mesh}, {}), Error);
   };
   TriangleMesh mesh = box;

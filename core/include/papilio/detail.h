@@ -177,8 +177,9 @@ struct CodedBase {
   uint64_t bytes = 0;  ///< length of its code
 };
 /// Function that codes and decodes a base, so that the encoder predicts from the decoder's values. Vertices and faces
-/// may be reordered. Positions move by less than half the distance between any two.
-using BaseCoder = std::function<CodedBase(const TriangleMesh&)>;
+/// may be reordered. Positions move by less than half the distance between any two. `normals` [V] are the original's at
+/// vertices that may slide along its surface, and zero at others.
+using BaseCoder = std::function<CodedBase(const TriangleMesh&, std::span<const Vec3d> normals)>;
 
 struct DetailOptions {
   double rms = 1e-4;  ///< target RMS distance, a share of the original's bounding box's diagonal; 1e-6..0.1
