@@ -113,7 +113,7 @@ class DetailEncoder {
       if (last.chosen.outcome.is_reached || at == 0) break;
       --at;
     }
-    return finish(*best, *best_fit);
+    return finish(*best, std::move(*best_fit));
   }
 
  private:
@@ -315,22 +315,25 @@ class DetailEncoder {
     return bytes;
   }
 
-  [[nodiscard]] EncodedDetail finish(const CandidateBase& candidate, const ResidualFit& fit) const {
+  /// Codes the levels, without those that the wanted distance does not need: on flat faces the last ones may add
+  /// nothing. Texture coordinates, colours and borders of parts need them.
+  [[nodiscard]] EncodedDetail finish(const CandidateBase& candidate, ResidualFit fit) const {
     EncodedDetail encoded;
     encoded.base = {candidate.coded.triangles, candidate.curves};
     encoded.parted = parted_;
     encoded.normals = normals_;
     encoded.bytes = candidate.coded.bytes + candidate.curves.size();
-    add_levels(candidate, fit, encoded);
-    for (size_t l = 0; l <= encoded.levels.size(); ++l) {
+    for (size_t l = 0; l <= fit.level_count(); ++l) {
       poll();
       const SurfaceTree surface(fit.surface(l));
       const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last * samples_of_candidate_);
       const double largest = std::max(d.largest, vertex_distance(original_.tree(), surface));
       encoded.reach.push_back({d.rms / original_.diagonal(), largest / original_.diagonal()});
-      if (l == encoded.levels.size()) encoded.folds = count_folds(original_, surface, sheet_reach * wanted_);
-      progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(encoded.levels.size()));
+      if (l > 0 && d.rms <= wanted_ && original_.mesh().attributes.attributes.empty()) fit.keep_levels(l);
+      progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(fit.level_count()));
+      if (l == fit.level_count()) encoded.folds = count_folds(original_, surface, sheet_reach * wanted_);
     }
+    add_levels(candidate, fit, encoded);
     return encoded;
   }
 

@@ -280,6 +280,13 @@ void ResidualFit::improve_across(Level& level, double bit_cost) {
   }
 }
 
+void ResidualFit::keep_levels(size_t count) {
+  if (count >= levels_.size()) return;
+  last_ = levels_[count].level.topology();
+  positions_.resize(last_.vertex_count);
+  while (levels_.size() > count) levels_.pop_back();
+}
+
 std::vector<std::vector<std::vector<uint8_t>>> ResidualFit::code(const PieceOrder& order,
                                                                  std::span<const uint32_t> piece_counts) const {
   std::vector<std::vector<std::vector<uint8_t>>> streams;

@@ -24,6 +24,9 @@ class ResidualFit {
   /// Restores the residuals where faces turn over.
   void improve(int turns, double rate_weight);
 
+  /// Drops all but the first `count` levels; improve() must not follow.
+  void keep_levels(size_t count);
+
   /// Returns the coded residuals [level][piece], in `piece_counts` [level] pieces.
   [[nodiscard]] std::vector<std::vector<std::vector<uint8_t>>> code(const PieceOrder& order,
                                                                     std::span<const uint32_t> piece_counts) const;

@@ -49,7 +49,8 @@ struct Packed {
 /// Packs an original: its surface, first texture coordinates of 2 components, first colours without opacity, style of
 /// normals (`NormalStyle`), and materials of triangles.
 ///
-/// The result is a plain .glb file if the surface cannot be packed, or if plain Draco is as good: it takes no more
+/// The result is a plain .glb file if the surface cannot be packed, if its levels would turn more than 1 % of the faces
+/// over, or if plain Draco is as good: it takes no more
 /// bytes at the reached RMS distance or the largest allowed distance, or has no larger RMS distance at the allowed
 /// bytes.
 ///

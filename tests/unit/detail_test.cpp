@@ -41,6 +41,8 @@ Fault fault_of(const std::function<void()>& call) {
 void expect_reach(const TriangleMesh& original, const EncodedDetail& encoded, double wanted) {
   ASSERT_EQ(encoded.reach.size(), encoded.levels.size() + 1);
   EXPECT_LE(encoded.reach.back().rms, wanted);
+  for (size_t levels = 1; levels < encoded.levels.size(); ++levels)
+    EXPECT_GT(encoded.reach[levels].rms, wanted) << "level " << levels << " is enough";
   constexpr double rounding = 1e-8;  // of positions, as a share of the diagonal
   const test::SampledSurface surface(original, 40'000);
   const double diagonal = bounding_box(original.positions).diagonal();
@@ -79,9 +81,11 @@ TEST(Detail, RealMeshHasTheStatedDistance) {
 
 TEST(Detail, SharpEdgesHaveTheStatedDistance) {
   const TriangleMesh original = test::box({16, 16, 16}, {1, 2, 3});
-  DetailOptions options;
-  options.rms = 2e-3;
-  expect_reach(original, encode_detail(original, options, keep_base), options.rms);
+  for (const double rms : {2e-3, 1e-4}) {
+    const EncodedDetail encoded = encode_detail(original, {.rms = rms}, keep_base);
+    expect_reach(original, encoded, rms);
+    EXPECT_EQ(encoded.levels.size(), 1U) << "the base is the box";
+  }
 }
 
 TEST(Detail, EncodingKeepsTheTopology) {

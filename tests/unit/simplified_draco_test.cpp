@@ -1,5 +1,6 @@
 #include "proto/detail/simplified_draco.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +8,11 @@
 #include "papilio/error.h"
 #include "papilio/refine.h"
 #include "proto/detail/pack.h"
+#include "proto/gltf/flattening.h"
 #include "tests/support/bumpy_sphere.h"
 #include "tests/support/detail_baseline.h"
 #include "tests/support/rate_curve.h"
+#include "tests/support/real_mesh.h"
 #include "tests/support/sampled_distance.h"
 #include "tests/support/shapes.h"
 
@@ -114,6 +117,14 @@ TEST(Pack, SimplifiedMeshKeepsTheLargestDistance) {
   ASSERT_TRUE(packed.simplified);
   EXPECT_EQ(packed.glb.size(), packed.simplified->bytes);
   EXPECT_LE(packed.simplified->reach.largest, 8 * rms);
+}
+
+TEST(Pack, ModelWithTurnedFacesIsRefused) {
+  const TriangleMesh original = test::real_mesh("cgal/joint.off");  // thin walls
+  const Packed packed = pack(original, {.rms = 5e-4});
+  EXPECT_FALSE(packed.model);
+  EXPECT_THAT(packed.reason, ::testing::HasSubstr("would be turned over"));
+  EXPECT_EQ(gltf::flatten_scene(packed.glb, {}).triangles.size(), original.triangles.size());
 }
 
 TEST(Pack, MeshOfFewFacesIsNotSimplified) {
