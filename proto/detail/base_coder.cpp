@@ -152,8 +152,8 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> 
     }
     if (!smallest && bits < most_position_bits) continue;
     if (!smallest)
-      throw Error(Fault::bad_surface, "Vertices of the base are too close to each other for a grid of " +
-                                          std::to_string(most_position_bits) + " bits. Remove slivers.");
+      throw Error(Fault::bad_surface, "Vertices of the base are closer to each other than a grid of " +
+                                          std::to_string(most_position_bits) + " bits can part.");
     coded_.push_back(std::move(*smallest));
     return {coded_.back().decoded, coded_.back().bytes()};
   }
