@@ -28,6 +28,7 @@ void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& mode
     warnings.push_back(file.name + ": other attributes than texture coordinates, colours and normals are left out.");
   if (proto::detail::has_opacity(model.mesh))
     warnings.push_back(file.name + ": the opacity of its colours is left out.");
+  for (const std::string& text : model.materials.left_out) warnings.push_back(file.name + ": " + text);
   if (is_scene(file.format)) {
     const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
     for (const char* part : {"skins", "animations"})

@@ -45,16 +45,25 @@ std::string stem_of(const Image& image) {
   return image.name;
 }
 
-/// Returns the file names of images beside NAME.obj; "" for an image without bytes.
-std::vector<std::string> image_names(const std::string& stem, const std::vector<Image>& images) {
+/// Returns the file names of images beside NAME.obj; "" for an image without bytes, and one that no material has a
+/// keyword for.
+std::vector<std::string> image_names(const std::string& stem, const Materials& materials) {
+  const std::vector<Image>& images = materials.images;
+  std::vector<bool> is_used(images.size());
+  for (const Material& material : materials.materials)
+    for (const std::optional<uint32_t>& image : material.images)
+      if (image && *image < images.size()) is_used[*image] = true;
   std::vector<std::string> names;
   UniqueNames unique(UniqueNames::Kind::file);
+  size_t number = 0;  // of the images that materials have
   for (size_t i = 0; i < images.size(); ++i) {
     std::string own = safe_file_name(stem_of(images[i]));
-    if (own.empty()) own = std::to_string(i);
+    if (own.empty()) own = std::to_string(number);
+    if (is_used[i]) ++number;
     const bool has_stem = own.starts_with(stem + "_");  // its name is from an OBJ file written before
-    names.push_back(images[i].bytes.empty() ? ""
-                                            : unique.add(has_stem ? own : stem + "_" + own, extension_of(images[i])));
+    names.push_back(images[i].bytes.empty() || !is_used[i]
+                        ? ""
+                        : unique.add(has_stem ? own : stem + "_" + own, extension_of(images[i])));
   }
   return names;
 }
@@ -122,7 +131,7 @@ void save_obj(const MeshPlace& place, const proto::gltf::MaterialMesh& model) {
   if (materials.empty() || place.is_standard())
     return save_bytes(place, encode_triangles(name, Format::obj, model.mesh, model.mesh.format));
   const std::string stem = safe_file_name(place.path.stem().string());
-  const std::vector<std::string> images = image_names(stem, materials.images);
+  const std::vector<std::string> images = image_names(stem, materials);
   const ObjMaterials named{
       .libraries = {stem + ".mtl"}, .names = material_names(materials.materials), .of_triangle = materials.of_triangle};
   std::vector<MtlMaterial> library;

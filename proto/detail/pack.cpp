@@ -119,7 +119,8 @@ class Packer {
         plain_.mesh.topology.face_count() >= fewest_to_simplify) {
       packed_.simplified = write_simplified_draco(
           plain_.mesh.triangles(),
-          {.rms = options_.rms, .largest = most_of_simplified(), .cancelled = options_.cancelled}, plain_.normals);
+          {.rms = options_.rms, .largest = most_of_simplified(), .cancelled = options_.cancelled}, plain_.normals,
+          materials_);
       if (packed_.simplified && is_smallest(*packed_.simplified, plain)) return take_simplified(plain);
     }
     if (best_ && best_->glb.size() < plain.glb.size()) return take_packed(plain);
@@ -269,6 +270,8 @@ Packed pack(const gltf::MaterialMesh& original, const PackOptions& options) {
   surface.mesh.triangles = original.mesh.triangles;
   if (std::optional<Attribute> texcoords = texcoords_to_pack(original.mesh))
     surface.mesh.attributes.push_back(std::move(*texcoords));
+  else
+    for (gltf::Image& image : surface.materials.images) image.bytes.clear();  // no texture can be shown
   if (std::optional<Attribute> colours = colours_to_pack(original.mesh))
     surface.mesh.attributes.push_back(std::move(*colours));
   std::optional<Attribute> normals = normals_to_pack(original.mesh);

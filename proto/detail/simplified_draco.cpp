@@ -46,12 +46,12 @@ class SmallestDraco {
 }  // namespace
 
 std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original, const SimplifyOptions& options,
-                                                      NormalStyle normals) {
+                                                      NormalStyle normals, const gltf::Materials& materials) {
   SmallestDraco coder;
   const std::optional<SimplifiedDetail> made = simplify_detail(
       original, options, [&](const TriangleMesh& mesh, const PositionGrid& grid) { return coder.code(mesh, grid); });
   if (!made) return std::nullopt;
-  SimplifiedDraco simplified{.glb = write_plain(made->triangles, {coder.stream_of(*made)}, normals),
+  SimplifiedDraco simplified{.glb = write_plain(made->triangles, {coder.stream_of(*made)}, normals, materials),
                              .faces = made->triangles.triangles.size(),
                              .position_bits = made->grid.bits,
                              .reach = made->reach};

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "papilio/detail.h"
+#include "proto/gltf/materials.h"
 
 namespace papilio::proto::detail {
 
@@ -17,9 +18,11 @@ struct SimplifiedDraco {
 };
 
 /// Simplifies a surface within the given distances, and writes it as Draco in a .glb file. Returns nothing if no file
-/// within them is found. `normals`: style of the normals that readers derive. Throws `Problem` and `Error`.
+/// within them is found. `normals`: style of the normals that readers derive. `materials`: the material of all faces,
+/// or none. Throws `Problem` and `Error`.
 [[nodiscard]] std::optional<SimplifiedDraco> write_simplified_draco(const TriangleMesh& original,
                                                                     const SimplifyOptions& options,
-                                                                    NormalStyle normals = {});
+                                                                    NormalStyle normals = {},
+                                                                    const gltf::Materials& materials = {});
 
 }  // namespace papilio::proto::detail

@@ -19,13 +19,6 @@ Json* meshopt_member(Json& object) {
   return found == extensions->end() ? nullptr : &*found;
 }
 
-void erase_extension(Json& object, const char* name) {
-  const auto extensions = object.find("extensions");
-  if (extensions == object.end()) return;
-  extensions->erase(name);
-  if (extensions->empty()) object.erase("extensions");
-}
-
 /// Range of a view's bytes, or of its compressed bytes.
 struct Stored {
   uint32_t buffer = 0;

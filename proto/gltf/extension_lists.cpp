@@ -20,6 +20,8 @@ bool uses_extension(const Json& value, const char* name) {
 
 namespace {
 
+constexpr std::array extension_lists{"extensionsUsed", "extensionsRequired"};
+
 bool is_listed(const Json& document, const char* list, const char* name) {
   const Json& names = array_of(document, list);
   return std::ranges::any_of(names, [&](const Json& known) { return is_text(known, name); });
@@ -51,7 +53,15 @@ void list_extensions(Json& document) {
     put_listed(document, "extensionsRequired", name, is_used);
   }
   if (uses_extension(document, detail_extension)) return;
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) put_listed(document, list, detail_extension, false);
+  for (const char* list : extension_lists) put_listed(document, list, detail_extension, false);
+}
+
+void add_listed_extensions(Json& document, const Json& source) {
+  for (const char* list : extension_lists)
+    for (const Json& name : array_of(source, list))
+      if (const std::string text = name.is_string() ? name.get<std::string>() : "";
+          uses_extension(document, text.c_str()))
+        put_listed(document, list, text.c_str(), true);
 }
 
 bool uses_compression(const Json& document) {

@@ -8,6 +8,9 @@ namespace papilio::proto::gltf {
 /// exactly the ones in use. Other names are kept.
 void list_extensions(Json& document);
 
+/// Adds to the lists of `document` the extensions that it uses of those in the lists of `source`.
+void add_listed_extensions(Json& document, const Json& source);
+
 /// Returns whether the extension is used anywhere in a value, except in extras.
 [[nodiscard]] bool uses_extension(const Json& value, const char* name);
 

@@ -11,12 +11,6 @@
 namespace papilio::proto::gltf {
 namespace {
 
-void erase_extension(Json& json, const char* name) {
-  if (!json.contains("extensions")) return;
-  json["extensions"].erase(name);
-  if (json["extensions"].empty()) json.erase("extensions");
-}
-
 std::vector<PrimitivePlace> places_of(const std::vector<EncodedGeometry>& meshes) {
   std::vector<PrimitivePlace> places;
   for (const EncodedGeometry& mesh : meshes)

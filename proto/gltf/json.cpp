@@ -70,6 +70,11 @@ void require_object(const Json& value, const std::string& where) {
   if (!value.is_object()) refuse_document(where, "must be an object");
 }
 
+double number_of(const Json& value, const std::string& where) {
+  if (!value.is_number()) refuse_document(where, "must be a number");
+  return value.get<double>();
+}
+
 }  // namespace
 
 void refuse_document(const std::string& where, const std::string& what) {
@@ -134,6 +139,20 @@ bool flag_member(const Json& object, const char* key, const std::string& where) 
   return value->get<bool>();
 }
 
+double number_member(const Json& object, const char* key, double fallback, const std::string& where) {
+  const Json* value = find_member(object, key, where);
+  return value == nullptr ? fallback : number_of(*value, where + "." + key);
+}
+
+void read_numbers(const Json& object, const char* key, std::span<double> numbers, const std::string& where) {
+  const Json* value = find_member(object, key, where);
+  if (value == nullptr) return;
+  const std::string name = where + "." + key;
+  if (!value->is_array() || value->size() != numbers.size())
+    refuse_document(name, "must be " + std::to_string(numbers.size()) + " numbers");
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = number_of((*value)[i], name);
+}
+
 const Json& array_of(const Json& document, const char* name) {
   static const Json empty = Json::array();
   const Json* found = find_member(document, name, "the JSON");
@@ -157,6 +176,13 @@ const Json* find_extension(const Json& object, const char* name, const std::stri
   const Json* found = find_member(*extensions, name, where + ".extensions");
   if (found != nullptr) require_object(*found, where + ".extensions." + name);
   return found;
+}
+
+void erase_extension(Json& object, const char* name) {
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end()) return;
+  extensions->erase(name);
+  if (extensions->empty()) object.erase("extensions");
 }
 
 std::string place(const char* array, uint64_t index) { return std::string(array) + "[" + std::to_string(index) + "]"; }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -37,6 +38,10 @@ using Json = nlohmann::ordered_json;
 /// Returns a member that is a string; "" if it is absent.
 [[nodiscard]] std::string text_member(const Json& object, const char* key, const std::string& where);
 [[nodiscard]] bool flag_member(const Json& object, const char* key, const std::string& where);
+/// Returns a member that is a number; `fallback` if it is absent.
+[[nodiscard]] double number_member(const Json& object, const char* key, double fallback, const std::string& where);
+/// Replaces the numbers by the elements of a member, if it exists. Throws `Problem` for another count.
+void read_numbers(const Json& object, const char* key, std::span<double> numbers, const std::string& where);
 
 /// Returns a top-level array of the document; an empty one if it is absent.
 [[nodiscard]] const Json& array_of(const Json& document, const char* name);
@@ -46,6 +51,8 @@ using Json = nlohmann::ordered_json;
 
 /// Returns the extension `name` of an object; null if it has none.
 [[nodiscard]] const Json* find_extension(const Json& object, const char* name, const std::string& where);
+/// Removes the extension `name` of an object, if it has one.
+void erase_extension(Json& object, const char* name);
 
 /// Returns "meshes[3]".
 [[nodiscard]] std::string place(const char* array, uint64_t index);

@@ -1,64 +1,17 @@
 #include "proto/gltf/material_reader.h"
 
-#include <cmath>
-#include <numbers>
+#include <memory>
+#include <utility>
 
-#include "papilio/trigonometry.h"
 #include "proto/gltf/data_uri.h"
 #include "proto/gltf/extensions.h"
 #include "proto/problem.h"
+#include "proto/text.h"
 
 namespace papilio::proto::gltf {
 namespace {
 
 constexpr uint64_t most_image_bytes = uint64_t{1} << 32;
-
-double number_of(const Json& value, const std::string& where) {
-  if (!value.is_number()) refuse_document(where, "must be a number");
-  return value.get<double>();
-}
-
-double number_member(const Json& object, const char* key, double fallback, const std::string& where) {
-  const Json* value = find_member(object, key, where);
-  return value == nullptr ? fallback : number_of(*value, where + "." + key);
-}
-
-/// Replaces the numbers by those of a member, if it exists.
-template <size_t count>
-void read_numbers(const Json& object, const char* key, std::array<double, count>& numbers, const std::string& where) {
-  const Json* value = find_member(object, key, where);
-  if (value == nullptr) return;
-  const std::string name = where + "." + key;
-  if (!value->is_array() || value->size() != count)
-    refuse_document(name, "must be " + std::to_string(count) + " numbers");
-  for (size_t i = 0; i < count; ++i) numbers[i] = number_of((*value)[i], name);
-}
-
-/// Returns sine and cosine of an angle in radians, bit-identical on every processor.
-SineCosine sine_and_cosine(double angle) {
-  constexpr double steps = 1ULL << 40;  // steps per turn
-  const double turns = angle / (2 * std::numbers::pi);
-  const double part = turns - std::floor(turns);
-  if (!(part >= 0 && part < 1)) return {0, 1};  // not a number
-  return sine_and_cosine_of_turn(static_cast<uint64_t>(part * steps), static_cast<uint64_t>(steps));
-}
-
-/// Reads the map of a texture: scaled, rotated counter-clockwise, moved. Source: KHR_texture_transform, as in three.js.
-TextureMap read_map(const Json& texture, const std::string& where) {
-  TextureMap map;
-  map.set = static_cast<uint32_t>(whole_number(texture, "texCoord", where, 0));
-  const Json* extension = find_extension(texture, texture_transform_extension, where);
-  if (extension == nullptr) return map;
-  map.set = static_cast<uint32_t>(whole_number(*extension, "texCoord", where, map.set));
-  std::array<double, 2> scale{1, 1};
-  read_numbers(*extension, "scale", scale, where);
-  read_numbers(*extension, "offset", map.offset, where);
-  const double rotation = number_member(*extension, "rotation", 0, where);
-  const SineCosine at = rotation == 0 ? SineCosine{0, 1} : sine_and_cosine(rotation);
-  map.u_axis = {scale[0] * at.cosine, -scale[0] * at.sine};
-  map.v_axis = {scale[1] * at.sine, scale[1] * at.cosine};
-  return map;
-}
 
 /// Returns the image of a texture, or of its extension for another kind of image.
 std::optional<uint32_t> image_source_of(const Json& texture, const std::string& where) {
@@ -68,7 +21,31 @@ std::optional<uint32_t> image_source_of(const Json& texture, const std::string& 
   return std::nullopt;
 }
 
+/// Removes the extensions of a material whose data are at the document's root. Returns their names.
+std::vector<std::string> erase_shared_extensions(Json& material, const Json& document) {
+  std::vector<std::string> erased;
+  const auto shared = document.find("extensions");
+  if (shared == document.end() || !shared->is_object()) return erased;
+  for (const auto& [name, data] : shared->items()) {
+    if (find_extension(material, name.c_str(), "a material") == nullptr) continue;
+    erase_extension(material, name.c_str());
+    erased.push_back(name);
+  }
+  return erased;
+}
+
 }  // namespace
+
+MaterialReader::MaterialReader(Views& views)
+    : views_(views),
+      textures_(views.document().json, gltf_, [this](uint32_t image) { return std::optional(read_image(image)); }) {}
+
+Materials MaterialReader::finish() {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    gltf_[list] = array_of(views_.document().json, list);
+  if (!out_.empty()) out_.gltf = std::make_shared<const Json>(std::move(gltf_));
+  return std::move(out_);
+}
 
 uint32_t MaterialReader::material_of(uint32_t mesh, uint32_t primitive) {
   const std::string where = place("meshes", mesh) + ".primitives[" + std::to_string(primitive) + "]";
@@ -95,6 +72,7 @@ uint32_t MaterialReader::read(uint32_t number) {
     material.roughness = number_member(*pbr, "roughnessFactor", 1, where);
   }
   read_textures(json, where);
+  keep_object(json, where);
   return static_cast<uint32_t>(out_.materials.size() - 1);
 }
 
@@ -115,7 +93,7 @@ void MaterialReader::read_texture(const Json& holder, const char* key, ImageUse 
   const std::string name = where + "." + key;
   const auto index = index_member(*texture, "index", name);
   if (!index) refuse_document(name, "has no index");
-  const TextureMap map = read_map(*texture, name);
+  const TextureMap map = read_texture_map(*texture, name);
   const auto image = image_of_texture(*index, name);
   if (!image) return;
   out_.materials.back().image(use) = image;
@@ -123,15 +101,37 @@ void MaterialReader::read_texture(const Json& holder, const char* key, ImageUse 
   has_map_ = true;
 }
 
-std::optional<uint32_t> MaterialReader::image_of_texture(uint32_t texture, const std::string& where) {
-  const auto source = image_source_of(element_of(views_.document().json, "textures", texture, where), where);
-  if (!source) return std::nullopt;
-  if (const auto known = images_.find(*source); known != images_.end()) return known->second;
-  out_.images.push_back(read_image(*source));
-  return images_.emplace(*source, static_cast<uint32_t>(out_.images.size() - 1)).first->second;
+void MaterialReader::keep_object(const Json& material, const std::string& where) {
+  Json json = material;
+  const std::string& name = out_.materials.back().name;
+  const std::string of = " of " + (name.empty() ? where : "the material " + quote(name));
+  for (const std::string& extension : erase_shared_extensions(json, views_.document().json))
+    out_.left_out.push_back(extension + of + " is left out: its data are outside of the material.");
+  visit_textures(json, [&](const std::string& key, Json& info) {
+    const TextureMap map = read_texture_map(info, where + "." + key);
+    TextureMap& done = maps_.back();
+    if (!std::exchange(has_map_, true)) done = map;
+    if (map.set != done.set)
+      out_.left_out.push_back(key + of + " is left out: it uses TEXCOORD_" + std::to_string(map.set) +
+                              ", and only TEXCOORD_" + std::to_string(done.set) +
+                              " is kept, which its other textures use.");
+    else if (!rewrite_texture_map(info, map, done))
+      out_.left_out.push_back(key + of +
+                              " is left out: its KHR_texture_transform does not fit that of the other textures.");
+    else
+      return true;
+    return false;
+  });
+  textures_.copy(json, where);
+  gltf_["materials"].push_back(std::move(json));
 }
 
-Image MaterialReader::read_image(uint32_t number) {
+std::optional<uint32_t> MaterialReader::image_of_texture(uint32_t texture, const std::string& where) {
+  const auto source = image_source_of(element_of(views_.document().json, "textures", texture, where), where);
+  return source ? textures_.image(*source) : std::nullopt;
+}
+
+uint32_t MaterialReader::read_image(uint32_t number) {
   const std::string where = place("images", number);
   const Json& json = element_of(views_.document().json, "images", number, where);
   Image image{.name = text_member(json, "name", where), .media_type = text_member(json, "mimeType", where)};
@@ -150,7 +150,11 @@ Image MaterialReader::read_image(uint32_t number) {
   if (image_bytes_ > most_image_bytes)
     throw Problem(Code::mesh_too_large,
                   "The images of the scene exceed " + std::to_string(most_image_bytes) + " bytes. Use smaller images.");
-  return image;
+  Json kept = json;
+  for (const char* key : {"bufferView", "uri"}) kept.erase(key);
+  gltf_["images"].push_back(std::move(kept));
+  out_.images.push_back(std::move(image));
+  return static_cast<uint32_t>(out_.images.size() - 1);
 }
 
 }  // namespace papilio::proto::gltf

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "proto/gltf/extension_lists.h"
 #include "proto/gltf/extensions.h"
+#include "proto/gltf/texture_copier.h"
 
 namespace papilio::proto::gltf {
 namespace {
@@ -61,19 +63,40 @@ Json material_json(const Material& material, const std::vector<std::optional<siz
   return json;
 }
 
+using AddView = std::function<size_t(std::string_view bytes)>;
+
+/// Adds an image. `json`: its object without its bytes. Returns its number; nothing if it has no bytes.
+std::optional<uint32_t> add_image(Json& document, const Image& image, Json json, const AddView& add_view) {
+  if (image.bytes.empty()) return std::nullopt;
+  json["bufferView"] = add_view(image.bytes);
+  if (!image.media_type.empty()) json["mimeType"] = as_utf8(image.media_type);
+  if (!image.name.empty()) json["name"] = as_utf8(image.name);
+  document["images"].push_back(std::move(json));
+  return static_cast<uint32_t>(document["images"].size() - 1);
+}
+
+/// Adds the materials of a scene as they are there.
+void add_objects(Json& document, const Materials& materials, bool has_coordinates, const AddView& add_view) {
+  const Json& gltf = *materials.gltf;
+  TextureCopier textures(gltf, document, [&](uint32_t image) {
+    return has_coordinates ? add_image(document, materials.images.at(image), gltf.at("images").at(image), add_view)
+                           : std::nullopt;
+  });
+  for (Json material : gltf.at("materials")) {
+    textures.copy(material, "materials");
+    document["materials"].push_back(std::move(material));
+  }
+  add_listed_extensions(document, gltf);
+}
+
 }  // namespace
 
-void add_materials(Json& document, const Materials& materials, bool has_coordinates,
-                   const std::function<size_t(std::string_view bytes)>& add_view) {
+void add_materials(Json& document, const Materials& materials, bool has_coordinates, const AddView& add_view) {
+  if (materials.gltf) return add_objects(document, materials, has_coordinates, add_view);
   std::vector<std::optional<size_t>> textures(materials.images.size());
-  for (size_t i = 0; i < textures.size(); ++i) {
-    const Image& image = materials.images[i];
-    if (image.bytes.empty() || !has_coordinates) continue;
-    Json json{{"bufferView", add_view(image.bytes)}, {"mimeType", as_utf8(image.media_type)}};
-    if (!image.name.empty()) json["name"] = as_utf8(image.name);
-    textures[i] = document["images"].size();
-    document["images"].push_back(std::move(json));
-    document["textures"].push_back({{"source", *textures[i]}});
+  for (size_t i = 0; has_coordinates && i < textures.size(); ++i) {
+    textures[i] = add_image(document, materials.images[i], Json::object(), add_view);
+    if (textures[i]) document["textures"].push_back({{"source", *textures[i]}});
   }
   for (const Material& material : materials.materials)
     document["materials"].push_back(material_json(material, textures));

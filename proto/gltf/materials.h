@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +47,11 @@ struct Materials {
   std::vector<Material> materials{};
   std::vector<Image> images{};
   std::vector<uint32_t> of_triangle{};  ///< [triangles] index in `materials`, or `none`; empty without materials
+  /// Document with the materials of a scene as they are there, and their textures and samplers. Its arrays "materials"
+  /// and "images" have the numbers of `materials` and `images`, and texture coordinates are those of TEXCOORD_0 as the
+  /// mesh has them. Null for materials of other formats.
+  std::shared_ptr<const nlohmann::ordered_json> gltf{};
+  std::vector<std::string> left_out{};  ///< sentences about parts of a scene's materials that `gltf` lacks
 
   [[nodiscard]] bool empty() const { return materials.empty(); }
 };

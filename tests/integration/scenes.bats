@@ -111,6 +111,44 @@ json_of() {
   [ "$(jq '.materials | length' cube.gltf)" = 2 ]
 }
 
+# leaf: writes a scene with all that .mtl files lack in its material, of which a second one is unused.
+leaf() {
+  cube
+  printf '\xff\xd8\xff dark' >dark.jpg
+  "$papilio" refine cube.obj -o ball.obj --levels "$1" --tension off
+  "$papilio" convert ball.obj plain.gltf
+  jq '.materials = [.materials[1], {name: "leaf", alphaMode: "MASK", alphaCutoff: 0.25, doubleSided: true,
+      pbrMetallicRoughness: {baseColorTexture: {index: 1}}, occlusionTexture: {index: 0, strength: 0.5}, extras: {index: 3},
+      emissiveTexture: {index: 1, texCoord: 1}, extensions: {KHR_materials_clearcoat: {clearcoatTexture: {index: 1}}}}]
+    | .textures = [{source: 1, sampler: 1}, {source: 0, sampler: 1}] | .images += [{uri: "dark.jpg"}]
+    | .samplers = [{}, {magFilter: 9728, wrapS: 33071, wrapT: 33071}]
+    | .extensionsUsed = ["KHR_materials_clearcoat"] | .meshes[0].primitives[].material = 1' plain.gltf >leaf.gltf
+}
+
+@test "packed scenes and their plain Draco keep materials, textures and samplers as they are" {
+  for levels in 0 5; do
+    leaf $levels
+    run --separate-stderr "$papilio" pack leaf.gltf -o leaf.glb --rms 0.002 --no-simplify --json
+    [ "$status" = 0 ]
+    [ "$(jq -r .format <<<"$output")" = "$([ $levels = 0 ] && echo draco || echo packed)" ]
+    [ "${stderr_lines[0]}" = 'warning: leaf.gltf: emissiveTexture of the material "leaf" is left out: it uses TEXCOORD_1, and only TEXCOORD_0 is kept, which its other textures use.' ]
+    "$papilio" unpack leaf.glb -o unpacked.glb
+    for file in leaf unpacked; do
+      [ "$(json_of $file.glb | jq -Sc .materials)" = "$(jq -Sc '[.materials[1] | del(.emissiveTexture)
+        | .pbrMetallicRoughness.baseColorTexture.index = 0 | .occlusionTexture.index = 1
+        | .extensions[].clearcoatTexture.index = 0]' leaf.gltf)" ]
+      [ "$(json_of $file.glb | jq -Sc '[.samplers, .textures]')" = \
+        '[[{"magFilter":9728,"wrapS":33071,"wrapT":33071}],[{"sampler":0,"source":0},{"sampler":0,"source":1}]]' ]
+      [ "$(json_of $file.glb | jq -c '[.images[].mimeType, any(.extensionsUsed[]; . == "KHR_materials_clearcoat")]')" = \
+        '["image/png","image/jpeg",true]' ]
+    done
+    mkdir out$levels
+    "$papilio" unpack leaf.glb -o out$levels/leaf.obj
+    [ "$(cd out$levels && echo *.* | wc -w)" = 3 ] # the image that .mtl has a keyword for
+    cmp wood.png out$levels/*.png
+  done
+}
+
 @test "missing parts of materials are reported and dropped" {
   cube
   rm wood.png
