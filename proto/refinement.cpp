@@ -217,7 +217,7 @@ EncodedLevel Refinement::run_core(const RefinementHooks& hooks) {
   if (options_.view) made.statistics.error_pixels = result.error_pixels;
   Options asked = options_;
   asked.tolerance = tolerance_;
-  made.statistics.unreached = unreached_text(asked, made.statistics);
+  made.statistics.unreached = unreached_text(asked, made.statistics, {grid_error_, output_.position_bits});
   made.statistics.shape = shape_text(result.shape);
   if (hooks.on_level) hooks.on_level(made);
   return made;

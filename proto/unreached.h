@@ -7,8 +7,15 @@
 
 namespace papilio::proto {
 
-/// Describes each target (`tolerance`, `view.error_pixels`) that the refinement did not reach: target, remaining error
-/// and advice. Returns "" if all are reached.
-[[nodiscard]] std::string unreached_text(const Options& options, const Statistics& statistics);
+/// Grid of encoded positions.
+struct PositionGrid {
+  double error = 0;  ///< distance by which it moves positions, a share of the diagonal; part of Statistics::error
+  int bits = 0;      ///< `output.position_bits`
+};
+
+/// Describes each target (`tolerance`, `view.error_pixels`) that the refinement did not reach: target, remaining error,
+/// its reason and advice. Returns "" if all are reached.
+[[nodiscard]] std::string unreached_text(const Options& options, const Statistics& statistics,
+                                         const PositionGrid& grid = {});
 
 }  // namespace papilio::proto

@@ -16,7 +16,6 @@
 #include "proto/gltf/scene_description.h"
 #include "proto/problem.h"
 #include "proto/text.h"
-#include "proto/unreached.h"
 
 namespace papilio::client {
 namespace {
@@ -163,6 +162,7 @@ proto::Statistics statistics_from(const httplib::Headers& headers) {
   statistics.stop_reason = proto::stop_reason_named(field("Papilio-Stop-Reason"));
   statistics.error = proto::parse_number(field("Papilio-Error")).value_or(0);
   statistics.error_pixels = proto::parse_number(field("Papilio-Error-Pixels"));
+  statistics.unreached = field("Papilio-Unreached");
   statistics.shape = field("Papilio-Shape");
   statistics.found = proto::parse_defects(field("Papilio-Found"));
   const std::string timing = field("Server-Timing");
@@ -218,18 +218,14 @@ proto::EncodedLevel Remote::refine(std::string_view bytes, const proto::Paramete
   httplib::Client client = connect(origin_, options_);
   httplib::Response answer = ask_to_refine(origin_, client, prefix_, draco_type, bytes, parameters);
   check_mesh(origin_, answer);
-  proto::Statistics statistics = statistics_from(answer.headers);
-  statistics.unreached = proto::unreached_text(parameters.options, statistics);
-  return {std::move(answer.body), std::move(statistics)};
+  return {std::move(answer.body), statistics_from(answer.headers)};
 }
 
 proto::EncodedLevel Remote::refine_scene(std::string_view glb, const proto::Parameters& parameters) const {
   httplib::Client client = connect(origin_, options_);
   httplib::Response answer = ask_to_refine(origin_, client, prefix_, scene_type, glb, parameters);
   check_scene(origin_, answer);
-  proto::Statistics statistics = statistics_from(answer.headers);
-  statistics.unreached = proto::unreached_text(parameters.options, statistics);
-  return {std::move(answer.body), std::move(statistics)};
+  return {std::move(answer.body), statistics_from(answer.headers)};
 }
 
 void Remote::refine_levels(std::string_view draco, const proto::Parameters& parameters,

@@ -277,7 +277,6 @@ class RedGreen {
       repair.look_again();
     }
     is_within_limit_ = repair.is_complete();
-    has_repaired_ = has_repaired;
     // Otherwise the distance is measured, which takes longer.
     is_limit_near_ =
         is_within_limit_ && (has_repaired || selection_.camera() != nullptr) && repair.exceeds(least_share_of_bound);
@@ -319,7 +318,8 @@ class RedGreen {
     const double limit_kept = limit(share_of_tolerance).everywhere;
     if (is_limit_near_) return limit_kept;
     const double found = surface_check(AllowedDistance(1)).largest_share();
-    return is_within_limit_ && (has_detail() || has_repaired_) ? std::min(found, limit_kept) : found;
+    // Below faces that were not explored, `found` may exceed the limit that repair() has verified.
+    return is_within_limit_ ? std::min(found, limit_kept) : found;
   }
 
   /// Returns an upper bound of the visible distance to the uniform surface, in pixels.
@@ -371,8 +371,7 @@ class RedGreen {
   Splits kept_;                       ///< [level] edges split when a level last changed the mesh
   Exploration exploration_;
   bool is_within_limit_ = false;  ///< whether repair() ended within the limit
-  bool has_repaired_ = false;
-  bool is_limit_near_ = false;  ///< whether a bound that is the limit is tight enough
+  bool is_limit_near_ = false;    ///< whether a bound that is the limit is tight enough
   bool out_of_budget_ = false;
   bool is_at_limit_ = false;
 };

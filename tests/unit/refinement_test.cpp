@@ -132,6 +132,20 @@ TEST(Refinement, UnreachedTargetsAreReported) {
   EXPECT_NE(budget.unreached.find("max_faces"), std::string::npos) << budget.unreached;
 }
 
+TEST(Refinement, UnreachedTargetsNameOnlyCriteriaThatWereGiven) {
+  const Statistics grid = refined({{"tolerance", "0.001"}, {"output.position_bits", "8"}});
+  EXPECT_NE(grid.unreached.find("The grid of output.position_bits=8 accounts for 0.00"), std::string::npos)
+      << grid.unreached;
+  EXPECT_NE(grid.unreached.find("Raise output.position_bits"), std::string::npos) << grid.unreached;
+  EXPECT_EQ(grid.unreached.find("criteria"), std::string::npos) << grid.unreached;
+  const Statistics finest = refined({{"tolerance", "1e-6"}, {"output.position_bits", "16"}, {"levels", "10"}});
+  EXPECT_NE(finest.unreached.find("16 bits are the maximum"), std::string::npos) << finest.unreached;
+  const Statistics flat = refined({{"tolerance", "0.0003"}, {"flatness", "0.5"}});
+  EXPECT_NE(flat.unreached.find("Other criteria exclude edges: flatness. "), std::string::npos) << flat.unreached;
+  const Statistics seen = refined({{"tolerance", "0.0003"}, {"view.edge_pixels", "200"}});
+  EXPECT_NE(seen.unreached.find("exclude edges: view.edge_pixels, the view. "), std::string::npos) << seen.unreached;
+}
+
 TEST(Refinement, OmittedLevelsStopAtTheLimits) {
   for (const char* scheme : {"red-green", "in-place"})
     for (const Limits& limits : {Limits{.max_output_faces = 2000}, Limits{.max_compute_bytes = 300 << 10}}) {

@@ -123,6 +123,15 @@ TEST_F(RemoteTest, RemoteResultEqualsTheLocal) {
   EXPECT_GT(there.statistics.times.encode, 0);
 }
 
+TEST_F(RemoteTest, UnreachedTargetHasTheReasonOfTheServer) {
+  const proto::Parameters parameters =
+      proto::parse_query({{"tolerance", "0.0024"}, {"levels", "3"}, {"output.position_bits", "8"}});
+  const proto::EncodedLevel there = Remote(url_).refine(coarse_, parameters);
+  EXPECT_NE(there.statistics.unreached.find("output.position_bits=8"), std::string::npos) << there.statistics.unreached;
+  EXPECT_EQ(there.statistics.unreached,
+            proto::Refinement(coarse_, parameters, engine_options().limits).run().statistics.unreached);
+}
+
 TEST_F(RemoteTest, LevelsAreReceivedInOrderUpToTheResult) {
   const proto::Parameters parameters = proto::parse_query({{"levels", "2"}});
   std::vector<proto::BodyPart> parts;

@@ -186,6 +186,21 @@ TEST(Tolerance, ErrorIsAtMostTwiceTheDistance) {
   }
 }
 
+TEST(Tolerance, ErrorOfAConvergedResultIsWithinTheToleranceWithoutRepair) {
+  // Where the comparison found nothing to repair, its bound below unexplored faces exceeded the tolerance.
+  for (uint32_t seed : {23U, 54U, 126U, 281U, 432U}) {
+    std::mt19937 random(seed);
+    const Mesh coarse = build_mesh(random_small_mesh(random));
+    for (double tolerance : {0.02, 0.01, 0.005}) {
+      SCOPED_TRACE(std::to_string(seed) + " " + std::to_string(tolerance));
+      const auto [result, distance] = measure(coarse, {.levels = 6, .tolerance = tolerance});
+      ASSERT_EQ(result.stop_reason, StopReason::converged);
+      EXPECT_LE(result.error, tolerance);
+      EXPECT_LE(distance, sampling * result.error + 1e-7);
+    }
+  }
+}
+
 TEST(Tolerance, ErrorIsAtMostTwiceTheDistanceAfterASingleSplit) {
   // A single split brings some results far below the tolerance.
   for (uint32_t sides : {8U, 10U, 11U, 12U, 16U})
