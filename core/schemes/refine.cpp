@@ -45,11 +45,20 @@ Result run_scheme(Coarse&& coarse, const Options& options, const Selection& sele
   return refine_red_green(levels_of(std::forward<Coarse>(coarse), options, progress), options, selection, progress);
 }
 
+/// Returns whether errors are requested, and the result has none larger.
+bool reaches_targets(const Result& result, const Options& options) {
+  const double pixels = options.view ? options.view->error_pixels : 0;
+  if (!options.measure_error || (options.tolerance == 0 && pixels == 0)) return false;
+  return (options.tolerance == 0 || result.error <= options.tolerance) &&
+         (pixels == 0 || result.error_pixels <= pixels);
+}
+
 template <class Coarse>
 Result run(Coarse&& coarse, double diagonal, const Options& options, const Hooks& hooks) {
   const Selection selection(options, diagonal);
   const Progress progress(options, hooks);
   Result result = run_scheme(std::forward<Coarse>(coarse), options, selection, progress);
+  if (reaches_targets(result, options)) result.stop_reason = StopReason::converged;
   if (options.simplify_hidden) {
     progress.poll();
     result.mesh =

@@ -74,10 +74,18 @@ class Refiner {
     outcome_.stop_reason = is_out_of_budget ? StopReason::budget
                            : is_at_end      ? StopReason::levels
                                             : StopReason::converged;
+    if (reaches_targets()) outcome_.stop_reason = StopReason::converged;
     return outcome_;
   }
 
  private:
+  [[nodiscard]] bool reaches_targets() const {
+    const double pixels = options_.view ? options_.view->error_pixels : 0;
+    const bool is_any_requested = options_.tolerance > 0 || pixels > 0;
+    return is_any_requested && !(options_.tolerance > 0 && outcome_.error > options_.tolerance) &&
+           !(pixels > 0 && outcome_.error_pixels > pixels);
+  }
+
   using Key = std::pair<size_t, uint32_t>;  ///< level, and a face or an edge of it
 
   [[nodiscard]] size_t deepest() const { return levels_.size() - 1; }

@@ -99,6 +99,26 @@ View front(const Mesh& mesh, double distance) {
   return view;
 }
 
+TEST(Tolerance, StopReasonIsConvergedExactlyIfTheRequestedErrorIsReached) {
+  const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
+  for (Scheme scheme : {Scheme::red_green, Scheme::in_place})
+    for (int levels = 1; levels <= 4; ++levels)
+      for (double tolerance : {0.02, 0.001, 1e-5}) {
+        SCOPED_TRACE(std::to_string(levels) + " " + std::to_string(tolerance));
+        Options options{.levels = levels, .scheme = scheme, .tolerance = tolerance};
+        const Result result = refine(bunny, options);
+        EXPECT_EQ(result.stop_reason, result.error <= tolerance ? StopReason::converged : StopReason::levels);
+        options.view = front(bunny, 1);
+        options.view->error_pixels = 1000 * tolerance;
+        options.tolerance = 0;
+        const Result seen = refine(bunny, options);
+        EXPECT_EQ(seen.stop_reason, seen.error_pixels <= 1000 * tolerance ? StopReason::converged : StopReason::levels);
+        options.measure_error = false;  // then nobody can tell
+        EXPECT_EQ(refine(bunny, options).levels == levels, refine(bunny, options).stop_reason == StopReason::levels);
+      }
+  EXPECT_EQ(refine(bunny, {.levels = 3, .tolerance = 1e-3}).stop_reason, StopReason::converged);
+}
+
 TEST(ErrorPixels, NearerPartsAreFiner) {
   const Mesh bunny = build_mesh(real_mesh("bunny600.obj"));
   for (Scheme scheme : {Scheme::red_green, Scheme::in_place}) {
@@ -184,9 +204,10 @@ TEST(Budget, AmpleBudgetChangesNothing) {
     const Result with = refine(bunny, options);
     EXPECT_EQ(with.mesh.triangles(), without.mesh.triangles());
     EXPECT_NE(with.stop_reason, StopReason::budget);
-    options.max_faces = faces_of(without) - 1;
+    options.max_faces = faces_of(without) / 2;
     const Result less = refine(bunny, options);
-    EXPECT_LT(faces_of(less), faces_of(without));
+    EXPECT_LE(faces_of(less), options.max_faces);
+    EXPECT_GT(less.error, options.tolerance);
     EXPECT_EQ(less.stop_reason, StopReason::budget);
   }
 }

@@ -228,7 +228,7 @@ TEST(Tolerance, BudgetOverridesTheTolerance) {
   const Mesh coarse = build_mesh(real_mesh("bunny600.obj"));
   const Options free{.levels = 4, .tolerance = 1e-3};
   Options bounded = free;
-  bounded.max_faces = refine(coarse, free).mesh.topology.face_count() - 2;
+  bounded.max_faces = refine(coarse, free).mesh.topology.face_count() / 2;
   const auto [result, distance] = measure(coarse, bounded);
   EXPECT_LE(result.mesh.topology.face_count(), bounded.max_faces);
   EXPECT_EQ(result.stop_reason, StopReason::budget);

@@ -11,12 +11,15 @@ struct Level {
   bool last;         ///< whether no further level follows
 };
 
-/// Reason why a refinement ended. A scene has the largest of its meshes' reasons.
+/// Reason why a refinement ended. A scene has the largest of its meshes' reasons. The others say what kept it from a
+/// requested error, if any is requested.
 enum class StopReason {
-  converged,  ///< no edge was left to split (in place: nor does a later level have a higher flatness threshold)
-  levels,     ///< all requested levels were made
-  budget,     ///< `max_faces` was reached
-  limits,     ///< a further level would have exceeded a limit (`Options::stop_at_limits`)
+  /// The requested errors (`tolerance`, `View::error_pixels`) are reached, as `Result::error` and `error_pixels` say.
+  /// Or no edge was left to split (in place: nor does a later level have a higher flatness threshold).
+  converged,
+  levels,  ///< all requested levels were made
+  budget,  ///< `max_faces` was reached
+  limits,  ///< a further level would have exceeded a limit (`Options::stop_at_limits`)
 };
 
 /// Shapes found on the mesh (`Options::shape`).
