@@ -207,11 +207,31 @@ test('the server refines on request, and its costs are shown', async () => {
   assert.deepEqual(faults, []);
 });
 
+test('faces are counted as drawn, coarse and refined, here and by the server', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  // Two nodes show one cube, of which one more face has no area.
+  const glb = twoCubesGlb((json) => {
+    json.bufferViews[1].byteLength += 6; // the indices 0, 0, 0
+    json.accessors[1].count += 3;
+  });
+  await drop(page, 'two.glb', glb);
+  await page.locator('.panel[data-mode=coarse][data-faces="24"]').waitFor();
+  await page.getByLabel('keep', { exact: true }).check();
+  await page.locator('.panel[data-mode=view][data-by=here][data-faces="24"]').waitFor();
+  await page.getByLabel('Side by side').check();
+  await done(page);
+  const uniform = await page.locator('.panel[data-mode=uniform]').evaluate(({ dataset }) => ({ ...dataset }));
+  assert.equal(uniform.by, 'server');
+  assert.ok(Number.isInteger(Math.log2(uniform.faces / 24) / 2), uniform.faces);
+  assert.deepEqual(faults, []);
+});
+
 test('a scene is refined in this browser part by part, and its parts can be hidden', async () => {
   const { page, faults } = await open();
   await madeHere(page);
   await drop(page, 'two.glb', twoCubesGlb());
-  await page.locator('.panel[data-mode=coarse][data-faces="12"]').waitFor();
+  await page.locator('.panel[data-mode=coarse][data-faces="24"]').waitFor();
   await page.getByLabel('round', { exact: true }).check();
   await page.waitForFunction(() => document.querySelector('.panel[data-mode=view]').dataset.faces > 200);
   await madeHere(page);

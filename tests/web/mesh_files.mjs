@@ -182,10 +182,11 @@ export async function compressedCubeGlb() {
   return glbOf(json, binary);
 }
 
-/// Two cubes beside each other, called first and second.
-export const twoCubesGlb = () =>
+/// Two cubes beside each other, called first and second. `change`: of the glTF document.
+export const twoCubesGlb = (change = () => {}) =>
   cubeGlb({
     change: (json) => {
+      change(json);
       json.scenes[0].nodes = [0, 1];
       json.nodes = [
         { name: 'first', mesh: 0 },

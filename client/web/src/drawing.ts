@@ -22,6 +22,7 @@ import { measureBounds, positionsOf } from './bounds';
 import { findEdges, foundEdges } from './edges';
 import type { Decoded } from './model';
 import { pause } from './pause';
+import { isMesh } from './scene';
 
 function material(options: MeshStandardMaterialParameters): MeshStandardMaterial {
   return new MeshStandardMaterial({
@@ -87,9 +88,12 @@ interface Edged {
 /// Returns the meshes of a scene if they are all of it; otherwise all triangles as one.
 function edgedIn(decoded: Decoded): Edged[] {
   const meshes: Mesh[] = [];
-  decoded.scene?.traverse((object) => isPlain(object) && meshes.push(object));
-  const isAll = meshes.reduce((sum, { geometry }) => sum + facesOf(geometry), 0) === decoded.faces;
-  if (decoded.scene === null || !isAll) return [{ geometry: decoded.geometry, mesh: null }];
+  let isAll = decoded.scene !== null;
+  decoded.scene?.traverse((object) => {
+    if (isPlain(object)) meshes.push(object);
+    else if (isMesh(object)) isAll = false;
+  });
+  if (!isAll) return [{ geometry: decoded.geometry, mesh: null }];
   return meshes.map((mesh) => ({ geometry: mesh.geometry as BufferGeometry, mesh }));
 }
 
@@ -99,8 +103,6 @@ function isPlain(object: Object3D): object is Mesh {
   const geometry = object.geometry as BufferGeometry;
   return geometry.index !== null && Object.keys(geometry.morphAttributes).length === 0;
 }
-
-const facesOf = (geometry: BufferGeometry) => Math.floor(geometry.index!.count / 3);
 
 /// Returns the edges, fainter if they are close together in the picture, so that the surface stays visible; a scene's
 /// edges are all as faint as the first ones drawn. Null while they are not found yet.

@@ -31,6 +31,7 @@ export interface Decoded {
   scene: Object3D | null;
   /// Number of vertices; each mesh counts once, however often it is shown.
   vertices: number;
+  /// Number of faces that are drawn: a mesh counts as often as it is shown, without degenerate faces.
   faces: number;
   /// Names of files that the scene refers to and does not contain.
   missing: string[];

@@ -214,7 +214,7 @@ export class Panel {
         },
         encoded: encoded[level],
         vertices: levels[level].vertices,
-        faces: levels[level].faces,
+        faces: decoded.faces, // the server counts each mesh of a scene once
         timing: levels[level].timing,
         roundTrip: summary && performance.now() - began,
         summary,

@@ -121,7 +121,7 @@ export class Pictures {
       panel.setLegend([element('span', '', 'measuring …')]);
       const faces =
         shown === uniform
-          ? new Float32Array(shown.faces)
+          ? new Float32Array(shown.geometry.index!.count / 3)
           : await distancesToUniform(shown.geometry, uniform.geometry, signal);
       signal.throwIfAborted();
       this.#distances.set(shown, { uniform, faces });

@@ -59,13 +59,14 @@ export async function decodeScene(bytes: Bytes): Promise<Decoded> {
 export function decodedScene(scene: Object3D): Decoded {
   scene.updateMatrixWorld(true);
   const geometries = new Set<BufferGeometry>();
-  scene.traverse((object) => isMesh(object) && geometries.add(object.geometry));
-  let vertices = 0;
   let faces = 0;
-  for (const one of geometries) {
-    vertices += one.getAttribute('position').count;
-    faces += Math.floor(cornersOf(one) / 3);
-  }
+  scene.traverse((object) => {
+    if (!isMesh(object)) return;
+    geometries.add(object.geometry);
+    faces += instancesOf(object) * facesOf(object.geometry);
+  });
+  let vertices = 0;
+  for (const one of geometries) vertices += one.getAttribute('position').count;
   let merged: BufferGeometry | null = null;
   return {
     get geometry() {
@@ -84,6 +85,34 @@ export function decodedScene(scene: Object3D): Decoded {
 
 export function isMesh(object: Object3D): object is Mesh {
   return object instanceof Mesh && (object.geometry as BufferGeometry).hasAttribute('position');
+}
+
+function instancesOf(mesh: Mesh): number {
+  return (mesh as Partial<InstancedMesh>).isInstancedMesh === true ? (mesh as InstancedMesh).count : 1;
+}
+
+/// Numbers of faces; meshes share geometries.
+const counted = new WeakMap<BufferGeometry, number>();
+
+/// Returns the number of a geometry's triangles, without those of which two corners are at one position: refined meshes
+/// do not have them either.
+function facesOf(geometry: BufferGeometry): number {
+  let faces = counted.get(geometry);
+  if (faces !== undefined) return faces;
+  const position = geometry.getAttribute('position');
+  const cornerOf = (i: number) => geometry.index?.getX(i) ?? i;
+  const areEqual = (a: number, b: number) =>
+    a === b ||
+    (position.getX(a) === position.getX(b) &&
+      position.getY(a) === position.getY(b) &&
+      position.getZ(a) === position.getZ(b));
+  faces = 0;
+  for (let i = 0; i + 2 < cornersOf(geometry); i += 3) {
+    const [a, b, c] = [cornerOf(i), cornerOf(i + 1), cornerOf(i + 2)];
+    if (!areEqual(a, b) && !areEqual(b, c) && !areEqual(c, a)) ++faces;
+  }
+  counted.set(geometry, faces);
+  return faces;
 }
 
 function cornersOf(geometry: BufferGeometry): number {
