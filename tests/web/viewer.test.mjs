@@ -183,7 +183,12 @@ test('a file that is not a mesh is refused with a message, and the open mesh sta
     ['broken.drc', 'DRACO but not really', /no Draco mesh, or it is damaged/],
     ['empty.obj', '', /empty\.obj is empty/],
     ['points.obj', 'v 0 0 0\nv 1 0 0\n', /no triangles in points\.obj/],
-    ['broken.glb', 'glTF', /broken\.glb cannot be read/],
+    ['broken.glb', 'glTF', /broken\.glb cannot be read: The \.glb file has 4 bytes; at least 20 are required/],
+    [
+      'cut.glb',
+      cubeGlb().subarray(0, 500),
+      /cut\.glb cannot be read: The \.glb header declares \d+ bytes, and there are 500\./,
+    ],
     ['broken.ply', 'ply\nformat none\n', /broken\.ply/],
     ['nowhere.obj', 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n', /nowhere\.obj/],
   ]) {

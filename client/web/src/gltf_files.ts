@@ -1,5 +1,6 @@
 // Packing of a .gltf file with its buffers and images as one .glb.
 
+import { glbOf, padded } from './glb';
 import type { Bytes } from './model';
 import { Problem } from './service';
 
@@ -20,7 +21,6 @@ const mediaTypes: Record<string, string> = {
   jpeg: 'image/jpeg',
   webp: 'image/webp',
 };
-const padded = (length: number) => (length + 3) & ~3;
 
 /// Packs a document. `files`: files dropped or picked with it, found by name. Rejects with a Problem if a buffer is
 /// missing; a missing image remains a reference.
@@ -64,22 +64,4 @@ export async function packGlb(gltf: File, files: readonly File[]): Promise<Bytes
   for (const view of views) view.buffer = 0;
   document.buffers = [{ byteLength: length }];
   return glbOf(new TextEncoder().encode(JSON.stringify(document)), chunks, length);
-}
-
-function glbOf(json: Uint8Array, chunks: Bytes[], binaryLength: number): Bytes {
-  const jsonLength = padded(json.length);
-  const glb = new Uint8Array(28 + jsonLength + binaryLength);
-  const words = new DataView(glb.buffer);
-  const head = [0x46546c67, 2, glb.length, jsonLength, 0x4e4f534a];
-  for (const [i, word] of head.entries()) words.setUint32(4 * i, word, true);
-  glb.fill(0x20, 20, 20 + jsonLength);
-  glb.set(json, 20);
-  words.setUint32(20 + jsonLength, binaryLength, true);
-  words.setUint32(24 + jsonLength, 0x004e4942, true);
-  let at = 28 + jsonLength;
-  for (const chunk of chunks) {
-    glb.set(chunk, at);
-    at += padded(chunk.length);
-  }
-  return glb;
 }

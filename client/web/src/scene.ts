@@ -14,6 +14,7 @@ import {
 } from 'three';
 
 import { fetchDecoder } from './draco';
+import { requireWholeGlb } from './glb';
 import type { Bytes, Decoded } from './model';
 import { Problem } from './service';
 
@@ -22,6 +23,7 @@ const whitePixel =
 
 /// Decodes a scene. Rejects with a Problem unless the bytes are a scene of triangles.
 export async function decodeScene(bytes: Bytes): Promise<Decoded> {
+  requireWholeGlb(bytes);
   const [{ GLTFLoader }, { MeshoptDecoder }, draco] = await Promise.all([
     import('three/examples/jsm/loaders/GLTFLoader.js'),
     import('three/examples/jsm/libs/meshopt_decoder.module.js'),
