@@ -26,12 +26,13 @@ Levels levels_of(const PreparedMesh& prepared, const Options& options, const Pro
 Mesh mesh_of(Mesh&& mesh) { return std::move(mesh); }
 Mesh mesh_of(const PreparedMesh& prepared) { return prepared.coarse(); }
 
-/// Throws `Error` bad_option if the scheme makes vertices that the detail does not have.
+/// Throws `Error` bad_option for the in-place scheme and a mesh with detail, also where both schemes split alike:
+/// whether a request is refused does not depend on its other options.
 void check_scheme(const Mesh& coarse, const Options& options) {
-  if (coarse.detail && options.scheme == Scheme::in_place && options.levels > 0 && !Selection(options, 1).is_uniform())
+  if (coarse.detail && options.scheme == Scheme::in_place)
     throw Error(
         Fault::bad_option,
-        "The in-place scheme does not refine a mesh with detail: it splits faces that the detail does not have. "
+        "The in-place scheme does not refine a packed model: it splits faces that the model's detail does not have. "
         "Use the red-green scheme.",
         "scheme");
 }

@@ -476,3 +476,17 @@ two_materials() {
   [[ $output == *"PAPILIO_detail has version 7"* ]]
   [[ $("$papilio" info newer.glb) == *"detail.fault"*"version 7"* ]]
 }
+
+@test "the in-place scheme is refused for packed models, with and without a criterion" {
+  start_server
+  for criterion in levels=2 tolerance=0.01 flatness=0.9; do
+    run -2 "$papilio" refine model.glb -o out.glb --scheme in-place "--$criterion"
+    [[ $output == *"The in-place scheme does not refine a packed model"*"Use the red-green scheme."* ]]
+    [ ! -e out.glb ]
+    request -H 'Content-Type: model/gltf-binary' --data-binary @model.glb "$url/v1/refine?scheme=in-place&$criterion"
+    [ "$status" = 400 ]
+    [ "$(field code)" = bad_parameter ]
+    [ "$(field parameter)" = scheme ]
+  done
+  stop_server
+}

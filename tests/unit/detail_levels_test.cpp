@@ -332,19 +332,18 @@ TEST(DetailLevels, DetailOfAnotherMeshIsRefused) {
   EXPECT_THROW(other_order.attach_detail(stream_detail(rough_detail())), Error);
 }
 
-TEST(DetailLevels, InPlaceSchemeIsRefused) {
-  Options options;
-  options.scheme = Scheme::in_place;
-  options.tolerance = 0.01;
-  try {
-    (void)refine(test::with_detail(rough_detail()), options);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::bad_option);
-    EXPECT_EQ(error.option(), "scheme");
-  }
-  options.tolerance = 0;
-  EXPECT_EQ(refine(test::with_detail(rough_detail()), options).mesh.triangles(), decoded(rough_detail(), 2));
+TEST(DetailLevels, InPlaceSchemeIsRefusedWhateverTheCriteria) {
+  for (const int levels : {0, 2})
+    for (const double tolerance : {0.0, 0.01}) {
+      const Options options{.levels = levels, .scheme = Scheme::in_place, .tolerance = tolerance};
+      try {
+        (void)refine(test::with_detail(rough_detail()), options);
+        FAIL() << levels << " " << tolerance;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.fault(), Fault::bad_option);
+        EXPECT_EQ(error.option(), "scheme");
+      }
+    }
 }
 
 }  // namespace
