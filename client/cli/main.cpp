@@ -254,6 +254,17 @@ std::string unexpected(const CLI::App& app) {
          (meant ? "Did you mean " + std::string(*meant) + "?" : "papilio --help lists them.");
 }
 
+/// Returns the message for a missing argument in the words of the usage, which names positionals; "" if none is
+/// missing.
+std::string missing_argument(const CLI::App& app) {
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  if (called.empty()) return "";
+  for (const CLI::Option* option : called[0]->get_options())
+    if (option->get_required() && option->count() == 0 && option->get_positional())
+      return option->get_name(true) + " is required. " + called_as(app) + " --help lists what it takes.";
+  return "";
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"papilio: refines triangle meshes where they are curved, visible and large on screen.", "papilio"};
   app.set_version_flag("--version", "papilio " PAPILIO_VERSION);
@@ -272,6 +283,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     if (const std::string what = unexpected(app); !what.empty()) return complain(what, usage);
+    if (const std::string what = missing_argument(app); error.get_name() == "RequiredError" && !what.empty())
+      return complain(what, usage);
     return complain(std::string(error.what()) + ". " + called_as(app) + " --help lists what it takes.", usage);
   } catch (const UsageError& error) {
     return complain(error.what(), usage);

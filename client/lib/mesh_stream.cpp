@@ -35,10 +35,18 @@ std::string packed(const MeshPlace& place, MeshBytes& file) {
   return in_words_of_the_file(file.name, [&] { return proto::gltf::pack_scene(file.bytes, read, find_image); });
 }
 
+/// Throws `FileError` if there is no such file, whatever the format of its name would be.
+void require_file(const std::filesystem::path& path) {
+  std::error_code ignored;  // other errors are those of reading
+  if (std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found)
+    throw FileError(path, "does not exist; check the name");
+}
+
 }  // namespace
 
 MeshBytes read_mesh(const MeshPlace& place) {
   MeshBytes file{.name = place.name()};
+  if (!place.is_standard()) require_file(place.path);
   if (!place.is_standard()) file.format = place.format ? *place.format : format_of(place.path);
   file.bytes = place.is_standard() ? read_standard_input(kMaxFileBytes) : read_bytes(place.path, kMaxFileBytes);
   if (file.bytes.empty()) throw FileError(file.name, "is empty; export the mesh again");
