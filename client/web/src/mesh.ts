@@ -25,6 +25,15 @@ export class OpenMesh {
     return this.decoded.geometry;
   }
 
+  /// Returns what the user has to give for the mesh to look as meant; "" for nothing.
+  get hint(): string {
+    const { missing } = this.decoded;
+    if (missing.length > 0) return `${this.name} has no ${missing.join(', ')} inside, which is shown white.`;
+    const { libraries = [] } = this.encoded;
+    if (libraries.length === 0) return '';
+    return `${this.name} has its materials in ${libraries.join(', ')}: drop or pick the files together.`;
+  }
+
   /// Returns whether the mesh is a scene; packed models with materials or colours are scenes.
   get isScene(): boolean {
     return this.decoded.scene !== null;

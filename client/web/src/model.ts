@@ -8,6 +8,8 @@ export type Bytes = Uint8Array<ArrayBuffer>;
 export interface Encoded {
   kind: 'draco' | 'scene' | 'packed';
   bytes: Bytes;
+  /// Names of material libraries that the file refers to, of which none was given.
+  libraries?: string[];
 }
 
 export const mediaTypes = {

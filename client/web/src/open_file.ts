@@ -1,9 +1,10 @@
-// Files dropped or picked by the user: .drc meshes and .glb scenes as they are, .gltf files with their references as a
-// .glb, other formats by three's loaders as Draco meshes of positions and triangles.
+// Files dropped or picked by the user: .drc meshes and .glb scenes as they are, .gltf files with their references and
+// .obj files with their materials as a .glb, other formats by three's loaders as Draco meshes of positions and triangles.
 
 import { encode } from './draco';
 import { packGlb } from './gltf_files';
 import type { Encoded } from './model';
+import { readObjScene } from './obj_scene';
 import { Problem } from './service';
 import { readTriangles, triangleFormats } from './triangle_files';
 
@@ -23,8 +24,12 @@ export function meshAmong(files: readonly File[]): File {
 /// with a Problem.
 export async function readMeshFile(file: File, files: readonly File[], maxBytes: number): Promise<Encoded> {
   const extension = formatOf(file);
-  if (triangleFormats.includes(extension))
-    return { kind: 'draco', bytes: await encode(await readTriangles(file.name, extension, await file.arrayBuffer())) };
+  if (triangleFormats.includes(extension)) {
+    const scene = extension === '.obj' ? await readObjScene(file, files) : [];
+    if (!Array.isArray(scene)) return scene;
+    const bytes = await encode(await readTriangles(file.name, extension, await file.arrayBuffer()));
+    return { kind: 'draco', bytes, libraries: scene };
+  }
   if (extension !== '.gltf' && file.size > maxBytes)
     throw new Problem('body_too_large', `${file.name} has ${file.size} bytes; this server takes ${maxBytes}.`);
   return readEncoded(file, files);

@@ -136,8 +136,7 @@ export class Viewer {
     this.#showChoices();
     showParts(mesh.decoded.scene, (hidden) => (this.#pictures.hidden = hidden));
     this.#state.mesh = isNamed ? mesh.name : '';
-    const { missing } = mesh.decoded;
-    if (missing.length > 0) this.#alert.show(`${mesh.name} has no ${missing.join(', ')} inside, which is shown white.`);
+    if (mesh.hint !== '') this.#alert.show(mesh.hint);
     else this.#alert.hide();
     this.#stage.setLens(lensOf(this.#state.values));
     this.#stage.frame(mesh.geometry);
