@@ -28,4 +28,9 @@ double grid_distance(const Box& coarse, int position_bits) {
   return 0.5 * std::sqrt(3.0) * step;
 }
 
+double tolerance_beside_grid(double tolerance, double grid_error) {
+  constexpr double most_for_grid = 0.5;
+  return std::max(tolerance - grid_error, most_for_grid * tolerance);
+}
+
 }  // namespace papilio::proto

@@ -22,4 +22,7 @@ inline constexpr double least_range = 1e-30;
 /// Returns the largest distance by which a grid of `position_bits` moves a position of a mesh with this bounding box.
 [[nodiscard]] double grid_distance(const Box& coarse, int position_bits);
 
+/// Returns what a grid leaves of a tolerance for the refinement: at least half of it. Both are shares of the diagonal.
+[[nodiscard]] double tolerance_beside_grid(double tolerance, double grid_error);
+
 }  // namespace papilio::proto

@@ -69,9 +69,6 @@ class BackgroundTask {
   std::future<void> running_;  // last member: its destructor waits
 };
 
-/// Upper bound of the grid's share of the tolerance; the refinement gets the rest.
-constexpr double most_for_grid = 0.5;
-
 std::string milliseconds_text(double milliseconds) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), milliseconds, std::chars_format::fixed, 3).ptr;
@@ -94,7 +91,7 @@ void Refinement::set_options(const Parameters& parameters, const Limits& limits)
   options_ = options_for(parameters, box);
   output_ = output_for(parameters, box);
   grid_error_ = box.diagonal() > 0 ? grid_distance(box, output_.position_bits) / box.diagonal() : 0;
-  options_.tolerance = std::max(tolerance_ - grid_error_, most_for_grid * tolerance_);
+  options_.tolerance = tolerance_beside_grid(tolerance_, grid_error_);
   detail::end_with_detail(options_, coarse().mesh);
   options_.face_limit = limits.max_output_faces;
   options_.memory_limit = limits.max_compute_bytes;

@@ -37,7 +37,7 @@ std::string what_to_do(StopReason reason, const Options& options, std::string_vi
   return why_converged(options, other_target);
 }
 
-std::string about_grid(const PositionGrid& grid) {
+std::string about_grid(const GridShare& grid) {
   const std::string bits = std::to_string(grid.bits);
   return "The grid of output.position_bits=" + bits + " accounts for " + format_rounded(grid.error) + " of it. " +
          (grid.bits < most_position_bits ? "Raise output.position_bits, or omit it."
@@ -46,7 +46,7 @@ std::string about_grid(const PositionGrid& grid) {
 
 }  // namespace
 
-std::string unreached_text(const Options& options, const Statistics& statistics, const PositionGrid& grid) {
+std::string unreached_text(const Options& options, const Statistics& statistics, const GridShare& grid) {
   std::string text;
   if (!statistics.stop_reason) return text;
   const auto add = [&](std::string_view target, double wanted, double left, const std::string& advice) {

@@ -12,6 +12,7 @@
 #include "proto/gltf/document_writer.h"
 #include "proto/gltf/extension_lists.h"
 #include "proto/gltf/geometry_writer.h"
+#include "proto/gltf/mesh_grid.h"
 #include "proto/gltf/mesh_options.h"
 #include "proto/gltf/refined_geometry.h"
 #include "proto/problem.h"
@@ -30,7 +31,8 @@ constexpr uint64_t held_between_trims = 8 * worth_giving_back;
 
 /// Refinement of one mesh of the scene.
 struct MeshRun {
-  std::optional<Options> options{};                ///< options; nothing if the mesh is not refined
+  std::optional<Options> options{};  ///< options; nothing if the mesh is not refined
+  MeshGrid grid{};
   std::shared_ptr<const PreparedMesh> prepared{};  ///< for repeated refinement; null if the scene is shared
 };
 
@@ -104,8 +106,10 @@ class SceneRefinement::State {
     options_.edges = adds_normals_;
     scene_diagonal_ = decoded().scene.box.diagonal();
     for (const SceneMesh& mesh : meshes()) {
-      auto& options = runs_.emplace_back().options;
+      MeshRun& run = runs_.emplace_back();
+      auto& options = run.options;
       options = options_of_mesh(options_, scene_diagonal_, mesh.placed());
+      run.grid = choose_mesh_grid(mesh, decoded().document.json, parameters_, options);
       if (options) options->max_faces = 0;
     }
     coarse_faces_ = decoded().coarse_faces();
@@ -227,6 +231,7 @@ class SceneRefinement::State {
     uint64_t held_bytes = 0;        ///< bytes of encoded meshes
     uint64_t held_at_trim = 0;      ///< `held_bytes` when the heap was last trimmed
     ShapeReport shape{};
+    GridShare grid{};  ///< of the mesh in which it is largest
   };
 
   /// Refines each mesh to at most `levels` levels, and writes the scene.
@@ -242,7 +247,7 @@ class SceneRefinement::State {
     EncodedLevel made{write(std::move(making.replaced)), std::move(making.statistics)};
     times_.encode += lap();
     made.statistics.times = times_;
-    made.statistics.unreached = unreached_text(options_, made.statistics);
+    made.statistics.unreached = unreached_text(options_, made.statistics, making.grid);
     made.statistics.shape = shape_text(making.shape);
     return made;
   }
@@ -263,36 +268,33 @@ class SceneRefinement::State {
     if (!runs_[m].options) {
       making.statistics.vertices += mesh.surface.mesh.topology.vertex_count;
       making.statistics.faces += mesh.coarse_faces();
-      if (parameters_.compression != Compression::same) encode(unrefined_geometry(mesh), making);
+      if (parameters_.compression != Compression::same) encode(unrefined_geometry(mesh), runs_[m].grid.output, making);
       return;
     }
     Result result = translate_errors([&] { return refine_mesh(m, options_within(m, levels, making)); });
     make_room(parting_bytes(mesh, result.mesh, is_compressed_));
     if (options_.max_faces > 0) making.budget_left -= result.mesh.topology.face_count();
-    count_result(mesh, result, making);
     const bool is_new = result.levels > 0 || adds_normals_ || parameters_.compression != Compression::same;
+    count_result(mesh, result, is_new ? runs_[m].grid : MeshGrid{}, making);
     if (!is_new) {
       if (is_made_once()) release(m);
       return;
     }
     NewGeometry refined = refined_geometry(mesh, std::move(result), adds_normals_, [this] { poll(); });
     if (is_made_once()) release(m);
-    encode(std::move(refined), making);
+    encode(std::move(refined), runs_[m].grid.output, making);
   }
 
-  void encode(NewGeometry mesh, Making& making) {
+  void encode(NewGeometry mesh, const OutputOptions& output, Making& making) {
     times_.refine += lap();
-    making.replaced.push_back(encode_geometry(decoded().document, std::move(mesh), encoding()));
+    making.replaced.push_back(
+        encode_geometry(decoded().document, std::move(mesh), {parameters_.compression, output, [this] { poll(); }}));
     making.held_bytes += making.replaced.back().bytes();
     if (making.held_bytes - making.held_at_trim >= held_between_trims) {
       trim_heap();  // frees the gaps between held bytes
       making.held_at_trim = making.held_bytes;
     }
     times_.encode += lap();
-  }
-
-  [[nodiscard]] GeometryEncoding encoding() {
-    return {parameters_.compression, parameters_.output, [this] { poll(); }};
   }
 
   /// Returns whether the scene is written only once, and not needed afterwards.
@@ -312,14 +314,17 @@ class SceneRefinement::State {
     return options;
   }
 
-  void count_result(const SceneMesh& mesh, const Result& result, Making& making) const {
+  void count_result(const SceneMesh& mesh, const Result& result, const MeshGrid& grid, Making& making) const {
     Statistics& statistics = making.statistics;
     statistics.level = std::max(statistics.level, result.levels);
     statistics.vertices += result.mesh.topology.vertex_count;
     statistics.faces += result.mesh.topology.face_count();
     statistics.stop_reason = std::max(*statistics.stop_reason, result.stop_reason);
-    if (scene_diagonal_ > 0)
-      statistics.error = std::max(statistics.error, result.error * mesh.diagonal * mesh.scale() / scene_diagonal_);
+    if (scene_diagonal_ > 0) {
+      const double share = mesh.diagonal * mesh.scale() / scene_diagonal_;
+      statistics.error = std::max(statistics.error, (result.error + grid.error) * share);
+      if (grid.error * share > making.grid.error) making.grid = {grid.error * share, grid.output.position_bits};
+    }
     if (statistics.error_pixels) statistics.error_pixels = std::max(*statistics.error_pixels, result.error_pixels);
     making.shape.components += result.shape.components;
     making.shape.mechanical += result.shape.mechanical;

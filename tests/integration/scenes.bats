@@ -396,3 +396,9 @@ glb_parts() { grep -ac '^Content-Type: model/gltf-binary' "$1"; }
   request -H "$draco" --data-binary @"$coarse" "$url/v1/refine?output.compress=draco"
   expect_problem 400 bad_parameter
 }
+
+@test "the grid of Draco in a scene is as fine as the tolerance needs" {
+  "$papilio" convert "$PAPILIO_MESHES/bunny600.obj" coarse.glb
+  "$papilio" refine coarse.glb -o grid.glb --levels 0 --tolerance 0.0001 --output.compress draco
+  [ "$("$papilio" compare --json coarse.glb grid.glb | jq '.hausdorff / .diagonal <= 0.0000125')" = true ]
+}

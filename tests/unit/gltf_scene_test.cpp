@@ -202,6 +202,21 @@ TEST(GltfScene, ToleranceIsAShareOfTheScene) {
   EXPECT_EQ(made.statistics.stop_reason, StopReason::converged);
 }
 
+TEST(GltfScene, ErrorIncludesTheGridOfDracoPositions) {
+  const std::string scene = scene_of_two_scales(10, 0.1).glb();
+  const QueryFields fields{{"tolerance", "0.0005"}, {"output.compress", "draco"}};
+  const Statistics made = refined(scene, fields).statistics;
+  EXPECT_LE(made.error, 0.0005);
+  EXPECT_EQ(made.unreached, "");
+  QueryFields coarse = fields;
+  coarse.emplace_back("output.position_bits", "8");
+  const Statistics rough = refined(scene, coarse).statistics;
+  EXPECT_GT(rough.error, 0.0005);
+  EXPECT_NE(rough.unreached.find("output.position_bits=8"), std::string::npos) << rough.unreached;
+  coarse[1].second = "none";
+  EXPECT_LE(refined(scene, coarse).statistics.error, 0.0005) << "without Draco there is no grid";
+}
+
 TEST(GltfScene, MeshIsFineEnoughForAllItsNodes) {
   GltfScene scene = scene_of_two_scales(10, 0.1);
   scene.json["nodes"].push_back({{"mesh", 1}, {"scale", {10, 10, 10}}});
