@@ -289,7 +289,7 @@ TEST_P(CurvedCollapses, EncodingHasTheStatedDistance) {
   const Mesh fine = build_mesh(decoded);
   EXPECT_NO_THROW(require_manifold(fine));
   EXPECT_EQ(fine.topology.euler_characteristic(), build_mesh(triangles).topology.euler_characteristic());
-  EXPECT_LT(encoded.folds, decoded.triangles.size() / 200);
+  EXPECT_LE(encoded.folds, decoded.triangles.size() / 200);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CurvedCollapses, ::testing::Values("tube", "can", "sheet", "box"),
