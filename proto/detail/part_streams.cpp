@@ -15,7 +15,8 @@ uint64_t PartStreams::bytes() const {
   return sum;
 }
 
-PartStreams write_parts(const Mesh& mesh, const QuantizationBox& grid, const OutputOptions& options, const std::function<void()>& poll) {
+PartStreams write_parts(const Mesh& mesh, const QuantizationBox& grid, const OutputOptions& options,
+                        const std::function<void()>& poll) {
   constexpr Limits no_limits{face_count_limit, face_count_limit, face_count_limit};
   PartStreams made;
   std::vector<MeshPart> decoded;
