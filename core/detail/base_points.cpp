@@ -32,7 +32,7 @@ TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original) {
 
 std::vector<Vec3d> sliding_normals(const BaseMesh& base, const OriginalSurface& original) {
   std::vector<Vec3d> normals;
-  if (!original.mesh().attributes.attributes.empty()) return std::vector<Vec3d>(base.vertex.size());
+  if (!base.point.empty()) return normals;
   for (const uint32_t v : base.vertex) {
     const Vec3d point = to_double(original.mesh().positions[v]);
     const bool is_on_curve = !original.curves().empty() && original.curves().nearest(point).squared_distance == 0;

@@ -11,8 +11,8 @@ namespace papilio {
 /// Returns a base with the attributes of the original, for its coder: a vertex on a seam has several points.
 [[nodiscard]] TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original);
 
-/// Returns, for each point of points_of_base(), the original's unit normal; zero where the point must not slide along
-/// the surface: on curves, and on originals with attributes.
+/// Returns, for each vertex of the base, the original's unit normal; zero where the vertex must not slide along the
+/// surface, on curves. Empty for a base with attributes: none of its vertices must.
 [[nodiscard]] std::vector<Vec3d> sliding_normals(const BaseMesh& base, const OriginalSurface& original);
 
 }  // namespace papilio

@@ -87,7 +87,7 @@ std::optional<Buffer<Vec3f>> on_grid(const Buffer<Vec3f>& positions, const std::
 /// Returns the normals [V] in the order of the mesh that was built of the base.
 std::vector<Vec3d> reordered(std::span<const Vec3d> normals, const TriangleMesh& base, const Mesh& mesh) {
   std::vector<Vec3d> by_vertex(mesh.positions.size());
-  if (normals.empty() || mesh.topology.face_count() != base.triangles.size()) return by_vertex;
+  if (normals.size() != base.positions.size() || mesh.topology.face_count() != base.triangles.size()) return by_vertex;
   for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
     by_vertex[mesh.topology.origin[h]] = normals[base.triangles[h / 3][h % 3]];
   return by_vertex;

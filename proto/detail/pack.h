@@ -50,9 +50,8 @@ struct Packed {
 /// normals (`NormalStyle`), and materials of triangles.
 ///
 /// The result is a plain .glb file if the surface cannot be packed, if its levels would turn more than 1 % of the faces
-/// over, or if plain Draco is as good: it takes no more
-/// bytes at the reached RMS distance or the largest allowed distance, or has no larger RMS distance at the allowed
-/// bytes.
+/// over (3 % with attributes), or if plain Draco is as good: it takes no more bytes at the reached RMS distance or the
+/// largest allowed distance, or has no larger RMS distance at the allowed bytes.
 ///
 /// With `simplifies`, a simplified mesh as Draco is compared too, if the original has at least 5,000 faces and nothing
 /// that it would lose: texture coordinates, colours, several materials, or normals of hard edges.

@@ -22,8 +22,8 @@ let torus, fine, inPieces;
 before(async () => {
   module = await compileDecoder(wasm);
   torus = pack('torus', folder).packed;
-  fine = pack('torus', folder, { rms: 0.0003 }).packed;
-  inPieces = pack('torus', folder, { rms: 0.0003, pieceBytes: 64 }).packed;
+  fine = pack('torus', folder, { rms: 0.0002 }).packed;
+  inPieces = pack('torus', folder, { rms: 0.0002, pieceBytes: 64 }).packed;
 });
 
 const bytesOf = (file) => new Uint8Array(readFileSync(file));

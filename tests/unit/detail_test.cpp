@@ -26,7 +26,10 @@ namespace papilio {
 namespace {
 
 /// Returns the base unchanged, at nine bytes per vertex.
-CodedBase keep_base(const TriangleMesh& base, std::span<const Vec3d> = {}) { return {base, 9 * base.positions.size()}; }
+CodedBase keep_base(const TriangleMesh& base, std::span<const Vec3d> normals) {
+  EXPECT_EQ(normals.size(), base.positions.size());
+  return {base, 9 * base.positions.size()};
+}
 
 Fault fault_of(const std::function<void()>& call) {
   try {

@@ -233,7 +233,8 @@ TEST(DetailTexcoords, OverflowingTexcoordsAreRefused) {
 TEST(DetailTexcoords, EncoderWritesAndCountsTexcoords) {
   const DetailOptions options{.rms = 5e-3, .face_limit = 2000};
   const EncodedDetail made =
-      encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base, std::span<const Vec3d>) {
+      encode_detail(textured_tube(32, 8), options, [](const TriangleMesh& base, std::span<const Vec3d> normals) {
+        EXPECT_TRUE(normals.empty()) << "vertices must not slide off their texture coordinates";
         return CodedBase{base, 9 * base.positions.size()};
       });
   EXPECT_EQ(made.base.triangles.attributes.size(), 1U);

@@ -178,7 +178,7 @@ struct CodedBase {
 };
 /// Function that codes and decodes a base, so that the encoder predicts from the decoder's values. Vertices and faces
 /// may be reordered. Positions move by less than half the distance between any two. `normals` [V] are the original's at
-/// vertices that may slide along its surface, and zero at others.
+/// vertices that may slide along its surface, and zero at others; empty if none may.
 using BaseCoder = std::function<CodedBase(const TriangleMesh&, std::span<const Vec3d> normals)>;
 
 struct DetailOptions {
