@@ -35,8 +35,7 @@ std::vector<Vec3d> sliding_normals(const BaseMesh& base, const OriginalSurface& 
   if (!base.point.empty()) return normals;
   for (const uint32_t v : base.vertex) {
     const Vec3d point = to_double(original.mesh().positions[v]);
-    const bool is_on_curve = !original.curves().empty() && original.curves().nearest(point).squared_distance == 0;
-    normals.push_back(is_on_curve ? Vec3d{} : original.normal(original.face_at(v), point));
+    normals.push_back(original.is_on_curve(v) ? Vec3d{} : original.normal(original.face_at(v), point));
   }
   return normals;
 }

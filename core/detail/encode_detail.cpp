@@ -316,7 +316,7 @@ class DetailEncoder {
   }
 
   /// Codes the levels, without those that the wanted distance does not need: on flat faces the last ones may add
-  /// nothing. Texture coordinates, colours and borders of parts need them.
+  /// nothing. With attributes all are kept: their values are linear between vertices.
   [[nodiscard]] EncodedDetail finish(const CandidateBase& candidate, ResidualFit fit) const {
     EncodedDetail encoded;
     encoded.base = {candidate.coded.triangles, candidate.curves};

@@ -66,8 +66,13 @@ OriginalSurface::OriginalSurface(Mesh mesh)
       seams_(smooth_seams(mesh_, seam_edges_)),
       normals_(corner_normals(mesh_)),
       face_at_(mesh_.positions.size()),
+      is_on_curve_(mesh_.positions.size()),
       diagonal_(bounding_box(mesh_.positions).diagonal()) {
-  for (uint32_t h = 0; h < mesh_.topology.half_edge_count(); ++h) face_at_[mesh_.topology.origin[h]] = h / 3;
+  const Topology& t = mesh_.topology;
+  for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
+    face_at_[t.origin[h]] = h / 3;
+    if (t.kind[t.edge[h]] != EdgeKind::smooth) is_on_curve_[t.origin[h]] = is_on_curve_[t.tip(h)] = 1;
+  }
 }
 
 Vec3d OriginalSurface::point(const SurfacePlace& place) const {

@@ -31,6 +31,8 @@ class OriginalSurface {
   /// Returns the unit normal, interpolated from normals of corners, which are smooth except across creases; zero where
   /// they cancel out.
   [[nodiscard]] Vec3d normal(uint32_t face, Vec3d point) const;
+  /// Returns whether a boundary or crease passes through the vertex.
+  [[nodiscard]] bool is_on_curve(uint32_t vertex) const { return is_on_curve_[vertex] != 0; }
   /// Returns a face at the vertex.
   [[nodiscard]] uint32_t face_at(uint32_t vertex) const { return face_at_[vertex]; }
 
@@ -40,8 +42,9 @@ class OriginalSurface {
   OriginalCurves curves_;
   std::vector<uint32_t> seam_edges_;
   OriginalCurves seams_;
-  Buffer<Vec3f> normals_;     // [H] normals of the faces from curve to curve round each corner
-  Buffer<uint32_t> face_at_;  // [V]
+  Buffer<Vec3f> normals_;        // [H] normals of the faces from curve to curve round each corner
+  Buffer<uint32_t> face_at_;     // [V]
+  Buffer<uint8_t> is_on_curve_;  // [V]
   double diagonal_;
 };
 

@@ -28,13 +28,6 @@ struct Grid {
   [[nodiscard]] double step() const { return double{box.range} / last(); }
 };
 
-/// Returns the grid point nearest to a position.
-Vec3f nearest_point(Vec3f position, const Grid& grid) {
-  const Vec3d origin = to_double(grid.box.origin);
-  const Vec3d from = 1 / grid.step() * (to_double(position) - origin);
-  return to_float(origin + grid.step() * Vec3d{std::round(from.x), std::round(from.y), std::round(from.z)});
-}
-
 /// Returns, of the grid points around a position on a surface with a unit normal, the one nearest across the surface:
 /// along it, any serves. Nothing if none is within `most_move` across the surface and `most_slide` in all.
 std::optional<Vec3f> point_on_surface(Vec3f position, Vec3d normal, const Grid& grid, double most_move,
@@ -65,23 +58,20 @@ std::optional<Vec3f> point_on_surface(Vec3f position, Vec3d normal, const Grid& 
   return best;
 }
 
-/// Returns the positions moved onto the grid; nothing if it is too coarse. If a vertex has no normal (zero), the grid
-/// must move no position by more than `most_move`.
-std::optional<Buffer<Vec3f>> on_grid(const Buffer<Vec3f>& positions, const std::vector<Vec3d>& normals,
-                                     const Grid& grid, double most_move, double most_slide) {
+/// Returns the positions, those of vertices with normals moved onto the grid: Draco rounds the others. Nothing if the
+/// grid is too coarse. If a vertex has no normal (zero), rounding must move no position by more than `most_move`.
+std::optional<Buffer<Vec3f>> slide_onto(const Grid& grid, Buffer<Vec3f> positions, const std::vector<Vec3d>& normals,
+                                        double most_move, double most_slide) {
   const bool is_fine = 0.5 * std::sqrt(3.0) * grid.step() <= most_move;
-  Buffer<Vec3f> moved(positions.size());
   for (size_t v = 0; v < positions.size(); ++v) {
-    if (dot(normals[v], normals[v]) == 0) {
-      if (!is_fine) return std::nullopt;
-      moved[v] = nearest_point(positions[v], grid);
-      continue;
-    }
+    const bool slides = dot(normals[v], normals[v]) > 0;
+    if (!slides && !is_fine) return std::nullopt;
+    if (!slides) continue;
     const std::optional<Vec3f> point = point_on_surface(positions[v], normals[v], grid, most_move, most_slide);
     if (!point) return std::nullopt;
-    moved[v] = *point;
+    positions[v] = *point;
   }
-  return moved;
+  return positions;
 }
 
 /// Returns the normals [V] in the order of the mesh that was built of the base.
@@ -139,8 +129,8 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> 
   const QuantizationBox box = tight_box(bounding_box(mesh.positions));
   const double half_edge = 0.5 * shortest_edge(mesh);
   for (int bits = fewest_position_bits;; ++bits) {
-    const std::optional<Buffer<Vec3f>> moved = on_grid(
-        mesh.positions, normal_of, {box, bits}, std::min(most_move_, half_edge), std::min(most_slide_, half_edge));
+    const std::optional<Buffer<Vec3f>> moved = slide_onto(
+        {box, bits}, mesh.positions, normal_of, std::min(most_move_, half_edge), std::min(most_slide_, half_edge));
     if (!moved && bits < most_position_bits) continue;
     Mesh rounded = mesh;
     if (moved) rounded.positions = *moved;

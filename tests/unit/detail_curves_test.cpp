@@ -4,6 +4,10 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
+#include <span>
+#include <string>
+#include <tuple>
 
 #include "core/detail/base_curves.h"
 #include "core/detail/base_lift.h"
@@ -290,6 +294,25 @@ TEST_P(CurvedCollapses, EncodingHasTheStatedDistance) {
   EXPECT_NO_THROW(require_manifold(fine));
   EXPECT_EQ(fine.topology.euler_characteristic(), build_mesh(triangles).topology.euler_characteristic());
   EXPECT_LE(encoded.folds, decoded.triangles.size() / 200);
+}
+
+TEST_P(CurvedCollapses, BaseVerticesOnCurvesMustNotSlide) {
+  const Mesh mesh = original();
+  std::set<Vec3f, bool (*)(const Vec3f&, const Vec3f&)> on_curves(
+      [](const Vec3f& a, const Vec3f& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+    if (mesh.topology.kind[mesh.topology.edge[h]] != EdgeKind::smooth)
+      on_curves.insert({mesh.positions[mesh.topology.origin[h]], mesh.positions[mesh.topology.tip(h)]});
+  uint32_t sliding = 0, fixed = 0;
+  (void)encode_detail(mesh.triangles(), {.rms = 2e-3}, [&](const TriangleMesh& base, std::span<const Vec3d> normals) {
+    for (size_t v = 0; v < base.positions.size(); ++v) {
+      EXPECT_NEAR(length(normals[v]), on_curves.contains(base.positions[v]) ? 0 : 1, 1e-6) << v;
+      ++(length(normals[v]) > 0 ? sliding : fixed);
+    }
+    return unchanged_base(base);
+  });
+  EXPECT_GT(fixed, 0U);
+  EXPECT_TRUE(sliding > 0 || GetParam() == std::string("box"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CurvedCollapses, ::testing::Values("tube", "can", "sheet", "box"),
