@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "split/split_pattern.h"
+#include "hierarchy/move_bounds.h"
 
 namespace papilio {
 namespace {
@@ -13,6 +13,9 @@ constexpr double share_of_sum = 0.25;  ///< of a move and its rest: what levels 
 constexpr double share_of_rest = 0.5;  ///< of a move: all further ones add up to a third where the surface is smooth
 constexpr double along_diagonal = 2;  ///< a transition face's diagonal may be further away than the whole face would be
 constexpr uint32_t leaves_between_polls = 1024;
+constexpr int most_divisions = 10;  ///< of a side of the surface's faces
+/// Share of the limit. The middle of a part is further away than its ends by at most half of its length.
+constexpr double squared_length_of_part = 0.06 * 0.06;
 constexpr double quiet = 0.36;  ///< share of the squared limit below which a line is sampled no further
 
 }  // namespace
@@ -67,7 +70,7 @@ void LeafComparison::begin_with(double share) {
 void LeafComparison::go_to(const LevelFace& leaf) {
   leaf_ = leaf;
   is_far_ = false;
-  prisms_.clear();
+  near_.go_to(leaf);
   const double allowed = allowed_.at(leaf);
   if (allowed == allowed_here_ || allowed == AllowedDistance::any) return;
   limit_ = squared_share_ * allowed * allowed;
@@ -112,32 +115,7 @@ void LeafComparison::compare(const LevelFace& leaf) {
   for (uint32_t i = 0; i < 3; ++i)
     if ((mask >> i & 1U) != 0) middle[i] = made[i];
   compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle, .off = {}},
-          patches_over_leaf(corner, made, middle));
-}
-
-/// Returns the leaf's pieces as patches over its children.
-Patches LeafComparison::patches_over_leaf(const Corners& corner, const Corners& made, const Corners& middle) {
-  const auto [k, f] = leaf_;
-  const unsigned mask = result_.choice(k).split_mask(f);
-  Patches below = patches_over(corner, middle, sides_to_compare());
-  const auto add_ridge_inside = [&](uint32_t child) {
-    below[child].ridges |= 1U << inner_side[child];
-    below[3].ridges |= 1U << side_of_middle_child[child];
-  };
-  const uint32_t i = first_target[mask];
-  const uint32_t opposite = (i + 2) % 3;
-  if (mask == 7) {
-    for (uint32_t child = 0; child < 3; ++child) add_ridge_inside(child);
-  } else if (has_two_targets(mask)) {
-    add_ridge_inside((i + 1) % 3);
-    if (result_.has_second_diagonal(k, f, mask))
-      bend_along(below, opposite, made[i], corner[opposite]);
-    else
-      bend_along(below, i, made[(i + 1) % 3], corner[i]);
-  } else if (mask != 0) {
-    bend_along(below, opposite, made[i], corner[opposite]);
-  }
-  return below;
+          patches_over_leaf(result_, leaf, {corner, made, middle}, sides_to_compare()));
 }
 
 /// Returns the leaf's sides to compare, by bits. A side between two leaves belongs to the finer one, below which as
@@ -178,7 +156,14 @@ void LeafComparison::compare(const Face& face, const Patches& below) {
   if (result_.has_children(k, f)) return compare_children(face, children, made, below);
   const bool is_explored = k + 1 >= level_count_;
   if (stops_at_limit_ && !is_explored) rest_ = share_of_sum * sums_[k][f];
-  for (uint32_t c = 0; c < 4; ++c) compare_patch({k, f, children[c]}, below[c]);
+  unsigned open = 0;  // children, by bits
+  for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
+    const Child child{k, f, children[c]};
+    if (is_surely_near(child, below[c])) continue;
+    open |= 1U << c;
+    compare_patch(child, below[c]);
+  }
+  compare_sides(face, open);
   if (!is_explored && !stops_at_limit_) add_rest(face, below);
 }
 
@@ -202,14 +187,16 @@ void LeafComparison::compare_children(const Face& face, const std::array<Corners
 bool LeafComparison::is_settled(const Child& child, const Patch& patch, double off) {
   if (enough() == 0 || matters(off)) return false;
   is_probe_ = true;
-  compare_patch(child, patch);
+  if (!is_surely_near(child, patch)) {
+    is_far_ = !is_near_one_piece(child.corner);
+    compare_patch(child, patch);
+  }
   is_probe_ = false;
   return !std::exchange(is_far_, false);
 }
 
 /// Compares a patch with the surface at a child, at points where the distance may be largest.
 void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
-  if (is_far_ || is_surely_near(child, patch)) return;
   const auto distance_at = [&](Vec3d point) {
     // In a probe, the moves below the face under the point count, which is not the child if the point is beside it.
     double squared = is_probe_ ? squared_height_above(child.corner, point)
@@ -218,29 +205,88 @@ void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
     note(squared);
     return squared;
   };
-  // Samples on both sides of the furthest sample so far, ever closer to it.
-  const auto compare_line = [&](Vec3d from, Vec3d to) {
-    double furthest = 0.5;
-    double most = distance_at(middle_of(from, to));
-    if (most < quiet * enough()) return;
-    for (const double step : {0.25, 0.125, 0.0625})
-      for (const double share : {furthest - step, furthest + step}) {
-        const double squared = distance_at(from + share * (to - from));
-        if (squared <= most) continue;
-        most = squared;
-        furthest = share;
-      }
-  };
+  if (is_far_) return;
   (void)distance_at(1.0 / 3 * (patch.corner[0] + patch.corner[1] + patch.corner[2]));
   for (uint32_t i = 0; i < 3; ++i) {
     if ((patch.ridges >> i & 1U) == 0) continue;
     (void)distance_at(patch.corner[i]);
-    compare_line(patch.corner[i], patch.corner[(i + 1) % 3]);
+    compare_line(patch.corner[i], patch.corner[(i + 1) % 3], distance_at);
   }
   if (patch.bent_side == none) return;
   (void)distance_at(patch.bend);
   (void)distance_at(patch.opposite_bend());
-  compare_line(patch.bend, patch.opposite_bend());
+  compare_line(patch.bend, patch.opposite_bend(), distance_at);
+}
+
+/// Returns whether the corners of a child are all near one piece of the result.
+bool LeafComparison::is_near_one_piece(const Corners& corner) {
+  if (near_.has_near_all(corner, enough())) return true;
+  return std::ranges::any_of(corner,
+                             [&](Vec3d point) { return !is_far_ && is_near_all(near_piece(point), corner, enough()); });
+}
+
+/// Compares the sides of a face's children, those of `children` by bits, with the result. Between ends near different
+/// pieces of the result a side may pass over a valley, where nothing is near. Of a child between two pieces the
+/// furthest point is on a side.
+void LeafComparison::compare_sides(const Face& face, unsigned children) {
+  struct Side {
+    uint32_t from, to;  // corners; new vertices from 3 on
+    unsigned children;  // by bits
+  };
+  // clang-format off
+  static constexpr std::array<Side, 9> sides{{
+      {0, 3, 0b0001}, {3, 1, 0b0010}, {1, 4, 0b0010}, {4, 2, 0b0100}, {2, 5, 0b0100}, {5, 0, 0b0001},
+      {3, 4, 0b1010}, {4, 5, 0b1100}, {5, 3, 0b1001}}};
+  // clang-format on
+  std::array<PointNear, 6> points;
+  unsigned known = 0;
+  const auto at = [&](uint32_t i) {
+    if ((known >> i & 1U) == 0) {
+      const Vec3d point = i < 3 ? face.corner[i] : face.made[i - 3];
+      points[i] = {point, near_piece(point)};
+      known |= 1U << i;
+    }
+    return points[i];
+  };
+  for (const Side& side : sides)
+    if (!is_far_ && (side.children & children) != 0) compare_side(at(side.from), at(side.to), 0);
+}
+
+/// Divides a side until each part is near a single piece of the result, or too short to leave it.
+void LeafComparison::compare_side(const PointNear& from, const PointNear& to, int depth) {
+  if (is_far_ || depth == most_divisions) return;
+  const std::array<Vec3d, 2> ends{from.point, to.point};
+  if (is_near_all(from.piece, ends, enough()) || is_near_all(to.piece, ends, enough())) return;
+  if (squared_norm(to.point - from.point) < squared_length_of_part * enough()) return;
+  // Where pieces are nearly in one plane, the side goes from above one to above the next.
+  const double end = depth % 2 == 0 ? end_above(from.piece, from.point, to.point) : 1;
+  const Vec3d point = from.point + (end < 1 ? end : 0.5) * (to.point - from.point);
+  const PointNear between{point, near_piece(point)};
+  compare_side(from, between, depth + 1);
+  compare_side(between, to, depth + 1);
+}
+
+/// Returns a piece of the result that is near enough to a point of the surface, if any, and notes the distance.
+TriangleCorners LeafComparison::near_piece(Vec3d point) {
+  double squared = 0;
+  const TriangleCorners piece = near_.near(point, enough(), squared);
+  note(squared);
+  return piece;
+}
+
+/// Measures distances at the middle of a line and on both sides of the furthest point so far, ever closer to it.
+template <class DistanceAt>
+void LeafComparison::compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at) {
+  double furthest = 0.5;
+  double most = distance_at(middle_of(from, to));
+  if (most < quiet * enough()) return;
+  for (const double step : {0.25, 0.125, 0.0625})
+    for (const double share : {furthest - step, furthest + step}) {
+      const double squared = distance_at(from + share * (to - from));
+      if (squared <= most) continue;
+      most = squared;
+      furthest = share;
+    }
 }
 
 /// Returns whether a patch is near enough to the surface at a child, without looking for nearest points: its points are
@@ -285,7 +331,8 @@ void LeafComparison::add_rest(const Face& face, const Patches& below) {
   const auto may_matter = [&](double distance, double rest) { return matters((distance + rest) * (distance + rest)); };
   if (!may_matter(apart, share_of_rest * offset)) return;
   double most = 0;
-  for (uint32_t i = 0; i < 3; ++i) most = std::max(most, squared_move(face.level, 3 * face.face + i, face.made[i]));
+  for (uint32_t i = 0; i < 3; ++i)
+    most = std::max(most, squared_move(result_.level(face.level).mesh, 3 * face.face + i, face.made[i]));
   const double rest = share_of_rest * std::sqrt(most);
   const double enough = std::max(0.0, std::sqrt(limit_) - rest);
   const auto add = [&](Vec3d vertex, Vec3d at) {
@@ -309,7 +356,7 @@ double LeafComparison::largest_sum_below(uint32_t k, FaceId f) const {
 double LeafComparison::squared_distance_to_result(Vec3d made, Vec3d place, double enough) {
   const double apart = squared_norm(made - place);
   if (apart <= enough) return apart;
-  return has_near(made, enough) ? enough : result_.squared_distance_from(leaf_, made, enough);
+  return near_.has_near(made, enough) ? enough : result_.squared_distance_from(leaf_, made, enough);
 }
 
 /// Returns the squared distance of a point of the result from the surface; in a probe from the level of the child's
@@ -320,35 +367,6 @@ double LeafComparison::squared_distance_to_surface(const Child& child, Vec3d poi
   const FaceId nearest = surface_.walk_towards(k, f, point);
   rest_ = std::max(rest_, largest_sum_below(k, nearest));
   return surface_.squared_distance_to_new_faces(k, nearest, point, enough());
-}
-
-/// Returns how far the surface moves where the edge of a half-edge is split, squared: the new vertex from the faces
-/// before, or the middle of the edge from those after.
-double LeafComparison::squared_move(uint32_t k, HalfEdgeId h, Vec3d made) const {
-  const Topology& mesh = result_.topology(k);
-  const auto at = [&](VertexId v) { return to_double(result_.level(k).mesh.positions[v]); };
-  const Vec3d a = at(mesh.origin[h]);
-  const Vec3d b = at(mesh.tip(h));
-  const Vec3d middle = middle_of(a, b);
-  double before = squared_norm(made - middle);
-  double after = before;
-  const auto add_face = [&](uint32_t half_edge) {
-    const Vec3d apex = at(mesh.apex(half_edge));
-    before = std::min(before, squared_distance(made, {a, b, apex}));
-    after = std::min({after, squared_distance(middle, {a, made, apex}), squared_distance(middle, {made, b, apex})});
-  };
-  add_face(h);
-  if (mesh.twin[h] != none) add_face(mesh.twin[h]);
-  return std::max(before, after);
-}
-
-/// Returns whether the vertex is above or below a piece of the leaf, no further than the root of `squared`.
-bool LeafComparison::has_near(Vec3d vertex, double squared) {
-  if (prisms_.empty()) {
-    result_.find_pieces(leaf_, pieces_);
-    for (const TriangleCorners& piece : pieces_) prisms_.emplace_back(piece);
-  }
-  return std::ranges::any_of(prisms_, [&](const Prism& prism) { return prism.has_near(vertex, squared); });
 }
 
 /// Returns the largest squared distance that does not matter.

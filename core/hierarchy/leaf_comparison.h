@@ -8,8 +8,8 @@
 #include "hierarchy/allowed_distance.h"
 #include "hierarchy/level_choice.h"
 #include "hierarchy/level_surface.h"
+#include "hierarchy/near_pieces.h"
 #include "hierarchy/patch.h"
-#include "hierarchy/prism.h"
 #include "hierarchy/progress.h"
 #include "hierarchy/result_surface.h"
 
@@ -62,6 +62,11 @@ class LeafComparison {
     FaceId parent;
     const Corners& corner;
   };
+  /// A point of the surface, and a piece of the result that is near.
+  struct PointNear {
+    Vec3d point;
+    TriangleCorners piece;
+  };
 
   void begin_with(double share);
   void go_to(const LevelFace& leaf);
@@ -74,13 +79,18 @@ class LeafComparison {
   [[nodiscard]] bool is_surely_near(const LevelFace& leaf) const;
 
   void compare(const LevelFace& leaf);
-  [[nodiscard]] Patches patches_over_leaf(const Corners& corner, const Corners& made, const Corners& middle);
   [[nodiscard]] unsigned sides_to_compare();
   void compare_below(uint32_t k, FaceId f, const Patch& patch, const Distances& off);
   void compare(const Face& face, const Patches& below);
   void compare_children(const Face& face, const std::array<Corners, 4>& children, const Distances& made,
                         const Patches& below);
   void compare_patch(const Child& child, const Patch& patch);
+  void compare_sides(const Face& face, unsigned children);
+  void compare_side(const PointNear& from, const PointNear& to, int depth);
+  [[nodiscard]] bool is_near_one_piece(const Corners& corner);
+  [[nodiscard]] TriangleCorners near_piece(Vec3d point);
+  template <class DistanceAt>
+  void compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at);
   void add_rest(const Face& face, const Patches& below);
 
   [[nodiscard]] bool is_settled(const Child& child, const Patch& patch, double off);
@@ -88,8 +98,6 @@ class LeafComparison {
   [[nodiscard]] double largest_sum_below(uint32_t k, FaceId f) const;
   [[nodiscard]] double squared_distance_to_result(Vec3d made, Vec3d place, double enough);
   [[nodiscard]] double squared_distance_to_surface(const Child& child, Vec3d point);
-  [[nodiscard]] double squared_move(uint32_t k, HalfEdgeId h, Vec3d made) const;
-  [[nodiscard]] bool has_near(Vec3d vertex, double squared);
 
   /// Returns whether a squared distance, with `rest_` added to its root, exceeds the limit.
   [[nodiscard]] bool matters(double squared) const { return !is_far_ && squared > enough(); }
@@ -98,22 +106,21 @@ class LeafComparison {
 
   ResultSurface result_;
   LevelSurface surface_{result_};
+  NearPieces near_{result_};
   const std::vector<Buffer<float>>& sums_;
   uint32_t level_count_;
   const AllowedDistance& allowed_;
   const Progress* progress_;
-  uint32_t visited_ = 0;                 ///< leaves
-  double squared_share_ = 0;             ///< share of the allowed distance above which distances matter
-  double allowed_here_ = 1;              ///< distance, at the leaf at hand
-  double limit_ = 0;                     ///< squared distance above which one matters at the leaf at hand
-  bool has_grown_ = false;               ///< whether a distance raised squared_share_
-  double rest_ = 0;                      ///< upper bound of what levels further down add at the face at hand
-  bool stops_at_limit_ = false;          ///< a distance above the limit ends the comparison of a leaf
-  bool is_probe_ = false;                ///< one above the limit leads further down
-  LevelFace leaf_{};                     ///< at hand
-  bool is_far_ = false;                  ///< a distance above the limit was found
-  std::vector<TriangleCorners> pieces_;  ///< of the leaf
-  std::vector<Prism> prisms_;            ///< of `pieces_`; empty until they are used
+  uint32_t visited_ = 0;         ///< leaves
+  double squared_share_ = 0;     ///< share of the allowed distance above which distances matter
+  double allowed_here_ = 1;      ///< distance, at the leaf at hand
+  double limit_ = 0;             ///< squared distance above which one matters at the leaf at hand
+  bool has_grown_ = false;       ///< whether a distance raised squared_share_
+  double rest_ = 0;              ///< upper bound of what levels further down add at the face at hand
+  bool stops_at_limit_ = false;  ///< a distance above the limit ends the comparison of a leaf
+  bool is_probe_ = false;        ///< one above the limit leads further down
+  LevelFace leaf_{};             ///< at hand
+  bool is_far_ = false;          ///< a distance above the limit was found
   std::vector<LevelFace> beside_;
 };
 

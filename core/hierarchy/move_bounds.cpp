@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "criteria/deviation.h"
+#include "papilio/triangle_distance.h"
 
 namespace papilio {
 namespace {
@@ -46,6 +47,24 @@ double move_bound(const LevelChoice& choice, EdgeId edge, double enough) {
   const double cosine = dot(normals[h.face()], normals[Topology::face(mesh.twin[h])]);
   const double sine = cosine > 0 ? std::sqrt(std::max(0.0, 1 - cosine * cosine)) : 1;
   return std::min(offset, level.trial.deviation_at(level.mesh, edge) + sine * offset);
+}
+
+double squared_move(const Mesh& whole, HalfEdgeId h, Vec3d made) {
+  const Topology& mesh = whole.topology;
+  const auto at = [&](VertexId v) { return to_double(whole.positions[v]); };
+  const Vec3d a = at(mesh.origin[h]);
+  const Vec3d b = at(mesh.tip(h));
+  const Vec3d middle = 0.5 * (a + b);
+  double before = dot(made - middle, made - middle);
+  double after = before;
+  const auto add_face = [&](uint32_t half_edge) {
+    const Vec3d apex = at(mesh.apex(half_edge));
+    before = std::min(before, squared_distance(made, {a, b, apex}));
+    after = std::min({after, squared_distance(middle, {a, made, apex}), squared_distance(middle, {made, b, apex})});
+  };
+  add_face(h);
+  if (mesh.twin[h] != none) add_face(mesh.twin[h]);
+  return std::max(before, after);
 }
 
 Buffer<float> largest_moves(const LevelChoice& choice, double enough) {

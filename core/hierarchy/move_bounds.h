@@ -12,6 +12,10 @@ namespace papilio {
 /// is split. A bound up to `enough` may be loose. It depends on the edge's neighbourhood alone.
 [[nodiscard]] double move_bound(const LevelChoice& choice, EdgeId edge, double enough);
 
+/// Returns how far the surface moves where the edge of a half-edge is split, squared: the new vertex from the faces
+/// before, or the middle of the edge from those after.
+[[nodiscard]] double squared_move(const Mesh& whole, HalfEdgeId h, Vec3d made);
+
 /// Returns for each face [F] of the choice's region the largest move bound of its edges.
 [[nodiscard]] Buffer<float> largest_moves(const LevelChoice& choice, double enough);
 

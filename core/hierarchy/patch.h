@@ -65,4 +65,14 @@ void bend_along(Patches& patches, uint32_t corner, Vec3d from, Vec3d to);
 /// Returns the patches over the children of the face under `patch`; `middle`: see Patch::middles().
 [[nodiscard]] Patches patches_below(const Patch& patch, const Corners& middle);
 
+/// Places on an undivided face: its corners, the surface's new vertices, and where these are in the result.
+struct LeafCorners {
+  const Corners &corner, &made, &middle;
+};
+
+/// Returns the pieces of an undivided face as patches over its children. `ridges`: sides, by bits, at which the result
+/// may be bent.
+[[nodiscard]] Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, const LeafCorners& at,
+                                        unsigned ridges);
+
 }  // namespace papilio

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "hierarchy/result_surface.h"
@@ -18,6 +19,21 @@ namespace papilio {
   return height * height / dot(normal, normal);
 }
 
+/// Returns at what share of the way from a point above or below a triangle to another the way leaves the prism; 1 if it
+/// does not.
+[[nodiscard]] inline double end_above(const TriangleCorners& triangle, Vec3d from, Vec3d to) {
+  const Corners corner{triangle.a, triangle.b, triangle.c};
+  const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  double end = 1;
+  for (uint32_t i = 0; i < 3; ++i) {
+    const Vec3d inward = cross(normal, corner[(i + 1) % 3] - corner[i]);
+    const double first = dot(from - corner[i], inward);
+    const double last = dot(to - corner[i], inward);
+    if (first > 0 && last < 0) end = std::min(end, first / (first - last));
+  }
+  return end;
+}
+
 /// Triangle prepared for tests of whether points are above it.
 class Prism {
  public:
@@ -34,6 +50,8 @@ class Prism {
     const double height = dot(point - corner_[0], normal);
     return height * height <= squared && is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);
   }
+
+  [[nodiscard]] TriangleCorners triangle() const { return {corner_[0], corner_[1], corner_[2]}; }
 
   Vec3d normal{};  ///< of length one; zero of a triangle without area
 

@@ -70,27 +70,38 @@ LevelFace ResultSurface::face_across(uint32_t k, FaceId f, uint32_t i) const {
   return {k - 1, Topology::face(topology(k - 1).twin[3 * parent + side])};
 }
 
-double ResultSurface::squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough) {
+double ResultSurface::squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough,
+                                               TriangleCorners& nearest) {
   find_pieces(leaf, pieces_);
   double least = std::numeric_limits<double>::infinity();
   for (const TriangleCorners& piece : pieces_) {
-    least = std::min(least, squared_distance(point, piece));
+    const double distance = squared_distance(point, piece);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = piece;
     if (least <= enough) break;
   }
   return least;
 }
 
-double ResultSurface::squared_distance_from(const LevelFace& leaf, Vec3d point, double enough) {
+double ResultSurface::squared_distance_from(const LevelFace& leaf, Vec3d point, double enough,
+                                            TriangleCorners* nearest) {
+  TriangleCorners nearest_of_leaf{};
   visited_.assign(1, leaf);
-  double least = squared_distance_to_leaf(leaf, point, enough);
+  double least = std::numeric_limits<double>::infinity();
+  const auto visit = [&](const LevelFace& visited) {
+    const double distance = squared_distance_to_leaf(visited, point, enough, nearest_of_leaf);
+    if (distance > least) return false;
+    least = distance;
+    if (nearest != nullptr) *nearest = nearest_of_leaf;
+    return true;
+  };
+  visit(leaf);
   for (size_t at = 0; at < visited_.size() && least > enough; ++at)
     for (uint32_t i = 0; i < 3; ++i) {
       find_beside(visited_[at], i, beside_);
       for (const LevelFace& beside : beside_) {
-        if (visited_.size() == most_visited || std::ranges::count(visited_, beside) > 0) continue;
-        const double distance = squared_distance_to_leaf(beside, point, enough);
-        if (distance > least) continue;
-        least = distance;
+        if (visited_.size() == most_visited || std::ranges::count(visited_, beside) > 0 || !visit(beside)) continue;
         if (least <= enough) return least;
         visited_.push_back(beside);
       }

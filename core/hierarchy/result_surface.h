@@ -57,13 +57,15 @@ class ResultSurface {
   void find_beside(const LevelFace& leaf, uint32_t i, std::vector<LevelFace>& beside) const;
 
   /// Returns the squared distance from a point to the result around an undivided face. Visits neighbours while they are
-  /// as near as any face so far, and the distance is above `enough`.
-  [[nodiscard]] double squared_distance_from(const LevelFace& leaf, Vec3d point, double enough);
+  /// as near as any face so far, and the distance is above `enough`. `nearest`, unless null, gets the piece.
+  [[nodiscard]] double squared_distance_from(const LevelFace& leaf, Vec3d point, double enough,
+                                             TriangleCorners* nearest = nullptr);
 
  private:
   /// Returns the face across side i of a face, of its level or, if not held there, of the level above.
   [[nodiscard]] LevelFace face_across(uint32_t k, FaceId f, uint32_t i) const;
-  [[nodiscard]] double squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough);
+  [[nodiscard]] double squared_distance_to_leaf(const LevelFace& leaf, Vec3d point, double enough,
+                                                TriangleCorners& nearest);
 
   std::span<const LevelChoice> levels_;
   double most_cosine_;

@@ -11,8 +11,9 @@
 //
 // Each vertex of the surface is compared with its place on the result, the point with its barycentric coordinates on
 // the same undivided face. If the two are further apart than allowed, the vertex is compared with the nearest point of
-// the result. The result is compared with the surface where it is bent, along the sides of its faces: elsewhere a point
-// is as near to the surface as the surface's vertices are to the result.
+// the result, and so are the sides between them that no single piece of the result is near to. The result is compared
+// with the surface where it is bent, along the sides of its faces: elsewhere a point is as near to the surface as the
+// surface's vertices are to the result.
 
 namespace papilio {
 

@@ -175,6 +175,22 @@ TEST(DetailLevels, ToleranceHoldsWhereOnlyTheLastLevelMovesTheSurface) {
   for (const double tolerance : {0.02, 0.005}) expect_tolerance(detail_with_late_bump(), tolerance);
 }
 
+/// A torus whose new vertices are up to three quarters of its tube's radius away.
+DetailSource detail_with_spikes(uint32_t seed) {
+  return test::detail_of_residuals(test::torus(8, 6), 2, 0.15F, [seed](int l, uint32_t e, Vec3f) {
+    return static_cast<int32_t>(((e + 977 * seed + 31 * static_cast<uint32_t>(l)) * 2654435761U) >> 16U) % 11 - 5;
+  });
+}
+
+// A side of the finest level passes over a valley of the result, though both of its ends are near.
+TEST(DetailLevels, ToleranceHoldsBetweenTheVerticesOfTheFinestLevel) {
+  for (uint32_t seed = 0; seed < 20; ++seed)
+    for (const double tolerance : {0.03, 0.02, 0.01}) {
+      SCOPED_TRACE(std::to_string(seed) + " " + std::to_string(tolerance));
+      expect_tolerance(detail_with_spikes(seed), tolerance);
+    }
+}
+
 TEST(DetailLevels, ToleranceHoldsAgainstLevelsBelowTheDetail) {
   const DetailSource source = rough_detail();
   Options options;

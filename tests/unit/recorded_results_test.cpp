@@ -42,7 +42,7 @@ constexpr Recorded core_results[]{
     {"levels=3&flatness=0.8&crease_angle=40&tension=sharp",
      "2f54486142073141d2db8144f910aab1ee8bc85926478d5277930913b11d1579"},
     {"levels=3&tolerance=0.002", "85ba1b083a962bdce9f6b322118bccbfb47cacf58a44fbfb892da8b0c092107b"},
-    {"levels=4&max_faces=500", "3f75fd22fd0ee176ccf8a8429344a1e8ab3ce1544ed14682f8689f4fa2e3f8f7"},
+    {"levels=4&max_faces=500", "363b129967c16ce210dc3e9b37d25df26a5e78b97fb2c36946270b9aef96dab8"},
     {"levels=2&scheme=in-place&flatness=0.9", "45a99bc77b2f81f32095d0fab08c5d2760087f14808e13737ef329f6c04fcd5d"},
     {"levels=2&scheme=in-place&tolerance=0.005&tension=off",
      "23e810933fb230f97b57037f73c63b4c8176d0bef1e0284f6aa19640ed2ca15d"},

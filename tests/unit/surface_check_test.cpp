@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-constexpr double sampling = 1.02;  ///< distances may be larger between the points that the core compares
+constexpr double sampling = 1;  ///< distances may be larger between the points that the core compares
 
 struct Measured {
   Result result;
