@@ -20,11 +20,18 @@ class Hinge {
     other_normal_ = cross(other_apex, along);
     const bool is_larger = dot(normal_, normal_) >= dot(other_normal_, other_normal_);
     larger_ = is_larger ? normal_ : other_normal_;
+    lesser_ = is_larger ? other_normal_ : normal_;
+    along_ = along;
     volume_ = dot(larger_, is_larger ? other_apex : apex);
   }
 
   /// Returns whether the smaller face's apex is within `distance` of the larger face's plane.
   [[nodiscard]] bool is_flat(double distance) const { return std::abs(volume_) <= distance * length(larger_); }
+  /// Returns the height of the smaller face above the edge.
+  [[nodiscard]] double lesser_height() const {
+    const double base = length(along_);
+    return base > 0 ? length(lesser_) / base : 0;
+  }
   /// Returns the cosine of the angle between the normals; 1 if a face has no area.
   [[nodiscard]] double cosine() const {
     const double lengths = length(normal_) * length(other_normal_);
@@ -33,7 +40,8 @@ class Hinge {
 
  private:
   Vec3d normal_, other_normal_;  ///< normals as long as twice the faces' areas
-  Vec3d larger_;                 ///< longer normal
+  Vec3d larger_, lesser_;        ///< the longer normal, and the other
+  Vec3d along_;                  ///< the edge
   double volume_;                ///< six times the volume of the four vertices
 };
 

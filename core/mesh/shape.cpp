@@ -8,6 +8,7 @@
 #include "mesh/crease.h"
 #include "mesh/curve.h"
 #include "mesh/fan.h"
+#include "mesh/grid_step.h"
 #include "mesh/hinge.h"
 #include "mesh/smoothing_groups.h"
 
@@ -20,6 +21,10 @@ constexpr double least_sharp_share = 0.1, least_share_of_flats = 0.25;      // s
 constexpr uint32_t least_faces_of_flat = 4;                                 // quads, common in any model, have two
 constexpr double broader = 1.5;              // factor by which a flat must be broader than its neighbour
 constexpr double flat_share_of_size = 2e-6;  // share of the diagonal or the largest coordinate
+// Of a grid: how far rounding may move an apex from the plane of the other face, and how far it mostly does.
+constexpr double most_flat_steps = 1.5, usual_flat_steps = 0.75;
+constexpr double telling_height =
+    30;  // of a face whose angle the former distance changes by 2 degrees, in that distance
 
 class ShapeFinder {
  public:
@@ -28,15 +33,18 @@ class ShapeFinder {
         topology_(mesh.topology),
         components_(topology_.face_count()),
         flats_(topology_.face_count()),
-        cosines_(Buffer<double>::for_overwrite(topology_.edge_count())) {}
+        cosines_(Buffer<double>::for_overwrite(topology_.edge_count())),
+        is_hidden_(topology_.edge_count(), 0) {}
 
   ShapeReport run(const Options& options) {
-    set_distance();
-    find_cosines();
+    set_distances();
+    find_cosines(topology_.shape.flat_distance);
+    if (step_ > 0) find_hidden();
     find_components();
     choose_mechanical(options.shape);
     topology_.shape.has_rules = true;
     topology_.shape.is_mechanical = std::ranges::find(is_mechanical_, 1) != is_mechanical_.end();
+    if (topology_.shape.is_mechanical && step_ > 0) allow_for_grid();
     if (options.crease_angle < 180) {
       mark_creases(mesh_, options.crease_angle);
     } else {
@@ -49,10 +57,11 @@ class ShapeFinder {
   }
 
  private:
-  void set_distance() {
+  void set_distances() {
     const Box box = bounding_box(mesh_.positions);
     const double size = std::max(box.diagonal(), static_cast<double>(box.largest_coordinate()));
     topology_.shape.flat_distance = flat_share_of_size * size;
+    step_ = grid_step(mesh_.positions);
   }
 
   [[nodiscard]] bool has_two_faces(EdgeId e) const { return topology_.kind[e] == EdgeKind::smooth; }
@@ -61,12 +70,38 @@ class ShapeFinder {
     return Topology::face(topology_.twin[topology_.half_edge[e]]);
   }
 
-  void find_cosines() {
-    for (EdgeId e = 0; e < topology_.edge_count(); ++e)
-      if (has_two_faces(e)) {
-        const Hinge hinge(topology_, mesh_.positions, topology_.half_edge[e]);
-        cosines_[e] = hinge.is_flat(topology_.shape.flat_distance) ? 1 : hinge.cosine();
-      }
+  [[nodiscard]] Hinge hinge_at(EdgeId e) const { return {topology_, mesh_.positions, topology_.half_edge[e]}; }
+
+  void find_cosines(double flat_distance) {
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
+      if (!has_two_faces(e)) continue;
+      const Hinge hinge = hinge_at(e);
+      cosines_[e] = hinge.is_flat(flat_distance) ? 1 : hinge.cosine();
+    }
+  }
+
+  /// Finds the edges whose angle the grid hides, and flattens those of faces so high that they must be nearly flat.
+  void find_hidden() {
+    const double distance = most_flat_steps * step_;
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
+      if (!has_two_faces(e) || is_flat(e)) continue;
+      const Hinge hinge = hinge_at(e);
+      if (!hinge.is_flat(distance)) continue;
+      if (hinge.lesser_height() >= telling_height * distance)
+        cosines_[e] = 1;
+      else
+        is_hidden_[e] = 1;
+    }
+  }
+
+  /// Flattens what the grid has bent in a mechanical mesh.
+  void allow_for_grid() {
+    double& flat_distance = topology_.shape.flat_distance;
+    find_cosines(std::max(flat_distance, usual_flat_steps * step_));
+    flat_distance = std::max(flat_distance, most_flat_steps * step_);
+    is_hidden_.assign(topology_.edge_count(), 0);
+    flats_ = DisjointSets(topology_.face_count());
+    flat_of_.clear();
   }
 
   void find_components() {
@@ -85,9 +120,10 @@ class ShapeFinder {
     is_mechanical_.assign(faces, shape == Shape::mechanical ? 1 : 0);
     if (shape != Shape::automatic) return;
     struct Component {
-      uint32_t edges = 0, flat = 0, sharp = 0;
+      uint32_t edges = 0, flat = 0, sharp = 0, hidden = 0;
       double area = 0, area_of_flats = 0;
       [[nodiscard]] bool is_mechanical() const {
+        if (hidden > edges) return false;
         return (flat >= least_flat_share * edges && flat + sharp >= least_flat_or_sharp_share * edges && edges > 0) ||
                (flat > 0 && flat + sharp == edges) ||
                (is_sharp_enough() && area_of_flats >= least_share_of_flats * area && area > 0);
@@ -98,6 +134,10 @@ class ShapeFinder {
     for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
       if (!has_two_faces(e)) continue;
       Component& component = of[components_.find(face_of(e))];
+      if (is_hidden_[e] != 0) {
+        ++component.hidden;
+        continue;
+      }
       ++component.edges;
       component.flat += is_flat(e) ? 1 : 0;
       component.sharp += is_sharp(e) ? 1 : 0;
@@ -114,8 +154,8 @@ class ShapeFinder {
     for (uint32_t f = 0; f < faces; ++f) is_mechanical_[f] = of[components_.find(f)].is_mechanical() ? 1 : 0;
   }
 
-  [[nodiscard]] bool is_flat(EdgeId e) const { return cosines_[e] > flat_cosine_; }
-  [[nodiscard]] bool is_sharp(EdgeId e) const { return cosines_[e] < sharp_cosine_; }
+  [[nodiscard]] bool is_flat(EdgeId e) const { return is_hidden_[e] == 0 && cosines_[e] > flat_cosine_; }
+  [[nodiscard]] bool is_sharp(EdgeId e) const { return is_hidden_[e] == 0 && cosines_[e] < sharp_cosine_; }
 
   void find_creases() {
     find_flats();
@@ -209,6 +249,8 @@ class ShapeFinder {
   DisjointSets components_, flats_;
   std::vector<Flat> flat_of_;      ///< [F] region that this face represents; empty before find_flats()
   Buffer<double> cosines_;         ///< [E] cosine of the angle between the two faces' normals
+  Buffer<uint8_t> is_hidden_;      ///< [E] whether a grid hides the angle: it may be flat, or not
+  double step_ = 0;                ///< of the positions' grid; 0 without one
   Buffer<uint8_t> is_mechanical_;  ///< [F]
   uint32_t marked_ = 0;            ///< creases of smoothing groups
 };

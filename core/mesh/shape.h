@@ -27,6 +27,11 @@ namespace papilio {
 /// Corners of a mechanical component are vertices at which a curve turns by more than 31 degrees, or at which other
 /// than two curve edges meet. An edge is also flat if the apex of its smaller face lies within
 /// `ShapeMarks::flat_distance` of the larger face's plane, as angles of slivers are meaningless.
+///
+/// Positions on a grid (grid_step.h) are rounded, which bends flats. Edges whose apex lies within one and a half steps
+/// of the plane are flat if the face is high enough for that to mean little. Other such edges are not counted, and a
+/// component of which they are the most is not mechanical. In a mechanical mesh `ShapeMarks::flat_distance` is one and
+/// a half steps; for creases it is half of that.
 ShapeReport mark_shape(Mesh& mesh, const Options& options);
 
 }  // namespace papilio

@@ -12,6 +12,8 @@
 #include "papilio/trigonometry.h"
 #include "server/samples/models.h"
 #include "tests/gallery/harm.h"
+#include "tests/support/bumpy_sphere.h"
+#include "tests/support/grid_positions.h"
 #include "tests/support/invariants.h"
 #include "tests/support/real_mesh.h"
 #include "tests/support/shapes.h"
@@ -156,6 +158,36 @@ TEST(Shape, OpenSheetKeepsItsCornersAndStraightSides) {
   for (Vec3f p : refined(grid(3, 2)).positions) {
     ASSERT_EQ(p.z, 0);
     ASSERT_TRUE(p.x >= 0 && p.x <= 3 && p.y >= 0 && p.y <= 2);
+  }
+}
+
+/// Leans a mesh, and rounds its positions to a grid of Draco's.
+TriangleMesh leaning_on_grid(TriangleMesh mesh, int bits) {
+  for (Vec3f& p : mesh.positions) {
+    p = {0.8F * p.x - 0.6F * p.y, 0.6F * p.x + 0.8F * p.y, p.z};
+    p = {0.28F * p.x - 0.96F * p.z, p.y, 0.96F * p.x + 0.28F * p.z};
+  }
+  mesh.positions = on_grid(mesh.positions, longest_side(mesh.positions) / ((1 << bits) - 1));
+  return mesh;
+}
+
+// Rounding bends the planes: their edges turn by up to some degrees, those of slivers by any angle.
+TEST(Shape, PartsOnAGridAreMechanical) {
+  const TriangleMesh part = join(square_ring(48, 0.6F, 1, 0.3F), box({5, 5, 2}, {1, 1, 0.3F}), 3);
+  const ShapeReport exact = shape_of(build_mesh(part));
+  ASSERT_EQ(exact.mechanical, 2U);
+  for (const int bits : {10, 11, 12, 14}) {
+    const ShapeReport rounded = shape_of(build_mesh(leaning_on_grid(part, bits)));
+    EXPECT_EQ(rounded.mechanical, 2U) << bits;
+    EXPECT_NEAR(rounded.creases, exact.creases, 0.15 * exact.creases) << bits;
+  }
+}
+
+// At a few steps an edge most hinges are as flat as rounding may make them.
+TEST(Shape, SmoothShapesOnACoarseGridAreNotMechanical) {
+  for (const int bits : {8, 9, 10, 12}) {
+    EXPECT_EQ(shape_of(build_mesh(leaning_on_grid(bumpy_sphere(5), bits))).mechanical, 0U) << bits;
+    EXPECT_EQ(shape_of(build_mesh(leaning_on_grid(torus(96, 48), bits))).mechanical, 0U) << bits;
   }
 }
 
