@@ -5,6 +5,7 @@
 
 #include "client/cli/refine_mesh.h"
 #include "client/lib/file_words.h"
+#include "client/lib/local_limits.h"
 #include "client/lib/read_materials.h"
 #include "proto/detail/find_packed.h"
 #include "proto/findings.h"
@@ -87,6 +88,7 @@ void refine_file(const RefineFlags& flags) {
 }  // namespace
 
 RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const RefineFlags& flags, unsigned threads) {
+  const proto::Limits limits = local_limits(is_folder(flags.input.path) ? flags.jobs : 1);
   MeshBytes file = read_mesh(input);
   warn_of_detail(file);
   const std::string name = file.name;
@@ -94,16 +96,15 @@ RefinedFile refine_mesh(const MeshPlace& input, const MeshPlace& output, const R
   if (stays_scene(file, output)) {
     print_warnings(file.warnings);
     return in_words_of_the_file(name, [&]() -> RefinedFile {
-      auto made = flags.server.empty()
-                      ? proto::gltf::SceneRefinement(file.bytes, flags.parameters, own_limits).run(hooks)
-                      : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
+      auto made = flags.server.empty() ? proto::gltf::SceneRefinement(file.bytes, flags.parameters, limits).run(hooks)
+                                       : Remote(flags.server, flags.remote).refine_scene(file.bytes, flags.parameters);
       return {std::move(made.bytes), true, std::move(made.statistics)};
     });
   }
   proto::gltf::Materials materials;
   const std::string bytes = mesh_to_refine(input, output, std::move(file), materials);
   return in_words_of_the_file(name, [&]() -> RefinedFile {
-    auto made = flags.server.empty() ? proto::Refinement(bytes, flags.parameters, own_limits).run(hooks)
+    auto made = flags.server.empty() ? proto::Refinement(bytes, flags.parameters, limits).run(hooks)
                                      : Remote(flags.server, flags.remote).refine(bytes, flags.parameters);
     return {std::move(made.bytes), false, std::move(made.statistics), std::move(materials)};
   });
