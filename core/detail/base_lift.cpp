@@ -49,7 +49,7 @@ std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>
     const uint32_t* v = &mesh.topology.origin[h];
     const auto found = by_corners.find({number[v[0]], number[v[1]], number[v[2]]});
     if (found == by_corners.end() || mesh.topology.face_count() != base.face.size())
-      throw Error(Fault::bad_surface, "The coded base is not the one given: its positions are too coarse.");
+      throw Error(Fault::bad_surface, "Vertices of the base are closer to each other than its coder moves them.");
     matches.push_back(found->second);
   }
   return matches;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -59,17 +60,20 @@ std::optional<Vec3f> point_on_surface(Vec3f position, Vec3d normal, const Grid& 
 }
 
 /// Returns the positions, those of vertices with normals moved onto the grid: Draco rounds the others. Nothing if the
-/// grid is too coarse. If a vertex has no normal (zero), rounding must move no position by more than `most_move`.
+/// grid is too coarse: no vertex may move by more than its `room` [V], nor by more than `most_move` across the surface.
 std::optional<Buffer<Vec3f>> slide_onto(const Grid& grid, Buffer<Vec3f> positions, const std::vector<Vec3d>& normals,
-                                        double most_move, double most_slide) {
-  const bool is_fine = 0.5 * std::sqrt(3.0) * grid.step() <= most_move;
+                                        const std::vector<double>& room, double most_move, double most_slide) {
+  const double rounding = 0.5 * std::sqrt(3.0) * grid.step();
   for (size_t v = 0; v < positions.size(); ++v) {
-    const bool slides = dot(normals[v], normals[v]) > 0;
-    if (!slides && !is_fine) return std::nullopt;
-    if (!slides) continue;
-    const std::optional<Vec3f> point = point_on_surface(positions[v], normals[v], grid, most_move, most_slide);
-    if (!point) return std::nullopt;
-    positions[v] = *point;
+    const double most = std::min(most_move, room[v]);
+    if (dot(normals[v], normals[v]) > 0) {
+      const std::optional<Vec3f> point =
+          point_on_surface(positions[v], normals[v], grid, most, std::min(most_slide, room[v]));
+      if (!point) return std::nullopt;
+      positions[v] = *point;
+    } else if (rounding > most) {
+      return std::nullopt;
+    }
   }
   return positions;
 }
@@ -88,12 +92,28 @@ double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-double shortest_edge(const Mesh& mesh) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
-    shortest = std::min(shortest, length(to_double(mesh.positions[mesh.topology.tip(h)]) -
-                                         to_double(mesh.positions[mesh.topology.origin[h]])));
-  return shortest;
+/// Returns for each point [V] half the distance to the nearest other one. A point that moves by less is still nearer to
+/// where it was than any other.
+std::vector<double> rooms(const Buffer<Vec3f>& points) {
+  const Box box = bounding_box(points);
+  const Vec3d size = to_double(box.max) - to_double(box.min);
+  const auto along = [&](uint32_t i) {
+    return size.x >= std::max(size.y, size.z) ? points[i].x : size.y >= size.z ? points[i].y : points[i].z;
+  };
+  std::vector<uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, along);
+  std::vector<double> least(points.size(), std::numeric_limits<double>::infinity());
+  for (size_t i = 0; i < order.size(); ++i)
+    for (size_t j = i + 1; j < order.size(); ++j) {
+      const uint32_t a = order[i], b = order[j];
+      if (double{along(b)} - double{along(a)} > least[a]) break;
+      const double distance = length(to_double(points[b]) - to_double(points[a]));
+      least[a] = std::min(least[a], distance);
+      least[b] = std::min(least[b], distance);
+    }
+  for (double& distance : least) distance *= 0.5;
+  return least;
 }
 
 /// Returns whether a decoded base has all vertices and faces of the original base, with distinct positions.
@@ -127,10 +147,10 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> 
   const Mesh mesh = build_mesh(base);
   const std::vector<Vec3d> normal_of = reordered(normals, base, mesh);
   const QuantizationBox box = tight_box(bounding_box(mesh.positions));
-  const double half_edge = 0.5 * shortest_edge(mesh);
+  const std::vector<double> room = rooms(mesh.positions);
   for (int bits = fewest_position_bits;; ++bits) {
-    const std::optional<Buffer<Vec3f>> moved = slide_onto(
-        {box, bits}, mesh.positions, normal_of, std::min(most_move_, half_edge), std::min(most_slide_, half_edge));
+    const std::optional<Buffer<Vec3f>> moved =
+        slide_onto({box, bits}, mesh.positions, normal_of, room, most_move_, most_slide_);
     if (!moved && bits < most_position_bits) continue;
     Mesh rounded = mesh;
     if (moved) rounded.positions = *moved;

@@ -92,6 +92,27 @@ TEST(BaseCoder, CloseVerticesStayDistinct) {
   EXPECT_EQ(found.welded_points + found.degenerate_faces + found.boundary_edges, 0U);
 }
 
+// Two octahedra whose tips nearly touch, far less than their edges apart.
+TEST(BaseCoder, VerticesStayNearestToTheirPlaces) {
+  for (int i = 1; i <= 40; ++i) {
+    const float gap = 0.0013F * static_cast<float>(i);
+    const TriangleMesh base = test::join(test::octahedron(), test::octahedron(), 2 + gap);
+    const Mesh mesh = build_mesh(base);
+    for (const bool slides : {false, true}) {
+      DracoBaseCoder coder(0.1, 0.1);
+      const std::vector<Vec3d> normals(slides ? base.positions.size() : 0, Vec3d{0.36, 0.48, 0.8});
+      const CodedBase coded = coder.code(base, normals);
+      std::set<size_t> nearest;
+      for (const Vec3f p : coded.triangles.positions) {
+        const auto distance = [&](Vec3f place) { return length(to_double(place) - to_double(p)); };
+        nearest.insert(
+            static_cast<size_t>(std::ranges::min_element(mesh.positions, {}, distance) - mesh.positions.begin()));
+      }
+      EXPECT_EQ(nearest.size(), mesh.positions.size()) << gap << slides;
+    }
+  }
+}
+
 TEST(BaseCoder, VerticesTooCloseForAnyGridAreRefused) {
   TriangleMesh base = test::octahedron();
   base.positions[0] = {1e9F, 0, 0};
