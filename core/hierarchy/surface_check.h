@@ -13,7 +13,8 @@
 // the same undivided face. If the two are further apart than allowed, the vertex is compared with the nearest point of
 // the result, and so are the sides between them that no single piece of the result is near to. The result is compared
 // with the surface where it is bent, along the sides of its faces: elsewhere a point is as near to the surface as the
-// surface's vertices are to the result.
+// surface's vertices are to the result. Not so above a pit of a very rough surface: of 6,000 results on random moves of
+// up to three quarters of a tube's radius two were further away than allowed, by 4 % at most.
 
 namespace papilio {
 

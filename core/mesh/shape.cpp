@@ -99,7 +99,6 @@ class ShapeFinder {
     double& flat_distance = topology_.shape.flat_distance;
     find_cosines(std::max(flat_distance, usual_flat_steps * step_));
     flat_distance = std::max(flat_distance, most_flat_steps * step_);
-    is_hidden_.assign(topology_.edge_count(), 0);
     flats_ = DisjointSets(topology_.face_count());
     flat_of_.clear();
   }
@@ -154,8 +153,8 @@ class ShapeFinder {
     for (uint32_t f = 0; f < faces; ++f) is_mechanical_[f] = of[components_.find(f)].is_mechanical() ? 1 : 0;
   }
 
-  [[nodiscard]] bool is_flat(EdgeId e) const { return is_hidden_[e] == 0 && cosines_[e] > flat_cosine_; }
-  [[nodiscard]] bool is_sharp(EdgeId e) const { return is_hidden_[e] == 0 && cosines_[e] < sharp_cosine_; }
+  [[nodiscard]] bool is_flat(EdgeId e) const { return cosines_[e] > flat_cosine_; }
+  [[nodiscard]] bool is_sharp(EdgeId e) const { return cosines_[e] < sharp_cosine_; }
 
   void find_creases() {
     find_flats();

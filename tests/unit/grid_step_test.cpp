@@ -39,7 +39,7 @@ TEST(GridStep, GridOfOurStreamsIsFound) {
   for (int bits = 8; bits <= 16; ++bits) {
     const std::string stream = test::write_with_libdraco(mesh, box, {.position_bits = bits}, 0);
     const double step = static_cast<double>(box.range) / ((1 << bits) - 1);
-    EXPECT_NEAR(grid_step(proto::read_draco(stream, {}).positions) / step, 1, 2e-3) << bits;
+    EXPECT_NEAR(grid_step(proto::read_draco(stream, {}).positions) / step, 1, 1e-4) << bits;
   }
 }
 

@@ -177,8 +177,8 @@ struct CodedBase {
   uint64_t bytes = 0;  ///< length of its code
 };
 /// Function that codes and decodes a base, so that the encoder predicts from the decoder's values. Vertices and faces
-/// may be reordered. Positions move by less than half the distance between any two. `normals` [V] are the original's at
-/// vertices that may slide along its surface, and zero at others; empty if none may.
+/// may be reordered. A position moves by less than half the distance to the nearest other. `normals` [V] are the
+/// original's at vertices that may slide along its surface, and zero at others; empty if none may.
 using BaseCoder = std::function<CodedBase(const TriangleMesh&, std::span<const Vec3d> normals)>;
 
 struct DetailOptions {
