@@ -1,7 +1,8 @@
 #include "papilio/triangle_distance.h"
 
-#include <algorithm>
 #include <limits>
+
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -13,7 +14,7 @@ double squared(Vec3d a) { return dot(a, a); }
 double squared_distance_to_segment(Vec3d point, Vec3d a, Vec3d b) {
   const Vec3d along = b - a;
   const double length_squared = squared(along);
-  const double t = length_squared > 0 ? std::clamp(dot(point - a, along) / length_squared, 0.0, 1.0) : 0.0;
+  const double t = length_squared > 0 ? lesser(larger(dot(point - a, along) / length_squared, 0.0), 1.0) : 0.0;
   return squared(point - a - t * along);
 }
 
@@ -40,9 +41,9 @@ double squared_distance(Vec3d point, const TriangleCorners& triangle) {
   double least = std::numeric_limits<double>::infinity();
   // The foot is computed from the corners, so that it lies on the triangle even if this is a sliver.
   if (is_inside) least = squared(from_a - (v / whole) * ab - (w / whole) * ac);
-  if (!are_sure || u < 0) least = std::min(least, squared_distance_to_segment(point, b, c));
-  if (!are_sure || v < 0) least = std::min(least, squared_distance_to_segment(point, c, a));
-  if (!are_sure || w < 0) least = std::min(least, squared_distance_to_segment(point, a, b));
+  if (!are_sure || u < 0) least = lesser(least, squared_distance_to_segment(point, b, c));
+  if (!are_sure || v < 0) least = lesser(least, squared_distance_to_segment(point, c, a));
+  if (!are_sure || w < 0) least = lesser(least, squared_distance_to_segment(point, a, b));
   return least;
 }
 

@@ -1,6 +1,5 @@
 #include "criteria/deviation.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,6 +7,7 @@
 #include "criteria/camera.h"
 #include "criteria/lighting.h"
 #include "papilio/triangle_distance.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -58,13 +58,11 @@ std::optional<double> squared_distance_to_either(Vec3d point, Vec3d a, Vec3d b, 
   // Branch-free: the nearer triangle is unpredictable.
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Both above_either = is_beyond ? Both{infinity, infinity} : squared;
-  return std::min(above_either[0], above_either[1]);
+  return lesser(above_either[0], above_either[1]);
 }
 
 /// Clamps an error to finite floats: infinity is the threshold of a budget that no edge fits.
-float to_finite(double number) {
-  return static_cast<float>(std::min<double>(std::numeric_limits<float>::max(), number));
-}
+float to_finite(double number) { return static_cast<float>(lesser(double{std::numeric_limits<float>::max()}, number)); }
 
 }  // namespace
 
@@ -74,8 +72,8 @@ double deviation_from_faces(Vec3f q, Vec3f a, Vec3f b, Vec3f apex, Vec3f other_a
   const TriangleCorners other{face.b, face.a, to_double(other_apex)};
   const double most = squared_distance_to_middle(q, a, b);
   if (const auto squared = squared_distance_to_either(point, face.a, face.b, face.c, other.c))
-    return std::sqrt(std::min(*squared, most));
-  return std::sqrt(std::min({squared_distance(point, face), squared_distance(point, other), most}));
+    return std::sqrt(lesser(*squared, most));
+  return std::sqrt(lesser(squared_distance(point, face), squared_distance(point, other), most));
 }
 
 double deviation(const Mesh& mesh, EdgeId edge, Vec3f q) {
@@ -89,8 +87,8 @@ double deviation(const Mesh& mesh, EdgeId edge, Vec3f q) {
   const Vec3f a = at(topology.origin[h]);
   const Vec3f b = at(topology.tip(h));
   if (topology.kind[edge] != EdgeKind::smooth)
-    return std::sqrt(std::min(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)),
-                              squared_distance_to_middle(q, a, b)));
+    return std::sqrt(lesser(squared_distance_to_segment(to_double(q), to_double(a), to_double(b)),
+                            squared_distance_to_middle(q, a, b)));
   return deviation_from_faces(q, a, b, at(topology.apex(h)), at(topology.apex(topology.twin[h])));
 }
 
@@ -108,7 +106,7 @@ double ErrorMeasure::least_deviation(float error, double scale) const {
   if (camera_ == nullptr || (tolerated_ > 0 && tolerated_pixels_ == 0)) return rounding * error * diagonal_;
   if (!view_->lights.empty()) return 0;
   if (tolerated_ == 0) return rounding * error / scale;
-  return rounding * error * std::max(tolerated_, tolerated_pixels_ / scale);
+  return rounding * error * larger(tolerated_, tolerated_pixels_ / scale);
 }
 
 float ErrorMeasure::error(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId edge, double distance) const {
@@ -117,7 +115,7 @@ float ErrorMeasure::error(const Mesh& mesh, const Buffer<Vec3f>& normals, EdgeId
   double seen = pixels(mesh, edge, distance);
   if (!view_->lights.empty()) seen *= light_weight(mesh, normals, edge, distance, *view_, *camera_);
   if (tolerated_ == 0) return to_finite(seen);
-  return to_finite(std::min(distance / tolerated_, seen / tolerated_pixels_));
+  return to_finite(lesser(distance / tolerated_, seen / tolerated_pixels_));
 }
 
 }  // namespace papilio

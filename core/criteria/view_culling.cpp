@@ -1,10 +1,10 @@
 #include "criteria/view_culling.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "mesh/four_children.h"
 #include "mesh/normals.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -75,8 +75,8 @@ Buffer<double> longest_edges(const Mesh& mesh) {
     const uint32_t b = topology.tip(topology.half_edge[e]);
     const Vec3d along = to_double(mesh.positions[b]) - to_double(mesh.positions[a]);
     const double squared = dot(along, along);
-    longest[a] = std::max(longest[a], squared);
-    longest[b] = std::max(longest[b], squared);
+    longest[a] = larger(longest[a], squared);
+    longest[b] = larger(longest[b], squared);
   }
   for (double& l : longest) l = std::sqrt(l);
   return longest;
@@ -96,10 +96,10 @@ Buffer<double> longest_edges_below(const Topology& parents, const Buffer<Vec3f>&
     visit_edges_of_four([&](uint32_t /*half_edge*/, uint32_t from, uint32_t to) {
       const Vec3d along = p[to] - p[from];
       const double squared_length = dot(along, along);
-      squared[from] = std::max(squared[from], squared_length);
-      squared[to] = std::max(squared[to], squared_length);
+      squared[from] = larger(squared[from], squared_length);
+      squared[to] = larger(squared[to], squared_length);
     });
-    for (uint32_t i = 0; i < 6; ++i) longest[vertex[i]] = std::max(longest[vertex[i]], squared[i]);
+    for (uint32_t i = 0; i < 6; ++i) longest[vertex[i]] = larger(longest[vertex[i]], squared[i]);
   }
   for (double& l : longest) l = std::sqrt(l);
   return longest;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hierarchy/patch.h"
+#include "simd/extremes.h"
 #include "split/split_pattern.h"
 
 namespace papilio {
@@ -40,8 +41,8 @@ double scale_at(const LevelChoice& choice, FaceId face, const Camera& camera) {
   double squared_radius = 0, scale = 0;
   for (const Corners* points : {&corner, &made})
     for (const Vec3d& p : *points) {
-      squared_radius = std::max(squared_radius, squared_norm(p - centre));
-      scale = std::max(scale, camera.pixels_per_unit(p));
+      squared_radius = larger(squared_radius, squared_norm(p - centre));
+      scale = larger(scale, camera.pixels_per_unit(p));
     }
   if (camera.is_outside(centre, std::sqrt(squared_radius))) return 0;
   if (camera.shows_backs()) return scale;
@@ -49,8 +50,7 @@ double scale_at(const LevelChoice& choice, FaceId face, const Camera& camera) {
   const double facing = camera.facing(centre, normal);
   if (facing >= 0) return scale;
   double turn = 0;
-  for (const Corners& child : children_of(corner, made))
-    turn = std::max(turn, squared_norm(unit_normal(child) - normal));
+  for (const Corners& child : children_of(corner, made)) turn = larger(turn, squared_norm(unit_normal(child) - normal));
   return -facing <= all_turns * std::sqrt(turn) || has_piece_towards(corner, made, camera) ? scale : 0;
 }
 
@@ -61,7 +61,7 @@ Buffer<float> DistanceLimit::at_faces(const LevelChoice& choice) const {
   if (camera == nullptr) return limits;
   for (FaceId f : choice.region.faces) {
     const double scale = scale_at(choice, f, *camera);
-    limits[f] = static_cast<float>(scale > 0 ? std::max(everywhere, pixels / scale) : AllowedDistance::any);
+    limits[f] = static_cast<float>(scale > 0 ? larger(everywhere, pixels / scale) : AllowedDistance::any);
   }
   return limits;
 }
@@ -74,9 +74,9 @@ AllowedDistance::AllowedDistance(std::span<const LevelChoice> levels, const Dist
     for (FaceId f : choice.region.faces) {
       if (k + 1 < levels.size() && choice.red[f] != 0) {
         const float* below = &at_[k + 1][levels[k + 1].level->first_child_of(f)];
-        at_[k][f] = std::min({at_[k][f], below[0], below[1], below[2], below[3]});
+        at_[k][f] = lesser(at_[k][f], below[0], below[1], below[2], below[3]);
       }
-      least_ = std::min<double>(least_, at_[k][f]);
+      least_ = lesser(least_, double{at_[k][f]});
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hierarchy/move_bounds.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -56,7 +57,7 @@ double LeafComparison::largest_share(double known, uint32_t first, uint32_t last
 
 double LeafComparison::largest_bound(uint32_t first, uint32_t last) {
   double most = 0;
-  visit_leaves(first, last, [&](const LevelFace& leaf) { most = std::max(most, bound_at(leaf) / allowed_.at(leaf)); });
+  visit_leaves(first, last, [&](const LevelFace& leaf) { most = larger(most, bound_at(leaf) / allowed_.at(leaf)); });
   return most;
 }
 
@@ -301,8 +302,8 @@ bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
   const Vec3d normal = 1 / size * area;
   double height = 0, squared_offset = 0;
   const auto add = [&](Vec3d point, Vec3d at) {
-    height = std::max(height, std::abs(dot(point - at, normal)));
-    squared_offset = std::max(squared_offset, squared_norm(point - at));
+    height = larger(height, std::abs(dot(point - at, normal)));
+    squared_offset = larger(squared_offset, squared_norm(point - at));
   };
   for (uint32_t i = 0; i < 3; ++i) add(patch.corner[i], corner[i]);
   if (const uint32_t i = patch.bent_side; i != none) add(patch.bend, middle_of(corner[i], corner[(i + 1) % 3]));
@@ -315,8 +316,8 @@ bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
     const EdgeId e = mesh.edge[h];
     if (mesh.kind[e] != EdgeKind::smooth || result_.choice(k).region.has_edge[e] == 0) return false;
     const FaceId beside = Topology::face(mesh.twin[h]);
-    squared_turn = std::max(squared_turn, squared_norm(to_double(normals[beside]) - normal));
-    if (is_probe_) rest_ = std::max(rest_, largest_sum_below(k, beside));
+    squared_turn = larger(squared_turn, squared_norm(to_double(normals[beside]) - normal));
+    if (is_probe_) rest_ = larger(rest_, largest_sum_below(k, beside));
   }
   const double distance = height + std::sqrt(squared_turn * squared_offset);
   return !matters(distance * distance);
@@ -325,16 +326,16 @@ bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
 /// Adds what levels that were not explored may contribute to the distances at a face.
 void LeafComparison::add_rest(const Face& face, const Patches& below) {
   const Corners place{below[0].corner[0], below[1].corner[1], below[2].corner[2]};
-  const double apart = std::sqrt(
-      std::max(largest_squared_distance(face.corner, place), largest_squared_distance(face.made, face.middle)));
+  const double apart =
+      std::sqrt(larger(largest_squared_distance(face.corner, place), largest_squared_distance(face.made, face.middle)));
   const double offset = std::sqrt(largest_squared_distance(face.made, middles_of(face.corner)));
   const auto may_matter = [&](double distance, double rest) { return matters((distance + rest) * (distance + rest)); };
   if (!may_matter(apart, share_of_rest * offset)) return;
   double most = 0;
   for (uint32_t i = 0; i < 3; ++i)
-    most = std::max(most, squared_move(result_.level(face.level).mesh, 3 * face.face + i, face.made[i]));
+    most = larger(most, squared_move(result_.level(face.level).mesh, 3 * face.face + i, face.made[i]));
   const double rest = share_of_rest * std::sqrt(most);
-  const double enough = std::max(0.0, std::sqrt(limit_) - rest);
+  const double enough = larger(0.0, std::sqrt(limit_) - rest);
   const auto add = [&](Vec3d vertex, Vec3d at) {
     if (!may_matter(length(vertex - at), rest)) return;
     const double distance = std::sqrt(result_.squared_distance_from(leaf_, vertex, enough * enough));
@@ -365,14 +366,14 @@ double LeafComparison::squared_distance_to_surface(const Child& child, Vec3d poi
   const auto [k, f] = LevelFace{child.level, child.parent};
   if (!is_probe_) return surface_.squared_distance({k, f}, leaf_.level, point, enough());
   const FaceId nearest = surface_.walk_towards(k, f, point);
-  rest_ = std::max(rest_, largest_sum_below(k, nearest));
+  rest_ = larger(rest_, largest_sum_below(k, nearest));
   return surface_.squared_distance_to_new_faces(k, nearest, point, enough());
 }
 
 /// Returns the largest squared distance that does not matter.
 double LeafComparison::enough() const {
   if (rest_ == 0) return limit_;
-  const double left = std::max(0.0, std::sqrt(limit_) - rest_);
+  const double left = larger(0.0, std::sqrt(limit_) - rest_);
   return left * left;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "hierarchy/patch.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -20,9 +21,9 @@ double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d p
   auto [k, f] = from;
   double least = std::numeric_limits<double>::infinity();
   for (;; --k) {
-    least = std::min(least, squared_distance_to_level(k, f, point, enough));
+    least = lesser(least, squared_distance_to_level(k, f, point, enough));
     if (least > enough && result_->has_children(k, f))
-      least = std::min(least, squared_distance_where_it_slid(k, f, point, enough));
+      least = lesser(least, squared_distance_where_it_slid(k, f, point, enough));
     if (least <= enough || k == coarsest) return least;
     f = result_->level(k).parent_of(f);
   }
@@ -68,7 +69,7 @@ double LevelSurface::squared_distance_to_new_faces(uint32_t k, FaceId f, Vec3d p
   const uint32_t first = child_below(k, f, point);
   double least = squared_distance_to(children[first], point);
   for (uint32_t c = 0; c < 4 && least > enough; ++c)
-    if (c != first) least = std::min(least, squared_distance_to(children[c], point));
+    if (c != first) least = lesser(least, squared_distance_to(children[c], point));
   return least;
 }
 

@@ -1,4 +1,5 @@
 #include "hierarchy/move_bounds.h"
+#include "simd/extremes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,12 +42,12 @@ double move_bound(const LevelChoice& choice, EdgeId edge, double enough) {
   const double offset = std::sqrt(level.trial.squared_offset(level.mesh, edge));
   if (mesh.kind[edge] != EdgeKind::smooth) return offset;
   if (offset <= enough)
-    return is_at_middle(level.mesh, edge, offset) ? std::max(offset, move_to_come(choice, edge)) : offset;
+    return is_at_middle(level.mesh, edge, offset) ? larger(offset, move_to_come(choice, edge)) : offset;
   // A vertex that slides along one side of a bend leaves the edge uncovered.
   const Buffer<Vec3f>& normals = level.trial.normals;
   const double cosine = dot(normals[h.face()], normals[Topology::face(mesh.twin[h])]);
-  const double sine = cosine > 0 ? std::sqrt(std::max(0.0, 1 - cosine * cosine)) : 1;
-  return std::min(offset, level.trial.deviation_at(level.mesh, edge) + sine * offset);
+  const double sine = cosine > 0 ? std::sqrt(larger(0.0, 1 - cosine * cosine)) : 1;
+  return lesser(offset, level.trial.deviation_at(level.mesh, edge) + sine * offset);
 }
 
 double squared_move(const Mesh& whole, HalfEdgeId h, Vec3d made) {
@@ -59,12 +60,12 @@ double squared_move(const Mesh& whole, HalfEdgeId h, Vec3d made) {
   double after = before;
   const auto add_face = [&](uint32_t half_edge) {
     const Vec3d apex = at(mesh.apex(half_edge));
-    before = std::min(before, squared_distance(made, {a, b, apex}));
-    after = std::min({after, squared_distance(middle, {a, made, apex}), squared_distance(middle, {made, b, apex})});
+    before = lesser(before, squared_distance(made, {a, b, apex}));
+    after = lesser(after, squared_distance(middle, {a, made, apex}), squared_distance(middle, {made, b, apex}));
   };
   add_face(h);
   if (mesh.twin[h] != none) add_face(mesh.twin[h]);
-  return std::max(before, after);
+  return larger(before, after);
 }
 
 Buffer<float> largest_moves(const LevelChoice& choice, double enough) {
@@ -75,7 +76,7 @@ Buffer<float> largest_moves(const LevelChoice& choice, double enough) {
   Buffer<float> moves(mesh.face_count(), 0);
   for (FaceId f : choice.region.faces) {
     const uint32_t* edge = &mesh.edge[size_t{3} * f];
-    moves[f] = std::max({at_edge[edge[0]], at_edge[edge[1]], at_edge[edge[2]]});
+    moves[f] = larger(at_edge[edge[0]], at_edge[edge[1]], at_edge[edge[2]]);
   }
   return moves;
 }
@@ -98,9 +99,8 @@ Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<
   Buffer<float> further(mesh.vertex_count, 0);  // the largest move at the vertex
   float known = 0;                              // share
   for (FaceId f : choice.region.faces) {
-    if (!is_divided(choice, f) && sums[f] + moves[f] > 0) known = std::max(known, (sums[f] + moves[f]) / allowed[f]);
-    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
-      further[mesh.origin[h]] = std::max(further[mesh.origin[h]], moves[f]);
+    if (!is_divided(choice, f) && sums[f] + moves[f] > 0) known = larger(known, (sums[f] + moves[f]) / allowed[f]);
+    for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) further[mesh.origin[h]] = larger(further[mesh.origin[h]], moves[f]);
   }
   // On smooth surfaces further levels add a third of the last move. If every distance is below the allowed one, the
   // largest is stated, and less smooth surfaces add more.
@@ -109,7 +109,7 @@ Buffer<uint8_t> vertices_that_may_leave(const LevelChoice& choice, const Buffer<
   for (FaceId f : choice.region.faces) {
     const uint32_t* corner = &mesh.origin[size_t{3} * f];
     const float matters = known < 1 ? known * allowed[f] : allowed[f];  // not a number where anything is allowed
-    const float more = share_of_rest * std::max({further[corner[0]], further[corner[1]], further[corner[2]]});
+    const float more = share_of_rest * larger(further[corner[0]], further[corner[1]], further[corner[2]]);
     const bool is_open = moves[f] + more > share_that_counts * matters && sums[f] + moves[f] + more > matters;
     if (is_divided(choice, f) || is_open)
       for (uint32_t i = 0; i < 3; ++i) marks[corner[i]] = 1;
@@ -127,7 +127,7 @@ std::vector<Buffer<float>> sums_below(std::span<const LevelChoice> levels, int l
     for (FaceId f : choice.region.faces) {
       if (k + 1 < levels.size() && choice.red[f] != 0) {
         const float* child = &sums[k + 1][levels[k + 1].level->first_child_of(f)];
-        sums[k][f] += std::max({child[0], child[1], child[2], child[3]});
+        sums[k][f] += larger(child[0], child[1], child[2], child[3]);
       } else if (has_rest) {
         sums[k][f] *= 1 + share_of_rest;
       }

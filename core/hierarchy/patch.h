@@ -1,9 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "hierarchy/result_surface.h"
+#include "simd/extremes.h"
 
 // Parts of a result over a face of a level, and over the face's descendants.
 
@@ -17,7 +17,7 @@ namespace papilio {
 /// Returns the largest squared distance of three pairs of points.
 [[nodiscard]] inline double largest_squared_distance(const Corners& some, const Corners& others) {
   double largest = 0;
-  for (uint32_t i = 0; i < 3; ++i) largest = std::max(largest, squared_norm(some[i] - others[i]));
+  for (uint32_t i = 0; i < 3; ++i) largest = larger(largest, squared_norm(some[i] - others[i]));
   return largest;
 }
 
@@ -49,7 +49,7 @@ struct Patch {
   const double at_corners = largest_squared_distance(patch.corner, triangle);
   if (patch.bent_side == none) return at_corners;
   const Vec3d middle = middle_of(triangle[patch.bent_side], triangle[(patch.bent_side + 1) % 3]);
-  return std::max(at_corners, squared_norm(patch.bend - middle));
+  return larger(at_corners, squared_norm(patch.bend - middle));
 }
 
 /// Patches over the four children of a face.

@@ -1,6 +1,6 @@
 #include "hierarchy/transition.h"
+#include "simd/extremes.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/trigonometry.h"
@@ -17,10 +17,10 @@ double squared_length(Vec3d a) { return dot(a, a); }
 /// smallest angle is opposite the shortest side, and at most 60 degrees.
 double squared_cosine_of_smallest_angle(double a, double b, double c) {
   // Branch-free: the shortest side is unpredictable.
-  const double shorter = std::min(a, b);
-  const double shortest = std::min(shorter, c);
-  const double one = std::max(a, b);
-  const double other = std::max(shorter, c);
+  const double shorter = lesser(a, b);
+  const double shortest = lesser(shorter, c);
+  const double one = larger(a, b);
+  const double other = larger(shorter, c);
   const double twice_product = one + other - shortest;  // 2 * product of the two longer sides * cosine
   return shortest > 0 ? 0.25 * twice_product * twice_product / (one * other) : 1;
 }
@@ -61,8 +61,7 @@ Cosines cosines_of_pieces(const SplitFace& face) {
   const double ca = squared_length(a - c);
   const double beside_a = squared_cosine_of_smallest_angle(first_half, across, ca);
   if (!has_two) {
-    const double both =
-        std::max(beside_a, squared_cosine_of_smallest_angle(second_half, squared_length(c - b), across));
+    const double both = larger(beside_a, squared_cosine_of_smallest_angle(second_half, squared_length(c - b), across));
     return {both, both};
   }
   const double from_b = squared_length(on_bc - b);
@@ -70,9 +69,9 @@ Cosines cosines_of_pieces(const SplitFace& face) {
   const double between = squared_length(on_bc - on_ab);
   const double other_across = squared_length(on_bc - a);
   const double tip = squared_cosine_of_smallest_angle(second_half, from_b, between);
-  return {std::max({tip, squared_cosine_of_smallest_angle(first_half, between, other_across),
-                    squared_cosine_of_smallest_angle(other_across, to_c, ca)}),
-          std::max({tip, beside_a, squared_cosine_of_smallest_angle(between, to_c, across)})};
+  return {larger(tip, squared_cosine_of_smallest_angle(first_half, between, other_across),
+                 squared_cosine_of_smallest_angle(other_across, to_c, ca)),
+          larger(tip, beside_a, squared_cosine_of_smallest_angle(between, to_c, across))};
 }
 
 /// Returns the squared cosine of a triangle's smallest angle, given its corners.
@@ -89,7 +88,7 @@ uint32_t judge(const HierarchyLevel& level, FaceId face, unsigned mask, double m
     const uint32_t* corner = &level.mesh.topology.origin[size_t{3} * face];
     const bool second_is_lower = corner[(split.first + 2) % 3] < corner[split.first];
     if (second < cosine || (second == cosine && second_is_lower)) found |= Transition::second_diagonal;
-    cosine = std::min(cosine, second);
+    cosine = lesser(cosine, second);
   }
   const double most = most_cosine * most_cosine;
   if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most)
@@ -118,9 +117,9 @@ double smallest_angle(const Mesh& mesh) {
   double largest = 0;
   for (FaceId f = 0; f < mesh.topology.face_count(); ++f) {
     const auto corner = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * f + i]]); };
-    largest = std::max(largest, squared_cosine_of_smallest_angle(corner(0), corner(1), corner(2)));
+    largest = larger(largest, squared_cosine_of_smallest_angle(corner(0), corner(1), corner(2)));
   }
-  return arc_cosine(std::sqrt(std::min(largest, 1.0)));
+  return arc_cosine(std::sqrt(lesser(largest, 1.0)));
 }
 
 double most_cosine_beside(double smallest_angle) { return cosine_of_small_angle(sliver_share * smallest_angle); }

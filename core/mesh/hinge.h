@@ -4,6 +4,7 @@
 
 #include "base/ids.h"
 #include "papilio/mesh.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 
@@ -18,19 +19,22 @@ class Hinge {
     const Vec3d other_apex = at(mesh.apex(mesh.twin[h])) - a;
     normal_ = cross(along, apex);
     other_normal_ = cross(other_apex, along);
-    const bool is_larger = dot(normal_, normal_) >= dot(other_normal_, other_normal_);
-    larger_ = is_larger ? normal_ : other_normal_;
-    lesser_ = is_larger ? other_normal_ : normal_;
     along_ = along;
-    volume_ = dot(larger_, is_larger ? other_apex : apex);
+    const double squared = dot(normal_, normal_);
+    const double other_squared = dot(other_normal_, other_normal_);
+    squared_larger_ = larger(squared, other_squared);
+    squared_lesser_ = lesser(squared, other_squared);
+    volume_ = either(squared >= other_squared, dot(normal_, other_apex), dot(other_normal_, apex));
   }
 
   /// Returns whether the smaller face's apex is within `distance` of the larger face's plane.
-  [[nodiscard]] bool is_flat(double distance) const { return std::abs(volume_) <= distance * length(larger_); }
+  [[nodiscard]] bool is_flat(double distance) const {
+    return std::abs(volume_) <= distance * std::sqrt(squared_larger_);
+  }
   /// Returns the height of the smaller face above the edge.
   [[nodiscard]] double lesser_height() const {
     const double base = length(along_);
-    return base > 0 ? length(lesser_) / base : 0;
+    return base > 0 ? std::sqrt(squared_lesser_) / base : 0;
   }
   /// Returns the cosine of the angle between the normals; 1 if a face has no area.
   [[nodiscard]] double cosine() const {
@@ -39,10 +43,10 @@ class Hinge {
   }
 
  private:
-  Vec3d normal_, other_normal_;  ///< normals as long as twice the faces' areas
-  Vec3d larger_, lesser_;        ///< the longer normal, and the other
-  Vec3d along_;                  ///< the edge
-  double volume_;                ///< six times the volume of the four vertices
+  Vec3d normal_, other_normal_;             ///< normals as long as twice the faces' areas
+  double squared_larger_, squared_lesser_;  ///< squared lengths of the normals
+  Vec3d along_;                             ///< the edge
+  double volume_;                           ///< six times the volume of the four vertices, by the larger face's plane
 };
 
 }  // namespace papilio

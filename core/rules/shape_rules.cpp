@@ -6,6 +6,7 @@
 
 #include "mesh/hinge.h"
 #include "mesh/normals.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 double squared_height(const Mesh& mesh, FaceId f) {
   const auto at = [&](uint32_t i) { return to_double(mesh.positions[mesh.topology.origin[3 * f + i]]); };
   const std::array<Vec3d, 3> side{at(1) - at(0), at(2) - at(1), at(0) - at(2)};
-  const double longest = std::max({dot(side[0], side[0]), dot(side[1], side[1]), dot(side[2], side[2])});
+  const double longest = larger(dot(side[0], side[0]), dot(side[1], side[1]), dot(side[2], side[2]));
   const Vec3d normal = cross(side[0], side[1]);
   return longest > 0 ? dot(normal, normal) / longest : 0;
 }
@@ -35,7 +36,7 @@ float sharpest_hinge(const Topology& mesh, const Buffer<Vec3f>& normals, FaceId 
   float least = 1;
   for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
     const HalfEdgeId t = mesh.twin[h];
-    if (t != none && has_normal(normals[t.face()])) least = std::min(least, dot(normals[f], normals[t.face()]));
+    if (t != none && has_normal(normals[t.face()])) least = lesser(least, dot(normals[f], normals[t.face()]));
   }
   return has_normal(normals[f]) ? least : 1;
 }
@@ -77,7 +78,7 @@ ShapeField shape_field(const Mesh& mesh, const Buffer<Vec3f>& normals) {
 
 Vec3d keep_unfolded(Vec3d off, Vec3d a, Vec3d b, std::span<const FaceAtEdge> faces, double across_bound) {
   double least = faces[0].height;
-  for (const FaceAtEdge& face : faces) least = std::min(least, face.height);
+  for (const FaceAtEdge& face : faces) least = lesser(least, face.height);
   const Vec3d edge = b - a;
   const double size = length(edge);
   if (!(size > 0)) return off;
@@ -91,17 +92,17 @@ Vec3d keep_unfolded(Vec3d off, Vec3d a, Vec3d b, std::span<const FaceAtEdge> fac
     const double distance = length(across);
     if (!(distance > 0)) continue;
     inward[i] = 1 / distance * across;
-    excess[i] = std::max(0.0, dot(off, inward[i]) - inward_bound * faces[i].height);
+    excess[i] = larger(0.0, dot(off, inward[i]) - inward_bound * faces[i].height);
   }
   if (excess[0] > 0 && excess[1] > 0) {
-    const double together = 1 + std::max(0.0, dot(inward[0], inward[1]));
+    const double together = 1 + larger(0.0, dot(inward[0], inward[1]));
     for (double& each : excess) each /= together;
   }
   off -= excess[0] * inward[0] + excess[1] * inward[1];
   const Vec3d across = without(off, along);
   double share = 1;
   const auto limit = [&](double moved, double most) {
-    if (moved > most) share = std::min(share, most / moved);
+    if (moved > most) share = lesser(share, most / moved);
   };
   limit(length(across), across_bound * least);
   for (size_t i = 0; i < faces.size(); ++i)

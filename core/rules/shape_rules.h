@@ -1,11 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <span>
 
 #include "base/ids.h"
 #include "papilio/mesh.h"
+#include "simd/extremes.h"
 
 // Rules that keep new vertices from distorting flat regions (mesh/shape.h says where they hold). They are applied last,
 // whatever the rule of the edge, and depend only on its two faces and the hinges round them.
@@ -22,10 +22,10 @@ inline constexpr double mechanical_across_bound = 0.25, organic_across_bound = 0
 /// Returns the share of a face's bounds that its sharpest hinge leaves, where the product of the normals is `cosine`.
 /// Moves tilt faces: the sharper a hinge, the less may its faces tilt before it becomes a fold of 120 degrees. At that
 /// angle nothing is left.
-[[nodiscard]] inline double room_in_faces(double cosine) { return std::max(0.0, 0.3 + 0.6 * cosine); }
+[[nodiscard]] inline double room_in_faces(double cosine) { return larger(0.0, 0.3 + 0.6 * cosine); }
 /// Returns the share of the bound out of a face's plane that its sharpest hinge leaves on curves, where the product of
 /// the normals is `cosine`. It is 1 up to 90 degrees: the rims of a drum are round.
-[[nodiscard]] inline double room_on_curves(double cosine) { return std::clamp(1 + 4 * cosine, 0.2, 1.0); }
+[[nodiscard]] inline double room_on_curves(double cosine) { return lesser(larger(1 + 4 * cosine, 0.2), 1.0); }
 
 /// Per-element values of a level that the shape rules look up.
 struct ShapeField {

@@ -8,6 +8,7 @@
 #include "mesh/fan.h"
 #include "rules/stencil.h"
 #include "rules/tension.h"
+#include "simd/extremes.h"
 #include "simd/vec3fa.h"
 
 namespace papilio {
@@ -87,7 +88,7 @@ class TensedRules {
     product = 1;
     for (uint32_t j = 2; 2 * j <= k; ++j) {
       product *= factor(k - j + 1);
-      on_the_way[k - j] = std::max(on_the_way[k - j], product);
+      on_the_way[k - j] = larger(on_the_way[k - j], product);
     }
     for (uint32_t j = 2; j + 2 <= k; ++j) {
       const uint32_t steps = std::min(j, k - j);
@@ -107,7 +108,7 @@ class TensedRules {
   [[nodiscard]] Point scaled(HalfEdgeId h, Point q, Real factor) const { return between(h, q, factor); }
   [[nodiscard]] Real least_factor(const Fan& fan) const {
     float least = 1;
-    for (uint32_t s : fan.spokes) least = std::min(least, field_.factor[mesh_.edge[s]]);
+    for (uint32_t s : fan.spokes) least = lesser(least, field_.factor[mesh_.edge[s]]);
     return Real(least);
   }
   /// Returns whether the hinge's factor is 1.
@@ -116,7 +117,7 @@ class TensedRules {
     const HalfEdgeId t = mesh_.twin[h];
     float least = field_.factor[mesh_.edge[h]];
     for (uint32_t side : {h.next(), h.previous(), t.next(), t.previous()})
-      least = std::min(least, field_.factor[mesh_.edge[side]]);
+      least = lesser(least, field_.factor[mesh_.edge[side]]);
     return Real(least);
   }
 
@@ -181,7 +182,7 @@ class TensedRules {
       return field_.shape->squared_height[f] * room * room;
     };
     const HalfEdgeId t = mesh_.twin[h];
-    if (t != none) return std::min(of(h.face()), of(t.face()));
+    if (t != none) return lesser(of(h.face()), of(t.face()));
     return is_shared(h) ? field_.shape->squared_height_at_shared[mesh_.edge[h]] : of(h.face());
   }
 

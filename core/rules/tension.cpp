@@ -1,15 +1,14 @@
 #include "rules/tension.h"
 
-#include <algorithm>
-
 #include "mesh/normals.h"
+#include "simd/extremes.h"
 
 namespace papilio {
 
 double hinge_factor(double normal_product) {
   constexpr double nothing_at = 0;  // 90 degrees
   constexpr double whole_at = 0.5;  // 60 degrees
-  const double s = std::clamp((normal_product - nothing_at) / (whole_at - nothing_at), 0.0, 1.0);
+  const double s = lesser(larger((normal_product - nothing_at) / (whole_at - nothing_at), 0.0), 1.0);
   return s * s * (3 - 2 * s);
 }
 

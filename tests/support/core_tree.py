@@ -13,8 +13,7 @@ import pathlib
 import re
 import sys
 
-BELOW = {"base": []}
-BELOW["simd"] = ["base"]
+BELOW = {"simd": [], "base": ["simd"]}
 BELOW["mesh"] = ["base", "simd"]
 BELOW["rules"] = [*BELOW["mesh"], "mesh"]
 BELOW["split"] = [*BELOW["mesh"], "mesh"]
