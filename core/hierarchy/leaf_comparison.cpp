@@ -19,6 +19,9 @@ constexpr int most_divisions = 10;  ///< of a side of the surface's faces
 constexpr double squared_length_of_part = 0.06 * 0.06;
 constexpr double quiet = 0.36;  ///< share of the squared limit below which a line is sampled no further
 
+/// Corners of each child of a face; the face's new vertices from 3 on.
+constexpr std::array<std::array<uint32_t, 3>, 4> corners_of_child{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+
 }  // namespace
 
 Buffer<LevelFace> LeafComparison::far_faces(NearFaces& near, uint32_t first, uint32_t last) {
@@ -115,7 +118,8 @@ void LeafComparison::compare(const LevelFace& leaf) {
   Corners middle = middles_of(corner);
   for (uint32_t i = 0; i < 3; ++i)
     if ((mask >> i & 1U) != 0) middle[i] = made[i];
-  compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle, .off = {}},
+  compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle},
+          {{{corner[0], 0}, {corner[1], 0}, {corner[2], 0}}},
           patches_over_leaf(result_, leaf, {corner, made, middle}, sides_to_compare()));
 }
 
@@ -135,26 +139,25 @@ unsigned LeafComparison::sides_to_compare() {
   return sides;
 }
 
-void LeafComparison::compare_below(uint32_t k, FaceId f, const Patch& patch, const Distances& off) {
-  const Corners corner = result_.corners(k, f);
-  const Corners made = result_.new_vertices(k, f, corner);
+void LeafComparison::compare_below(uint32_t k, FaceId f, const Patch& patch, const Points& corner) {
+  const Corners at = result_.corners(k, f);
+  const Corners made = result_.new_vertices(k, f, at);
   const Corners middle = patch.middles();
-  compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle, .off = off},
-          patches_below(patch, middle));
+  compare({.level = k, .face = f, .corner = at, .made = made, .middle = middle}, corner, patches_below(patch, middle));
 }
 
-void LeafComparison::compare(const Face& face, const Patches& below) {
+void LeafComparison::compare(const Face& face, const Points& corner, const Patches& below) {
   const auto [k, f] = LevelFace{face.level, face.face};
   rest_ = largest_sum_below(k, f);
   const double settled = enough() > 0 ? enough() : limit_;
   rest_ = 0;
-  Distances made;
+  SixPoints points{corner[0], corner[1], corner[2]};
   for (uint32_t i = 0; i < 3; ++i) {
-    made[i] = squared_distance_to_result(face.made[i], face.middle[i], settled);
-    note(made[i]);
+    points[3 + i] = find_near(face.made[i], face.middle[i], settled);
+    note(points[3 + i].squared);
   }
   const std::array<Corners, 4> children = children_of(face.corner, face.made);
-  if (result_.has_children(k, f)) return compare_children(face, children, made, below);
+  if (result_.has_children(k, f)) return compare_children(face, children, points, below);
   const bool is_explored = k + 1 >= level_count_;
   if (stops_at_limit_ && !is_explored) rest_ = share_of_sum * sums_[k][f];
   unsigned open = 0;  // children, by bits
@@ -164,32 +167,31 @@ void LeafComparison::compare(const Face& face, const Patches& below) {
     open |= 1U << c;
     compare_patch(child, below[c]);
   }
-  compare_sides(face, open);
+  compare_sides(points, open);
   if (!is_explored && !stops_at_limit_) add_rest(face, below);
 }
 
 /// Descends into those children below which a distance may matter.
-void LeafComparison::compare_children(const Face& face, const std::array<Corners, 4>& children, const Distances& made,
+void LeafComparison::compare_children(const Face& face, const std::array<Corners, 4>& children, const SixPoints& points,
                                       const Patches& below) {
-  const auto& off = face.off;
-  const std::array<Distances, 4> of_children{
-      {{off[0], made[0], made[2]}, {made[0], off[1], made[1]}, {made[2], made[1], off[2]}, made}};
   const uint32_t level = face.level + 1;
   const uint32_t child = result_.first_child(face.level, face.face);
   for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
     rest_ = sums_[level][child + c];
-    if (!is_settled({face.level, face.face, children[c]}, below[c], std::ranges::max(of_children[c])))
-      compare_below(level, child + c, below[c], of_children[c]);
+    const auto [a, b, d] = corners_of_child[c];
+    const Points corner{points[a], points[b], points[d]};
+    if (!is_settled({face.level, face.face, children[c]}, below[c], corner))
+      compare_below(level, child + c, below[c], corner);
   }
 }
 
-/// Returns whether no distance below a child can matter: child and patch are near enough for moves up to `rest_`. `off`
-/// is the largest squared distance of the child's corners from the result.
-bool LeafComparison::is_settled(const Child& child, const Patch& patch, double off) {
-  if (enough() == 0 || matters(off)) return false;
+/// Returns whether no distance below a child can matter: child and patch are near enough for moves up to `rest_`.
+bool LeafComparison::is_settled(const Child& child, const Patch& patch, const Points& corner) {
+  if (enough() == 0 || std::ranges::any_of(corner, [&](const PointNear& point) { return matters(point.squared); }))
+    return false;
   is_probe_ = true;
   if (!is_surely_near(child, patch)) {
-    is_far_ = !is_near_one_piece(child.corner);
+    is_far_ = !is_near_one_piece(corner);
     compare_patch(child, patch);
   }
   is_probe_ = false;
@@ -220,16 +222,18 @@ void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
 }
 
 /// Returns whether the corners of a child are all near one piece of the result.
-bool LeafComparison::is_near_one_piece(const Corners& corner) {
-  if (near_.has_near_all(corner, enough())) return true;
-  return std::ranges::any_of(corner,
-                             [&](Vec3d point) { return !is_far_ && is_near_all(near_piece(point), corner, enough()); });
+bool LeafComparison::is_near_one_piece(const Points& corner) {
+  return std::ranges::any_of(corner, [&](const PointNear& point) {
+    const PointNear at = point.has_piece ? point : near_piece(point.point);
+    return !is_far_ &&
+           std::ranges::all_of(corner, [&](const PointNear& other) { return is_near(at.piece, other, enough()); });
+  });
 }
 
-/// Compares the sides of a face's children, those of `children` by bits, with the result. Between ends near different
-/// pieces of the result a side may pass over a valley, where nothing is near. Of a child between two pieces the
-/// furthest point is on a side.
-void LeafComparison::compare_sides(const Face& face, unsigned children) {
+/// Compares the sides of a face's children, those of `children` by bits, with the result; `points` get their pieces.
+/// Between ends near different pieces of the result a side may pass over a valley, where nothing is near. Of a child
+/// between two pieces the furthest point is on a side.
+void LeafComparison::compare_sides(SixPoints& points, unsigned children) {
   struct Side {
     uint32_t from, to;  // corners; new vertices from 3 on
     unsigned children;  // by bits
@@ -239,14 +243,8 @@ void LeafComparison::compare_sides(const Face& face, unsigned children) {
       {0, 3, 0b0001}, {3, 1, 0b0010}, {1, 4, 0b0010}, {4, 2, 0b0100}, {2, 5, 0b0100}, {5, 0, 0b0001},
       {3, 4, 0b1010}, {4, 5, 0b1100}, {5, 3, 0b1001}}};
   // clang-format on
-  std::array<PointNear, 6> points;
-  unsigned known = 0;
-  const auto at = [&](uint32_t i) {
-    if ((known >> i & 1U) == 0) {
-      const Vec3d point = i < 3 ? face.corner[i] : face.made[i - 3];
-      points[i] = {point, near_piece(point)};
-      known |= 1U << i;
-    }
+  const auto at = [&](uint32_t i) -> const PointNear& {
+    if (!points[i].has_piece || matters(points[i].squared)) points[i] = near_piece(points[i].point);
     return points[i];
   };
   for (const Side& side : sides)
@@ -256,23 +254,21 @@ void LeafComparison::compare_sides(const Face& face, unsigned children) {
 /// Divides a side until each part is near a single piece of the result, or too short to leave it.
 void LeafComparison::compare_side(const PointNear& from, const PointNear& to, int depth) {
   if (is_far_ || depth == most_divisions) return;
-  const std::array<Vec3d, 2> ends{from.point, to.point};
-  if (is_near_all(from.piece, ends, enough()) || is_near_all(to.piece, ends, enough())) return;
+  if (is_near(from.piece, to, enough()) || is_near(to.piece, from, enough())) return;
   if (squared_norm(to.point - from.point) < squared_length_of_part * enough()) return;
   // Where pieces are nearly in one plane, the side goes from above one to above the next.
   const double end = depth % 2 == 0 ? end_above(from.piece, from.point, to.point) : 1;
   const Vec3d point = from.point + (end < 1 ? end : 0.5) * (to.point - from.point);
-  const PointNear between{point, near_piece(point)};
+  const PointNear between = near_piece(point);
   compare_side(from, between, depth + 1);
   compare_side(between, to, depth + 1);
 }
 
-/// Returns a piece of the result that is near enough to a point of the surface, if any, and notes the distance.
-TriangleCorners LeafComparison::near_piece(Vec3d point) {
-  double squared = 0;
-  const TriangleCorners piece = near_.near(point, enough(), squared);
-  note(squared);
-  return piece;
+/// Returns a point of the surface with a piece of the result that is near enough, if any, and notes the distance.
+PointNear LeafComparison::near_piece(Vec3d point) {
+  const PointNear found = near_.near(point, enough());
+  note(found.squared);
+  return found;
 }
 
 /// Measures distances at the middle of a line and on both sides of the furthest point so far, ever closer to it.
@@ -352,12 +348,12 @@ double LeafComparison::largest_sum_below(uint32_t k, FaceId f) const {
   return result_.has_children(k, f) ? std::ranges::max(std::span(&sums_[k + 1][result_.first_child(k, f)], 4)) : 0;
 }
 
-/// Returns the squared distance of a new vertex from the result; where that is at most `enough`, an upper bound which
+/// Returns a new vertex with its squared distance from the result; where that is at most `enough`, an upper bound which
 /// is at most `enough` too. `place`: of the vertex in the result.
-double LeafComparison::squared_distance_to_result(Vec3d made, Vec3d place, double enough) {
+PointNear LeafComparison::find_near(Vec3d made, Vec3d place, double enough) {
+  if (const PointNear above = near_.above(made, enough); above.has_piece) return above;
   const double apart = squared_norm(made - place);
-  if (apart <= enough) return apart;
-  return near_.has_near(made, enough) ? enough : result_.squared_distance_from(leaf_, made, enough);
+  return apart <= enough ? PointNear{made, apart} : near_.near(made, enough);
 }
 
 /// Returns the squared distance of a point of the result from the surface; in a probe from the level of the child's

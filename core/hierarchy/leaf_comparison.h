@@ -45,8 +45,8 @@ class LeafComparison {
   [[nodiscard]] double largest_bound(uint32_t first, uint32_t last);
 
  private:
-  using Distances = std::array<double, 3>;  ///< from a face's corners, or its new vertices, to the result; squared
-
+  using Points = std::array<PointNear, 3>;     ///< a face's corners, or its new vertices
+  using SixPoints = std::array<PointNear, 6>;  ///< a face's corners, then its new vertices
   /// A leaf, or a face below one.
   struct Face {
     uint32_t level;
@@ -54,7 +54,6 @@ class LeafComparison {
     const Corners& corner;  ///< of the surface
     const Corners& made;    ///< new vertices of the surface
     const Corners& middle;  ///< their places in the result
-    Distances off;          ///< upper bounds of the corners' distances
   };
   /// A child of a face of a level, which itself may not be held.
   struct Child {
@@ -62,12 +61,6 @@ class LeafComparison {
     FaceId parent;
     const Corners& corner;
   };
-  /// A point of the surface, and a piece of the result that is near.
-  struct PointNear {
-    Vec3d point;
-    TriangleCorners piece;
-  };
-
   void begin_with(double share);
   void go_to(const LevelFace& leaf);
   template <class Visit>
@@ -80,23 +73,23 @@ class LeafComparison {
 
   void compare(const LevelFace& leaf);
   [[nodiscard]] unsigned sides_to_compare();
-  void compare_below(uint32_t k, FaceId f, const Patch& patch, const Distances& off);
-  void compare(const Face& face, const Patches& below);
-  void compare_children(const Face& face, const std::array<Corners, 4>& children, const Distances& made,
+  void compare_below(uint32_t k, FaceId f, const Patch& patch, const Points& corner);
+  void compare(const Face& face, const Points& corner, const Patches& below);
+  void compare_children(const Face& face, const std::array<Corners, 4>& children, const SixPoints& points,
                         const Patches& below);
   void compare_patch(const Child& child, const Patch& patch);
-  void compare_sides(const Face& face, unsigned children);
+  void compare_sides(SixPoints& points, unsigned children);
   void compare_side(const PointNear& from, const PointNear& to, int depth);
-  [[nodiscard]] bool is_near_one_piece(const Corners& corner);
-  [[nodiscard]] TriangleCorners near_piece(Vec3d point);
+  [[nodiscard]] bool is_near_one_piece(const Points& corner);
+  [[nodiscard]] PointNear near_piece(Vec3d point);
   template <class DistanceAt>
   void compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at);
   void add_rest(const Face& face, const Patches& below);
 
-  [[nodiscard]] bool is_settled(const Child& child, const Patch& patch, double off);
+  [[nodiscard]] bool is_settled(const Child& child, const Patch& patch, const Points& corner);
   [[nodiscard]] bool is_surely_near(const Child& child, const Patch& patch);
   [[nodiscard]] double largest_sum_below(uint32_t k, FaceId f) const;
-  [[nodiscard]] double squared_distance_to_result(Vec3d made, Vec3d place, double enough);
+  [[nodiscard]] PointNear find_near(Vec3d made, Vec3d place, double enough);
   [[nodiscard]] double squared_distance_to_surface(const Child& child, Vec3d point);
 
   /// Returns whether a squared distance, with `rest_` added to its root, exceeds the limit.

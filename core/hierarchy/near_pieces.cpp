@@ -1,46 +1,44 @@
 #include "hierarchy/near_pieces.h"
 
-#include <algorithm>
+#include <limits>
 
 namespace papilio {
 
 void NearPieces::go_to(const LevelFace& leaf) {
   leaf_ = leaf;
-  pieces_.clear();
   prisms_.clear();
 }
 
-bool NearPieces::has_near(Vec3d point, double squared) {
-  return std::ranges::any_of(prisms(), [&](const Prism& prism) { return prism.has_near(point, squared); });
+PointNear NearPieces::near(Vec3d point, double enough) {
+  PointNear found = above(point, enough);
+  if (found.has_piece) return found;
+  found.squared = result_->squared_distance_from(leaf_, point, enough, &found.piece);
+  found.has_piece = true;
+  return found;
 }
 
-TriangleCorners NearPieces::near(Vec3d point, double enough, double& squared) {
-  squared = 0;
-  for (const Prism& prism : prisms())
-    if (prism.has_near(point, enough)) return prism.triangle();
-  TriangleCorners piece{};
-  squared = result_->squared_distance_from(leaf_, point, enough, &piece);
-  return piece;
+PointNear NearPieces::above(Vec3d point, double enough) {
+  if (prisms_.empty()) {
+    add_prisms(leaf_);
+    for (uint32_t side = 0; side < 3; ++side) {
+      result_->find_beside(leaf_, side, beside_);
+      for (const LevelFace& beside : beside_) add_prisms(beside);
+    }
+  }
+  for (const Prism& prism : prisms_)
+    if (const double squared = prism.squared_height(point); squared <= enough && prism.is_inside(point))
+      return {point, squared, true, prism.triangle()};
+  return {point, std::numeric_limits<double>::infinity()};
 }
 
-bool NearPieces::has_near_all(std::span<const Vec3d> points, double enough) {
-  return std::ranges::any_of(pieces(),
-                             [&](const TriangleCorners& piece) { return is_near_all(piece, points, enough); });
+void NearPieces::add_prisms(const LevelFace& leaf) {
+  result_->find_pieces(leaf, pieces_);
+  for (const TriangleCorners& piece : pieces_) prisms_.emplace_back(piece);
 }
 
-std::span<const TriangleCorners> NearPieces::pieces() {
-  if (pieces_.empty()) result_->find_pieces(leaf_, pieces_);
-  return pieces_;
-}
-
-std::span<const Prism> NearPieces::prisms() {
-  if (prisms_.empty())
-    for (const TriangleCorners& piece : pieces()) prisms_.emplace_back(piece);
-  return prisms_;
-}
-
-bool is_near_all(const TriangleCorners& piece, std::span<const Vec3d> points, double enough) {
-  return std::ranges::all_of(points, [&](Vec3d point) { return squared_distance(point, piece) <= enough; });
+bool is_near(const TriangleCorners& piece, const PointNear& point, double enough) {
+  if (point.has_piece && point.squared <= enough && point.piece == piece) return true;
+  return squared_distance(point.point, piece) <= enough;
 }
 
 }  // namespace papilio

@@ -1,12 +1,19 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "hierarchy/prism.h"
 #include "hierarchy/result_surface.h"
 
 namespace papilio {
+
+/// Point of the surface, and a piece of the result near it.
+struct PointNear {
+  Vec3d point;
+  double squared;          ///< upper bound of the squared distance from the result; from the piece, if there is one
+  bool has_piece = false;  ///< whether the piece is known
+  TriangleCorners piece{};
+};
 
 /// Pieces of the result near one leaf, an undivided face, after the other. Not thread-safe.
 class NearPieces {
@@ -16,25 +23,22 @@ class NearPieces {
 
   void go_to(const LevelFace& leaf);
 
-  /// Returns whether a point is above or below a piece of the leaf, no further than the root of `squared`.
-  [[nodiscard]] bool has_near(Vec3d point, double squared);
-  /// Returns a piece around the leaf within the root of `enough` of a point, or else the nearest one. Sets `squared` to
-  /// at least the squared distance from it where that exceeds `enough`.
-  [[nodiscard]] TriangleCorners near(Vec3d point, double enough, double& squared);
-  /// Returns whether a piece of the leaf is within the root of `enough` of all points, and so of all between them.
-  [[nodiscard]] bool has_near_all(std::span<const Vec3d> points, double enough);
+  /// Returns the point with a piece around the leaf within the root of `enough`, or else with the nearest one.
+  [[nodiscard]] PointNear near(Vec3d point, double enough);
+  /// Returns the point with a piece that it is above or below, within the root of `enough`, if there is one.
+  [[nodiscard]] PointNear above(Vec3d point, double enough);
 
  private:
-  [[nodiscard]] std::span<const TriangleCorners> pieces();
-  [[nodiscard]] std::span<const Prism> prisms();
+  void add_prisms(const LevelFace& leaf);
 
   ResultSurface* result_;
   LevelFace leaf_{};
-  std::vector<TriangleCorners> pieces_;  ///< of the leaf; empty until they are used
-  std::vector<Prism> prisms_;            ///< of `pieces_`; likewise
+  std::vector<Prism> prisms_;            ///< of the leaf and of those beside it; empty until they are used
+  std::vector<TriangleCorners> pieces_;  ///< member to reuse its memory, like the next
+  std::vector<LevelFace> beside_;
 };
 
-/// Returns whether a piece is within the root of `enough` of all points.
-[[nodiscard]] bool is_near_all(const TriangleCorners& piece, std::span<const Vec3d> points, double enough);
+/// Returns whether a piece is within the root of `enough` of the point.
+[[nodiscard]] bool is_near(const TriangleCorners& piece, const PointNear& point, double enough);
 
 }  // namespace papilio

@@ -37,10 +37,7 @@ Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, co
   const auto& [corner, made, middle] = at;
   const unsigned mask = result.choice(k).split_mask(f);
   Patches below = patches_over(corner, middle, ridges);
-  const auto add_ridge_inside = [&](uint32_t child) {
-    below[child].ridges |= 1U << inner_side[child];
-    below[3].ridges |= 1U << side_of_middle_child[child];
-  };
+  const auto add_ridge_inside = [&](uint32_t child) { below[child].ridges |= 1U << inner_side[child]; };
   const uint32_t i = first_target[mask];
   const uint32_t opposite = (i + 2) % 3;
   if (mask == 7) {

@@ -25,15 +25,15 @@ namespace papilio {
 [[nodiscard]] inline std::array<Corners, 4> children_of(const Corners& corner, const Corners& made) {
   return {{{corner[0], made[0], made[2]}, {made[0], corner[1], made[1]}, {made[2], made[1], corner[2]}, made}};
 }
-/// Sides of children 0, 1 and 2 at the middle child, and the middle child's sides there.
-inline constexpr std::array<uint32_t, 3> inner_side{1, 2, 0}, side_of_middle_child{2, 0, 1};
+/// Sides of children 0, 1 and 2 at the middle child.
+inline constexpr std::array<uint32_t, 3> inner_side{1, 2, 0};
 
 /// Triangle, or two triangles that meet in the line from the middle of a side to the opposite corner.
 struct Patch {
   Corners corner{};
   uint32_t bent_side = none;  ///< runs from the corner of this number to the next
   Vec3d bend{};               ///< its middle
-  unsigned ridges = 0;        ///< sides, by bits, at which the result may be bent
+  unsigned ridges = 0;        ///< sides, by bits, at which the result may be bent; of two patches' common sides, one
 
   [[nodiscard]] Corners middles() const {
     Corners middle = middles_of(corner);

@@ -41,24 +41,27 @@ class Prism {
     const Vec3d area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
     const double size = length(area);
     if (!(size > 0)) return;
-    normal = 1 / size * area;
-    for (uint32_t i = 0; i < 3; ++i) inward_[i] = cross(normal, corner_[(i + 1) % 3] - corner_[i]);
+    normal_ = 1 / size * area;
+    for (uint32_t i = 0; i < 3; ++i) inward_[i] = cross(normal_, corner_[(i + 1) % 3] - corner_[i]);
   }
 
-  /// Returns whether the point is above or below the triangle, at most the root of `squared` away.
-  [[nodiscard]] bool has_near(Vec3d point, double squared) const {
-    const double height = dot(point - corner_[0], normal);
-    return height * height <= squared && is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);
+  /// Returns the squared distance of a point from the triangle's plane.
+  [[nodiscard]] double squared_height(Vec3d point) const {
+    const double height = dot(point - corner_[0], normal_);
+    return height * height;
+  }
+  /// Returns whether a point is above or below the triangle.
+  [[nodiscard]] bool is_inside(Vec3d point) const {
+    return is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);
   }
 
   [[nodiscard]] TriangleCorners triangle() const { return {corner_[0], corner_[1], corner_[2]}; }
-
-  Vec3d normal{};  ///< of length one; zero of a triangle without area
 
  private:
   [[nodiscard]] bool is_inside(Vec3d point, uint32_t i) const { return dot(point - corner_[i], inward_[i]) > 0; }
 
   Corners corner_;
+  Vec3d normal_{};    ///< of length one; zero of a triangle without area
   Corners inward_{};  ///< normals of the sides in the triangle's plane
 };
 

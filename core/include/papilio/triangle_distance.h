@@ -6,6 +6,7 @@ namespace papilio {
 
 struct TriangleCorners {
   Vec3d a, b, c;
+  friend bool operator==(const TriangleCorners&, const TriangleCorners&) = default;
 };
 
 /// Returns the squared distance from a point to a segment, which may have no length.
