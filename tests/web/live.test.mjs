@@ -26,7 +26,8 @@ const open = (options = {}) => openPage(shared.browser, shared.server.url, { has
 const quiet = (page) => page.waitForTimeout(700);
 
 /// Resolves once the kernel here has made what the camera sees.
-const madeHere = (page) => page.locator('.panel[data-mode=view][data-by=here][data-state=done]').waitFor();
+const madeHere = (page) =>
+  page.locator('.panel[data-mode=view][data-by=here][data-state=done][data-estimate=false]').waitFor();
 
 /// The faces of what was made here, whenever they change from now on.
 async function watchFaces(page) {
@@ -92,6 +93,33 @@ test('the page refines while the camera moves, without a request', async () => {
   const words = await page.locator('#cost').innerText();
   assert.ok(Number(/within ([\d.]+) px/.exec(words)[1]) <= 0.5, words);
   assert.deepEqual(faults, []);
+});
+
+test('a picture at rest is compared with the uniform surface, as by the server', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  const cost = page.locator('#cost');
+  assert.match(await cost.innerText(), /within [\d.]+ px/);
+  const { x, y } = await page.locator('#stage').boundingBox();
+  await page.mouse.move(x + 300, y + 300);
+  await page.mouse.down();
+  await page.mouse.move(x + 400, y + 320, { steps: 5 });
+  const moving = page.locator('.panel[data-mode=view][data-state=done][data-estimate=true]');
+  await moving.waitFor();
+  assert.match(await cost.innerText(), /about [\d.]+ px/);
+  const passing = await facesOf(page, 'view');
+  await page.mouse.up();
+  await madeHere(page);
+  assert.match(await cost.innerText(), /within [\d.]+ px/);
+  const faces = await facesOf(page, 'view');
+  assert.ok(faces > passing, `${faces} faces at rest, ${passing} before`);
+  const viewport = page.viewportSize();
+  const hash = `${new URL(page.url()).hash.slice(1)}&where=server`;
+  const other = await open({ hash, viewport });
+  await other.page.locator('.panel[data-mode=view][data-by=server][data-state=done]').waitFor();
+  await quiet(other.page);
+  assert.equal(await facesOf(other.page, 'view'), faces);
+  assert.deepEqual([faults, other.faults], [[], []]);
 });
 
 test('figures and the camera in the form follow the rotation, in existing elements', async () => {

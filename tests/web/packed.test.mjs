@@ -30,7 +30,8 @@ const last = levels.length - 1;
 
 const number = (n) => n.toLocaleString('en');
 const percent = (share) => `${Number((100 * share).toPrecision(2))} %`;
-const madeHere = (page) => page.locator('.panel[data-mode=view][data-by=here][data-state=done]').waitFor();
+const madeHere = (page) =>
+  page.locator('.panel[data-mode=view][data-by=here][data-state=done][data-estimate=false]').waitFor();
 const slider = (page) => page.getByLabel('Levels of detail');
 
 /// The page with the packed model; settings under Advanced are closed, so that nothing is stored for its commands.

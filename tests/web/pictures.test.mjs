@@ -22,7 +22,8 @@ import { compressedCubeGlb, cubeObj, quantizedCubeGlb } from './mesh_files.mjs';
 
 const shared = serverAndBrowser();
 const open = (hash, options = {}) => openPage(shared.browser, shared.server.url, { hash, ...options });
-const madeHere = (page) => page.locator('.panel[data-mode=view][data-by=here][data-state=done]').waitFor();
+const madeHere = (page) =>
+  page.locator('.panel[data-mode=view][data-by=here][data-state=done][data-estimate=false]').waitFor();
 const quiet = (page) => page.waitForTimeout(700);
 
 /// The elephant of 2,000 faces, refined here to at least so many.
@@ -244,6 +245,24 @@ test('on a phone a finger rotates the mesh, and buttons leave it uncovered', asy
   await touch('touchEnd');
   await quiet(page);
   assert.ok((await compare(page, before, await picture(page, 'view'))).differing > 0.01, 'it was turned');
+});
+
+test('on a phone four meshes side by side are below their captions, also after they were one', async () => {
+  const { page } = await open('', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await madeHere(page);
+  await page.getByRole('radio', { name: 'Side by side' }).check();
+  await done(page);
+  await quiet(page);
+  const heads = await page.locator('.panel-head').all();
+  assert.equal(heads.length, 4);
+  const boxes = await Promise.all(heads.map((head) => head.boundingBox()));
+  await page.evaluate(() => {
+    for (const over of document.querySelectorAll('.panel, #wipe, #wipe-line')) over.style.visibility = 'hidden';
+  });
+  for (const { x, y, width, height } of boxes) {
+    const below = await page.screenshot({ clip: { x: x + 2, y: y + 2, width: width - 4, height: height - 4 } });
+    assert.ok((await compare(page, below, below)).drawn < 0.01, `at ${x}, ${y}`);
+  }
 });
 
 test('on a phone in landscape the mesh is below its captions', async () => {

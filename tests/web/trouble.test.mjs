@@ -110,6 +110,29 @@ test('a server that is down is reported, and found again', async () => {
   }
 });
 
+test('a mesh that could not be saved can be saved later', async () => {
+  const first = await startServer();
+  const port = new URL(first.url).port;
+  const { page } = await openPage(shared.browser, first.url, { hash: '', countRefusals: false });
+  await page.locator('.panel[data-mode=view][data-by=here][data-estimate=false]').waitFor();
+  await first.stop();
+  const save = page.locator('.panel[data-mode=view]').getByRole('button', { name: 'Save' });
+  await save.click();
+  const told = message(page, 'view').filter({ hasText: 'cannot be reached' });
+  await told.waitFor();
+  await page.waitForTimeout(3000); // longer than the pause of a refinement
+  await told.waitFor();
+  const again = await startServer('--port', port);
+  try {
+    const downloaded = page.waitForEvent('download');
+    await told.getByRole('button', { name: 'Try again' }).click();
+    assert.match((await downloaded).suggestedFilename(), /^knot-view\./);
+    assert.equal(await message(page, 'view').innerText(), '');
+  } finally {
+    await again.stop();
+  }
+});
+
 test('a mesh that the store has dropped is stored again', async () => {
   const { page } = await openPage(shared.browser, shared.server.url, {
     countRefusals: false,

@@ -160,9 +160,13 @@ test('the uniform result has no parameters of selection, and the adaptive one no
   assert.equal(valuesFor('view', both, view, 100).has('tolerance'), false);
   assert.equal(valuesFor('view', new Map([['tolerance', '0.001']]), view, 100).get('tolerance'), '0.001');
   assert.equal(valuesFor('adaptive', both, view, 100).get('tolerance'), '0.001');
-  // Surfaces are not compared while the camera moves, unless the user says so.
-  assert.equal(valuesFor('view', pixels, view, 100).get('view.verify'), 'false');
-  assert.equal(valuesFor('view', new Map([...pixels, ['view.verify', 'true']]), view, 100).get('view.verify'), 'true');
+  // Surfaces are compared unless the camera moves or the user says otherwise.
+  const verified = (given, isPassing) =>
+    valuesFor('view', new Map([...pixels, ...given]), view, 100, isPassing).get('view.verify');
+  assert.equal(verified([], false), undefined);
+  assert.equal(verified([], true), 'false');
+  for (const given of ['true', 'false'])
+    for (const isPassing of [true, false]) assert.equal(verified([['view.verify', given]], isPassing), given);
 });
 
 /// A square of n by n cells in the plane z = height, from 0 to `side`.

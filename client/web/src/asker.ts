@@ -15,6 +15,8 @@ export interface Page {
   look: Look;
   /// View of the current camera.
   view: Frozen;
+  /// Whether the camera moves.
+  isMoving: boolean;
 }
 
 export class Asker {
@@ -50,9 +52,12 @@ export class Asker {
     // Nothing is sent until it is known whether this browser can refine. A scene can be in only one picture.
     const isUndecided = mode === 'view' && state.where === 'here' && this.#here === undefined;
     if (isUndecided && this.#mesh.isScene) return;
-    if (mode === 'coarse' || isUndecided) panel.ask(this.#mesh, { query: null, make: null, note });
-    else if (this.info !== null)
-      panel.ask(this.#mesh, { query: this.queryFor(mode), make: mode === 'view' ? this.#maker() : null, note });
+    if (mode === 'coarse' || isUndecided) panel.ask(this.#mesh, { query: null, make: null, isPassing: false, note });
+    else if (this.info !== null) {
+      const make = mode === 'view' ? this.#maker() : null;
+      const isPassing = make !== null && this.#isPassing;
+      panel.ask(this.#mesh, { query: this.queryFor(mode, isPassing), make, isPassing, note });
+    }
   }
 
   /// Returns whether the picture is refined in this browser, as the camera moves.
@@ -60,10 +65,16 @@ export class Asker {
     return this.#maker() !== null && this.page().state.frozen === null;
   }
 
+  /// Whether the picture follows a camera that moves.
+  get #isPassing(): boolean {
+    const { state, isMoving } = this.page();
+    return isMoving && state.frozen === null;
+  }
+
   /// Returns the server's query; needs a mesh and info.
-  queryFor(mode: Mode): string {
+  queryFor(mode: Mode, isPassing = false): string {
     const { state, view } = this.page();
-    const values = valuesFor(mode, state.values, state.frozen ?? view, this.#mesh!.decoded.faces);
+    const values = valuesFor(mode, state.values, state.frozen ?? view, this.#mesh!.decoded.faces, isPassing);
     return queryOf(values, this.info!.parameters);
   }
 
@@ -75,8 +86,8 @@ export class Asker {
     if (state.where !== 'here' || !here || look === 'level' || look === 'distance') return null;
     if (!here.does(state.values)) return null;
     const seen = state.frozen ?? view;
-    const values = forView(state.values);
-    return () => here.refine(values, cameraOf(seen, lensOf(values)), seen.pixels);
+    const values = forView(state.values, this.#isPassing);
+    return (signal) => here.refine(values, cameraOf(seen, lensOf(values)), seen.pixels, signal);
   }
 }
 

@@ -54,8 +54,8 @@ export class Here {
     return this.#parts.all.length === 1 || !['max_faces', 'view.near'].some((name) => values.has(name));
   }
 
-  /// Refines for a camera and a picture's width and height. Rejects with KernelError.
-  async refine(values: Values, camera: Camera, pixels: [number, number]): Promise<Made> {
+  /// Refines for a camera and a picture's width and height. Rejects with KernelError, or with the signal's reason.
+  async refine(values: Values, camera: Camera, pixels: [number, number], signal: AbortSignal): Promise<Made> {
     const began = performance.now();
     const rest = [...values].filter(([name]) => !places.includes(name) && !name.startsWith('output.'));
     const given = rest.map(([name, value]) => `${name}=${encodeURIComponent(value)}`).join('&');
@@ -63,7 +63,7 @@ export class Here {
     const refined = await Promise.all(
       this.#parts.all.map((part) => {
         const view = { ...viewOf(part.meshes[0], camera, pixels), ...(near !== undefined && { near }) };
-        return this.#parts.refine(part, `${given}&${queryOf({ view } as never)}`);
+        return this.#parts.refine(part, `${given}&${queryOf({ view } as never)}`, { signal });
       }),
     );
     const { scene } = this.#decoded;

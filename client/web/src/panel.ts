@@ -36,6 +36,8 @@ export interface Shown {
   roundTrip: number | null;
   /// Summary; null while further levels may arrive, and for the coarse mesh.
   summary: Summary | null;
+  /// Whether the error in pixels is an estimate: the surface was not compared with the uniform one.
+  isEstimate: boolean;
   /// Meshes up to this one, the coarse mesh first; for a scene only this one, for a mesh refined in this browser none.
   levels: Encoded[];
 }
@@ -45,8 +47,15 @@ export interface Request {
   /// Query for the server; null: the coarse mesh as it is.
   query: string | null;
   /// Function that refines in this browser; null: the server refines.
-  make: (() => Promise<Made>) | null;
+  make: ((signal: AbortSignal) => Promise<Made>) | null;
+  /// Whether `make` is finished and shown even if another request follows: the camera moves.
+  isPassing: boolean;
   note: string;
+}
+
+interface Asked {
+  mesh: OpenMesh;
+  request: Request;
 }
 
 export class Panel {
@@ -64,7 +73,7 @@ export class Panel {
   shown: Shown | null = null;
   /// Reason why the last request failed; null: it succeeded, or is pending.
   problem: Problem | null = null;
-  #asked: { mesh: OpenMesh; request: Request } | null = null;
+  #asked: Asked | null = null;
   #isMaking = false;
   #abort: AbortController | null = null;
   #retries = 0;
@@ -105,8 +114,8 @@ export class Panel {
     this.#tell('idle');
   }
 
-  /// Requests a mesh unless it is visible or pending. Aborts a pending request to the server; a running refinement in
-  /// this browser is finished and shown before the latest request starts. The visible mesh stays until a better one is
+  /// Requests a mesh unless it is visible or pending. Aborts the pending request, but a refinement in this browser for a
+  /// moving camera is finished and shown before the latest request starts. The visible mesh stays until a better one is
   /// ready.
   ask(mesh: OpenMesh, request: Request): void {
     this.#givenNote = request.note;
@@ -181,9 +190,10 @@ export class Panel {
       const asked = this.#asked;
       if (!asked?.request.make) break;
       try {
-        const made = await asked.request.make();
+        const { signal } = asked.request.isPassing ? new AbortController() : this.#abort!;
+        const made = await asked.request.make(signal);
         await this.prepare(made.decoded);
-        if (asked.mesh === this.#asked?.mesh && this.#asked.request.make) this.#show(shownOf(asked.mesh, made));
+        if (asked.mesh === this.#asked?.mesh && this.#asked.request.make) this.#show(shownOf(asked, made));
         else made.decoded.dispose();
         isLatest = asked === this.#asked;
         if (isLatest) this.#tell('done');
@@ -218,6 +228,7 @@ export class Panel {
         timing: levels[level].timing,
         roundTrip: summary && performance.now() - began,
         summary,
+        isEstimate: isUnverified(query),
         levels: encoded,
       });
     };
@@ -259,9 +270,10 @@ export class Panel {
     const before = this.shown?.decoded;
     if (before !== shown.decoded && before !== this.shown?.mesh.decoded) before?.dispose();
     this.shown = shown;
-    this.#caption.textContent = `${shown.faces.toLocaleString('en')} faces`;
+    this.#caption.replaceChildren(shown.faces.toLocaleString('en'), element('span', 'rest', ' faces'));
     this.element.dataset.faces = String(shown.faces);
     this.element.dataset.by = shown.encoded === null ? 'here' : 'server';
+    this.element.dataset.estimate = String(shown.isEstimate);
     this.#save.hidden = false;
     this.#showNote();
     this.onChange();
@@ -279,19 +291,20 @@ export class Panel {
     if (state !== 'busy') this.onChange();
   }
 
-  #fail(error: unknown): void {
+  /// `again`: what the user may try again; a refinement is also tried by itself.
+  #fail(error: unknown, again: (() => void) | null = null): void {
     const problem =
       error instanceof Problem
         ? error
         : new Problem('unexpected', error instanceof Error ? error.message : String(error));
     this.problem = problem;
-    const again = button('Try again', () => this.#start());
-    this.#message.replaceChildren(element('p', '', problem.message), again);
+    const retry = button('Try again', again ?? (() => this.#start()));
+    this.#message.replaceChildren(element('p', '', problem.message), retry);
     this.#tell('failed');
     this.onProblem(problem);
-    if (problem.retryAfter === null) return;
+    if (problem.retryAfter === null || again !== null) return;
     const pause = Math.max(1, Math.ceil(problem.retryAfter)) * 2 ** this.#retries++;
-    this.#countDown(Math.min(pause, longestPause), again);
+    this.#countDown(Math.min(pause, longestPause), retry);
   }
 
   #countDown(seconds: number, again: HTMLButtonElement): void {
@@ -305,13 +318,14 @@ export class Panel {
     const { shown } = this;
     if (shown === null) return;
     let encoded = shown.encoded;
+    this.#message.replaceChildren();
     try {
       if (encoded === null) {
         const { query } = this.#asked!.request;
         await shown.mesh.refine(query!, (level) => (encoded = level.encoded), new AbortController().signal);
       }
     } catch (error) {
-      this.#fail(error);
+      this.#fail(error, () => void this.#saveFile());
       return;
     }
     const { kind, bytes } = encoded!;
@@ -323,7 +337,11 @@ export class Panel {
   }
 }
 
-function shownOf(mesh: OpenMesh, { decoded, summary, milliseconds }: Made): Shown {
+function isUnverified(query: string): boolean {
+  return /(^|&)view\.verify=false/.test(query);
+}
+
+function shownOf({ mesh, request }: Asked, { decoded, summary, milliseconds }: Made): Shown {
   return {
     mesh,
     decoded,
@@ -336,6 +354,7 @@ function shownOf(mesh: OpenMesh, { decoded, summary, milliseconds }: Made): Show
     timing: { refine: milliseconds },
     roundTrip: null,
     summary,
+    isEstimate: isUnverified(request.query!),
     levels: [],
   };
 }
@@ -353,6 +372,7 @@ function coarse(mesh: OpenMesh): Shown {
     timing: {},
     roundTrip: null,
     summary: null,
+    isEstimate: false,
     levels: [mesh.encoded],
   };
 }

@@ -12,8 +12,9 @@ const wholePicture = 1000;
 /// Limit of faces of the uniform result if the user has not set the levels.
 const mostUniformFaces = 300_000;
 
-/// Returns the parameters for a mode. `values`: parameters set by the user; `faces`: faces of the coarse mesh.
-export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: number): Values {
+/// Returns the parameters for a mode. `values`: parameters set by the user; `faces`: faces of the coarse mesh;
+/// `isPassing`: see forView().
+export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: number, isPassing = false): Values {
   const without = (left: string[]) =>
     new Map([...values].filter(([name]) => !left.includes(name) && !name.startsWith('view.')));
   if (mode === 'uniform') {
@@ -27,7 +28,7 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
     if (pixels > 0 && !hasTarget(values)) adaptive.set('tolerance', shortest(pixels / wholePicture));
     return adaptive;
   }
-  const all = forView(values);
+  const all = forView(values, isPassing);
   all.set('view.eye', view.eye.map(shortest).join(','));
   all.set('view.target', view.target.map(shortest).join(','));
   if (!all.has('view.viewport')) all.set('view.viewport', view.pixels.join(','));
@@ -35,13 +36,13 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
 }
 
 /// Returns the parameters of the picture that follows the camera. With an accuracy in pixels, the tolerance is left to
-/// the adaptive result: edges below it would stay whole however near the camera comes. Surfaces are not verified unless
-/// the user requests it, as the camera moves.
-export function forView(values: Values): Values {
+/// the adaptive result: edges below it would stay whole however near the camera comes. With `isPassing`, the camera moves
+/// on, and surfaces are not verified unless the user requests it.
+export function forView(values: Values, isPassing: boolean): Values {
   const all = new Map(values);
   if (!(Number(all.get('view.error_pixels') ?? 0) > 0)) return all;
   all.delete('tolerance');
-  return all.has('view.verify') ? all : all.set('view.verify', 'false');
+  return isPassing && !all.has('view.verify') ? all.set('view.verify', 'false') : all;
 }
 
 /// Returns a note for the user; may be empty.

@@ -43,6 +43,8 @@ interface View {
 export class Stage {
   /// Function called when the camera rests at another place, or the panels have another size.
   onRest: () => void = () => {};
+  /// Whether the camera has moved since it was last at rest.
+  isMoving = false;
   /// Function called while the camera moves.
   onMove: () => void = () => {};
   #renderer: WebGLRenderer;
@@ -56,6 +58,8 @@ export class Stage {
   /// Panels on screen.
   #panels: HTMLElement[] = [];
   #sphere = new Sphere(new Vector3(), 1);
+  /// Camera of the last resetCamera().
+  #fitted: Camera | null = null;
   /// Mesh that the camera frames.
   #framed: BufferGeometry | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -92,6 +96,7 @@ export class Stage {
   setPanels(elements: HTMLElement[]): void {
     this.#panels = elements;
     for (const element of elements) if (!this.#views.has(element)) this.#views.set(element, makeView());
+    if (this.#isFitted) this.resetCamera();
     this.draw();
   }
 
@@ -181,6 +186,16 @@ export class Stage {
     if (this.#framed === null) return;
     const [aspect, share] = [aspectOf, freeShareOf].map((of) => Math.min(...this.#panels.map(of)));
     this.camera = framed(this.#framed, this.#sphere, aspect, share, this.#lens);
+    this.#fitted = this.camera;
+  }
+
+  /// Whether the camera is where resetCamera() placed it.
+  get #isFitted(): boolean {
+    const { eye, target } = this.camera;
+    return (
+      this.#fitted !== null &&
+      [...eye, ...target].every((x, i) => x === [...this.#fitted!.eye, ...this.#fitted!.target][i])
+    );
   }
 
   /// Rotates about the target; angles in radians.
@@ -245,6 +260,7 @@ export class Stage {
       this.#moved();
     });
     controls.addEventListener('change', () => {
+      this.isMoving = true;
       this.onMove();
       this.#moved();
     });
@@ -254,7 +270,11 @@ export class Stage {
   #moved(): void {
     this.draw();
     clearTimeout(this.#timer);
-    if (!this.#isHeld) this.#timer = setTimeout(() => this.onRest(), rest);
+    if (this.#isHeld) return;
+    this.#timer = setTimeout(() => {
+      this.isMoving = false;
+      this.onRest();
+    }, rest);
   }
 
   #drawNow(): void {
@@ -337,11 +357,11 @@ function aspectOf(element: HTMLElement): number {
   return Math.max(width, 1) / Math.max(height, 1);
 }
 
-/// Returns the share of a panel's height, in its middle, between caption and buttons; at least half.
+/// Returns the share of a panel's height, in its middle, between caption and buttons; at least a fifth.
 function freeShareOf(element: HTMLElement): number {
   const { top, height } = element.getBoundingClientRect();
   const caption = element.firstElementChild!.getBoundingClientRect().bottom - top;
-  return Math.min(0.9, Math.max(0.5, 1 - (2 * caption) / Math.max(height, 1)));
+  return Math.min(0.9, Math.max(0.2, 1 - (2 * caption) / Math.max(height, 1)));
 }
 
 /// Frees content. Scenes with their own materials are kept: other looks show them, and their owners free them.

@@ -14,7 +14,10 @@ export function costOf(shown: Shown, coarseFaces: number): Node[] {
   const parts = [`${whole(coarseFaces)} → ${whole(shown.faces)} faces`];
   parts.push(shown.encoded === null ? '0 bytes sent: refined here' : `${whole(bytes)} bytes from the server`);
   if (took > 0) parts.push(`${took.toFixed(took < 10 ? 1 : 0)} ms`);
-  if (summary?.error_pixels !== undefined) parts.push(`within ${Number(summary.error_pixels.toPrecision(2))} px`);
+  if (summary?.error_pixels !== undefined) {
+    const nearness = shown.isEstimate ? 'about' : 'within';
+    parts.push(`${nearness} ${Number(summary.error_pixels.toPrecision(2))} px`);
+  }
   const nodes: Node[] = parts.map((text) => element('span', '', text));
   if (summary?.shape?.startsWith('mechanical'))
     nodes.push(element('span', 'found', 'This looks mechanical: its hard edges stay sharp.'));

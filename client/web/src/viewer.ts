@@ -50,7 +50,8 @@ export class Viewer {
     this.#stage = new Stage(find<HTMLCanvasElement>('canvas'), find('panels'));
     this.#pictures = new Pictures(this.#stage);
     this.#results = new Results(this.#pictures);
-    this.#asker = new Asker(() => ({ state: this.#state, look: this.#look(), view: this.#view() }));
+    const page = () => ({ state: this.#state, look: this.#look(), view: this.#view(), isMoving: this.#stage.isMoving });
+    this.#asker = new Asker(page);
     this.#asker.onChange = () => this.#refresh();
     this.#stage.onMove = () => this.#cameraMoves();
     this.#stage.onRest = () => this.#cameraRests();
