@@ -183,6 +183,7 @@ test('a file that is not a mesh is refused with a message, and the open mesh sta
     ['broken.drc', 'DRACO but not really', /no Draco mesh, or it is damaged/],
     ['empty.obj', '', /empty\.obj is empty/],
     ['points.obj', 'v 0 0 0\nv 1 0 0\n', /no triangles in points\.obj/],
+    ['junk.glb', 'hello, no scene', /junk\.glb cannot be read: The bytes do not begin with glTF/],
     ['broken.glb', 'glTF', /broken\.glb cannot be read: The \.glb file has 4 bytes; at least 20 are required/],
     [
       'cut.glb',

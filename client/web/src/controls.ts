@@ -44,7 +44,9 @@ export class Controls {
     for (const [name, value] of chosen)
       for (const input of document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)) {
         input.checked = input.value === value;
-        if (name === 'look') input.disabled = input.value === 'level' && isScene;
+        if (name !== 'look' || input.value !== 'level') continue;
+        input.disabled = isScene;
+        input.parentElement!.title = isScene ? 'The levels of a scene do not arrive one by one.' : '';
       }
     const pixels = Number(values.get('view.error_pixels') ?? NaN);
     find('detail-words').textContent = Number.isNaN(pixels)

@@ -8,14 +8,14 @@ const [headerBytes, chunkHeaderBytes] = [12, 8];
 
 export const padded = (length: number) => (length + 3) & ~3;
 
-/// Throws a Problem, in the server's words, if the bytes begin like a .glb file and are not all of it: three's loader
-/// would complain about an array.
+/// Throws a Problem, in the server's words, if the bytes are not a .glb file or not all of it: three's loader would
+/// complain about JSON or an array.
 export function requireWholeGlb(bytes: Uint8Array): void {
   const words = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (bytes.length < 4 || words.getUint32(0, true) !== magic) return;
   const refuse = (what: string) => {
     throw new Problem('mesh_not_gltf', `${what} Provide the whole .glb file, or export it again.`);
   };
+  if (bytes.length < 4 || words.getUint32(0, true) !== magic) refuse('The bytes do not begin with glTF.');
   const least = headerBytes + chunkHeaderBytes;
   if (bytes.length < least) refuse(`The .glb file has ${bytes.length} bytes; at least ${least} are required.`);
   const declared = words.getUint32(8, true);
