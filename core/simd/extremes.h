@@ -34,11 +34,11 @@ namespace papilio {
   return (Bits{mask, mask} ? Two{a, a} : Two{b, b})[0];
 }
 #else
-[[nodiscard]] inline double either(bool is_first, double a, double b) { return is_first ? a : b; }
 [[nodiscard]] inline double larger(double a, double b) { return std::max(a, b); }
 [[nodiscard]] inline double lesser(double a, double b) { return std::min(a, b); }
 [[nodiscard]] inline float larger(float a, float b) { return std::max(a, b); }
 [[nodiscard]] inline float lesser(float a, float b) { return std::min(a, b); }
+[[nodiscard]] inline double either(bool is_first, double a, double b) { return is_first ? a : b; }
 #endif
 
 /// Of several: from the left to the right, like `std::max` of a list.
