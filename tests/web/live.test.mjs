@@ -114,12 +114,40 @@ test('a picture at rest is compared with the uniform surface, as by the server',
   const faces = await facesOf(page, 'view');
   assert.ok(faces > passing, `${faces} faces at rest, ${passing} before`);
   const viewport = page.viewportSize();
-  const hash = `${new URL(page.url()).hash.slice(1)}&where=server`;
+  const hash = new URL(page.url()).hash.slice(1).replace('where=here', 'where=server');
   const other = await open({ hash, viewport });
+  await other.page.locator('#cost', { hasText: 'bytes from the server' }).waitFor();
   await other.page.locator('.panel[data-mode=view][data-by=server][data-state=done]').waitFor();
   await quiet(other.page);
   assert.equal(await facesOf(other.page, 'view'), faces);
   assert.deepEqual([faults, other.faults], [[], []]);
+});
+
+test('the picture follows the slider of detail while it is dragged', async () => {
+  const { page, faults } = await open();
+  await madeHere(page);
+  await quiet(page);
+  const made = refinements(page);
+  const seen = await watchFaces(page);
+  await page.evaluate(() => {
+    const slider = document.getElementById('detail');
+    let step = 0;
+    const drag = () => {
+      slider.value = String(20 + (++step % 60));
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+    };
+    window.dragging = setInterval(drag, 50);
+  });
+  const began = Date.now();
+  while ((await seen()).length < 3 && Date.now() - began < 30_000) await page.waitForTimeout(100);
+  const whileDragged = await seen();
+  assert.ok(whileDragged.length >= 3, `${whileDragged}`);
+  assert.match(await page.locator('#cost').innerText(), /about [\d.]+ px/);
+  await page.evaluate(() => clearInterval(window.dragging));
+  await madeHere(page);
+  assert.match(await page.locator('#cost').innerText(), /within [\d.]+ px/);
+  assert.deepEqual(made, []);
+  assert.deepEqual(faults, []);
 });
 
 test('figures and the camera in the form follow the rotation, in existing elements', async () => {

@@ -15,7 +15,7 @@ export interface Page {
   look: Look;
   /// View of the current camera.
   view: Frozen;
-  /// Whether the camera moves.
+  /// Whether the camera or the slider of detail moves.
   isMoving: boolean;
 }
 
@@ -65,7 +65,7 @@ export class Asker {
     return this.#maker() !== null && this.page().state.frozen === null;
   }
 
-  /// Whether the picture follows a camera that moves.
+  /// Whether the picture follows what moves.
   get #isPassing(): boolean {
     const { state, isMoving } = this.page();
     return isMoving && state.frozen === null;

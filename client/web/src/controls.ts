@@ -5,6 +5,8 @@ import { arrangementTitles, groundTitles, lookTitles, placeTitles } from './defa
 import { arrangements, grounds, type Look, looks, places, type State } from './link';
 import type { Values } from './parameters';
 
+/// Time without a step after which the slider is at rest, in milliseconds.
+const rest = 200;
 /// Ends of the slider, in pixels of error.
 const [coarsest, finest] = [16, 0.125];
 
@@ -13,10 +15,16 @@ export class Controls {
   onChoice: (choice: Partial<Pick<State, 'arrangement' | 'look' | 'where' | 'ground'>>) => void = () => {};
   /// Function called when the user sets a parameter; null: its default.
   onParameter: (name: string, value: string | null) => void = () => {};
+  /// Function called when the slider of detail rests.
+  onRest: () => void = () => {};
+  /// Whether the slider has moved since it was last at rest.
+  isMoving = false;
   #detail = find<HTMLInputElement>('detail');
+  #timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
     this.#detail.addEventListener('input', () => {
+      this.#moved();
       const pixels = coarsest * (finest / coarsest) ** (Number(this.#detail.value) / 100);
       this.onParameter('view.error_pixels', String(Number(pixels.toPrecision(2))));
     });
@@ -30,6 +38,15 @@ export class Controls {
     for (const look of looks) radio('looks', 'look', look, lookTitles[look], () => this.onChoice({ look }));
     for (const ground of grounds)
       radio('grounds', 'ground', ground, groundTitles[ground], () => this.onChoice({ ground }));
+  }
+
+  #moved(): void {
+    this.isMoving = true;
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => {
+      this.isMoving = false;
+      this.onRest();
+    }, rest);
   }
 
   /// Shows the choices. `look`: the current look; `isScene`: whether levels arrive only with the result.

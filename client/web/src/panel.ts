@@ -48,7 +48,7 @@ export interface Request {
   query: string | null;
   /// Function that refines in this browser; null: the server refines.
   make: ((signal: AbortSignal) => Promise<Made>) | null;
-  /// Whether `make` is finished and shown even if another request follows: the camera moves.
+  /// Whether `make` is finished and shown even if another request follows: the camera or the detail moves.
   isPassing: boolean;
   note: string;
 }
@@ -114,8 +114,8 @@ export class Panel {
     this.#tell('idle');
   }
 
-  /// Requests a mesh unless it is visible or pending. Aborts the pending request, but a refinement in this browser for a
-  /// moving camera is finished and shown before the latest request starts. The visible mesh stays until a better one is
+  /// Requests a mesh unless it is visible or pending. Aborts the pending request, but a refinement in this browser of a
+  /// passing picture is finished and shown before the latest request starts. The visible mesh stays until a better one is
   /// ready.
   ask(mesh: OpenMesh, request: Request): void {
     this.#givenNote = request.note;

@@ -1,6 +1,7 @@
 // Form with a control for each parameter of the server, with its name and range.
 
 import { element } from './elements';
+import { type Frozen, shortest } from './link';
 import { defaultOf, faultOf, type ParameterKind, rangeOf, type Values } from './parameters';
 
 const groups: Record<string, string> = { '': 'Refinement', view: 'View', output: 'Output' };
@@ -46,10 +47,12 @@ export class ParameterForm {
     }
   }
 
-  /// Shows the value of an unset parameter if it is not the default. Waits until no text has come for 100 ms: the
-  /// camera's texts come with each picture, and each costs a layout of the page.
-  setPlaceholder(name: string, text: string): void {
-    this.#placeholders.set(name, text);
+  /// Shows the view where its parameters are not set. Waits until none has come for 100 ms: one comes with each picture,
+  /// and its texts cost a layout of the page.
+  setView({ eye, target, pixels }: Frozen): void {
+    this.#placeholders.set('view.eye', eye.map(shortest).join(','));
+    this.#placeholders.set('view.target', target.map(shortest).join(','));
+    this.#placeholders.set('view.viewport', pixels.join(','));
     clearTimeout(this.#placeholdersDue);
     this.#placeholdersDue = setTimeout(() => this.#showPlaceholders(), 100);
   }

@@ -36,8 +36,8 @@ export function valuesFor(mode: Mode, values: Values, view: Frozen, faces: numbe
 }
 
 /// Returns the parameters of the picture that follows the camera. With an accuracy in pixels, the tolerance is left to
-/// the adaptive result: edges below it would stay whole however near the camera comes. With `isPassing`, the camera moves
-/// on, and surfaces are not verified unless the user requests it.
+/// the adaptive result: edges below it would stay whole however near the camera comes. With `isPassing`, the camera or
+/// the detail moves on, and surfaces are not verified unless the user requests it.
 export function forView(values: Values, isPassing: boolean): Values {
   const all = new Map(values);
   if (!(Number(all.get('view.error_pixels') ?? 0) > 0)) return all;

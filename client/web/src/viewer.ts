@@ -10,7 +10,7 @@ import { fetchDecoder } from './draco';
 import { addChoice, find } from './elements';
 import { listenToFiles, listenToKeys } from './input';
 import { askForKey, listenToKey } from './key_form';
-import { type Frozen, fromHash, isStored, type Look, type Mode, modes, shortest, type State } from './link';
+import { type Frozen, fromHash, isStored, type Look, type Mode, modes, type State } from './link';
 import type { OpenMesh } from './mesh';
 import { MeshSelect } from './mesh_select';
 import type { Encoded } from './model';
@@ -50,8 +50,12 @@ export class Viewer {
     this.#stage = new Stage(find<HTMLCanvasElement>('canvas'), find('panels'));
     this.#pictures = new Pictures(this.#stage);
     this.#results = new Results(this.#pictures);
-    const page = () => ({ state: this.#state, look: this.#look(), view: this.#view(), isMoving: this.#stage.isMoving });
-    this.#asker = new Asker(page);
+    this.#asker = new Asker(() => ({
+      state: this.#state,
+      look: this.#look(),
+      view: this.#view(),
+      isMoving: this.#stage.isMoving || this.#controls.isMoving,
+    }));
     this.#asker.onChange = () => this.#refresh();
     this.#stage.onMove = () => this.#cameraMoves();
     this.#stage.onRest = () => this.#cameraRests();
@@ -143,7 +147,7 @@ export class Viewer {
     this.#stage.frame(mesh.geometry);
     if (this.#state.camera) this.#stage.camera = this.#state.camera;
     this.#showFrozen();
-    this.#showCamera();
+    this.#form.setView(this.#view());
     this.#nameMesh();
     this.#refresh();
   }
@@ -190,7 +194,7 @@ export class Viewer {
 
   /// Requests refinements in this browser for the moved camera.
   #cameraMoves(): void {
-    this.#showCamera();
+    this.#form.setView(this.#view());
     const panel = this.#panels.get('view')!;
     if (this.#visible().includes(panel) && this.#asker.isLive) this.#asker.ask(panel);
   }
@@ -198,7 +202,7 @@ export class Viewer {
   #cameraRests(): void {
     if (this.#mesh === null) return;
     this.#state.camera = this.#stage.camera;
-    this.#showCamera();
+    this.#form.setView(this.#view());
     this.#refresh();
   }
 
@@ -239,14 +243,6 @@ export class Viewer {
     this.#results
       .show(this.#mesh, this.#visible(), uniform, levels, this.#look(), this.#packed.compare.colours)
       .catch((error: unknown) => this.#tell(error));
-  }
-
-  /// Shows the camera's values in the form.
-  #showCamera(): void {
-    const { eye, target, pixels } = this.#view();
-    this.#form.setPlaceholder('view.eye', eye.map(shortest).join(','));
-    this.#form.setPlaceholder('view.target', target.map(shortest).join(','));
-    this.#form.setPlaceholder('view.viewport', pixels.join(','));
   }
 
   #showFrozen(): void {
@@ -301,6 +297,7 @@ export class Viewer {
       this.#setParameter(name, value);
       this.#form.setValues(this.#state.values);
     };
+    this.#controls.onRest = () => this.#refresh();
     this.#showChoices();
   }
 
