@@ -14,6 +14,7 @@
 #include "detail/encode_pieces.h"
 #include "detail/encode_values.h"
 #include "detail/error_weights.h"
+#include "detail/face_order.h"
 #include "detail/folds.h"
 #include "detail/manifold_surface.h"
 #include "detail/original_surface.h"
@@ -120,7 +121,8 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    Mesh mesh = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller());
+    const Mesh whole = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller());
+    Mesh mesh = build_mesh(along_morton_curve(whole.triangles()));
     require_manifold(mesh);
     normals_ = mark_detail_curves(mesh);
     require_whole_parts(mesh);
