@@ -138,7 +138,7 @@ TEST(Refinement, UnreachedTargetsNameOnlyCriteriaThatWereGiven) {
       << grid.unreached;
   EXPECT_NE(grid.unreached.find("Raise output.position_bits"), std::string::npos) << grid.unreached;
   EXPECT_EQ(grid.unreached.find("criteria"), std::string::npos) << grid.unreached;
-  const Statistics finest = refined({{"tolerance", "1e-6"}, {"output.position_bits", "16"}, {"levels", "10"}});
+  const Statistics finest = refined({{"tolerance", "8e-6"}, {"output.position_bits", "16"}, {"levels", "10"}});
   EXPECT_NE(finest.unreached.find("16 bits are the maximum"), std::string::npos) << finest.unreached;
   const Statistics flat = refined({{"tolerance", "0.0003"}, {"flatness", "0.5"}});
   EXPECT_NE(flat.unreached.find("Other criteria exclude edges: flatness. "), std::string::npos) << flat.unreached;
