@@ -121,8 +121,8 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    const Mesh whole = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller());
-    Mesh mesh = build_mesh(along_morton_curve(whole.triangles()));
+    TriangleMesh whole = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller()).triangles();
+    Mesh mesh = build_mesh(along_morton_curve(std::move(whole)));
     require_manifold(mesh);
     normals_ = mark_detail_curves(mesh);
     require_whole_parts(mesh);
