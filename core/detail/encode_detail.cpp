@@ -11,6 +11,7 @@
 #include "detail/base_lift.h"
 #include "detail/base_points.h"
 #include "detail/collapse_sequence.h"
+#include "detail/distant_points.h"
 #include "detail/encode_pieces.h"
 #include "detail/encode_values.h"
 #include "detail/error_weights.h"
@@ -47,6 +48,8 @@ constexpr int attempts_of_candidate = 3, attempts_at_last = 4;
 /// Lower bound of a distance that ends the search for the step, a share of the target.
 constexpr double least_share_of_target = 0.96;
 constexpr int turns_of_candidate = 2, turns_at_last = 5;  // turns per level
+/// Distance beyond which points of the original are distant at the end, in target distances.
+constexpr double distance_of_distant = 8;
 constexpr double rate_weight = 2;
 constexpr int weighting_passes = 3;
 /// Samples for the distance of a candidate, per face of the original, and their bounds.
@@ -69,6 +72,14 @@ void check(const DetailOptions& options) {
     throw Error(Fault::bad_option, "The step of texture coordinates must be above 0.", "texcoord_step");
   if (options.piece_bytes == 0) throw Error(Fault::bad_option, "Pieces must have bytes.", "piece_bytes");
 }
+
+/// Effort of the search for a step.
+struct Effort {
+  int turns_a_level = 0;
+  uint32_t samples = 0;
+  int attempts = 0;
+  bool reaches_distant = false;
+};
 
 /// Base of one size with its levels.
 struct CandidateBase {
@@ -106,7 +117,7 @@ class DetailEncoder {
       CandidateBase& last = candidate(at);
       lift(last);
       std::optional<ResidualFit> fit =
-          find_step(last, turns_at_last, samples_at_last * samples_of_candidate_, attempts_at_last);
+          find_step(last, {turns_at_last, samples_at_last * samples_of_candidate_, attempts_at_last, true});
       if (best == nullptr || is_better_result(last.chosen.outcome, best->chosen.outcome)) {
         best = &last;
         best_fit.emplace(std::move(*fit));
@@ -242,14 +253,14 @@ class DetailEncoder {
 
   /// Finds the step, and adds levels as long as they are expected to save bytes.
   void choose(CandidateBase& candidate) {
-    find_step(candidate, turns_of_candidate, samples_of_candidate_, attempts_of_candidate);
+    find_step(candidate, {turns_of_candidate, samples_of_candidate_, attempts_of_candidate});
     while (candidate.chosen.levels < candidate.most_levels &&
            candidate.chosen.floor > floor_of_enough_levels * wanted_) {
       const CandidateBase::Choice before = candidate.chosen;
       ++candidate.chosen.levels;
       candidate.chosen.floor = floor_of(candidate);
       candidate.chosen.outcome = {};
-      find_step(candidate, turns_of_candidate, samples_of_candidate_, attempts_of_candidate);
+      find_step(candidate, {turns_of_candidate, samples_of_candidate_, attempts_of_candidate});
       if (is_better(candidate.chosen.outcome, before.outcome)) continue;
       candidate.chosen = before;
       return;
@@ -280,13 +291,15 @@ class DetailEncoder {
   }
 
   /// Finds the step that leaves the target distance.
-  std::optional<ResidualFit> find_step(CandidateBase& candidate, int turns_a_level, uint32_t samples, int step_count) {
+  std::optional<ResidualFit> find_step(CandidateBase& candidate, const Effort& effort) {
     if (candidate.chosen.step == 0) candidate.chosen.step = first_step_;
     std::optional<ResidualFit> best;
     double step = candidate.chosen.step;
-    for (int i = 0; i < step_count; ++i) {
-      ResidualFit made = fit(candidate, step, turns_a_level);
-      const double rms = distance(made, samples).rms;
+    for (int i = 0; i < effort.attempts; ++i) {
+      ResidualFit made = fit(candidate, step, effort.turns_a_level);
+      if (effort.reaches_distant)
+        reach_distant_points(made, original_, {distance_of_distant * wanted_, sheet_reach * wanted_}, poller());
+      const double rms = distance(made, effort.samples).rms;
       const bool is_reached = rms <= wanted_;
       const bool is_coarser_step =
           is_reached && (!candidate.chosen.outcome.is_reached || step >= candidate.chosen.step);

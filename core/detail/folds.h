@@ -7,9 +7,12 @@
 
 namespace papilio {
 
-/// Counts the faces of a surface that are turned against the original at their centres: against both its nearest face
-/// and its smooth normal. Another sheet of a thin part may be nearer: a face is not counted if the original has a face
-/// of its orientation within `reach`. O(F log F).
+/// Returns whether a face is turned against the original at its centre: against both its nearest face and its smooth
+/// normal. Another sheet of a thin part may be nearer: a face is no fold if the original has a face of its orientation
+/// within `reach`. O(log F).
+[[nodiscard]] bool is_fold(const OriginalSurface& original, const TriangleCorners& face, double reach);
+
+/// Counts the folds of a surface. O(F log F).
 [[nodiscard]] uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach);
 
 }  // namespace papilio

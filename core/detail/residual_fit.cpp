@@ -78,11 +78,14 @@ ResidualFit::ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, Pl
 
 void ResidualFit::forward() {
   positions_.resize(base_vertices_);
-  for (Level& level : levels_) {
-    level.normals = residual_normals(level.level, positions_.data());
-    level.level.predict(positions_);
-    displace(level.level, level.normals, level.residuals, positions_);
-  }
+  for (Level& level : levels_) place_new_vertices(level);
+}
+
+// Appends the new vertices of a level to the positions.
+void ResidualFit::place_new_vertices(Level& level) {
+  level.normals = residual_normals(level.level, positions_.data());
+  level.level.predict(positions_);
+  displace(level.level, level.normals, level.residuals, positions_);
 }
 
 void ResidualFit::improve(int turns, double rate_weight) {
@@ -278,6 +281,13 @@ void ResidualFit::improve_across(Level& level, double bit_cost) {
     else
       across[c + 1] += two.steps;
   }
+}
+
+void ResidualFit::set_last_residuals(Residuals residuals) {
+  Level& last = levels_.back();
+  last.residuals = std::move(residuals);
+  positions_.resize(last.level.topology().vertex_count);
+  place_new_vertices(last);
 }
 
 void ResidualFit::keep_levels(size_t count) {

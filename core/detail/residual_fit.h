@@ -24,6 +24,9 @@ class ResidualFit {
   /// Restores the residuals where faces turn over.
   void improve(int turns, double rate_weight);
 
+  /// Replaces the residuals of the last level.
+  void set_last_residuals(Residuals residuals);
+
   /// Drops all but the first `count` levels; improve() must not follow.
   void keep_levels(size_t count);
 
@@ -48,6 +51,7 @@ class ResidualFit {
     Buffer<float> area{};             // [E] area that a vertex moves
   };
   void forward();
+  void place_new_vertices(Level& level);
   [[nodiscard]] Buffer<Vec3f> face_normals() const;
   bool turn_faces_back(const std::vector<Residuals>& before, const Buffer<Vec3f>& normals);
   void find_forces();
