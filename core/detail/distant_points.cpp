@@ -120,7 +120,7 @@ class DistantPoints {
     const auto steps = [&](Vec3f direction) {
       return static_cast<int32_t>(std::lround(dot(way, to_double(direction)) / residuals_.step));
     };
-    if (length(way) > largest_residual / 2 * static_cast<double>(residuals_.step)) return false;
+    if (2 * length(way) > static_cast<double>(largest_residual) * static_cast<double>(residuals_.step)) return false;
     const int32_t up = steps(normals_[e]);
     const Vec3d missed = way - up * static_cast<double>(residuals_.step) * to_double(normals_[e]);
     const auto free = residuals_.tangential.find(e);
@@ -138,7 +138,10 @@ class DistantPoints {
     return true;
   }
 
+  /// Restores the vertex's residual, and refuses its move to the point.
   void take_back(const Move& move) {
+    may_move_[move.vertex] = true;
+    refused_.emplace(move.vertex, move.distant.point);
     const uint32_t e = move.vertex - first_;
     residuals_.along_normal[e] = move.along_normal;
     if (move.tangential)
@@ -175,16 +178,14 @@ class DistantPoints {
       if (is_near_moved_[near_face_[p]]) points_at_.emplace_back(near_face_[p], p);
     std::ranges::sort(points_at_);
     for (bool is_harmed = true; is_harmed;) {
+      if (poll_) poll_();
       fit_.set_last_residuals(residuals_);
       surface_ = fit_.surface(fit_.level_count());
-      const auto harmful = std::ranges::partition(moved_, [&](const Move& m) { return !is_harmful(m); });
-      for (const Move& move : harmful) {
-        take_back(move);
-        may_move_[move.vertex] = true;
-        refused_.emplace(move.vertex, move.distant.point);
-      }
-      is_harmed = !harmful.empty();
-      moved_.erase(harmful.begin(), moved_.end());
+      const auto harmful =
+          std::partition(moved_.begin(), moved_.end(), [&](const Move& move) { return !is_harmful(move); });
+      std::for_each(harmful, moved_.end(), [&](const Move& move) { take_back(move); });
+      is_harmed = harmful != moved_.end();
+      moved_.erase(harmful, moved_.end());
     }
   }
 

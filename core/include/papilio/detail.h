@@ -210,7 +210,8 @@ struct EncodedDetail {
 /// Where the surface touches itself, or more than two faces share an edge, it is separated, by at most a tenth of the
 /// target distance. Slivers smaller than that are removed. Several numbers of base faces, numbers of levels and steps
 /// are tried; the result takes the fewest bytes at the target distance. If none reaches it, the result is the nearest
-/// (`reach`). Without attributes, levels that are not needed for the distance are left out.
+/// (`reach`). Points of the original farther than eight target distances get vertices where that turns no face over, so
+/// few are left. Without attributes, levels that are not needed for the distance are left out.
 ///
 /// Throws `Error`: bad_option, bad_surface (it cannot be separated, or its base cannot be coded), cancelled,
 /// out_of_memory, and errors of build_mesh().
