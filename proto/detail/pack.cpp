@@ -20,9 +20,10 @@
 namespace papilio::proto::detail {
 namespace {
 
-/// Typical largest distance of the measured models, in RMS distances: start of a search for it, and bound of a
-/// simplified mesh.
+/// Typical largest distance of the measured models, in RMS distances: start of a search for it.
 constexpr double largest_of_rms = 8;
+/// Bound of a simplified mesh's largest distance, in RMS distances: about what other simplifiers leave.
+constexpr double most_of_rms = 16;
 /// Lower bound of the faces of an original to be simplified: with fewer, each may be a feature, and few bytes are
 /// saved.
 constexpr size_t fewest_to_simplify = 5000;
@@ -137,7 +138,7 @@ class Packer {
   /// does.
   [[nodiscard]] double most_of_simplified() const {
     const bool reaches = best_ && reach_of(best_->model).rms <= options_.rms;
-    return std::max(largest_of_rms * options_.rms, reaches ? reach_of(best_->model).largest : 0);
+    return std::max(most_of_rms * options_.rms, reaches ? reach_of(best_->model).largest : 0);
   }
 
   /// Returns whether a simplified mesh is the smallest file.
