@@ -40,13 +40,13 @@ void DetailLevel::predict(Buffer<Vec3f>& positions) const {
 }
 
 ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
-                                     const Vec3f* positions, float step) const {
+                                     const Vec3f* positions, Vec3f normal, float step) const {
   const Topology& t = topology_;
+  const auto is_coded = [&](uint32_t other) { return other < e && coded.piece[other] == coded.piece[e]; };
   const uint32_t h = t.half_edge[e];
   const auto is_recent = [&](uint32_t v) { return number_ > 0 && v >= vertices_before_; };
   ResidualContext c;
   c.level = number_ + 1;
-  c.is_inner = is_recent(t.origin[h]) && is_recent(t.tip(h));
   uint32_t magnitudes = 0;
   uint32_t weights = 0;
   const auto add_parent = [&](uint32_t v, uint32_t weight) {
@@ -54,25 +54,44 @@ ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, st
     magnitudes += weight * static_cast<uint32_t>(std::abs(at_vertex[v]));
     weights += weight;
   };
-  add_parent(t.origin[h], 2);
-  add_parent(t.tip(h), 2);
+  for (const uint32_t v : {t.origin[h], t.tip(h)}) {
+    add_parent(v, 2);
+    if (is_recent(v)) c.ends += at_vertex[v];
+  }
+  const bool is_half = is_recent(t.origin[h]) != is_recent(t.tip(h));  // of an edge of the level before
+  if (is_half && e % 2 == 1 && is_coded(e - 1)) {
+    c.has_sibling = true;
+    c.sibling = coded.residual[e - 1];
+  }
+  const auto add_beyond = [&](uint32_t side) {
+    if (side == none) return;
+    for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
+      if (!is_coded(other)) continue;
+      c.has_beyond = true;
+      c.beyond += coded.residual[other];
+    }
+  };
   size_t i = 0;
   for (const uint32_t side : {h, t.twin[h]}) {
     if (side == none) continue;
-    for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
-      if (other < e && coded.piece[other] == coded.piece[e]) {
+    for (const uint32_t near : {Topology::next(side), Topology::previous(side)}) {
+      if (const uint32_t other = t.edge[near]; is_coded(other)) {
         ++c.known;
         c.neighbours[i] = coded.residual[other];
         c.free_neighbours += coded.is_free[other];
       }
+      add_beyond(t.twin[near]);
       ++i;
     }
     add_parent(t.apex(side), 1);
   }
   c.parents = weights == 0 ? 0 : 8 * magnitudes / weights;
   const Vec3f middle = 0.5F * (positions[t.origin[h]] + positions[t.tip(h)]);
-  const float turn = 8 * length(positions[t.vertex_count + e] - middle) / step;
+  const Vec3f off = positions[t.vertex_count + e] - middle;
+  const float turn = 8 * length(off) / step;
   c.turn = turn < 1e6F ? static_cast<uint32_t>(turn) : 1000000U;
+  const float bow = dot(off, normal) / step;
+  c.bow = std::abs(bow) < 1e6F ? static_cast<double>(bow) : 0;
   return c;
 }
 

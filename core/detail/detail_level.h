@@ -35,10 +35,10 @@ class DetailLevel {
   /// Predicts the new vertices and appends them: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;
 
-  /// Returns the coding context of edge e's residual. `at_vertex` [V]: residuals of the vertices. `positions` [V + E]
-  /// include the predictions.
+  /// Returns the coding context of edge e's residual along `normal`; where that is zero, the bow is not known.
+  /// `at_vertex` [V]: residuals of the vertices. `positions` [V + E] include the predictions.
   [[nodiscard]] ResidualContext context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
-                                        const Vec3f* positions, float step) const;
+                                        const Vec3f* positions, Vec3f normal, float step) const;
   /// Returns the coding context of the residual of curve_edges()[c]. In `residual` [E] and `across` [C], earlier edges
   /// are coded.
   [[nodiscard]] CurveContext curve_context(uint32_t c, std::span<const int32_t> residual,

@@ -53,8 +53,8 @@ void LevelDecoder::decode(const DetailStream& stream) {
   const std::vector<uint8_t> is_decoded = needs_.next(order_, pieces);
   const EdgePieces edges = order_.edges(level_.topology(), level_.number(), static_cast<uint32_t>(pieces.size()));
   const Residuals residuals =
-      decode_residuals(level_, edges, piece_bytes(stream.bytes, pieces, &DetailPiece::bytes, is_decoded), stream.step,
-                       at_vertex_, positions_, *models_);
+      decode_residuals({level_, edges, at_vertex_, positions_, normals},
+                       piece_bytes(stream.bytes, pieces, &DetailPiece::bytes, is_decoded), stream.step, *models_);
   displace(level_, normals, residuals, positions_);
   require_finite(positions_);
   if (values_) {

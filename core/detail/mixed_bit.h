@@ -11,16 +11,41 @@
 
 namespace papilio {
 
+/// Functions of probabilities, as tables.
+struct BitTables {
+  static constexpr int32_t stretch_limit = 3071;  ///< 12 in units of 1/256
+  static constexpr uint32_t stretch_shift = 4;    ///< probabilities are looked up by their upper 12 bits
+  static constexpr uint32_t most_seen = 255;
+
+  BitTables();
+
+  std::array<uint16_t, 2 * stretch_limit + 1> squash{};
+  std::array<int16_t, 1U << (16 - stretch_shift)> stretch{};
+  std::array<uint32_t, most_seen + 1> rate{};  ///< of adaptation, in 65536ths, by the number of bits seen
+};
+extern const BitTables bit_tables;
+
 /// Returns ln(p / (1 - p)) in units of 1/256, for a 16-bit probability p.
-[[nodiscard]] int32_t stretch(uint32_t probability);
+[[nodiscard]] inline int32_t stretch(uint32_t probability) {
+  return bit_tables.stretch[probability >> BitTables::stretch_shift];
+}
 /// Returns the inverse of stretch(), clamped to 1..65535.
-[[nodiscard]] uint32_t squash(int32_t stretched);
+[[nodiscard]] inline uint32_t squash(int32_t stretched) {
+  constexpr int32_t limit = BitTables::stretch_limit;
+  const int32_t index = std::clamp(stretched, -limit, limit) + limit;
+  return bit_tables.squash[static_cast<size_t>(index)];
+}
 
 /// Adaptive probability that a bit is one.
 class BitModel {
  public:
   [[nodiscard]] uint32_t probability() const { return probability_; }
-  void update(bool bit);
+  void update(bool bit) {
+    const int64_t error = (bit ? 65535 : 0) - int32_t{probability_};
+    const auto moved = static_cast<int32_t>(probability_ + ((error * bit_tables.rate[seen_]) >> 16));
+    probability_ = static_cast<uint16_t>(std::clamp(moved, 16, 65535 - 16));
+    if (seen_ < BitTables::most_seen) ++seen_;
+  }
 
  private:
   uint16_t probability_ = 1U << 15;
@@ -32,7 +57,7 @@ template <size_t inputs>
 class BitMixer {
  public:
   explicit BitMixer(size_t sets) : weights_(sets) {
-    for (auto& set : weights_) set.fill(static_cast<int32_t>((1 << 16) * 14 / (10 * inputs)));
+    for (auto& set : weights_) set.fill(static_cast<int32_t>((1 << 16) * 12 / (10 * inputs)));
   }
 
   /// Returns the probability that the next bit is one. update() must follow.
@@ -59,7 +84,7 @@ class BitMixer {
   }
 
  private:
-  static constexpr int learning_shift = 14;
+  static constexpr int learning_shift = 15;
   static constexpr int32_t largest_weight = 1 << 24;
 
   std::vector<std::array<int32_t, inputs>> weights_;  // in units of 1/65536

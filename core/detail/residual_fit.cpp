@@ -306,7 +306,8 @@ std::vector<std::vector<std::vector<uint8_t>>> ResidualFit::code(const PieceOrde
   for (const Level& level : levels_) {
     level.level.predict(positions);
     const EdgePieces pieces = order.edges(level.level.topology(), level.level.number(), piece_counts[streams.size()]);
-    streams.push_back(encode_residuals(level.level, pieces, level.residuals, at_vertex, positions, *models));
+    streams.push_back(
+        encode_residuals({level.level, pieces, at_vertex, positions, level.normals}, level.residuals, *models));
     displace(level.level, level.normals, level.residuals, positions);
     const Buffer<int32_t>& made = level.residuals.along_normal;
     at_vertex.insert(at_vertex.end(), made.begin(), made.end());

@@ -7,31 +7,11 @@
 #include <cstdlib>
 #include <vector>
 
+#include "detail/expected_residual.h"
 #include "detail/mixed_bit.h"
+#include "detail/residual_context.h"
 
 namespace papilio {
-
-/// Upper bound of the magnitude of a residual, in steps.
-inline constexpr int32_t largest_residual = (1 << 20) - 1;
-
-/// Coding context of a residual.
-struct ResidualContext {
-  uint32_t level = 0;                   ///< number; 1 is the first below the base
-  bool is_inner = false;                ///< whether its edge lies inside a face of the level before
-  std::array<int32_t, 4> neighbours{};  ///< residuals of the other edges of its two faces; 0 if not coded yet
-  uint32_t known = 0;                   ///< number of coded neighbours
-  uint32_t free_neighbours = 0;         ///< number of coded neighbours with tangential parts
-  uint32_t parents = 0;                 ///< mean magnitude round the edge on the level before, in eighths
-  uint32_t turn = 0;                    ///< distance of the prediction from the middle of the edge, in eighths of steps
-};
-
-/// Coding context of the residual of an edge on a curve.
-struct CurveContext {
-  uint32_t level = 0;                       ///< number; 1 is the first below the base
-  uint32_t parent = 0;                      ///< magnitude at the end that the level before made
-  bool has_sibling = false;                 ///< whether the other half of the parent edge is coded
-  int32_t sibling = 0, sibling_across = 0;  ///< parts of the other half's residual
-};
 
 /// Adaptive models of residuals, shared by encoder and decoder. Functions code through code(bit, probability), which
 /// encodes the bit, or ignores it and decodes one. Each returns the coded or decoded value.
@@ -48,14 +28,12 @@ class ResidualModels {
   template <class Code>
   int32_t code(const ResidualContext& context, int32_t residual, const Code& code) {
     set_context(context);
-    const auto magnitude = static_cast<uint32_t>(std::abs(residual));
-    if (!code_decision(0, magnitude != 0, code)) return 0;
-    const bool is_negative = code_sign(residual < 0, code);
-    uint32_t coded = 1;
-    while (coded < unary_limit && code_decision(coded, magnitude > coded, code)) ++coded;
-    if (coded == unary_limit) coded += code_number(widths_, magnitude - std::min(magnitude, unary_limit), code);
-    const auto value = static_cast<int32_t>(std::min(coded, static_cast<uint32_t>(largest_residual)));
-    return is_negative ? -value : value;
+    // In the direction that is expected, less most of what is expected.
+    const int32_t rest = (is_turned_ ? -residual : residual) - shift_;
+    const int32_t coded = std::clamp(shift_ + code_rest(rest, code), -largest_residual, largest_residual);
+    const int32_t value = is_turned_ ? -coded : coded;
+    expected_.update(value);
+    return value;
   }
 
   /// Codes whether the residual of an edge on a curve has a part along it.
@@ -87,8 +65,9 @@ class ResidualModels {
  private:
   static constexpr uint32_t unary_limit = 14;
   static constexpr uint32_t curve_classes = 5;
-  static constexpr size_t inputs = 6, sign_inputs = 3;
+  static constexpr size_t inputs = 4, sign_inputs = 4;
   static constexpr uint32_t most_levels = 12;
+  static constexpr uint32_t expectations = 7, shift_classes = 4, spreads = 32, sign_sizes = 4;
   static constexpr uint32_t most_width = 20;
   static constexpr uint32_t even = 1U << 15;
   static constexpr uint32_t curve_rows = 2 * most_levels * (curve_classes + 1) * curve_classes;
@@ -96,6 +75,12 @@ class ResidualModels {
   using Widths = std::array<BitModel, most_width>;
 
   static uint32_t level_of(const ResidualContext& c) { return std::min(c.level, most_levels - 1); }
+  /// Returns the class of a value: 0 and 1 are their own, then two an octave, at most `spreads` - 1.
+  static uint32_t spread_of(uint32_t value) {
+    if (value < 2) return value;
+    const auto width = static_cast<uint32_t>(std::bit_width(value));
+    return std::min(2 * (width - 1) + ((value >> (width - 2)) & 1), spreads - 1);
+  }
   /// Returns the class of a value, at most `most`: 0, 1 and 2 are their own; 3 is 3..4, 4 is 5..8, and so on.
   static uint32_t class_of(uint32_t value, uint32_t most) {
     if (value == 0) return 0;
@@ -122,10 +107,22 @@ class ResidualModels {
   }
 
   template <class Code>
-  bool code_sign(bool bit, const Code& code) {
-    std::array<BitModel*, sign_inputs> models;
-    for (size_t i = 0; i < sign_inputs; ++i) models[i] = &sign_models_[i][sign_at_[i]];
-    const bool coded = code(bit, sign_mixer_.mix(models, 0));
+  int32_t code_rest(int32_t rest, const Code& code) {
+    const auto magnitude = static_cast<uint32_t>(std::abs(rest));
+    uint32_t coded = 0;
+    while (coded < unary_limit && code_decision(coded, magnitude > coded, code)) ++coded;
+    if (coded == 0) return 0;
+    if (coded == unary_limit) coded += code_number(widths_, magnitude - std::min(magnitude, unary_limit), code);
+    return code_sign(rest < 0, coded, code) ? -static_cast<int32_t>(coded) : static_cast<int32_t>(coded);
+  }
+
+  template <class Code>
+  bool code_sign(bool bit, uint32_t magnitude, const Code& code) {
+    const uint32_t size = std::min(magnitude, sign_sizes) - 1;
+    const std::array<BitModel*, sign_inputs> models{
+        &sign_models_[0][expectation_ * most_levels + level_], &sign_models_[1][expectation_ * sign_sizes + size],
+        &sign_models_[2][expectation_ * spreads + spread_], &sign_models_[3][signs_]};
+    const bool coded = code(bit, sign_mixer_.mix(models, shift_class_));
     sign_mixer_.update(coded);
     return coded;
   }
@@ -158,16 +155,19 @@ class ResidualModels {
     return coded - 1;
   }
 
-  uint32_t level_ = 0;
+  ExpectedResidual expected_;
+  bool is_turned_ = false;  // whether the expected residual is negative
+  int32_t shift_ = 0;       // of the coded value, in the direction that is expected
+  uint32_t level_ = 0, expectation_ = 0, shift_class_ = 0, spread_ = 0, signs_ = 0;  // contexts
   std::array<uint32_t, inputs> at_{};
-  std::array<uint32_t, sign_inputs> sign_at_{};
-  std::array<Models, inputs> models_{
-      Models(size_t{most_levels} * 80 * unary_limit), Models(size_t{256} * 5 * unary_limit),
-      Models(size_t{most_levels} * 48 * unary_limit), Models(size_t{240} * unary_limit),
-      Models(size_t{most_levels} * 16 * unary_limit), Models(size_t{most_levels} * 5 * unary_limit)};
+  std::array<Models, inputs> models_{Models(size_t{256} * (most_neighbours + 1) * unary_limit),
+                                     Models(size_t{most_levels} * 48 * unary_limit),
+                                     Models(size_t{expectations} * spreads * unary_limit),
+                                     Models(size_t{shift_classes} * expectations * most_levels * unary_limit)};
   BitMixer<inputs> mixer_{size_t{most_levels} * unary_limit};
-  std::array<Models, sign_inputs> sign_models_{Models(5 * most_levels), Models(81), Models(most_levels)};
-  BitMixer<sign_inputs> sign_mixer_{1};
+  std::array<Models, sign_inputs> sign_models_{Models(expectations * most_levels), Models(expectations* sign_sizes),
+                                               Models(expectations* spreads), Models(81)};
+  BitMixer<sign_inputs> sign_mixer_{shift_classes};
   Models freedom_{Models(5 * most_levels)};
   Widths widths_{}, tangential_widths_{};
   Models curve_{Models(size_t{curve_rows} * unary_limit)}, curve_signs_{Models(3)}, curve_freedom_{Models(most_levels)};

@@ -9,19 +9,16 @@ namespace {
 
 /// Pass over the residuals of a level, shared by encoder and decoder.
 struct ResidualPass {
-  const DetailLevel& level;
-  const EdgePieces& pieces;
+  const PredictedLevel& predicted;
   Residuals& residuals;
-  std::span<const int32_t> at_vertex;
-  const Buffer<Vec3f>& positions;
-  Buffer<uint8_t> is_free{Buffer<uint8_t>(pieces.of_edge.size())};  ///< [E]
+  Buffer<uint8_t> is_free{Buffer<uint8_t>(predicted.pieces.of_edge.size())};  ///< [E]
 
   /// Codes the residuals of a piece in the order of their edges.
   template <class Code>
   void run(uint32_t piece, ResidualModels& models, const Code& code) {
-    const std::span<const uint32_t> edges = pieces.edges_of(piece);
+    const std::span<const uint32_t> edges = predicted.pieces.edges_of(piece);
     if (edges.empty()) return;
-    const std::span<const uint32_t> on_curves = level.curve_edges();
+    const std::span<const uint32_t> on_curves = predicted.level.curve_edges();
     auto c = static_cast<uint32_t>(std::ranges::lower_bound(on_curves, edges.front()) - on_curves.begin());
     for (const uint32_t e : edges) {
       while (c < on_curves.size() && on_curves[c] < e) ++c;
@@ -34,8 +31,9 @@ struct ResidualPass {
 
   template <class Code>
   void code_edge(uint32_t e, ResidualModels& models, const Code& code) {
+    const auto& [level, pieces, at_vertex, positions, normals] = predicted;
     const ResidualContext context = level.context(e, {residuals.along_normal, is_free, pieces.of_edge}, at_vertex,
-                                                  positions.data(), residuals.step);
+                                                  positions.data(), normals[e], residuals.step);
     is_free[e] = models.code_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
     residuals.along_normal[e] = models.code(context, residuals.along_normal[e], code);
     if (is_free[e] != 0) code_tangential(e, models, code);
@@ -43,7 +41,8 @@ struct ResidualPass {
 
   template <class Code>
   void code_curve_edge(uint32_t e, uint32_t c, ResidualModels& models, const Code& code) {
-    const CurveContext context = level.curve_context(c, residuals.along_normal, residuals.across, at_vertex);
+    const CurveContext context =
+        predicted.level.curve_context(c, residuals.along_normal, residuals.across, predicted.at_vertex);
     is_free[e] = models.code_curve_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
     int32_t& normal = residuals.along_normal[e];
     normal = models.code_curve_normal(context, normal, code);
@@ -80,22 +79,21 @@ void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Resi
   }
 }
 
-std::vector<std::vector<uint8_t>> encode_residuals(const DetailLevel& level, const EdgePieces& pieces,
-                                                   const Residuals& residuals, std::span<const int32_t> at_vertex,
-                                                   const Buffer<Vec3f>& positions, ResidualModels& models) {
+std::vector<std::vector<uint8_t>> encode_residuals(const PredictedLevel& predicted, const Residuals& residuals,
+                                                   ResidualModels& models) {
   Residuals copy = residuals;
-  ResidualPass pass{level, pieces, copy, at_vertex, positions};
-  return encode_each_piece(pieces.count(), models,
+  ResidualPass pass{predicted, copy};
+  return encode_each_piece(predicted.pieces.count(), models,
                            [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
 }
 
-Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes, float step,
-                           std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions, ResidualModels& models) {
+Residuals decode_residuals(const PredictedLevel& predicted, const PieceBytes& bytes, float step,
+                           ResidualModels& models) {
   Residuals residuals{.step = step,
-                      .along_normal = Buffer<int32_t>(level.topology().edge_count()),
-                      .across = Buffer<int32_t>(level.curve_edges().size())};
-  ResidualPass pass{level, pieces, residuals, at_vertex, positions};
-  decode_each_piece(bytes, pieces.count(), models,
+                      .along_normal = Buffer<int32_t>(predicted.level.topology().edge_count()),
+                      .across = Buffer<int32_t>(predicted.level.curve_edges().size())};
+  ResidualPass pass{predicted, residuals};
+  decode_each_piece(bytes, predicted.pieces.count(), models,
                     [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
   return residuals;
 }

@@ -29,16 +29,20 @@ struct Residuals {
 void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Residuals& residuals,
               Buffer<Vec3f>& positions);
 
-/// Encodes residuals, each piece independently. `at_vertex` [V]: residuals of the vertices along normals, 0 on the
-/// base. `positions` [V + E] include the predictions. Adapts `models`, for the next level too.
-[[nodiscard]] std::vector<std::vector<uint8_t>> encode_residuals(const DetailLevel& level, const EdgePieces& pieces,
-                                                                 const Residuals& residuals,
-                                                                 std::span<const int32_t> at_vertex,
-                                                                 const Buffer<Vec3f>& positions,
-                                                                 ResidualModels& models);
+/// What encoder and decoder know of a level before its residuals. The arrays must outlive this object.
+struct PredictedLevel {
+  const DetailLevel& level;
+  const EdgePieces& pieces;
+  std::span<const int32_t> at_vertex;  ///< [V] residuals of the vertices along normals, 0 on the base
+  const Buffer<Vec3f>& positions;      ///< [V + E], predictions included
+  const Buffer<Vec3f>& normals;        ///< [E] directions of residuals (residual_frames.h)
+};
+
+/// Encodes residuals, each piece independently. Adapts `models`, for the next level too.
+[[nodiscard]] std::vector<std::vector<uint8_t>> encode_residuals(const PredictedLevel& predicted,
+                                                                 const Residuals& residuals, ResidualModels& models);
 /// Decodes the bytes of encode_residuals(). Any other bytes are decoded to residuals within `largest_residual`.
-[[nodiscard]] Residuals decode_residuals(const DetailLevel& level, const EdgePieces& pieces, const PieceBytes& bytes,
-                                         float step, std::span<const int32_t> at_vertex, const Buffer<Vec3f>& positions,
+[[nodiscard]] Residuals decode_residuals(const PredictedLevel& predicted, const PieceBytes& bytes, float step,
                                          ResidualModels& models);
 
 }  // namespace papilio

@@ -19,7 +19,7 @@ struct ValuePass {
       for (size_t c = 0; c < channels.size(); ++c) {
         Buffer<int32_t>& of = residuals[c];
         of[e] = models[c].code(level.context(e, {of, is_free, pieces.of_edge}, at_vertex[c],
-                                             channels[c].predicted->data(), channels[c].step),
+                                             channels[c].predicted->data(), Vec3f{}, channels[c].step),
                                of[e], code);
       }
   }

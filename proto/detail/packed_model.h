@@ -8,7 +8,7 @@
 namespace papilio::proto::detail {
 
 /// Version of the extension PAPILIO_detail.
-inline constexpr uint64_t detail_version = 2;
+inline constexpr uint64_t detail_version = 3;
 
 /// Level of a packed model.
 struct PackedLevel {

@@ -178,7 +178,7 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
 }
 
 @test "a packed model of another version is read as its base, with a warning" {
-  sed 's/"version":2,/"version":7,/' model.glb >newer.glb
+  sed 's/"version":3,/"version":7,/' model.glb >newer.glb
   run --separate-stderr "$papilio" refine newer.glb -o refined.glb --levels 1
   [ "$status" = 0 ]
   [[ $stderr == *"Only its base is used"* ]]
@@ -470,7 +470,7 @@ two_materials() {
   run --separate-stderr "$papilio" unpack model.glb -o out.obj --levels 10
   [ "$status" = 0 ]
   [[ $stderr == *"has $(report '.levels | length') levels"* ]]
-  sed 's/"version":2,/"version":7,/' model.glb >newer.glb
+  sed 's/"version":3,/"version":7,/' model.glb >newer.glb
   run "$papilio" unpack newer.glb -o out.obj
   [ "$status" = 1 ]
   [[ $output == *"PAPILIO_detail has version 7"* ]]

@@ -136,7 +136,7 @@ test('the decoder reports errors, and works afterwards', async () => {
 test('damaged and foreign documents are refused, with the place of the fault', () => {
   const file = bytesOf(torus);
   const refusals = [
-    [({ detail }) => (detail.version = 1), 'mesh_unsupported', /version 1; version 2 is supported/],
+    [({ detail }) => (detail.version = 1), 'mesh_unsupported', /version 1; version 3 is supported/],
     [({ detail }) => (detail.version = 1.5), 'mesh_not_gltf', /version is no whole number/],
     [({ detail }) => delete detail.bufferView, 'mesh_not_gltf', /has no bufferView/],
     [({ detail }) => (detail.bufferView = 0), 'mesh_not_gltf', /before the end of the base/],
@@ -270,7 +270,9 @@ function compareFewerLevels(packed) {
     assert.equal(head, expectedHead);
     assertSame(surface, expected, `${count} levels`);
     assert.equal(readPacked(bytesOf(fewer)).levels.length, count);
-    assert.ok(bytesOf(fewer).length < file.length || count === levels.length);
+    assert.ok(
+      bytesOf(fewer).length < file.length || levels.slice(count).every(({ residuals }) => residuals.length < 4),
+    );
   }
 }
 
@@ -284,5 +286,5 @@ test('packed models are distinguished from other files', () => {
 
 test('the module is small', () => {
   const packed = brotliCompressSync(wasm, { params: { [constants.BROTLI_PARAM_QUALITY]: 11 } });
-  assert.ok(packed.length <= 44_000, `${packed.length} bytes`);
+  assert.ok(packed.length <= 45_000, `${packed.length} bytes`);
 });

@@ -31,7 +31,7 @@ function packOnce(name, kind, options = {}) {
   if (!made.has(key)) made.set(key, pack(name, folder, { ...kinds[kind], ...options }));
   return made.get(key);
 }
-const inPieces = (kind) => packOnce('vase', kind, { pieceBytes: 80 });
+const inPieces = (kind) => packOnce('vase', kind, { pieceBytes: 100 });
 
 let module;
 before(
@@ -162,7 +162,7 @@ function nativeRefusal(bytes) {
 }
 
 test('invalid documents are refused as by the native reader', () => {
-  const detail = { version: 2, bufferView: 0 };
+  const detail = { version: 3, bufferView: 0 };
   const parted = bytesOf(packOnce('cushion', 'two materials and a texture').packed);
   const coloured = bytesOf(packOnce('waves', 'colours').packed);
   for (const [file, change, code, message] of [

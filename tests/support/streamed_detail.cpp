@@ -34,7 +34,7 @@ DetailSource detail_of_residuals(const TriangleMesh& base, int levels, float fir
     DetailStream& stream = source.levels.emplace_back();
     stream.step = step;
     for (const std::vector<uint8_t>& piece :
-         encode_residuals(level, pieces, residuals, at_vertex, positions, *models)) {
+         encode_residuals({level, pieces, at_vertex, positions, normals}, residuals, *models)) {
       stream.bytes.insert(stream.bytes.end(), piece.begin(), piece.end());
       if (count > 1) stream.pieces.push_back({.bytes = static_cast<uint32_t>(piece.size())});
     }

@@ -72,7 +72,6 @@ TEST(MixedBit, MixerFavoursTheBetterModel) {
 ResidualContext random_context(std::mt19937& random) {
   ResidualContext c;
   c.level = random() % 11;
-  c.is_inner = random() % 2 == 0;
   c.known = random() % 5;
   for (uint32_t i = 0; i < c.known; ++i) {
     c.neighbours[i] = static_cast<int32_t>(random() % 5) - 2;
@@ -81,6 +80,16 @@ ResidualContext random_context(std::mt19937& random) {
   }
   c.parents = random() % 3 == 0 ? random() % (8 * largest_residual) : random() % 30;
   c.turn = random() % 3 == 0 ? random() % 1'000'001 : random() % 60;
+  const auto any = [&](int32_t most) {
+    const int32_t limit = random() % 50 == 0 ? most : 20;
+    return static_cast<int32_t>(random() % (2 * static_cast<uint32_t>(limit) + 1)) - limit;
+  };
+  c.ends = any(2 * largest_residual);
+  c.has_sibling = random() % 2 == 0;
+  if (c.has_sibling) c.sibling = any(largest_residual);
+  c.has_beyond = random() % 2 == 0;
+  if (c.has_beyond) c.beyond = any(8 * largest_residual);
+  c.bow = random() % 50 == 0 ? 1e6 : any(60);
   return c;
 }
 
@@ -143,6 +152,31 @@ TEST(ResidualModels, AnyBytesDecodeToResiduals) {
       ASSERT_LE(std::abs(models.code_tangential(0, decode)), largest_residual);
     }
   }
+}
+
+/// Returns the bytes of residuals that are the mean of two neighbours, times `share`, and noise.
+size_t bytes_of_residuals_near_neighbours(double share) {
+  std::mt19937 random(6);
+  BinaryEncoder encoder;
+  ResidualModels models;
+  for (int i = 0; i < 20'000; ++i) {
+    ResidualContext c{.level = 3, .known = 2};
+    c.neighbours[0] = static_cast<int32_t>(random() % 61) - 30;
+    c.neighbours[1] = c.neighbours[0];
+    const double expected = share * c.neighbours[0];
+    const auto residual = static_cast<int32_t>(std::lround(expected)) + static_cast<int32_t>(random() % 7) - 3;
+    models.code(c, residual, [&](bool bit, uint32_t probability) {
+      encoder.code(bit, probability);
+      return bit;
+    });
+  }
+  return encoder.finish().size();
+}
+
+TEST(ResidualModels, ExpectedResidualsTakeTheBytesOfTheirNoise) {
+  const double noise = 20'000 * std::log2(7) / 8;
+  for (const double share : {0.5, 1.0, -1.0})
+    EXPECT_LT(static_cast<double>(bytes_of_residuals_near_neighbours(share)), 1.2 * noise) << share;
 }
 
 TEST(ResidualModels, ZerosTakeAlmostNoBytes) {

@@ -148,7 +148,7 @@ TEST(PackedScene, MeshRequestsEqualTheDecodersLevels) {
 
 TEST(PackedScene, SceneOfALaterVersionIsReadAsItsBase) {
   std::string glb = packed_scene();
-  const size_t at = glb.find("\"version\":2,");
+  const size_t at = glb.find("\"version\":3,");
   ASSERT_NE(at, std::string::npos);
   glb.replace(at, 12, "\"version\":7,");
   EXPECT_EQ(find_packed(glb, {}), std::nullopt);
@@ -157,7 +157,7 @@ TEST(PackedScene, SceneOfALaterVersionIsReadAsItsBase) {
 
 TEST(PackedScene, DamagedPackedSceneIsRefused) {
   std::string glb = packed_scene();
-  constexpr std::string_view before = "\"version\":2,\"bufferView\":";
+  constexpr std::string_view before = "\"version\":3,\"bufferView\":";
   const size_t at = glb.find(before);
   ASSERT_NE(at, std::string::npos);
   glb[at + before.size()] = '7';

@@ -211,9 +211,9 @@ test('other files hide the levels, and damaged ones leave the open mesh', async 
   const { page } = await open();
   const tell = page.locator('#alert-text');
   const broken = Buffer.from(glb);
-  broken.write('"version":7', broken.indexOf('"version":2'));
+  broken.write('"version":7', broken.indexOf('"version":3'));
   await drop(page, 'later.glb', broken);
-  await tell.getByText('PAPILIO_detail has version 7; version 2 is supported').waitFor();
+  await tell.getByText('PAPILIO_detail has version 7; version 3 is supported').waitFor();
   const cut = glb.subarray(0, glb.length - 4);
   await drop(page, 'cut.glb', cut);
   await tell.getByText('The .glb header declares').waitFor();

@@ -97,7 +97,7 @@ export const dracoExtension = 'KHR_draco_mesh_compression';
 export const detailExtension = 'PAPILIO_detail';
 export const placeOf = (primitive: number) => `meshes[0].primitives[${primitive}]`;
 const detailPlace = `${placeOf(0)}.extensions.${detailExtension}`;
-const version = 2;
+const version = 3;
 
 /// Returns whether the bytes are a .glb file with PAPILIO_detail on a primitive. Reads only the JSON.
 export function isPacked(bytes: Uint8Array<ArrayBuffer>): boolean {
