@@ -39,11 +39,13 @@ void DetailLevel::predict(Buffer<Vec3f>& positions) const {
   butterfly<float>(topology_, features_, positions.data(), positions.data() + topology_.vertex_count);
 }
 
-ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
-                                     const Vec3f* positions, Vec3f normal, float step) const {
+ResidualContext DetailLevel::context(uint32_t e, uint32_t piece, std::span<const CodedResidual> coded,
+                                     std::span<const int32_t> at_vertex, const Vec3f* positions, Vec3f normal,
+                                     float step) const {
   const Topology& t = topology_;
-  const auto is_coded = [&](uint32_t other) { return other < e && coded.piece[other] == coded.piece[e]; };
   const uint32_t h = t.half_edge[e];
+  const uint32_t from = t.origin[h];
+  const uint32_t to = t.tip(h);
   const auto is_recent = [&](uint32_t v) { return number_ > 0 && v >= vertices_before_; };
   ResidualContext c;
   c.level = number_ + 1;
@@ -54,40 +56,40 @@ ResidualContext DetailLevel::context(uint32_t e, const CodedResiduals& coded, st
     magnitudes += weight * static_cast<uint32_t>(std::abs(at_vertex[v]));
     weights += weight;
   };
-  for (const uint32_t v : {t.origin[h], t.tip(h)}) {
+  for (const uint32_t v : {from, to}) {
     add_parent(v, 2);
     if (is_recent(v)) c.ends += at_vertex[v];
   }
-  const bool is_half = is_recent(t.origin[h]) != is_recent(t.tip(h));  // of an edge of the level before
-  if (is_half && e % 2 == 1 && is_coded(e - 1)) {
+  const bool is_half = is_recent(from) != is_recent(to);  // of an edge of the level before
+  if (is_half && e % 2 == 1 && coded[e - 1].piece == piece) {
     c.has_sibling = true;
-    c.sibling = coded.residual[e - 1];
+    c.sibling = coded[e - 1].along_normal;
   }
-  const auto add_beyond = [&](uint32_t side) {
-    if (side == none) return;
-    for (const uint32_t other : {t.edge[Topology::next(side)], t.edge[Topology::previous(side)]}) {
-      if (!is_coded(other)) continue;
-      c.has_beyond = true;
-      c.beyond += coded.residual[other];
-    }
+  const auto add_beyond = [&](uint32_t edge) {
+    const CodedResidual& other = coded[edge];
+    if (other.piece != piece) return;
+    c.has_beyond = true;
+    c.beyond += other.along_normal;
   };
   size_t i = 0;
   for (const uint32_t side : {h, t.twin[h]}) {
     if (side == none) continue;
     for (const uint32_t near : {Topology::next(side), Topology::previous(side)}) {
-      if (const uint32_t other = t.edge[near]; is_coded(other)) {
+      if (const CodedResidual& other = coded[t.edge[near]]; other.piece == piece) {
         ++c.known;
-        c.neighbours[i] = coded.residual[other];
-        c.free_neighbours += coded.is_free[other];
+        c.neighbours[i] = other.along_normal;
+        c.free_neighbours += other.is_free ? 1 : 0;
       }
-      add_beyond(t.twin[near]);
+      if (const uint32_t across = t.twin[near]; across != none) {
+        add_beyond(t.edge[Topology::next(across)]);
+        add_beyond(t.edge[Topology::previous(across)]);
+      }
       ++i;
     }
     add_parent(t.apex(side), 1);
   }
   c.parents = weights == 0 ? 0 : 8 * magnitudes / weights;
-  const Vec3f middle = 0.5F * (positions[t.origin[h]] + positions[t.tip(h)]);
-  const Vec3f off = positions[t.vertex_count + e] - middle;
+  const Vec3f off = positions[t.vertex_count + e] - 0.5F * (positions[from] + positions[to]);
   const float turn = 8 * length(off) / step;
   c.turn = turn < 1e6F ? static_cast<uint32_t>(turn) : 1000000U;
   const float bow = dot(off, normal) / step;

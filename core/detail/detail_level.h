@@ -4,17 +4,19 @@
 #include <span>
 #include <vector>
 
-#include "detail/residual_models.h"
+#include "detail/residual_context.h"
+#include "papilio/detail.h"
 #include "papilio/mesh.h"
 #include "rules/features.h"
 
 namespace papilio {
 
-/// Residuals of a level's edges [E]. Those of earlier edges in an edge's piece are coded.
-struct CodedResiduals {
-  std::span<const int32_t> residual;
-  std::span<const uint8_t> is_free;
-  std::span<const uint16_t> piece;
+/// Residual of an edge as far as it is coded, in one place: contexts look at a dozen edges each.
+struct CodedResidual {
+  static constexpr uint16_t no_piece = most_detail_pieces;
+  int32_t along_normal = 0;
+  uint16_t piece = no_piece;  ///< in which it is coded
+  bool is_free = false;       ///< whether it has tangential parts
 };
 
 /// Level of the hierarchy, whose edges are all split. Decoder and encoder share it.
@@ -35,10 +37,11 @@ class DetailLevel {
   /// Predicts the new vertices and appends them: `positions` [V] grow to [V + E].
   void predict(Buffer<Vec3f>& positions) const;
 
-  /// Returns the coding context of edge e's residual along `normal`; where that is zero, the bow is not known.
-  /// `at_vertex` [V]: residuals of the vertices. `positions` [V + E] include the predictions.
-  [[nodiscard]] ResidualContext context(uint32_t e, const CodedResiduals& coded, std::span<const int32_t> at_vertex,
-                                        const Vec3f* positions, Vec3f normal, float step) const;
+  /// Returns the coding context of edge e's residual along `normal`, in `piece`; where the normal is zero, the bow is
+  /// not known. `coded` [E]; `at_vertex` [V]: residuals of the vertices. `positions` [V + E] include the predictions.
+  [[nodiscard]] ResidualContext context(uint32_t e, uint32_t piece, std::span<const CodedResidual> coded,
+                                        std::span<const int32_t> at_vertex, const Vec3f* positions, Vec3f normal,
+                                        float step) const;
   /// Returns the coding context of the residual of curve_edges()[c]. In `residual` [E] and `across` [C], earlier edges
   /// are coded.
   [[nodiscard]] CurveContext curve_context(uint32_t c, std::span<const int32_t> residual,

@@ -26,7 +26,7 @@ ExpectedResidual::ExpectedResidual() {
 double ExpectedResidual::at(const ResidualContext& c) {
   const size_t level = std::clamp<size_t>(c.level, 1, levels) - 1;
   set_ = level * (most_neighbours + 1) + c.known;
-  const int64_t neighbours = std::accumulate(c.neighbours.begin(), c.neighbours.end(), int64_t{0});
+  const int32_t neighbours = std::accumulate(c.neighbours.begin(), c.neighbours.end(), 0);
   input_ = {static_cast<double>(neighbours), static_cast<double>(c.ends), static_cast<double>(c.sibling),
             static_cast<double>(c.beyond), std::clamp(c.bow, -largest_bow, largest_bow)};
   expected_ = 0;
@@ -39,7 +39,6 @@ void ExpectedResidual::update(int32_t residual) {
   Weights& set = weights_[set_];
   const double error = residual - expected_;
   for (size_t i = 0; i < inputs; ++i) {
-    if (input_[i] == 0) continue;
     set.sum_of_squares[i] += input_[i] * input_[i];
     set.weight[i] += error * input_[i] / set.sum_of_squares[i];
   }

@@ -19,9 +19,9 @@ struct ResidualContext {
   uint32_t free_neighbours = 0;                       ///< number of coded neighbours with tangential parts
   uint32_t parents = 0;                               ///< mean magnitude round the edge on the level before, in eighths
   uint32_t turn = 0;    ///< distance of the prediction from the middle of the edge, in eighths of steps
-  int64_t ends = 0;     ///< sum of the residuals of the ends that the level before made
+  int32_t ends = 0;     ///< sum of the residuals of the ends that the level before made
   int32_t sibling = 0;  ///< residual of the other half of the edge that the level before split
-  int64_t beyond = 0;   ///< sum of the residuals of the edges of the faces that lie across the neighbours
+  int32_t beyond = 0;   ///< sum of the residuals of the edges of the faces that lie across the neighbours
   bool has_sibling = false, has_beyond = false;  ///< whether these are coded, one at least
   double bow = 0;  ///< distance of the prediction from the middle of the edge along the normal, in steps
 };

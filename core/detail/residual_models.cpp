@@ -23,10 +23,10 @@ void ResidualModels::set_context(const ResidualContext& c) {
   }
   const uint32_t near = class_of(c.known == 0 ? 0 : 8 * sum / c.known, 7);
   const uint32_t turn = class_of(c.turn, 11);
-  const auto size_of = [](int64_t value) { return static_cast<uint64_t>(std::abs(value)); };
-  const uint64_t around = uint64_t{16} * sum + 8 * size_of(c.sibling) + 4 * size_of(c.beyond) + c.parents + c.turn / 2;
+  const auto size_of = [](int32_t value) { return static_cast<uint32_t>(std::abs(value)); };
+  const uint32_t around = 16 * sum + 8 * size_of(c.sibling) + 4 * size_of(c.beyond) + c.parents + c.turn / 2;
   const uint32_t count = 2 * c.known + 1 + (c.has_sibling ? 1 : 0) + (c.has_beyond ? 1 : 0);
-  spread_ = spread_of(static_cast<uint32_t>(std::min<uint64_t>(around / count, uint64_t{1} << 30)));
+  spread_ = spread_of(around / count);
   at_ = {magnitudes + 256 * c.known, (level_ * 12 + turn) * 4 + std::min((near + 1) / 2, 3U),
          expectation_ * spreads + spread_, (shift_class_ * expectations + expectation_) * most_levels + level_};
 }

@@ -8,54 +8,63 @@ namespace papilio {
 namespace {
 
 /// Pass over the residuals of a level, shared by encoder and decoder.
-struct ResidualPass {
-  const PredictedLevel& predicted;
-  Residuals& residuals;
-  Buffer<uint8_t> is_free{Buffer<uint8_t>(predicted.pieces.of_edge.size())};  ///< [E]
+class ResidualPass {
+ public:
+  ResidualPass(const PredictedLevel& predicted, Residuals& residuals)
+      : predicted_(predicted), residuals_(residuals), coded_(predicted.pieces.of_edge.size()) {
+    for (const auto& [e, parts] : residuals.tangential) coded_[e].is_free = true;
+  }
 
   /// Codes the residuals of a piece in the order of their edges.
   template <class Code>
   void run(uint32_t piece, ResidualModels& models, const Code& code) {
-    const std::span<const uint32_t> edges = predicted.pieces.edges_of(piece);
+    const std::span<const uint32_t> edges = predicted_.pieces.edges_of(piece);
     if (edges.empty()) return;
-    const std::span<const uint32_t> on_curves = predicted.level.curve_edges();
+    const std::span<const uint32_t> on_curves = predicted_.level.curve_edges();
     auto c = static_cast<uint32_t>(std::ranges::lower_bound(on_curves, edges.front()) - on_curves.begin());
     for (const uint32_t e : edges) {
       while (c < on_curves.size() && on_curves[c] < e) ++c;
       if (c < on_curves.size() && on_curves[c] == e)
         code_curve_edge(e, c, models, code);
       else
-        code_edge(e, models, code);
+        code_edge(e, piece, models, code);
+      coded_[e].along_normal = residuals_.along_normal[e];
+      coded_[e].piece = static_cast<uint16_t>(piece);
     }
   }
 
+ private:
   template <class Code>
-  void code_edge(uint32_t e, ResidualModels& models, const Code& code) {
-    const auto& [level, pieces, at_vertex, positions, normals] = predicted;
-    const ResidualContext context = level.context(e, {residuals.along_normal, is_free, pieces.of_edge}, at_vertex,
-                                                  positions.data(), normals[e], residuals.step);
-    is_free[e] = models.code_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
-    residuals.along_normal[e] = models.code(context, residuals.along_normal[e], code);
-    if (is_free[e] != 0) code_tangential(e, models, code);
+  void code_edge(uint32_t e, uint32_t piece, ResidualModels& models, const Code& code) {
+    const auto& [level, pieces, at_vertex, positions, normals] = predicted_;
+    const ResidualContext context =
+        level.context(e, piece, coded_, at_vertex, positions.data(), normals[e], residuals_.step);
+    coded_[e].is_free = models.code_freedom(context, coded_[e].is_free, code);
+    residuals_.along_normal[e] = models.code(context, residuals_.along_normal[e], code);
+    if (coded_[e].is_free) code_tangential(e, models, code);
   }
 
   template <class Code>
   void code_curve_edge(uint32_t e, uint32_t c, ResidualModels& models, const Code& code) {
     const CurveContext context =
-        predicted.level.curve_context(c, residuals.along_normal, residuals.across, predicted.at_vertex);
-    is_free[e] = models.code_curve_freedom(context, residuals.tangential.contains(e), code) ? 1 : 0;
-    int32_t& normal = residuals.along_normal[e];
+        predicted_.level.curve_context(c, residuals_.along_normal, residuals_.across, predicted_.at_vertex);
+    coded_[e].is_free = models.code_curve_freedom(context, coded_[e].is_free, code);
+    int32_t& normal = residuals_.along_normal[e];
     normal = models.code_curve_normal(context, normal, code);
-    if (is_free[e] != 0)
+    if (coded_[e].is_free)
       code_tangential(e, models, code);
     else
-      residuals.across[c] = models.code_curve_across(context, normal, residuals.across[c], code);
+      residuals_.across[c] = models.code_curve_across(context, normal, residuals_.across[c], code);
   }
 
   template <class Code>
   void code_tangential(uint32_t e, ResidualModels& models, const Code& code) {
-    for (int32_t& part : residuals.tangential[e]) part = models.code_tangential(part, code);
+    for (int32_t& part : residuals_.tangential[e]) part = models.code_tangential(part, code);
   }
+
+  const PredictedLevel& predicted_;
+  Residuals& residuals_;
+  Buffer<CodedResidual> coded_;  // [E]
 };
 
 }  // namespace
@@ -82,7 +91,7 @@ void displace(const DetailLevel& level, const Buffer<Vec3f>& normals, const Resi
 std::vector<std::vector<uint8_t>> encode_residuals(const PredictedLevel& predicted, const Residuals& residuals,
                                                    ResidualModels& models) {
   Residuals copy = residuals;
-  ResidualPass pass{predicted, copy};
+  ResidualPass pass(predicted, copy);
   return encode_each_piece(predicted.pieces.count(), models,
                            [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
 }
@@ -92,7 +101,7 @@ Residuals decode_residuals(const PredictedLevel& predicted, const PieceBytes& by
   Residuals residuals{.step = step,
                       .along_normal = Buffer<int32_t>(predicted.level.topology().edge_count()),
                       .across = Buffer<int32_t>(predicted.level.curve_edges().size())};
-  ResidualPass pass{predicted, residuals};
+  ResidualPass pass(predicted, residuals);
   decode_each_piece(bytes, predicted.pieces.count(), models,
                     [&](uint32_t piece, ResidualModels& own, const auto& code) { pass.run(piece, own, code); });
   return residuals;
