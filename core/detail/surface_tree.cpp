@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
@@ -47,19 +50,21 @@ void include(Box& box, Vec3f p) {
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(TriangleMesh surface) : surface_(std::move(surface)), order_(surface_.triangles.size()) {
-  std::vector<Vec3f> centres;
-  for (uint32_t f = 0; f < order_.size(); ++f) {
+SurfaceTree::SurfaceTree(TriangleMesh surface) : surface_(std::move(surface)) {
+  const auto faces = static_cast<uint32_t>(surface_.triangles.size());
+  normals_.reserve(faces);
+  std::vector<Centre> centres;
+  centres.reserve(faces);
+  for (uint32_t f = 0; f < faces; ++f) {
     const auto [a, b, c] = corners(f);
     const Vec3d normal = cross(b - a, c - a);
     const double size = length(normal);
     normals_.push_back(size > 0 ? to_float((1 / size) * normal) : Vec3f{});
-    centres.push_back(to_float((1 / 3.0) * (a + b + c)));
+    centres.push_back({to_float((1 / 3.0) * (a + b + c)), f});
   }
-  std::iota(order_.begin(), order_.end(), 0U);
-  nodes_.reserve(order_.size() + 1);
-  nodes_.emplace_back();
-  build(0, 0, static_cast<uint32_t>(order_.size()), centres);
+  leaves_.reserve(faces);
+  pairs_.reserve(faces / 2 + 1);
+  root_ = build(centres);
 }
 
 TriangleCorners SurfaceTree::corners(uint32_t face) const {
@@ -68,68 +73,74 @@ TriangleCorners SurfaceTree::corners(uint32_t face) const {
           to_double(surface_.positions[t[2]])};
 }
 
-void SurfaceTree::build(uint32_t node, uint32_t first, uint32_t last, const std::vector<Vec3f>& centres) {
-  Box box = bounding_box({});
-  Box of_centres = box;
-  for (uint32_t i = first; i < last; ++i) {
-    for (const uint32_t v : surface_.triangles[order_[i]]) include(box, surface_.positions[v]);
-    include(of_centres, centres[order_[i]]);
+SurfaceTree::Node SurfaceTree::build(std::span<Centre> centres) {
+  const auto count = static_cast<uint32_t>(centres.size());
+  if (count <= most_in_leaf) {
+    Box box = bounding_box({});
+    const auto first = static_cast<uint32_t>(leaves_.size());
+    for (const auto& [at, face] : centres) {
+      const Triangle& t = surface_.triangles[face];
+      leaves_.push_back({surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]], face});
+      for (const uint32_t v : t) include(box, surface_.positions[v]);
+    }
+    return {box.min, box.max, first, count};
   }
-  nodes_[node] = {box.min, box.max, first, last - first};
-  if (last - first <= most_in_leaf) return;
+  Box of_centres = bounding_box({});
+  for (const Centre& centre : centres) include(of_centres, centre.at);
   const Vec3f size = of_centres.max - of_centres.min;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const uint32_t middle = first + (last - first) / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](uint32_t a, uint32_t b) {
-    const float ca = coordinate(centres[a], axis);
-    const float cb = coordinate(centres[b], axis);
-    return ca != cb ? ca < cb : a < b;
+  const uint32_t half = count / 2;
+  std::nth_element(centres.begin(), centres.begin() + half, centres.end(), [&](const Centre& a, const Centre& b) {
+    const float ca = coordinate(a.at, axis);
+    const float cb = coordinate(b.at, axis);
+    return ca != cb ? ca < cb : a.face < b.face;
   });
-  const auto left = static_cast<uint32_t>(nodes_.size());
-  nodes_[node].first = left;
-  nodes_[node].count = 0;
-  nodes_.resize(nodes_.size() + 2);
-  build(left, first, middle, centres);
-  build(left + 1, middle, last, centres);
-}
-
-double SurfaceTree::squared_distance_to(const Node& node, Vec3d p) {
-  const double x = std::max({node.min.x - p.x, 0.0, p.x - node.max.x});
-  const double y = std::max({node.min.y - p.y, 0.0, p.y - node.max.y});
-  const double z = std::max({node.min.z - p.z, 0.0, p.z - node.max.z});
-  return x * x + y * y + z * z;
+  const auto pair = static_cast<uint32_t>(pairs_.size());
+  pairs_.emplace_back();
+  const Node left = build(centres.first(half));
+  const Node right = build(centres.subspan(half));
+  pairs_[pair] = {{left, right}};
+  Box box{left.min, left.max};
+  include(box, right.min);
+  include(box, right.max);
+  return {box.min, box.max, pair, 0};
 }
 
 Nearest SurfaceTree::nearest(Vec3d point, double reach, Vec3d normal) const {
   const bool all = normal == Vec3d{};
   Nearest found;
   found.squared_distance = reach * reach;
+  const auto squared_distance_to = [point](const Node& node) {
+    const double x = larger(larger(node.min.x - point.x, 0.0), point.x - node.max.x);
+    const double y = larger(larger(node.min.y - point.y, 0.0), point.y - node.max.y);
+    const double z = larger(larger(node.min.z - point.z, 0.0), point.z - node.max.z);
+    return x * x + y * y + z * z;
+  };
   struct Entry {
     double distance;
-    uint32_t node;
+    const Node* node;
   };
   std::array<Entry, 128> stack;
   size_t size = 0;
-  stack[size++] = {squared_distance_to(nodes_[0], point), 0};
+  stack[size++] = {squared_distance_to(root_), &root_};
   while (size > 0) {
-    const auto [distance, n] = stack[--size];
+    const auto [distance, node] = stack[--size];
     if (distance >= found.squared_distance) continue;
-    const Node& node = nodes_[n];
-    if (node.count == 0) {
-      const double left = squared_distance_to(nodes_[node.first], point);
-      const double right = squared_distance_to(nodes_[node.first + 1], point);
-      const Entry near{std::min(left, right), left <= right ? node.first : node.first + 1};
-      const Entry far{std::max(left, right), left <= right ? node.first + 1 : node.first};
+    if (node->count == 0) {
+      const auto& [left, right] = pairs_[node->first].children;
+      Entry near{squared_distance_to(left), &left};
+      Entry far{squared_distance_to(right), &right};
+      if (far.distance < near.distance) std::swap(near, far);
       if (far.distance < found.squared_distance) stack[size++] = far;
       if (near.distance < found.squared_distance) stack[size++] = near;
       continue;
     }
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const uint32_t f = order_[i];
-      if (!all && !(dot(to_double(normals_[f]), normal) > least_normal_cosine)) continue;
-      const Vec3d at = nearest_point(point, corners(f));
+    for (uint32_t i = node->first; i < node->first + node->count; ++i) {
+      const auto& [a, b, c, face] = leaves_[i];
+      if (!all && !(dot(to_double(normals_[face]), normal) > least_normal_cosine)) continue;
+      const Vec3d at = nearest_point(point, {to_double(a), to_double(b), to_double(c)});
       const double d = dot(at - point, at - point);
-      if (d < found.squared_distance) found = {d, f, at};
+      if (d < found.squared_distance) found = {d, face, at};
     }
   }
   return found;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "papilio/mesh.h"
@@ -35,16 +37,29 @@ class SurfaceTree {
  private:
   struct Node {
     Vec3f min, max;
-    uint32_t first;  ///< first of its triangles; or if `count` is 0, its left child, followed by the right one
+    uint32_t first;  ///< first of its triangles; or if `count` is 0, the pair of its children
     uint32_t count;
   };
-  void build(uint32_t node, uint32_t first, uint32_t last, const std::vector<Vec3f>& centres);
-  [[nodiscard]] static double squared_distance_to(const Node& node, Vec3d p);
+  /// Children of a node: looked at together, so in one cache line.
+  struct alignas(64) Pair {
+    std::array<Node, 2> children;
+  };
+  /// Triangle of a leaf.
+  struct Leaf {
+    Vec3f a, b, c;
+    uint32_t face;
+  };
+  struct Centre {
+    Vec3f at;
+    uint32_t face;
+  };
+  [[nodiscard]] Node build(std::span<Centre> centres);
 
   TriangleMesh surface_;
-  std::vector<Node> nodes_;
-  std::vector<uint32_t> order_;  // triangles, leaf by leaf
-  std::vector<Vec3f> normals_;   // [F]
+  Node root_{};
+  std::vector<Pair> pairs_;
+  std::vector<Leaf> leaves_;    // [F] by leaf
+  std::vector<Vec3f> normals_;  // [F]
 };
 
 }  // namespace papilio
