@@ -40,8 +40,7 @@ struct AssembledLevel {
 /// finds its twin there.
 class Assembler {
  public:
-  Assembler(std::span<const LevelChoice> levels, double most_cosine)
-      : most_cosine_(most_cosine), coarse_(levels[0].level->mesh) {
+  explicit Assembler(std::span<const LevelChoice> levels) : coarse_(levels[0].level->mesh) {
     const Topology& coarse = coarse_.topology;
     uint32_t vertices = coarse.vertex_count;
     size_t divided = 0;  // upper bound of the number of divided faces
@@ -183,7 +182,7 @@ class Assembler {
 
   /// Cuts a face with one or two split sides.
   void cut_in_part(AssembledLevel& level, FaceId f, unsigned mask, const uint32_t* corner, const uint32_t* side) {
-    const bool second_diagonal = takes_second_diagonal(*level.choice, f, mask, most_cosine_);
+    const bool second_diagonal = takes_second_diagonal(*level.choice, f, mask);
     const CutFace face(level, f, mask, corner, side);
     if (has_two_targets(mask))
       cut_in_three(level, face, second_diagonal);
@@ -307,7 +306,6 @@ class Assembler {
     out_.attributes.point = std::move(result);
   }
 
-  double most_cosine_;
   const Mesh& coarse_;
   std::vector<AssembledLevel> levels_;
   bool has_curves_or_points_ = false;
@@ -329,9 +327,8 @@ uint64_t count_assembled(std::span<const LevelChoice> levels) {
   return faces;
 }
 
-Mesh assemble(std::span<const LevelChoice> levels, double most_cosine, bool with_edges,
-              std::span<const Displacements> displaced) {
-  return Assembler(levels, most_cosine).run(with_edges, displaced);
+Mesh assemble(std::span<const LevelChoice> levels, bool with_edges, std::span<const Displacements> displaced) {
+  return Assembler(levels).run(with_edges, displaced);
 }
 
 }  // namespace papilio

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hierarchy/transition.h"
 #include "mesh/ranks.h"
 #include "mesh/region.h"
 #include "papilio/detail.h"
@@ -28,6 +29,7 @@ class LevelMaker {
     Topology part = held_part();
     below_.mesh.topology = split_in_four(part, threads);
     make_vertices();
+    below_.most_cosine = above_.most_cosine;
     below_.parent = faces_.numbers();
     below_.child.assign(mesh_.face_count(), none);
     for (uint32_t i = 0; i < faces_.count(); ++i) below_.child[faces_.numbers()[i]] = 4 * i;
@@ -197,6 +199,7 @@ HierarchyLevel coarsest_level(Mesh mesh) {
   level.shared = shared_half_edges(mesh.topology);
   level.box = bounding_box(mesh.positions);
   level.features = find_features(mesh.topology);
+  level.most_cosine = most_cosine_beside(smallest_angle(mesh));
   if (mesh.detail) level.detail_levels = mesh.detail->level_count();
   level.mesh = std::move(mesh);
   return level;
@@ -238,11 +241,11 @@ HierarchyLevel level_by_formula(const HierarchyLevel& level, Topology topology) 
   below.mesh.positions = level.mesh.positions;
   below.mesh.positions.insert(below.mesh.positions.end(), level.trial.made.begin(), level.trial.made.end());
   below.mesh.topology = std::move(topology);
+  below.most_cosine = level.most_cosine;
   return below;
 }
 
-}  // namespace
-
+/// Makes all of the next level.
 HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads) {
   HierarchyLevel below = level_by_formula(level, split_in_four(level.mesh.topology, threads));
   below.features = level.features;
@@ -256,6 +259,8 @@ HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> r
   below.box = bounding_box(below.mesh.positions);
   return below;
 }
+
+}  // namespace
 
 LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads) {
   if (level.is_whole && std::ranges::find(red, 0) == red.end())

@@ -46,6 +46,7 @@ struct HierarchyLevel {
   Trial trial;              ///< new vertices of its edges, where tried
   Buffer<double> longest;   ///< [V] longest edges (view_culling.h); may be empty without a view
   Box box{};                ///< bounding box of the vertices
+  double most_cosine = 1;   ///< upper bound for transition faces (transition.h), equal on all levels
   int detail_levels = 0;    ///< number of levels from here on with new vertices from the coarse mesh's detail
   WholeNumbers in_whole;    ///< only with `detail_levels`, if the level is not whole
 
@@ -80,9 +81,6 @@ struct LevelBelow {
 /// Makes the next level: the children of the faces marked `red` [F] and of all their neighbours. Every edge of these
 /// faces must have been tried. Uses at most `threads` threads.
 [[nodiscard]] LevelBelow refine_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads = 1);
-
-/// Makes all of the next level; `red` [F]: see refine_level(). The level must be whole, and all of its edges tried.
-[[nodiscard]] HierarchyLevel refine_whole_level(const HierarchyLevel& level, Buffer<uint8_t> red, int threads = 1);
 
 /// Makes the last level: it holds the children of the red faces, and four sentinel faces that stand for all
 /// others (split_part_in_four). Its vertices are those of the whole level. So nothing is cut. `features` and

@@ -23,11 +23,11 @@ using NearFaces = std::vector<Buffer<uint8_t>>;
 /// share.
 class LeafComparison {
  public:
-  /// All references must outlive this. `most_cosine`: see transition.h. `sums` of moves: see sums_below(). Of
+  /// All references must outlive this. `sums` of moves: see sums_below(). Of
   /// `level_count` levels some may not be explored. `progress` is polled for cancellation; null: never.
-  LeafComparison(std::span<const LevelChoice> levels, double most_cosine, const std::vector<Buffer<float>>& sums,
-                 int level_count, const AllowedDistance& allowed, const Progress* progress)
-      : result_(levels, most_cosine),
+  LeafComparison(std::span<const LevelChoice> levels, const std::vector<Buffer<float>>& sums, int level_count,
+                 const AllowedDistance& allowed, const Progress* progress)
+      : result_(levels),
         sums_(sums),
         level_count_(static_cast<uint32_t>(level_count)),
         allowed_(allowed),

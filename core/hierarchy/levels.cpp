@@ -40,7 +40,7 @@ bool covers(const Buffer<uint8_t>& known, const Buffer<uint8_t>& red) {
 }  // namespace
 
 Levels::Levels(Mesh coarse, const Options& options, const Progress& progress)
-    : options_(options), progress_(progress), plan_(coarse, options), smallest_angle_(papilio::smallest_angle(coarse)) {
+    : options_(options), progress_(progress), plan_(coarse, options) {
   auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
   progress_.poll();
   if (options.view) level->longest = longest_edges(level->mesh);
@@ -57,8 +57,7 @@ Levels::Levels(const PreparedMesh& prepared, const Options& options, const Progr
       known_(prepared_->kept()),
       levels_{known_[0]},
       plan_(prepared.coarse(), options),
-      to_keep_(1),
-      smallest_angle_(prepared_->smallest_angle()) {}
+      to_keep_(1) {}
 
 void Levels::deepen(const Buffer<uint8_t>& red) {
   const size_t depth = levels_.size();

@@ -21,8 +21,6 @@ class Levels {
 
   [[nodiscard]] const MemoryPlan& plan() const { return plan_; }
   [[nodiscard]] const std::shared_ptr<const HierarchyLevel>& deepest() const { return levels_.back(); }
-  /// Returns the smallest angle of the coarse mesh, in radians.
-  [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
 
   /// Adds a level that holds the children of the deepest level's faces marked `red` [F], and perhaps others; its edges
   /// are tried. Throws `Error` cancelled.
@@ -66,7 +64,6 @@ class Levels {
   /// [F of the known level] number of the face in the deepest level, if that holds more than the known
   /// level of its depth.
   Buffer<uint32_t> moved_;
-  double smallest_angle_;
 };
 
 }  // namespace papilio

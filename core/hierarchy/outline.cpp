@@ -44,14 +44,14 @@ void add_faces_at_outline(LevelChoice& choice, int level, const Selection& selec
   std::ranges::merge(divided, choice.at_outline, red.begin());
 }
 
-void divide_at_outlines(std::span<LevelChoice> levels, double most_cosine) {
+void divide_at_outlines(std::span<LevelChoice> levels) {
   for (size_t k = levels.size() - 1; k > 0; --k) {
     LevelChoice& above = levels[k - 1];
     const size_t before = above.split_edges.size();
     for (FaceId f : above.at_outline)
       if (levels[k].splits_below(f)) above.divide(f);
     if (above.split_edges.size() == before) return;
-    avoid_slivers(above, most_cosine);
+    avoid_slivers(above);
   }
 }
 

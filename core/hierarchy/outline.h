@@ -17,6 +17,6 @@ void add_faces_at_outline(LevelChoice& choice, int level, const Selection& selec
 
 /// Divides the faces at outlines below which an edge is split, from the lowest level up, and further faces to avoid
 /// slivers (transition.h).
-void divide_at_outlines(std::span<LevelChoice> levels, double most_cosine);
+void divide_at_outlines(std::span<LevelChoice> levels);
 
 }  // namespace papilio

@@ -26,7 +26,6 @@ PreparedMesh::State::State(Mesh coarse, const Options& rules, uint64_t byte_budg
   check_options(rules_);
   guard_memory([&] {
     shape_ = mark_shape(coarse, rules_);
-    smallest_angle_ = papilio::smallest_angle(coarse);
     auto level = std::make_shared<HierarchyLevel>(coarsest_level(std::move(coarse)));
     level->longest = longest_edges(level->mesh);
     level->trial = try_level(*level, level->mesh, rules_, {.features = &level->features});

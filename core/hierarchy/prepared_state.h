@@ -21,7 +21,6 @@ class PreparedMesh::State {
 
   [[nodiscard]] const Options& rules() const { return rules_; }
   [[nodiscard]] uint64_t budget() const { return budget_; }
-  [[nodiscard]] double smallest_angle() const { return smallest_angle_; }
   [[nodiscard]] const ShapeReport& shape() const { return shape_; }
   [[nodiscard]] KeptLevels kept() const;
   [[nodiscard]] uint64_t bytes() const;
@@ -32,7 +31,6 @@ class PreparedMesh::State {
   Options rules_;
   uint64_t budget_;
   ShapeReport shape_;
-  double smallest_angle_;    ///< smallest angle of the coarse mesh, in radians
   mutable Mutex access_;     ///< guards `kept_` and `bytes_`
   mutable KeptLevels kept_;  ///< kept levels, the coarse one first
   mutable uint64_t bytes_;

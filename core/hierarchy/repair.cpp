@@ -25,16 +25,15 @@ Splits splits_of(const std::vector<LevelChoice>& choices) {
 void set_splits(std::vector<LevelChoice>& choices, const Splits& splits) {
   for (size_t k = 0; k < choices.size(); ++k) {
     choices[k].split_nothing();
-    if (k < splits.size())
-      for (EdgeId e : splits[k]) choices[k].split_edge(e);
+    if (k < splits.size()) choices[k].split_first(splits[k]);
   }
 }
 
-Repair::Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
-               int level_count, const Progress& progress)
+Repair::Repair(std::vector<LevelChoice>& choices, float threshold, AllowedDistance allowed, int level_count,
+               const Progress& progress)
     : choices_(choices),
       threshold_(threshold),
-      check_(choices, most_cosine, level_count, std::move(allowed), share_known, progress) {
+      check_(choices, level_count, std::move(allowed), share_known, progress) {
   for (const LevelChoice& choice : choices) near_.emplace_back(choice.level->mesh.topology.face_count(), 0);
 }
 

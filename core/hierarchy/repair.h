@@ -20,8 +20,8 @@ class Repair {
  public:
   /// `choices` must outlive this object, and not grow. Edges with an error of at least `threshold` are already
   /// candidates. `progress`: see surface_check.h.
-  Repair(std::vector<LevelChoice>& choices, float threshold, double most_cosine, AllowedDistance allowed,
-         int level_count, const Progress& progress);
+  Repair(std::vector<LevelChoice>& choices, float threshold, AllowedDistance allowed, int level_count,
+         const Progress& progress);
 
   /// Adds candidates of the largest possible error: at each face too far away the edges at which the surface moves
   /// most. Returns false if there are none.

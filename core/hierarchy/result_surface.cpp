@@ -30,7 +30,7 @@ Corners new_vertices_of(const LevelChoice& choice, FaceId face, const Corners& c
 }
 
 bool ResultSurface::has_second_diagonal(uint32_t k, FaceId f, unsigned mask) const {
-  return takes_second_diagonal(choice(k), f, mask, most_cosine_);
+  return takes_second_diagonal(choice(k), f, mask);
 }
 
 void ResultSurface::find_pieces(const LevelFace& leaf, std::vector<TriangleCorners>& pieces) const {

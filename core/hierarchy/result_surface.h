@@ -28,8 +28,8 @@ struct LevelFace {
 /// Surface of the result that assemble() makes of the levels. Not thread-safe.
 class ResultSurface {
  public:
-  /// The levels must outlive this object. `most_cosine`: see transition.h.
-  ResultSurface(std::span<const LevelChoice> levels, double most_cosine) : levels_(levels), most_cosine_(most_cosine) {}
+  /// The levels must outlive this object.
+  explicit ResultSurface(std::span<const LevelChoice> levels) : levels_(levels) {}
 
   [[nodiscard]] const LevelChoice& choice(uint32_t k) const { return levels_[k]; }
   [[nodiscard]] const HierarchyLevel& level(uint32_t k) const { return *levels_[k].level; }
@@ -68,7 +68,6 @@ class ResultSurface {
                                                 TriangleCorners& nearest);
 
   std::span<const LevelChoice> levels_;
-  double most_cosine_;
   std::vector<LevelFace> visited_, beside_;  ///< members to reuse their memory
   std::vector<TriangleCorners> pieces_;      ///< member to reuse its memory
 };

@@ -8,10 +8,9 @@
 
 namespace papilio {
 
-SurfaceCheck::SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count,
-                           AllowedDistance allowed, double share_known, const Progress& progress)
+SurfaceCheck::SurfaceCheck(std::span<const LevelChoice> levels, int level_count, AllowedDistance allowed,
+                           double share_known, const Progress& progress)
     : levels_(levels),
-      most_cosine_(most_cosine),
       level_count_(level_count),
       allowed_(std::move(allowed)),
       progress_(progress),
@@ -28,7 +27,7 @@ std::vector<Found> SurfaceCheck::compare(const Find& find) const {
   std::vector<Found> found(parts);
   for_each_part(parts, count, [&](uint32_t part, uint32_t first, uint32_t last) {
     // The first part runs on the calling thread, which alone may poll.
-    LeafComparison comparison(levels_, most_cosine_, sums_, level_count_, allowed_, part == 0 ? &progress_ : nullptr);
+    LeafComparison comparison(levels_, sums_, level_count_, allowed_, part == 0 ? &progress_ : nullptr);
     found[part] = find(comparison, first, last);
   });
   return found;

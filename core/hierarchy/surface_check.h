@@ -21,10 +21,10 @@ namespace papilio {
 class SurfaceCheck {
  public:
   /// Of `level_count` levels some may not be explored. References must outlive this object, and no level may be added.
-  /// `most_cosine`: see transition.h. Sums of moves below `share_known` of the allowed distance may be bounded loosely.
+  /// Sums of moves below `share_known` of the allowed distance may be bounded loosely.
   /// Works on as many threads as `progress` allows, and polls it for cancellation.
-  SurfaceCheck(std::span<const LevelChoice> levels, double most_cosine, int level_count, AllowedDistance allowed,
-               double share_known, const Progress& progress);
+  SurfaceCheck(std::span<const LevelChoice> levels, int level_count, AllowedDistance allowed, double share_known,
+               const Progress& progress);
 
   /// Returns the undivided faces, of those not marked in `near`, at which the distance exceeds the allowed one, in the
   /// order of their coarse faces. Marks the others. O(faces of the levels' regions).
@@ -45,7 +45,6 @@ class SurfaceCheck {
   [[nodiscard]] std::vector<Found> compare(const Find& find) const;
 
   std::span<const LevelChoice> levels_;
-  double most_cosine_;
   int level_count_;
   AllowedDistance allowed_;
   const Progress& progress_;

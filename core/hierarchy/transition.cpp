@@ -79,33 +79,15 @@ double squared_cosine_of_smallest_angle(Vec3d a, Vec3d b, Vec3d c) {
   return squared_cosine_of_smallest_angle(squared_length(b - a), squared_length(c - b), squared_length(a - c));
 }
 
-uint32_t judge(const HierarchyLevel& level, FaceId face, unsigned mask, double most_cosine) {
-  const SplitFace split(level, face, mask);
-  uint32_t found = Transition::is_judged;
-  const auto [cosine_of_first, second] = cosines_of_pieces(split);
-  double cosine = cosine_of_first;
-  if (split.has_two) {
-    const uint32_t* corner = &level.mesh.topology.origin[size_t{3} * face];
-    const bool second_is_lower = corner[(split.first + 2) % 3] < corner[split.first];
-    if (second < cosine || (second == cosine && second_is_lower)) found |= Transition::second_diagonal;
-    cosine = lesser(cosine, second);
-  }
-  const double most = most_cosine * most_cosine;
-  if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most)
-    found |= Transition::has_sliver;
-  return found;
-}
-
 /// Returns the faces of a choice with slivers among their pieces, in ascending order. Stores all judged faces in
 /// `LevelChoice::transitions`.
-Buffer<uint32_t> find_slivers(LevelChoice& choice, double most_cosine) {
-  const HierarchyLevel& level = *choice.level;
-  if (choice.transitions.empty()) choice.transitions.assign(level.mesh.topology.face_count(), 0);
+Buffer<uint32_t> find_slivers(LevelChoice& choice) {
+  if (choice.transitions.empty()) choice.transitions.assign(choice.level->mesh.topology.face_count(), 0);
   Buffer<uint32_t> slivers;
   for (FaceId f : chosen(choice.region.faces, [&](FaceId f) { return (choice.split_mask(f) + 1) % 8 > 1; })) {
     const unsigned mask = choice.split_mask(f);
-    uint32_t bits = Transition::known(choice, f, mask);
-    if (bits == 0) choice.transitions[f] = Transition::with_mask(bits = judge(level, f, mask, most_cosine), mask);
+    const uint32_t bits = Transition::find(choice, f, mask);
+    choice.transitions[f] = Transition::with_mask(bits, mask);
     if ((bits & Transition::has_sliver) != 0) slivers.push_back(f);
   }
   return slivers;
@@ -124,21 +106,32 @@ double smallest_angle(const Mesh& mesh) {
 
 double most_cosine_beside(double smallest_angle) { return cosine_of_small_angle(sliver_share * smallest_angle); }
 
-uint32_t Transition::find(const LevelChoice& choice, FaceId face, unsigned mask, double most_cosine) {
-  const uint32_t bits = known(choice, face, mask);
-  return bits != 0 ? bits : judge(*choice.level, face, mask, most_cosine);
+uint32_t Transition::judge(const HierarchyLevel& level, FaceId face, unsigned mask) {
+  const SplitFace split(level, face, mask);
+  uint32_t found = 0;
+  const auto [cosine_of_first, second] = cosines_of_pieces(split);
+  double cosine = cosine_of_first;
+  if (split.has_two) {
+    const uint32_t* corner = &level.mesh.topology.origin[size_t{3} * face];
+    const bool second_is_lower = corner[(split.first + 2) % 3] < corner[split.first];
+    if (second < cosine || (second == cosine && second_is_lower)) found |= second_diagonal;
+    cosine = lesser(cosine, second);
+  }
+  const double most = level.most_cosine * level.most_cosine;
+  if (cosine > most && squared_cosine_of_smallest_angle(split.a, split.b, split.c) <= most) found |= has_sliver;
+  return found;
 }
 
-void avoid_slivers(LevelChoice& choice, double most_cosine) {
+void avoid_slivers(LevelChoice& choice) {
   if (choice.split_edges.empty()) return;
   const Topology& mesh = choice.level->mesh.topology;
   const auto must_be_divided = [&](FaceId f) {
     const unsigned mask = choice.split_mask(f);
-    return mask != 0 && mask != 7 && (Transition::find(choice, f, mask, most_cosine) & Transition::has_sliver) != 0 &&
+    return mask != 0 && mask != 7 && (Transition::find(choice, f, mask) & Transition::has_sliver) != 0 &&
            choice.may_divide(f);
   };
   // The result depends on the order of faces: dividing one may make a sliver in another.
-  Buffer<uint32_t> faces = find_slivers(choice, most_cosine);
+  Buffer<uint32_t> faces = find_slivers(choice);
   erase_if(faces, [&](FaceId f) { return !must_be_divided(f); });
   while (!faces.empty()) {
     const FaceId f = faces.back();

@@ -35,7 +35,6 @@ class RedGreen {
         selection_(selection),
         progress_(progress),
         levels_(std::move(levels)),
-        most_cosine_(most_cosine_beside(levels_.smallest_angle())),
         least_error_(selection.threshold() *
                      (bounds_distance() && selection.camera() == nullptr ? share_chosen_by_error : 1)),
         threshold_(least_error_),
@@ -115,7 +114,7 @@ class RedGreen {
   bool choose() {
     if (!selection_.is_by_error()) {
       split_deepest();
-      if (selection_.follows_outline()) divide_at_outlines(choices_, most_cosine_);
+      if (selection_.follows_outline()) divide_at_outlines(choices_);
     } else {
       for (size_t k = choices_.size() - 1; k > 0; --k) carry_up(choices_[k], choices_[k - 1]);
       threshold_ = least_error_;
@@ -129,7 +128,7 @@ class RedGreen {
   void split_deepest() {
     LevelChoice& choice = choices_.back();
     choice.split_first(choice.candidates);
-    avoid_slivers(choice, most_cosine_);
+    avoid_slivers(choice);
   }
 
   /// Raises errors of the level above to the largest error below each face: children exist only if all its edges are
@@ -157,7 +156,7 @@ class RedGreen {
       choice.split_first(std::move(edges));
     }
     for (size_t k = choices_.size(); k-- > 0;) {
-      avoid_slivers(choices_[k], most_cosine_);
+      avoid_slivers(choices_[k]);
       if (k > 0) carry_marks_up(choices_[k], choices_[k - 1]);
     }
   }
@@ -261,7 +260,7 @@ class RedGreen {
   /// Splits further edges until the result is within the tolerance of the uniform surface, subject to budget and
   /// limits. Returns whether any edge was split.
   bool repair(int& level) {
-    Repair repair(choices_, least_error_, most_cosine_, allowed(share_of_tolerance), options_.levels, progress_);
+    Repair repair(choices_, least_error_, allowed(share_of_tolerance), options_.levels, progress_);
     bool has_repaired = false;
     while (repair.add_candidates()) {
       progress_.poll();
@@ -301,8 +300,7 @@ class RedGreen {
   }
 
   [[nodiscard]] Mesh assembled() const {
-    return assemble(choices_, most_cosine_, options_.edges || options_.simplify_hidden,
-                    displacements_of(choices_, options_));
+    return assemble(choices_, options_.edges || options_.simplify_hidden, displacements_of(choices_, options_));
   }
 
   [[nodiscard]] const Mesh& coarse() const { return choices_[0].level->mesh; }
@@ -332,7 +330,7 @@ class RedGreen {
   }
 
   [[nodiscard]] SurfaceCheck surface_check(AllowedDistance allowed) const {
-    return {choices_, most_cosine_, options_.levels, std::move(allowed), 0, progress_};
+    return {choices_, options_.levels, std::move(allowed), 0, progress_};
   }
 
   void finish(Result& result, Mesh latest) {
@@ -365,7 +363,6 @@ class RedGreen {
   const Progress& progress_;
   Levels levels_;
   std::vector<LevelChoice> choices_;  ///< [level]
-  double most_cosine_;                ///< upper bound of transition faces' cosines (transition.h)
   float least_error_;                 ///< edges of smaller errors are split by repair() alone
   float threshold_;                   ///< lower bound of the errors of edges to split; least_error_ within the budget
   Splits kept_;                       ///< [level] edges split when a level last changed the mesh
