@@ -10,6 +10,7 @@
 #include "mesh/fan.h"
 #include "mesh/grid_step.h"
 #include "mesh/hinge.h"
+#include "mesh/normals.h"
 #include "mesh/smoothing_groups.h"
 
 namespace papilio {
@@ -179,10 +180,8 @@ class ShapeFinder {
   [[nodiscard]] const Flat& flat_of(FaceId face) { return flat_of_[flats_.find(face)]; }
 
   [[nodiscard]] Vec3d origin_of(HalfEdgeId h) const { return to_double(mesh_.positions[topology_.origin[h]]); }
-  [[nodiscard]] double area_of(FaceId f) const {
-    const Vec3d a = origin_of(3 * f);
-    return 0.5 * length(cross(origin_of(3 * f + 1) - a, origin_of(3 * f + 2) - a));
-  }
+
+  [[nodiscard]] double area_of(FaceId f) const { return 0.5 * length(area_normal(mesh_, f)); }
 
   /// Finds and measures the regions that flat edges join, once.
   void find_flats() {

@@ -108,10 +108,8 @@ class ButterflyRules {
   using Point = Vec3T<Real>;
 
  public:
-  /// All arguments must outlive this object; `positions` [V]; `tension` may be null.
-  ButterflyRules(const Topology& topology, const Point* positions, Real w, const TensionField* tension)
-      : ButterflyRules(topology, positions, positions, w, tension) {}
-  /// Applies the rules that hold at `places` [V] to `points` [V].
+  /// Applies the rules that hold at `places` [V] to `points` [V]. All arguments must outlive this object; `tension` may
+  /// be null.
   ButterflyRules(const Topology& topology, const Point* places, const Point* points, Real w,
                  const TensionField* tension)
       : mesh_(topology), place_(places), p_(points), w_(w), share_(w) {
@@ -217,14 +215,14 @@ class ButterflyRules {
     const auto twice = [&](uint32_t j) { return angles[2 * j < k ? 2 * j : 2 * j - k]; };
     Vec3d sum, c1, s1, c2, s2;
     for (uint32_t j = 0; j < k; ++j) {
-      const Vec3d p = widen(p_[fan.ring[j]]);
+      const Vec3d p = to_double(p_[fan.ring[j]]);
       sum += p;
       c1 += angles[j].cosine * p;
       s1 += angles[j].sine * p;
       c2 += twice(j).cosine * p;
       s2 += twice(j).sine * p;
     }
-    const Vec3d constant = stencil::interior_centre * widen(p_[fan.centre]) + (stencil::harmonic_0 / k) * sum;
+    const Vec3d constant = stencil::interior_centre * to_double(p_[fan.centre]) + (stencil::harmonic_0 / k) * sum;
     const Real factor = tensed_ ? tensed_->least_factor(fan) : Real(1);
     for (uint32_t i = 0; i < k; ++i) {
       const Vec3d first = angles[i].cosine * c1 + angles[i].sine * s1;
@@ -245,15 +243,15 @@ class ButterflyRules {
     const stencil::CurveRule rules(k);
     Vec3d sum_1, sum_2;
     for (uint32_t j = 1; j < k; ++j) {
-      const Vec3d p = widen(p_[fan.ring[j]]);
+      const Vec3d p = to_double(p_[fan.ring[j]]);
       sum_1 += rules.sine(j) * p;
       sum_2 += rules.sine(2 * j) * p;
     }
-    const Vec3d across = widen(p_[fan.ring[0]]) - widen(p_[fan.ring[k]]);
+    const Vec3d across = to_double(p_[fan.ring[0]]) - to_double(p_[fan.ring[k]]);
     for (uint32_t i = 1; i < k; ++i) {
       const stencil::CurveSpoke rule = rules.spoke(i);
-      const Point q =
-          narrow(rule.centre * widen(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 + rule.sine_2 * sum_2);
+      const Point q = narrow(rule.centre * to_double(p_[fan.centre]) + rule.end * across + rule.sine_1 * sum_1 +
+                             rule.sine_2 * sum_2);
       add(fan.spokes[i], tensed_ ? tensed_->scaled(fan.spokes[i], q) : q);
     }
   }
@@ -331,8 +329,7 @@ class ButterflyRules {
            Row::wing * (wing(t.next()) + wing(t.previous()));
   }
 
-  [[nodiscard]] Wide<Real> wide(VertexId vertex) const { return papilio::widen(p_[vertex]); }
-  static Vec3d widen(Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)}; }
+  [[nodiscard]] Wide<Real> wide(VertexId vertex) const { return widen(p_[vertex]); }
   static Point narrow(Vec3d p) { return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}; }
 
   const Topology& mesh_;

@@ -102,10 +102,13 @@ class TensedRules {
 
   /// Scales the result q of any other rule for the edge of h towards the midpoint, by the least factor of the edge and
   /// the four others of its two faces.
-  [[nodiscard]] Point scaled(HalfEdgeId h, Point q) const { return between(h, q, least_factor(h)); }
+  [[nodiscard]] Point scaled(HalfEdgeId h, Point q) const { return scaled(h, q, least_factor(h)); }
 
   /// Scales q towards the midpoint of h by `factor`, the least of a whole fan's spokes.
-  [[nodiscard]] Point scaled(HalfEdgeId h, Point q, Real factor) const { return between(h, q, factor); }
+  [[nodiscard]] Point scaled(HalfEdgeId h, Point q, Real factor) const {
+    const Point m = midpoint(h);
+    return factor == 1 ? q : m + factor * (q - m);
+  }
   [[nodiscard]] Real least_factor(const Fan& fan) const {
     float least = 1;
     for (uint32_t s : fan.spokes) least = lesser(least, field_.factor[mesh_.edge[s]]);
@@ -155,8 +158,8 @@ class TensedRules {
  private:
   [[nodiscard]] Point bounded(HalfEdgeId h, Point q) const {
     const Point m = midpoint(h);
-    const Vec3d off = widen(q - m);
-    const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
+    const Vec3d off = to_double(q - m);
+    const Vec3d along = to_double(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
     if (dot(off, off) < sure * tension_bound * tension_bound * dot(along, along)) return q;
     const double moved = length(off);
     const double most = tension_bound * length(along);
@@ -167,8 +170,8 @@ class TensedRules {
   /// saves square roots.
   static constexpr double sure = 0.99;
   [[nodiscard, gnu::always_inline]] bool is_surely_within_bounds(HalfEdgeId h, Point q) const {
-    const Vec3d off = widen(q - midpoint(h));
-    const Vec3d along = widen(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
+    const Vec3d off = to_double(q - midpoint(h));
+    const Vec3d along = to_double(p_[mesh_.tip(h)] - p_[mesh_.origin[h]]);
     const double size = dot(along, along);
     const double slid = dot(off, along);
     return dot(off, off) < sure * tension_bound * tension_bound * size &&
@@ -193,15 +196,15 @@ class TensedRules {
   [[nodiscard]] Point unfolded(HalfEdgeId h, Point q) const {
     const EdgeKind kind = mesh_.kind[mesh_.edge[h]];
     if (kind == EdgeKind::cut) return q;
-    const Vec3d a = widen(p_[mesh_.origin[h]]);
-    const Vec3d b = widen(p_[mesh_.tip(h)]);
+    const Vec3d a = to_double(p_[mesh_.origin[h]]);
+    const Vec3d b = to_double(p_[mesh_.tip(h)]);
     const Point m = midpoint(h);
-    const Vec3d off = widen(q) - widen(m);
+    const Vec3d off = to_double(q) - to_double(m);
     const Vec3d kept = kind == EdgeKind::shared
                            ? shorten_across(off, a, b, inward_bound * std::sqrt(least_squared_clearance(h)))
                            : unfolded(h, off, a, b);
     if (kept == off) return q;
-    const Vec3d at = widen(m) + kept;
+    const Vec3d at = to_double(m) + kept;
     return {static_cast<Real>(at.x), static_cast<Real>(at.y), static_cast<Real>(at.z)};
   }
 
@@ -211,7 +214,7 @@ class TensedRules {
     const bool is_curve = mesh_.is_curve(h) || is_diagonal_of_strip(h);
     const auto face_at = [&](HalfEdgeId side) {
       const FaceId f = side.face();
-      FaceAtEdge face{widen(p_[mesh_.apex(side)]), std::sqrt(field_.shape->squared_height[f])};
+      FaceAtEdge face{to_double(p_[mesh_.apex(side)]), std::sqrt(field_.shape->squared_height[f])};
       if (!is_curve)
         face.height *= field_.shape->room(f);
       else if (mesh_.shape.is_mechanical)
@@ -223,16 +226,7 @@ class TensedRules {
                          mesh_.shape.is_mechanical ? mechanical_across_bound : organic_across_bound);
   }
 
-  /// Converts to double: squares of small floats would underflow.
-  [[nodiscard]] static Vec3d widen(Point p) {
-    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-  }
   [[nodiscard]] Point midpoint(HalfEdgeId h) const { return Real(0.5) * (p_[mesh_.origin[h]] + p_[mesh_.tip(h)]); }
-
-  [[nodiscard]] Point between(HalfEdgeId h, Point q, Real factor) const {
-    const Point m = midpoint(h);
-    return factor == 1 ? q : m + factor * (q - m);
-  }
 
   /// Returns the contribution of the face of h, whose twin is t, to their edge: half the midpoint, and the
   /// face's two hinges.
@@ -258,17 +252,17 @@ class TensedRules {
 
   /// Moves the outer points towards the edge's ends until their distances from them are at most the edge's length.
   [[nodiscard]] static AlongCurve with_equal_sides(const AlongCurve& points, const AlongCurve& places) {
-    const double most = length(widen(places[2] - places[1]));
+    const double most = length(to_double(places[2] - places[1]));
     const auto nearer = [&](size_t outer, size_t end) {
-      const double size = length(widen(places[outer] - places[end]));
+      const double size = length(to_double(places[outer] - places[end]));
       return size > most ? points[end] + Real(most / size) * (points[outer] - points[end]) : points[outer];
     };
     return {nearer(0, 1), points[1], points[2], nearer(3, 2)};
   }
 
   [[nodiscard]] static Real turn_factor(Point before, Point at, Point after) {
-    const Vec3d u = widen(at - before);
-    const Vec3d v = widen(after - at);
+    const Vec3d u = to_double(at - before);
+    const Vec3d v = to_double(after - at);
     const double size = length(u) * length(v);
     return size > 0 ? Real(hinge_factor(dot(u, v) / size)) : Real(1);
   }
@@ -288,8 +282,8 @@ class TensedRules {
   [[nodiscard]] Point beyond(uint32_t end, uint32_t other) const {
     if (field_.features.degree[end] != 2) return reflected(end, other);
     const uint32_t next = field_.features.neighbours[end] ^ other;
-    const Vec3d u = widen(place_[end] - place_[other]);
-    const Vec3d v = widen(place_[next] - place_[end]);
+    const Vec3d u = to_double(place_[end] - place_[other]);
+    const Vec3d v = to_double(place_[next] - place_[end]);
     return dot(u, v) > 0.5 * length(u) * length(v) ? p_[next] : reflected(end, other);
   }
   [[nodiscard]] Point reflected(uint32_t end, uint32_t other) const { return Real(2) * p_[end] - p_[other]; }

@@ -45,16 +45,26 @@ class Splitter {
     for (FaceId f = 0; f < faces; ++f) {
       const uint32_t* edge = &mesh_.edge[size_t{3} * f];
       const unsigned mask = targets_[edge[0]] | targets_[edge[1]] << 1U | targets_[edge[2]] << 2U;
-      const auto corner = [&](uint32_t i) {
-        const VertexId v = mesh_.origin[3 * f + i];
-        return CornerPoint{v, positions_[v]};
-      };
-      const auto middle = [&](uint32_t i) { return positions_[new_vertex(3 * f + i)]; };
-      pattern_[f] = &split_pattern(mask, prefers_second_diagonal(mask, corner, middle));
+      pattern_[f] = &split_pattern(mask, prefers_second_diagonal(f, mask));
       first_child_[f] = child;
       child += pattern_[f]->children;
     }
     first_child_[faces] = child;
+  }
+
+  /// Returns whether the second diagonal cuts the quadrangle that two targets leave: the shorter one; if equal, the
+  /// one from the lower corner. False for other masks.
+  [[nodiscard]] bool prefers_second_diagonal(FaceId f, unsigned mask) const {
+    if (!has_two_targets(mask)) return false;
+    const uint32_t i = first_target[mask];
+    const uint32_t j = (i + 1) % 3;
+    const VertexId first_end = mesh_.origin[3 * f + i];
+    const VertexId second_end = mesh_.origin[3 * f + (j + 1) % 3];
+    const auto at = [&](VertexId v) { return to_double(positions_[v]); };
+    const Vec3d first = at(first_end) - at(new_vertex(3 * f + j));
+    const Vec3d second = at(second_end) - at(new_vertex(3 * f + i));
+    const double difference = dot(second, second) - dot(first, first);
+    return difference < 0 || (difference == 0 && second_end < first_end);
   }
 
   [[nodiscard]] uint32_t new_vertex(HalfEdgeId h) const { return mesh_.vertex_count + before_[mesh_.edge[h]]; }

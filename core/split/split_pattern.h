@@ -24,15 +24,13 @@ struct SplitPattern {
   [[nodiscard]] bool is_outside(uint32_t half_edge) const { return inner_twin[half_edge] == outside; }
 };
 
-/// Returns the pattern of a face: `mask` has bit i set if edge i is a target; `second_diagonal` chooses the cut of the
-/// quadrangle that two target edges leave. There, edges i and j = (i + 1) % 3 are targets. The first diagonal runs from
-/// corner i to the vertex of edge j, the second from the vertex of edge i to corner (j + 1) % 3.
-[[nodiscard]] inline const SplitPattern& split_pattern(unsigned mask, bool second_diagonal);
-
 /// All patterns: [2 * mask + (second diagonal ? 1 : 0)].
 extern const std::array<SplitPattern, 16> split_patterns;
 
-const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
+/// Returns the pattern of a face: `mask` has bit i set if edge i is a target; `second_diagonal` chooses the cut of the
+/// quadrangle that two target edges leave. There, edges i and j = (i + 1) % 3 are targets. The first diagonal runs from
+/// corner i to the vertex of edge j, the second from the vertex of edge i to corner (j + 1) % 3.
+[[nodiscard]] inline const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
   return split_patterns[2 * mask + (second_diagonal ? 1 : 0)];
 }
 
@@ -41,27 +39,5 @@ const SplitPattern& split_pattern(unsigned mask, bool second_diagonal) {
 inline constexpr std::array<uint8_t, 8> first_target{0, 0, 1, 0, 2, 2, 1, 0};
 /// Corners and edges in cyclic order, starting from turned[i].
 inline constexpr std::array<uint8_t, 5> turned{0, 1, 2, 0, 1};
-
-/// Corner of a face: its number, which breaks ties, and its position.
-struct CornerPoint {
-  uint32_t number;
-  Vec3f position;
-};
-
-/// Returns whether the second diagonal cuts the quadrangle that two targets leave: the shorter one; if equal, the
-/// one from the lower corner. False for other masks. `corner(i)` returns corner i, `middle(i)` the position of
-/// edge i's new vertex.
-template <class Corner, class Middle>
-[[nodiscard]] bool prefers_second_diagonal(unsigned mask, const Corner& corner, const Middle& middle) {
-  if (!has_two_targets(mask)) return false;
-  const uint32_t i = first_target[mask];
-  const uint32_t j = (i + 1) % 3;
-  const CornerPoint first_end = corner(i);
-  const CornerPoint second_end = corner((j + 1) % 3);
-  const Vec3d first = to_double(first_end.position) - to_double(middle(j));
-  const Vec3d second = to_double(second_end.position) - to_double(middle(i));
-  const double difference = dot(second, second) - dot(first, first);
-  return difference < 0 || (difference == 0 && second_end.number < first_end.number);
-}
 
 }  // namespace papilio

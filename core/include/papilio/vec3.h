@@ -36,6 +36,7 @@ Real length(Vec3T<Real> a) {
 }
 
 inline Vec3d to_double(Vec3f a) { return {a.x, a.y, a.z}; }
+inline Vec3d to_double(Vec3d a) { return a; }
 inline Vec3f to_float(Vec3d a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
 
 }  // namespace papilio
