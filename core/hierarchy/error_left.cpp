@@ -14,8 +14,10 @@
 namespace papilio {
 namespace {
 
-/// Search for the largest deviation left at the edges of undivided faces. Visits edges in their level's order. Whether
-/// an edge counts is tested only if its deviation may be the largest.
+/// Search for the largest deviation left at the edges of undivided faces. Of an unsplit edge all of its deviation is
+/// left. Of a split side those of its halves are left if they were judged, or else a share of its own; likewise of
+/// split edges of the last level. Visits edges in their level's order. Whether an edge counts is tested only if its
+/// deviation may be the largest.
 class ErrorFinder {
  public:
   ErrorFinder(std::span<const LevelChoice> levels, const Selection& selection) : levels_(levels), left_(selection) {
@@ -25,11 +27,11 @@ class ErrorFinder {
   ErrorLeft run() {
     for (size_t k = 0; k < levels_.size(); ++k) {
       find_reached(k);
-      add_whole(k);
-      if (k + 1 < levels_.size())
-        add_split(k);
-      else
+      add_unsplit(k);
+      if (is_last(k))
         add_last_split(k);
+      else
+        add_split(k);
     }
     return left_;
   }
@@ -38,6 +40,7 @@ class ErrorFinder {
   /// Returns the share of a deviation of level k that is left where its edge is split: 0 on the last level of detail,
   /// whose vertices lie on the surface.
   [[nodiscard]] double split_share(size_t k) const { return levels_[k].level->detail_levels == 1 ? 0 : split_leaves; }
+  [[nodiscard]] bool is_last(size_t k) const { return k + 1 == levels_.size(); }
   [[nodiscard]] const Topology& mesh_of(size_t k) const { return levels_[k].level->mesh.topology; }
 
   /// Finds the faces of the level's region whose ancestors are all divided.
@@ -70,12 +73,12 @@ class ErrorFinder {
     return left_.may_grow_by(most, scale) && left_.may_grow_at(level.mesh, e, most);
   }
 
-  void add_whole(size_t k) {
+  void add_unsplit(size_t k) {
     const LevelChoice& choice = levels_[k];
     const Topology& mesh = mesh_of(k);
     const Trial& trial = choice.level->trial;
     if (trial.bounds.empty()) {
-      add_far(k);
+      add_beyond_cutoff(k);
     } else {
       float least = cutoff(k);
       // Branch-free on a new level, where splits are unpredictable. On a kept level, most edges are below the cutoff.
@@ -84,7 +87,7 @@ class ErrorFinder {
       for (EdgeId e : edges) {
         if (trial.stored_deviation_bound(e) < least || choice.split[e] != 0) continue;
         if (!may_matter(*choice.level, e, scales_[k]) || is_near(k, e, 1)) continue;
-        add_whole(k, e);
+        add_unsplit(k, e);
         least = cutoff(k);
       }
     }
@@ -96,7 +99,7 @@ class ErrorFinder {
   }
 
   /// Adds an unsplit edge of the region.
-  void add_whole(size_t k, EdgeId e) {
+  void add_unsplit(size_t k, EdgeId e) {
     const Topology& mesh = mesh_of(k);
     const HalfEdgeId h = mesh.half_edge[e];
     const HalfEdgeId t = mesh.twin[h];
@@ -104,16 +107,17 @@ class ErrorFinder {
     if (levels_[k].shown[e]) add(k, e);
   }
 
-  /// Adds the region's edges, split or not, on a level without bounds of deviations. Skips edges whose new vertex is
-  /// too near the middle.
-  void add_far(size_t k) {
+  /// Adds the region's unsplit edges, and on the last level its split ones, where the level has no bounds of
+  /// deviations. Skips edges whose new vertex is too near the middle.
+  void add_beyond_cutoff(size_t k) {
     const LevelChoice& choice = levels_[k];
     const Mesh& mesh = choice.level->mesh;
     const Vec3f* const positions = mesh.positions.data();
     const Vec3f* const made = choice.level->trial.made.data();
     const uint8_t* const may_be_split = choice.region.has_edge.data();
     const uint8_t* const is_split = choice.split.data();
-    const std::array<float, 2> share_squared{1, static_cast<float>(split_share(k) * split_share(k))};  // [is split]
+    const auto split_squared = static_cast<float>(is_last(k) ? split_share(k) * split_share(k) : 0);
+    const std::array<float, 2> share_squared{1, split_squared};  // [is split]
     DeviationCutoff too_near(choice.level->box.largest_coordinate());
     const auto raise = [&] { too_near.raise(left_.least_that_matters(scales_[k])); };
     raise();
@@ -121,7 +125,7 @@ class ErrorFinder {
       const float squared = share_squared[is_split[e]] * squared_length(widen(made[e]) - 0.5F * (from + to));
       if (squared <= too_near.squared() || may_be_split[e] == 0 || !choice.shown[e]) [[likely]]
         return;
-      add_far(k, e);
+      add_beyond_cutoff(k, e);
       raise();
     };
     if (k == 0) {
@@ -142,13 +146,11 @@ class ErrorFinder {
                               __attribute__((always_inline)) { look_at(edge[half_edge], at[from], at[to]); });
     }
   }
-  [[gnu::noinline]] void add_far(size_t k, EdgeId e) {
+  [[gnu::noinline]] void add_beyond_cutoff(size_t k, EdgeId e) {
     if (levels_[k].split[e] == 0)
-      add_whole(k, e);
-    else if (k + 1 == levels_.size())
+      add_unsplit(k, e);
+    else if (is_last(k))
       add_last_split(k, e);
-    else
-      add_split_far(k, e);
   }
   /// Returns whether all four children of a face are divided, so that the result has none of their edges.
   [[nodiscard]] static bool are_all_divided(const LevelChoice& choice, uint32_t child) {
@@ -161,7 +163,7 @@ class ErrorFinder {
   /// Adds split edges of the last level, below which no edge was judged.
   void add_last_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    if (choice.level->trial.bounds.empty()) return;  // add_far did it
+    if (choice.level->trial.bounds.empty()) return;  // add_beyond_cutoff did it
     for (EdgeId e : choice.split_edges)
       if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k))) add_last_split(k, e);
   }
@@ -169,15 +171,12 @@ class ErrorFinder {
     if (levels_[k].shown[e]) add(k, e, split_share(k));
   }
 
+  /// Adds the split sides of faces that are cut in two or three, or in four without an explored level below.
   void add_split(size_t k) {
     const LevelChoice& choice = levels_[k];
-    if (choice.level->trial.bounds.empty()) return add_sides_at_outline(k);  // add_far did the others
-    has_children_ = choice.with_children();
     const Buffer<uint32_t> faces = chosen(choice.region.faces, [&](FaceId f) {
-      const bool has_children = has_children_[f] != 0;
       const unsigned mask = choice.split_mask(f);
-      const bool is_reached = reached_[f] != 0;
-      return mask != 0 && is_reached && (!has_children || mask != 7);
+      return mask != 0 && reached_[f] != 0 && (mask != 7 || !are_children_judged(k, f));
     });
     Buffer<uint32_t> sides(3 * faces.size());
     for (size_t i = 0; i < faces.size(); ++i)
@@ -187,18 +186,21 @@ class ErrorFinder {
     for (HalfEdgeId h : sides) add_side(k, h);
   }
 
-  /// Adds the split sides of undivided faces at an outline.
-  void add_sides_at_outline(size_t k) {
-    const LevelChoice& choice = levels_[k];
-    for (FaceId f : choice.at_outline) {
-      if (reached_[f] == 0 || choice.split_mask(f) == 7) continue;
-      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
-        if (choice.split[mesh_of(k).edge[h]] != 0 && are_halves_judged(k, h)) add_halves(k, h);
-    }
+  /// Returns whether the level below holds a face's children, for this request or another.
+  [[nodiscard]] bool has_children(size_t k, FaceId f) const {
+    const Buffer<uint32_t>& child = levels_[k + 1].level->child;
+    return child.empty() || child[f] != none;
   }
-
-  /// Returns whether the halves of a side were judged. Its face must have children.
+  /// Returns whether the edges inside a divided face were judged. If not, nothing below it was explored.
+  [[nodiscard]] bool are_children_judged(size_t k, FaceId f) const {
+    if (!has_children(k, f)) return false;
+    const HierarchyLevel& below = *levels_[k + 1].level;
+    const uint32_t middle_child = below.first_child_of(f) + 3;
+    return levels_[k + 1].region.has_edge[below.mesh.topology.edge[3 * middle_child]] != 0;
+  }
+  /// Returns whether the halves of a side were judged.
   [[nodiscard]] bool are_halves_judged(size_t k, HalfEdgeId h) const {
+    if (!has_children(k, h.face())) return false;
     const auto [first, second] = halves(k, h.face(), h % 3);
     const Marks& has_edge = levels_[k + 1].region.has_edge;
     return (has_edge[first] & has_edge[second]) != 0;
@@ -214,27 +216,9 @@ class ErrorFinder {
   void add_side(size_t k, HalfEdgeId h) {
     const LevelChoice& choice = levels_[k];
     const EdgeId e = mesh_of(k).edge[h];
-    if (has_children_[h.face()] != 0 && are_halves_judged(k, h)) return add_halves(k, h);
+    if (are_halves_judged(k, h)) return add_halves(k, h);
     if (may_be_largest(k, e, split_share(k)) && !is_near(k, e, split_share(k)) && choice.shown[e])
       add(k, e, split_share(k));
-  }
-
-  /// Adds a split edge of a choice without errors. Its halves are judged only below divided faces, or at an outline.
-  void add_split_far(size_t k, EdgeId e) {
-    const LevelChoice& choice = levels_[k];
-    const Topology& mesh = mesh_of(k);
-    const auto is_cut = [&](HalfEdgeId h) {
-      return h != none && reached_[h.face()] != 0 && choice.split_mask(h.face()) != 7;
-    };
-    bool is_any_cut = is_cut(mesh.half_edge[e]) || is_cut(mesh.twin[mesh.half_edge[e]]);
-    if (mesh.kind[e] == EdgeKind::shared)
-      for (HalfEdgeId h : choice.level->shared) is_any_cut |= mesh.edge[h] == e && is_cut(h);
-    if (is_any_cut && choice.shown[e] && !is_judged_at_outline(k, mesh.half_edge[e])) add(k, e, split_share(k));
-  }
-
-  [[nodiscard]] bool is_judged_at_outline(size_t k, HalfEdgeId h) const {
-    const LevelChoice& choice = levels_[k];
-    return !choice.at_outline.empty() && choice.red[h.face()] != 0 && are_halves_judged(k, h);
   }
 
   /// Returns whether a share of the edge's deviation may be the largest, by its upper bound.
@@ -270,9 +254,8 @@ class ErrorFinder {
   }
 
   std::span<const LevelChoice> levels_;
-  Buffer<double> scales_;         ///< [level] highest pixels per unit
-  Buffer<uint8_t> has_children_;  ///< [F] whether faces of the current level have children
-  Buffer<uint8_t> reached_;       ///< [F] whether all ancestors of faces of the current level are divided
+  Buffer<double> scales_;    ///< [level] highest pixels per unit
+  Buffer<uint8_t> reached_;  ///< [F] whether all ancestors of faces of the current level are divided
   ErrorLeft left_;
 };
 

@@ -17,6 +17,17 @@
 // of T's one ring, and so the next level is supported in turn. A last level, below which no other comes, may leave the
 // support out (refine_last_level).
 //
+// There are three kinds of levels:
+//
+//                 whole      held in part           last (refine_last_level)
+//   faces         all        children of `parent`s  children of red faces, then 4 sentinels for all others
+//   vertices      all        those of the faces     those of the level above, then one on each of its edges
+//   edges         all        those of the faces     those of the faces, then 5 of the sentinels
+//   parent_of(f)  f / 4      `parent`[f / 4]        `parent`[f / 4], `none` for the sentinels
+//   child of f    4f         `child`[f] or `none`   `child`[f], the first sentinel where there is none
+//   left out      nothing    edges are cut, see     features and `complete`
+//                            `complete`
+//
 // Nothing here depends on a view or a choice. A level is immutable once made: any number of requests may read it, and
 // each may use only part of it (level_choice.h). The order of numbers, and of all derived data, does not depend on how
 // much is held.

@@ -21,6 +21,11 @@ using NearFaces = std::vector<Buffer<uint8_t>>;
 /// Compares a result with the uniform surface at one leaf, an undivided face, after the other. Below a leaf it descends
 /// through the levels, until the sums of the moves further down show that nothing there can matter. Not for threads to
 /// share.
+///
+/// A distance matters if it exceeds the limit, with `rest_` on top of it: what levels further down may add. What comes
+/// of one that does is the caller's question. far_faces() and exceeds() keep the limit, and the first ends the leaf.
+/// largest_share() raises the limit to it, so that only larger ones matter from then on. In a probe, which asks whether
+/// all below a child is near enough to leave it out, it only leads further down.
 class LeafComparison {
  public:
   /// All references must outlive this. `sums` of moves: see sums_below(). Of

@@ -6,7 +6,6 @@
 
 #include "criteria/view_culling.h"
 #include "hierarchy/detail_levels.h"
-#include "hierarchy/transition.h"
 #include "mesh/attributes.h"
 #include "mesh/displacement.h"
 

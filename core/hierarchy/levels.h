@@ -11,6 +11,10 @@
 namespace papilio {
 
 /// Levels of the hierarchy that one request uses: made for it alone, or shared through a prepared mesh.
+///
+/// A level may hold more than the request needs, for the next request: the margin round the faces of a view, all that
+/// an earlier request needed (`known_`), or the whole level where that costs as much. How much is held never changes a
+/// result.
 class Levels {
  public:
   /// Makes levels for this request: only required values are computed. Level 0 exists and is tried. Throws
