@@ -197,6 +197,7 @@ class CollapseSequence::Collapser {
 
   void propose(uint32_t v) {
     collect(v);
+    if (ring_.size() > most_valence + 2) return;  // keeps_topology() refuses; all costs take the square of the valence
     double least = refused;
     for (size_t i = 0; i < ring_.size(); ++i) least = std::min(least, cost(v, i, least));
     if (least < refused) queue_.push({least, v, age_[v]});

@@ -78,9 +78,9 @@ class DistantPoints {
     const SurfaceTree tree(surface_);
     for (const Distant& d : std::exchange(distant_, {})) near_face_[d.point] = none;
     for (uint32_t p = 0; p < near_face_.size(); ++p) {
+      if (p % points_between_polls == 0 && poll_) poll_();
       uint32_t& face = near_face_[p];
       if (face != none && !is_near_moved_[face]) continue;
-      if (p % points_between_polls == 0 && poll_) poll_();
       const Nearest near = tree.nearest(point(p));
       face = near.face;
       if (near.squared_distance > bounds_.most * bounds_.most) distant_.push_back({near.squared_distance, p, face});

@@ -140,6 +140,7 @@ class Simplifier {
 
   [[nodiscard]] bool is_boundary(uint32_t a, uint32_t b) const { return count_faces(a, b) == 1; }
   [[nodiscard]] size_t count_faces(uint32_t a, uint32_t b) const {
+    if (faces_of_[b].size() < faces_of_[a].size()) std::swap(a, b);
     return static_cast<size_t>(std::ranges::count_if(faces_of_[a], [&](uint32_t f) { return has(f, b); }));
   }
 

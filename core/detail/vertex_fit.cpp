@@ -27,7 +27,7 @@ constexpr int most_retreats = 4;
 /// Upper bound of a move, in RMS distances.
 constexpr double most_move = 3;
 
-/// Returns the shares of a triangle's corners in a point of its plane, clamped to the triangle.
+/// Returns the shares of a triangle's corners in a point of its plane.
 std::array<double, 3> shares_of(const TriangleCorners& t, Vec3d p) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
   const double aa = dot(ab, ab), cc = dot(ac, ac), both = dot(ab, ac);
@@ -125,7 +125,7 @@ void VertexFit::measure() {
   for (uint32_t f = 0; f < faces_.size(); ++f) total += area_of(surface.corners(f));
   for (uint32_t f = 0; f < faces_.size(); ++f) {
     const TriangleCorners c = surface.corners(f);
-    const double share = area_of(c) / total;
+    const double share = total > 0 ? area_of(c) / total : 0;
     const uint32_t count = std::max(least_samples_a_face, static_cast<uint32_t>(share * samples_));
     for (uint32_t i = 0; i < count; ++i) {
       count_sample();

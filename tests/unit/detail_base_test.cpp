@@ -195,6 +195,16 @@ TEST_P(Collapses, LiftIsABijectionThatKeepsVertices) {
 INSTANTIATE_TEST_SUITE_P(Shapes, Collapses, ::testing::Values("sphere", "torus", "box", "two_components"),
                          [](const auto& shape) { return std::string(shape.param); });
 
+// Each collapse at a rim looked for one at the lid's centre, in the square of its faces: 10 s in place of .06.
+TEST(CollapseSequence, LidsOfManyFacesAreSimplified) {
+  const Mesh original = build_mesh(test::tube(1000, 4, 0.5F, true));
+  CollapseSequence sequence(original);
+  sequence.collapse_to(100);
+  const BaseMesh base = sequence.base();
+  EXPECT_LE(base.face.size(), 100U);
+  EXPECT_EQ(build_mesh(base.triangles).topology.euler_characteristic(), 2);
+}
+
 TEST(BaseLift, OtherBaseIsRefused) {
   const OriginalSurface original(build_mesh(sphere(3)));
   CollapseSequence sequence(original.mesh());
