@@ -1,5 +1,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "client/cli/commands.h"
 #include "client/lib/file_words.h"
@@ -33,12 +35,37 @@ ordered_json describe_scene_file(const MeshBytes& file) {
   return description;
 }
 
+/// Returns the names of attributes, as in descriptions of scenes: in glTF's words, or a generic one's own name.
+ordered_json attribute_names(const proto::MeshFormat& format) {
+  ordered_json names{"POSITION"};
+  int texcoords = 0, colours = 0;
+  for (const proto::AttributeFormat& attribute : format.attributes) switch (attribute.kind) {
+      case proto::AttributeKind::normal:
+        names.push_back("NORMAL");
+        break;
+      case proto::AttributeKind::tex_coord:
+        names.push_back("TEXCOORD_" + std::to_string(texcoords++));
+        break;
+      case proto::AttributeKind::color:
+        names.push_back("COLOR_" + std::to_string(colours++));
+        break;
+      case proto::AttributeKind::generic:
+        names.push_back(attribute.name.empty() ? "generic" : attribute.name);
+        break;
+    }
+  return names;
+}
+
 ordered_json describe(const MeshPlace& input) {
   const MeshBytes file = read_mesh(input);
   if (is_scene(file.format)) return describe_scene_file(file);
   BuildReport report;
-  const Mesh mesh =
-      in_words_of_the_file(file.name, [&] { return build_mesh(triangles_of(file), &report, rounding_gap); });
+  ordered_json attributes;
+  const Mesh mesh = in_words_of_the_file(file.name, [&] {
+    const proto::FormattedMesh triangles = triangles_of(file);
+    attributes = attribute_names(triangles.format);
+    return build_mesh(triangles, &report, rounding_gap);
+  });
   const Topology& topology = mesh.topology;
   const Box box = bounding_box(mesh.positions);
   const auto triple = [](Vec3f p) { return ordered_json{p.x, p.y, p.z}; };
@@ -49,6 +76,7 @@ ordered_json describe(const MeshPlace& input) {
       {"faces", topology.face_count()},
       {"edges", topology.edge_count()},
       {"euler_characteristic", topology.euler_characteristic()},
+      {"attributes", std::move(attributes)},
       {"closed", report.boundary_edges + report.non_manifold_edges + report.misoriented_edges == 0}};
   const ShapeReport shape = shape_of(mesh);
   description["shape"] = proto::shape_text(shape);

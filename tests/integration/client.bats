@@ -127,6 +127,10 @@ END
   [ "$status" = 0 ]
   [[ $output == *'euler_characteristic    2'* ]]
   [ "$("$papilio" info --json "$coarse" | jq -c '[.vertices, .faces, .closed]')" = '[302,600,true]' ]
+  [ "$("$papilio" info --json "$coarse" | jq -c .attributes)" = '["POSITION"]' ]
+  printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' >textured.obj
+  printf '%s\n' 'vt 0 0' 'vt 1 0' 'vt 0 1' 'vn 0 0 1' 'f 1/1/1 2/2/1 3/3/1' >>textured.obj
+  [ "$("$papilio" info --json textured.obj | jq -c '.attributes | sort')" = '["NORMAL","POSITION","TEXCOORD_0"]' ]
 }
 
 @test "convert takes its output by position or by option" {
