@@ -6,7 +6,6 @@
 #include "criteria/view_culling.h"
 #include "hierarchy/detail_levels.h"
 #include "hierarchy/prepared_state.h"
-#include "hierarchy/transition.h"
 #include "mesh/shape.h"
 
 namespace papilio {
