@@ -1,13 +1,11 @@
 #include "detail/base_lift.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
+#include <utility>
 
 #include "detail/detail_level.h"
 #include "detail/seams.h"
+#include "detail/surface_tree.h"
 #include "mesh/crease.h"
 #include "mesh/curve.h"
 #include "papilio/error.h"
@@ -15,26 +13,13 @@
 namespace papilio {
 namespace {
 
-/// Returns, for each of `points`, the number of the nearest of `among`. Sorts along x, so that few are compared.
+/// Returns, for each of `points`, the number of the nearest of `among`.
 std::vector<uint32_t> nearest_points(const Buffer<Vec3f>& points, const Buffer<Vec3f>& among) {
-  std::vector<uint32_t> order(among.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](uint32_t i) { return std::pair(among[i].x, i); });
+  TriangleMesh each{.positions = among, .triangles = {}};  // a face for each point
+  for (uint32_t i = 0; i < among.size(); ++i) each.triangles.push_back({i, i, i});
+  const SurfaceTree tree(std::move(each));
   std::vector<uint32_t> found;
-  for (const Vec3f p : points) {
-    double best = std::numeric_limits<double>::infinity();
-    uint32_t nearest = 0;
-    const auto look_at = [&](uint32_t i) {  // returns false once all further ones are farther
-      const Vec3d d = to_double(among[i]) - to_double(p);
-      if (d.x * d.x > best) return false;
-      if (dot(d, d) < best) best = dot(d, d), nearest = i;
-      return true;
-    };
-    const auto middle = std::ranges::lower_bound(order, p.x, {}, [&](uint32_t i) { return among[i].x; });
-    for (auto i = middle; i != order.end() && look_at(*i);) ++i;
-    for (auto i = middle; i != order.begin() && look_at(*(i - 1));) --i;
-    found.push_back(nearest);
-  }
+  for (const Vec3f p : points) found.push_back(tree.nearest(to_double(p)).face);
   return found;
 }
 
@@ -73,7 +58,7 @@ void mark_curves(Topology& topology, const std::vector<uint32_t>& number, const 
 }  // namespace
 
 LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
-                     const OriginalSurface& original, int levels, const std::function<void()>& poll) {
+                     const OriginalSurface& original, int levels, const Poller& poller) {
   LiftedBase lifted;
   lifted.mesh = build_mesh(decoded);
   const std::vector<uint32_t> number = nearest_points(lifted.mesh.positions, base.triangles.positions);
@@ -86,7 +71,7 @@ LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, con
   EdgeMiddles middles(lifted.faces);
   for (int l = 0; l < levels; ++l) {
     std::vector<SurfacePlace> places = middles.of(level.topology());
-    sequence.lift(places, base, poll);
+    sequence.lift(places, base, poller);
     auto& out = lifted.places.emplace_back();
     out.reserve(places.size());
     for (const SurfacePlace& place : places) out.push_back({place.face, to_float(original.point(place))});

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/collapse_sequence.h"
 #include "detail/edge_middles.h"
 #include "detail/original_surface.h"
@@ -29,6 +29,6 @@ struct LiftedBase {
 /// Matches the vertices and faces of the decoded base with those of `base`, and lifts the new vertices of `levels`
 /// levels. Throws `Error` bad_surface if the coder moved vertices too far.
 [[nodiscard]] LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
-                                   const OriginalSurface& original, int levels, const std::function<void()>& poll);
+                                   const OriginalSurface& original, int levels, const Poller& poller);
 
 }  // namespace papilio

@@ -22,7 +22,6 @@ constexpr double least_cosine_of_collapse = 0.2;
 /// up to 7 %.
 constexpr double thinness_cost = 3e-4;
 constexpr size_t most_valence = 20;
-constexpr uint32_t collapses_between_polls = 4096;
 constexpr double refused = std::numeric_limits<double>::infinity();
 
 struct Candidate {
@@ -39,7 +38,7 @@ bool is_later(const Candidate& a, const Candidate& b) {
 
 class CollapseSequence::Collapser {
  public:
-  Collapser(const Mesh& original, std::vector<float> weight)
+  Collapser(const Mesh& original, std::vector<float> weight, const Poller& poller)
       : weight_(std::move(weight)),
         out_(original.positions.size(), none),
         sharp_role_(curve_roles(original.topology)),
@@ -65,16 +64,19 @@ class CollapseSequence::Collapser {
       if (out_[origin_[h]] == none || twin_[h] == none) out_[origin_[h]] = h;
     for (uint32_t f = 0; f < faces_; ++f) add_quadrics(f);
     for (const uint32_t h : t.half_edge) add_curve_quadrics(h);
-    for (uint32_t v = 0; v < place_.size(); ++v) propose(v);
+    for (uint32_t v = 0; v < place_.size(); ++v) {
+      poller.step();
+      propose(v);
+    }
   }
 
-  void collapse_to(uint32_t faces, const std::function<void()>& poll) {
-    for (uint32_t done = 0; faces_ > faces && !queue_.empty();) {
+  void collapse_to(uint32_t faces, const Poller& poller) {
+    while (faces_ > faces && !queue_.empty()) {
+      poller.step();
       const Candidate next = queue_.top();
       queue_.pop();
       if (out_[next.vertex] == none || age_[next.vertex] != next.age) continue;
       collapse(next.vertex);
-      if (poll && ++done % collapses_between_polls == 0) poll();
     }
   }
 
@@ -104,8 +106,8 @@ class CollapseSequence::Collapser {
     return made;
   }
 
-  void lift(std::vector<SurfacePlace>& places, size_t collapses, const std::function<void()>& poll) const {
-    unfoldings_.lift(places, collapses, static_cast<uint32_t>(is_alive_.size()), poll);
+  void lift(std::vector<SurfacePlace>& places, size_t collapses, const Poller& poller) const {
+    unfoldings_.lift(places, collapses, static_cast<uint32_t>(is_alive_.size()), poller);
   }
 
  private:
@@ -354,19 +356,16 @@ class CollapseSequence::Collapser {
   std::vector<uint32_t> spokes_, ring_;  // half-edges and neighbours of the current vertex, of equal length
 };
 
-CollapseSequence::CollapseSequence(const Mesh& original, std::vector<float> weight)
-    : collapser_(std::make_unique<Collapser>(original, std::move(weight))) {}
+CollapseSequence::CollapseSequence(const Mesh& original, std::vector<float> weight, const Poller& poller)
+    : collapser_(std::make_unique<Collapser>(original, std::move(weight), poller)) {}
 CollapseSequence::~CollapseSequence() = default;
 
-void CollapseSequence::collapse_to(uint32_t faces, const std::function<void()>& poll) {
-  collapser_->collapse_to(faces, poll);
-}
+void CollapseSequence::collapse_to(uint32_t faces, const Poller& poller) { collapser_->collapse_to(faces, poller); }
 
 BaseMesh CollapseSequence::base() const { return collapser_->base(); }
 
-void CollapseSequence::lift(std::vector<SurfacePlace>& places, const BaseMesh& base,
-                            const std::function<void()>& poll) const {
-  collapser_->lift(places, base.collapses, poll);
+void CollapseSequence::lift(std::vector<SurfacePlace>& places, const BaseMesh& base, const Poller& poller) const {
+  collapser_->lift(places, base.collapses, poller);
 }
 
 }  // namespace papilio

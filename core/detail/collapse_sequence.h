@@ -3,10 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/surface_place.h"
 #include "papilio/mesh.h"
 
@@ -36,19 +36,18 @@ struct BaseMesh {
 class CollapseSequence {
  public:
   /// Starts at `original`, which must be manifold, with edges. `weight` [V] scales quadrics and shape costs at a
-  /// vertex; empty: 1.
-  explicit CollapseSequence(const Mesh& original, std::vector<float> weight = {});
+  /// vertex; empty: 1. O(V log V).
+  explicit CollapseSequence(const Mesh& original, std::vector<float> weight = {}, const Poller& poller = {});
   ~CollapseSequence();
   CollapseSequence(const CollapseSequence&) = delete;
   CollapseSequence& operator=(const CollapseSequence&) = delete;
 
-  /// Collapses until at most `faces` are left or nothing can be collapsed. `poll` is called every few thousand
-  /// collapses and may throw to stop. O(log V) a collapse.
-  void collapse_to(uint32_t faces, const std::function<void()>& poll = {});
+  /// Collapses until at most `faces` are left or nothing can be collapsed. O(log V) a collapse.
+  void collapse_to(uint32_t faces, const Poller& poller = {});
   [[nodiscard]] BaseMesh base() const;
 
   /// Moves places on a base to the original; faces are numbers in the sequence. O(log V) a place.
-  void lift(std::vector<SurfacePlace>& places, const BaseMesh& base, const std::function<void()>& poll = {}) const;
+  void lift(std::vector<SurfacePlace>& places, const BaseMesh& base, const Poller& poller = {}) const;
 
  private:
   class Collapser;

@@ -16,7 +16,6 @@ namespace papilio {
 namespace {
 
 constexpr int most_passes = 8;
-constexpr uint32_t points_between_polls = 8192;
 /// Share of a move's length by which a residual with one part may miss its point.
 constexpr double largest_miss = 0.5;
 /// Distance that a move may leave, as a share of the one it was made for: faces at a tip are first farther from it than
@@ -25,12 +24,11 @@ constexpr double largest_harm = 1.2;
 
 class DistantPoints {
  public:
-  DistantPoints(ResidualFit& fit, const OriginalSurface& original, const DistantBounds& bounds,
-                const std::function<void()>& poll)
+  DistantPoints(ResidualFit& fit, const OriginalSurface& original, const DistantBounds& bounds, const Poller& poller)
       : fit_(fit),
         original_(original),
         bounds_(bounds),
-        poll_(poll),
+        poller_(poller),
         level_(fit.level(fit.level_count() - 1)),
         first_(level_.topology().vertex_count),
         surface_(fit.surface(fit.level_count())),
@@ -78,7 +76,7 @@ class DistantPoints {
     const SurfaceTree tree(surface_);
     for (const Distant& d : std::exchange(distant_, {})) near_face_[d.point] = none;
     for (uint32_t p = 0; p < near_face_.size(); ++p) {
-      if (p % points_between_polls == 0 && poll_) poll_();
+      poller_.step();
       uint32_t& face = near_face_[p];
       if (face != none && !is_near_moved_[face]) continue;
       const Nearest near = tree.nearest(point(p));
@@ -178,7 +176,7 @@ class DistantPoints {
       if (is_near_moved_[near_face_[p]]) points_at_.emplace_back(near_face_[p], p);
     std::ranges::sort(points_at_);
     for (bool is_harmed = true; is_harmed;) {
-      if (poll_) poll_();
+      poller_.now();
       fit_.set_last_residuals(residuals_);
       surface_ = fit_.surface(fit_.level_count());
       const auto harmful =
@@ -209,7 +207,7 @@ class DistantPoints {
   ResidualFit& fit_;
   const OriginalSurface& original_;
   DistantBounds bounds_;
-  const std::function<void()>& poll_;
+  const Poller& poller_;
   const DetailLevel& level_;
   uint32_t first_;  ///< first new vertex of the last level
   TriangleMesh surface_;
@@ -228,8 +226,8 @@ class DistantPoints {
 }  // namespace
 
 void reach_distant_points(ResidualFit& fit, const OriginalSurface& original, const DistantBounds& bounds,
-                          const std::function<void()>& poll) {
-  DistantPoints(fit, original, bounds, poll).run();
+                          const Poller& poller) {
+  DistantPoints(fit, original, bounds, poller).run();
 }
 
 }  // namespace papilio

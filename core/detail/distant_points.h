@@ -1,7 +1,6 @@
 #pragma once
 
-#include <functional>
-
+#include "base/poller.h"
 #include "detail/original_surface.h"
 #include "detail/residual_fit.h"
 
@@ -16,9 +15,9 @@ struct DistantBounds {
 /// Moves new vertices of the last level onto points of the original that are distant from the surface: vertices and
 /// centres of faces. The correspondence gives thin tips and notches few new vertices or none, so the surface cuts them
 /// off, and the nearest points of its own vertices do not show that. A vertex moves once at most, by a residual with
-/// three parts if need be, and moves back if a face round it turns against the original. `poll` may throw to stop.
+/// three parts if need be, and moves back if a face round it turns against the original.
 /// O(F log F).
 void reach_distant_points(ResidualFit& fit, const OriginalSurface& original, const DistantBounds& bounds,
-                          const std::function<void()>& poll);
+                          const Poller& poller);
 
 }  // namespace papilio

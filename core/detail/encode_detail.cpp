@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/poller.h"
 #include "detail/base_attributes.h"
 #include "detail/base_curves.h"
 #include "detail/base_lift.h"
@@ -100,6 +101,9 @@ class DetailEncoder {
  public:
   DetailEncoder(const TriangleMesh& triangles, const DetailOptions& options, const BaseCoder& code_base)
       : options_(options),
+        poller_([&options] {
+          if (options.cancelled && options.cancelled()) throw Error(Fault::cancelled, "Encoding was cancelled.");
+        }),
         code_base_(code_base),
         wanted_(options.rms * bounding_box(triangles.positions).diagonal()),
         original_(prepare(triangles)),
@@ -132,18 +136,12 @@ class DetailEncoder {
   Mesh prepare(const TriangleMesh& triangles) {
     ManifoldSurface surface = manifold_surface(triangles, parting_share * wanted_);
     parted_ = surface.parted;
-    TriangleMesh whole = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller()).triangles();
+    TriangleMesh whole = remove_slivers(std::move(surface.mesh), sliver_size * wanted_, poller_).triangles();
     Mesh mesh = build_mesh(along_morton_curve(std::move(whole)));
     require_manifold(mesh);
     normals_ = mark_detail_curves(mesh);
     require_whole_parts(mesh);
     return mesh;
-  }
-  void poll() const {
-    if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Encoding was cancelled.");
-  }
-  [[nodiscard]] std::function<void()> poller() const {
-    return [this] { poll(); };
   }
   void progress(double share) const {
     if (options_.on_progress) options_.on_progress(share);
@@ -154,7 +152,7 @@ class DetailEncoder {
   size_t find_weights() {
     const uint32_t faces = original_.mesh().topology.face_count();
     std::vector<uint32_t> sizes;
-    double size = faces / 8.0;
+    double size = std::min(faces / 8.0, static_cast<double>(options_.face_limit) / 4);
     while (size >= least_base_faces) {
       sizes.push_back(static_cast<uint32_t>(size));
       size /= size_ratio;
@@ -177,7 +175,7 @@ class DetailEncoder {
       progress(0.4 * pass / weighting_passes);
       weigh_errors(original_,
                    fit(candidate, fine_step * wanted_, 0).surface(static_cast<size_t>(candidate.chosen.levels)),
-                   weights);
+                   weights, poller_);
       collapse(sizes, start + 1, weights);
       candidate = start_candidate(std::min(start, bases_.size() - 1));
       choose(candidate);
@@ -191,10 +189,10 @@ class DetailEncoder {
 
   /// Simplifies to the first `count` sizes.
   void collapse(const std::vector<uint32_t>& sizes, size_t count, const std::vector<float>& weights) {
-    sequence_ = std::make_unique<CollapseSequence>(original_.mesh(), weights);
+    sequence_ = std::make_unique<CollapseSequence>(original_.mesh(), weights, poller_);
     bases_.clear();
     for (size_t i = 0; i < count; ++i) {
-      sequence_->collapse_to(sizes[i], poller());
+      sequence_->collapse_to(sizes[i], poller_);
       BaseMesh base = sequence_->base();
       if (!bases_.empty() && bases_.back().face.size() == base.face.size()) break;  // no collapse is left
       bases_.push_back(std::move(base));
@@ -224,7 +222,7 @@ class DetailEncoder {
 
   /// Codes the base, and finds the number of levels that it needs.
   [[nodiscard]] CandidateBase start_candidate(size_t size) {
-    poll();
+    poller_.now();
     const BaseMesh& base = bases_[size];
     CandidateBase candidate;
     candidate.base = &base;
@@ -245,7 +243,7 @@ class DetailEncoder {
   }
   void lift(CandidateBase& candidate) const {
     candidate.lifted =
-        lift_base(*sequence_, *candidate.base, candidate.coded.triangles, original_, candidate.most_levels, poller());
+        lift_base(*sequence_, *candidate.base, candidate.coded.triangles, original_, candidate.most_levels, poller_);
   }
   [[nodiscard]] double floor_of(const CandidateBase& candidate) const {
     return distance(fit(candidate, fine_step * wanted_, 0), samples_of_candidate_).rms;
@@ -281,13 +279,13 @@ class DetailEncoder {
   [[nodiscard]] ResidualFit fit(const CandidateBase& candidate, double step, int turns_a_level) const {
     const StepSchedule steps{.last = static_cast<float>(step)};
     ResidualFit fit(original_, candidate.lifted.mesh.positions,
-                    place_on_original(original_, candidate.lifted, candidate.chosen.levels, steps, poller()), poller());
+                    place_on_original(original_, candidate.lifted, candidate.chosen.levels, steps, poller_), poller_);
     fit.improve(turns_a_level * candidate.chosen.levels, rate_weight);
     return fit;
   }
 
   [[nodiscard]] SurfaceDistance distance(const ResidualFit& fit, uint32_t samples) const {
-    return surface_distance(original_.tree(), SurfaceTree(fit.surface(fit.level_count())), samples);
+    return surface_distance(original_.tree(), SurfaceTree(fit.surface(fit.level_count())), samples, poller_);
   }
 
   /// Finds the step that leaves the target distance.
@@ -298,7 +296,7 @@ class DetailEncoder {
     for (int i = 0; i < effort.attempts; ++i) {
       ResidualFit made = fit(candidate, step, effort.turns_a_level);
       if (effort.reaches_distant)
-        reach_distant_points(made, original_, {distance_of_distant * wanted_, sheet_reach * wanted_}, poller());
+        reach_distant_points(made, original_, {distance_of_distant * wanted_, sheet_reach * wanted_}, poller_);
       const double rms = distance(made, effort.samples).rms;
       const bool is_reached = rms <= wanted_;
       const bool is_coarser_step =
@@ -339,14 +337,15 @@ class DetailEncoder {
     encoded.normals = normals_;
     encoded.bytes = candidate.coded.bytes + candidate.curves.size();
     for (size_t l = 0; l <= fit.level_count(); ++l) {
-      poll();
+      poller_.now();
       const SurfaceTree surface(fit.surface(l));
-      const SurfaceDistance d = surface_distance(original_.tree(), surface, samples_at_last * samples_of_candidate_);
-      const double largest = std::max(d.largest, vertex_distance(original_.tree(), surface));
+      const SurfaceDistance d =
+          surface_distance(original_.tree(), surface, samples_at_last * samples_of_candidate_, poller_);
+      const double largest = std::max(d.largest, vertex_distance(original_.tree(), surface, poller_));
       encoded.reach.push_back({d.rms / original_.diagonal(), largest / original_.diagonal()});
       if (l > 0 && d.rms <= wanted_ && original_.mesh().attributes.attributes.empty()) fit.keep_levels(l);
       progress(0.9 + 0.1 * static_cast<double>(l) / static_cast<double>(fit.level_count()));
-      if (l == fit.level_count()) encoded.folds = count_folds(original_, surface, sheet_reach * wanted_);
+      if (l == fit.level_count()) encoded.folds = count_folds(original_, surface, sheet_reach * wanted_, poller_);
     }
     add_levels(candidate, fit, encoded);
     return encoded;
@@ -358,7 +357,7 @@ class DetailEncoder {
       if (!has_values(candidate.lifted.mesh.attributes.attributes)) return std::vector<CodedValues>{};
       return encode_values(original_, candidate.lifted, *sequence_, *candidate.base,
                            fit.surface(fit.level_count()).positions, static_cast<float>(options_.texcoord_step), order,
-                           piece_counts, poller());
+                           piece_counts, poller_);
     });
     for (const DetailStream& level : encoded.levels) {
       encoded.texcoord_bytes += level.texcoords.bytes.size();
@@ -367,6 +366,7 @@ class DetailEncoder {
   }
 
   const DetailOptions& options_;
+  Poller poller_;
   const BaseCoder& code_base_;
   double wanted_;        ///< target distance, in the mesh's unit
   uint32_t parted_ = 0;  ///< number of separated vertices

@@ -35,7 +35,7 @@ Vec3f value_at(const PointAttributes& attributes, size_t number, const ChartSear
 std::vector<CodedValues> encode_values(const OriginalSurface& original, const LiftedBase& lifted,
                                        const CollapseSequence& sequence, const BaseMesh& base,
                                        const Buffer<Vec3f>& positions, float step, const PieceOrder& order,
-                                       std::span<const uint32_t> piece_counts, const std::function<void()>& poll) {
+                                       std::span<const uint32_t> piece_counts, const Poller& poller) {
   const size_t levels = piece_counts.size();
   std::vector<CodedValues> streams;
   ValueLevels values(lifted.mesh, lifted.seams);
@@ -46,10 +46,11 @@ std::vector<CodedValues> encode_values(const OriginalSurface& original, const Li
   for (size_t l = 0; l < levels; ++l) {
     const Topology& t = values.level().topology();
     std::vector<SurfacePlace> places = middles.of(t, inward);
-    sequence.lift(places, base, poll);
+    sequence.lift(places, base, poller);
     values.predict(whole, positions);
     std::vector<Buffer<Vec3f>> wanted(values.tracks().size());
     for (uint32_t e = 0; e < t.edge_count(); ++e) {
+      poller.step();
       const uint32_t h = t.half_edge[e];
       const std::array<uint32_t, 3> starts{places[e].face, face[t.origin[h]], face[t.tip(h)]};
       const ChartSearch::Found found =

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/base_lift.h"
 #include "detail/collapse_sequence.h"
 #include "detail/encode_pieces.h"
@@ -19,6 +19,6 @@ namespace papilio {
                                                      const CollapseSequence& sequence, const BaseMesh& base,
                                                      const Buffer<Vec3f>& positions, float step,
                                                      const PieceOrder& order, std::span<const uint32_t> piece_counts,
-                                                     const std::function<void()>& poll);
+                                                     const Poller& poller);
 
 }  // namespace papilio

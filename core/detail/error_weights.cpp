@@ -13,12 +13,14 @@ constexpr float share_of_ring = 0.9F;
 
 }  // namespace
 
-void weigh_errors(const OriginalSurface& original, TriangleMesh surface, std::vector<float>& weights) {
+void weigh_errors(const OriginalSurface& original, TriangleMesh surface, std::vector<float>& weights,
+                  const Poller& poller) {
   const SurfaceTree tree(std::move(surface));
   const Buffer<Vec3f>& positions = original.mesh().positions;
   std::vector<double> squared;
   double mean = 0;
   for (const Vec3f p : positions) {
+    poller.step();
     squared.push_back(tree.nearest(to_double(p)).squared_distance);
     mean += squared.back() / static_cast<double>(positions.size());
   }

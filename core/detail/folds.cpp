@@ -14,10 +14,12 @@ bool is_fold(const OriginalSurface& original, const TriangleCorners& face, doubl
          (normal == Vec3d{} || original.tree().nearest(centre, reach, normal).face == none);
 }
 
-uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach) {
+uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach, const Poller& poller) {
   uint32_t folds = 0;
-  for (uint32_t f = 0; f < surface.surface().triangles.size(); ++f)
+  for (uint32_t f = 0; f < surface.surface().triangles.size(); ++f) {
+    poller.step();
     if (is_fold(original, surface.corners(f), reach)) ++folds;
+  }
   return folds;
 }
 

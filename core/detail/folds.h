@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/poller.h"
 #include "detail/original_surface.h"
 #include "detail/surface_tree.h"
 
@@ -13,6 +14,7 @@ namespace papilio {
 [[nodiscard]] bool is_fold(const OriginalSurface& original, const TriangleCorners& face, double reach);
 
 /// Counts the folds of a surface. O(F log F).
-[[nodiscard]] uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach);
+[[nodiscard]] uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach,
+                                   const Poller& poller = {});
 
 }  // namespace papilio

@@ -11,6 +11,9 @@
 namespace papilio {
 namespace {
 
+/// Explicit rules of a vertex take the square of its valence.
+constexpr uint32_t most_explicit_valence = 256;
+
 class Builder {
  public:
   explicit Builder(const Topology& level)
@@ -140,6 +143,7 @@ class Builder {
 
   /// Adds the rule of the origin of h, which is irregular.
   void add_spoke(uint32_t h, double share) {
+    if (valence_[level_.origin[h]] > most_explicit_valence) return add_middle(h, share);
     collect_fan(level_, h, fan_);
     if (fan_.closed)
       add_interior(share);

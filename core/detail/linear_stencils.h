@@ -13,11 +13,10 @@ struct LinearStencils {
   Buffer<uint32_t> first;  ///< [E + 1]
   Buffer<uint32_t> vertex;
   Buffer<float> weight;
-
-  [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(first.size() - 1); }
 };
 
-/// Returns the stencils of a manifold level with edges and curves. Weights: rules/stencil.h.
+/// Returns the stencils of a manifold level with edges and curves. Weights: rules/stencil.h; at vertices of more than
+/// 256 faces, of the middle of an edge.
 [[nodiscard]] LinearStencils linear_stencils(const Topology& level);
 
 }  // namespace papilio

@@ -1,6 +1,7 @@
 #include "detail/manifold_surface.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,11 +74,11 @@ class FanParter {
     const Vec3d way = middle - place;
     const double size = length(way);
     const double share = size > 0 ? std::min(most_of_way, distance_ / size) * (1 - 1.0 / number) : 0;
-    std::vector<std::pair<uint32_t, uint32_t>> made;  // old and new points of the fan
+    std::map<uint32_t, uint32_t> made;  // new points of the fan, by old ones
     for (const uint32_t spoke : fan.spokes) {
       uint32_t& point = made_.triangles[spoke / 3][spoke % 3];
-      auto known = std::ranges::find(made, point, &std::pair<uint32_t, uint32_t>::first);
-      if (known == made.end()) known = made.emplace(known, point, add_point(point, to_float(place + share * way)));
+      const auto [known, is_new] = made.try_emplace(point);
+      if (is_new) known->second = add_point(point, to_float(place + share * way));
       point = known->second;
     }
   }

@@ -20,7 +20,9 @@ namespace {
 constexpr double boundary_weight = 100;
 /// Lower bound of the cosine between a face's normals before and after a collapse.
 constexpr double least_cosine_of_turn = 0.2;
-constexpr uint32_t steps_between_polls = 4096;
+/// Number of changed faces beyond which a point stays at its face if that remains near enough, as in the middle of a
+/// lid: looking at all faces for each of their points takes the square of their number.
+constexpr size_t many_faces = 64;
 /// Lower bound of the queue's length at which stale collapses are dropped.
 constexpr size_t least_to_drop = 10'000;
 
@@ -57,8 +59,9 @@ std::vector<Triangle> cut_into_sheets(const Topology& t) {
 
 class Simplifier {
  public:
-  Simplifier(const Mesh& mesh, Quadrics quadrics, double largest)
-      : quadrics_are_(quadrics),
+  Simplifier(const Mesh& mesh, Quadrics quadrics, double largest, const Poller& poller)
+      : poller_(poller),
+        quadrics_are_(quadrics),
         squared_largest_(largest * largest),
         faces_(cut_into_sheets(mesh.topology)),
         face_count_(mesh.topology.face_count()) {
@@ -82,14 +85,16 @@ class Simplifier {
     for (uint32_t f = 0; f < face_count_; ++f)
       for (const uint32_t v : faces_[f]) faces_of_[v].push_back(f);
     for (uint32_t v = 0; v < places_.size(); ++v) quadrics_[v] = quadric_of(v);
-    for (uint32_t h = 0; h < t.half_edge_count(); ++h)
+    for (uint32_t h = 0; h < t.half_edge_count(); ++h) {
+      poller_.step();
       if (h < t.twin[h]) propose(corner(h), corner(Topology::next(h)));  // `none` is above all numbers
+    }
   }
 
   /// Collapses until at most `faces` faces are left. Returns whether that was reached.
-  [[nodiscard]] bool reaches(size_t faces, const std::function<void()>& poll) {
+  [[nodiscard]] bool reaches(size_t faces) {
     while (face_count_ > faces && !queue_.empty()) {
-      if (poll && ++steps_ % steps_between_polls == 0) poll();
+      poller_.step();
       std::ranges::pop_heap(queue_, &is_costlier);
       const PairCollapse next = queue_.back();
       queue_.pop_back();
@@ -232,14 +237,17 @@ class Simplifier {
     const auto is_kept = [&](uint32_t f) { return !(has(f, c.kept) && has(f, c.removed)); };
     for (const uint32_t f : changed_)
       for (const uint32_t point : points_of_[f]) {
+        poller_.step();
         double nearest = std::numeric_limits<double>::infinity();
         uint32_t on = none;
-        for (const uint32_t to : changed_) {
-          if (!is_kept(to)) continue;
+        const auto look_at = [&](uint32_t to) {
+          if (!is_kept(to)) return;
           const Triangle& t = faces_[to];
           const double squared = squared_distance(points_[point], {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])});
           if (squared < nearest) nearest = squared, on = to;
-        }
+        };
+        if (changed_.size() > many_faces) look_at(f);
+        if (!(nearest <= squared_largest_)) std::ranges::for_each(changed_, look_at);
         if (!(nearest <= squared_largest_)) return false;
         moved_points_.emplace_back(point, on);
       }
@@ -291,6 +299,7 @@ class Simplifier {
     for (const auto& [a, b] : edges) propose(a, b);
   }
 
+  const Poller& poller_;
   Quadrics quadrics_are_;
   double squared_largest_;
   std::vector<Vec3d> points_;                     ///< vertices of the original; none without a largest distance
@@ -303,7 +312,6 @@ class Simplifier {
   std::vector<Quadric> quadrics_;
   std::vector<uint32_t> ages_;  ///< number of changes of the vertex
   size_t face_count_;
-  uint32_t steps_ = 0;
   std::vector<PairCollapse> queue_;  ///< heap
   size_t most_waiting_ = least_to_drop;
 };
@@ -311,11 +319,11 @@ class Simplifier {
 }  // namespace
 
 std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces, Quadrics quadrics,
-                                            const std::function<void()>& poll, double largest) {
-  Simplifier simplifier(build_mesh(mesh), quadrics, largest);
+                                            const Poller& poller, double largest) {
+  Simplifier simplifier(build_mesh(mesh), quadrics, largest, poller);
   std::vector<TriangleMesh> results;
   for (const size_t count : faces) {
-    if (!simplifier.reaches(count, poll)) break;
+    if (!simplifier.reaches(count)) break;
     results.push_back(simplifier.result());
   }
   return results;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "base/poller.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -24,12 +24,11 @@ enum class Quadrics {
 /// that cannot be reached are left out at the end.
 ///
 /// Points of equal position are merged. Non-manifold surfaces are cut into manifold sheets, whose borders move
-/// separately. Collapses that change the topology or turn a face over are refused. `poll` is called every few thousand
-/// collapses and may throw to stop. Refused, too, are collapses after which a vertex of the original is farther than
-/// `largest` from the faces that have replaced those around it.
+/// separately. Collapses that change the topology or turn a face over are refused, and those after which a vertex of
+/// the original is farther than `largest` from the faces that have replaced those around it.
 [[nodiscard]] std::vector<TriangleMesh> collapse_to_sizes(const TriangleMesh& mesh, std::span<const size_t> faces,
                                                           Quadrics quadrics = Quadrics::accumulated,
-                                                          const std::function<void()>& poll = {},
+                                                          const Poller& poller = {},
                                                           double largest = std::numeric_limits<double>::infinity());
 
 }  // namespace papilio

@@ -302,12 +302,12 @@ float StepSchedule::of(int level, int levels) const {
 }
 
 PlacedLevels place_on_original(const OriginalSurface& original, const LiftedBase& base, int levels,
-                               const StepSchedule& steps, const std::function<void()>& poll) {
+                               const StepSchedule& steps, const Poller& poller) {
   PlacedLevels placed;
   Placement placement(original, base);
   DetailLevel level(base.mesh.topology, base.seams);
   for (int l = 0; l < levels; ++l) {
-    if (poll) poll();
+    poller.now();
     placed.residuals.push_back(placement.place(level, steps.of(l, levels)));
     DetailLevel next = level.next();
     placed.levels.push_back(std::move(level));

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/base_lift.h"
 #include "detail/detail_level.h"
 #include "detail/original_surface.h"
@@ -33,6 +33,6 @@ struct StepSchedule {
 /// - On a curve, it moves to the intersection of the original's curve with the plane across its edge.
 /// - Where faces turn over, their new vertices move between their neighbours as far as that turns the faces back.
 [[nodiscard]] PlacedLevels place_on_original(const OriginalSurface& original, const LiftedBase& base, int levels,
-                                             const StepSchedule& steps, const std::function<void()>& poll);
+                                             const StepSchedule& steps, const Poller& poller);
 
 }  // namespace papilio

@@ -56,10 +56,9 @@ Change best_change(int32_t now, double gradient, double area, double step, doubl
 
 }  // namespace
 
-ResidualFit::ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, PlacedLevels placed,
-                         std::function<void()> poll)
+ResidualFit::ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, PlacedLevels placed, Poller poller)
     : original_(original),
-      poll_(std::move(poll)),
+      poller_(std::move(poller)),
       last_(std::move(placed.last)),
       positions_(std::move(base)),
       base_vertices_(static_cast<uint32_t>(positions_.size())) {
@@ -102,7 +101,6 @@ void ResidualFit::improve(int turns, double rate_weight) {
   distance_.assign(positions_.size(), -1);
   face_.assign(positions_.size(), none);
   for (int turn = 0; turn < turns; ++turn) {
-    if (poll_) poll_();
     find_forces();
     double area = 0;
     for (const float a : area_) area += a;
@@ -165,6 +163,7 @@ void ResidualFit::find_forces() {
     }
   }
   for (uint32_t v = 0; v < count; ++v) {
+    poller_.step();
     const Vec3d normal = to_double(force_[v]);
     const double size = length(normal);
     force_[v] = on_[v] != On::surface ? force_to_curve(v)
@@ -304,6 +303,7 @@ std::vector<std::vector<std::vector<uint8_t>>> ResidualFit::code(const PieceOrde
   Buffer<Vec3f> positions(positions_.begin(), positions_.begin() + base_vertices_);
   Buffer<int32_t> at_vertex(base_vertices_);
   for (const Level& level : levels_) {
+    poller_.now();
     level.level.predict(positions);
     const EdgePieces pieces = order.edges(level.level.topology(), level.level.number(), piece_counts[streams.size()]);
     streams.push_back(

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/linear_stencils.h"
 #include "detail/original_surface.h"
 #include "detail/placement.h"
@@ -17,8 +17,8 @@ namespace papilio {
 /// changes if that saves more error, or bits, than it costs.
 class ResidualFit {
  public:
-  /// Starts from placed residuals. `original` must outlive this. `poll` is called every turn and may throw to stop.
-  ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, PlacedLevels placed, std::function<void()> poll);
+  /// Starts from placed residuals. `original` must outlive this.
+  ResidualFit(const OriginalSurface& original, Buffer<Vec3f> base, PlacedLevels placed, Poller poller);
 
   /// Improves one level in each turn. `rate_weight`: weight of a bit; 1 is the error that a bit saves at a high rate.
   /// Restores the residuals where faces turn over.
@@ -63,7 +63,7 @@ class ResidualFit {
   [[nodiscard]] Vec3f force_to_curve(uint32_t v) const;
 
   const OriginalSurface& original_;
-  std::function<void()> poll_;
+  Poller poller_;
   std::vector<Level> levels_;
   Topology last_;
   enum class On : uint8_t { surface, seam, curve };

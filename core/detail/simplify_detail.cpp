@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/optimal_collapse.h"
 #include "detail/step_search.h"
 #include "detail/surface_distance.h"
@@ -45,6 +46,9 @@ class Simplification {
  public:
   Simplification(const TriangleMesh& original, const SimplifyOptions& options, const MeshCoder& code)
       : options_(options),
+        poller_([&options] {
+          if (options.cancelled && options.cancelled()) throw Error(Fault::cancelled, "Simplification was cancelled.");
+        }),
         code_(code),
         tree_(build_mesh(original).triangles()),
         box_(bounding_box(tree_.surface().positions)),
@@ -58,8 +62,8 @@ class Simplification {
       sizes.push_back(faces);
       faces = static_cast<size_t>(ratio_of_sizes * static_cast<double>(faces));
     }
-    const std::vector<TriangleMesh> meshes = collapse_to_sizes(
-        tree_.surface(), sizes, Quadrics::memoryless, [this] { poll(); }, share_of_largest * most_);
+    const std::vector<TriangleMesh> meshes =
+        collapse_to_sizes(tree_.surface(), sizes, Quadrics::memoryless, poller_, share_of_largest * most_);
     // Finds the first size that is too far; distances are nearly ascending.
     const auto first_beyond = std::ranges::partition_point(
         meshes, [&](const TriangleMesh& mesh) { return distance_to(mesh, few_samples).rms <= first_rms * wanted_; });
@@ -78,15 +82,11 @@ class Simplification {
   }
 
  private:
-  void poll() const {
-    if (options_.cancelled && options_.cancelled()) throw Error(Fault::cancelled, "Simplification was cancelled.");
-  }
-
   [[nodiscard]] SurfaceDistance distance_to(const TriangleMesh& mesh, uint32_t samples) const {
-    poll();
+    poller_.now();
     const SurfaceTree surface(mesh);
-    SurfaceDistance distance = surface_distance(tree_, surface, samples);
-    if (is_near(distance)) distance.largest = std::max(distance.largest, vertex_distance(tree_, surface));
+    SurfaceDistance distance = surface_distance(tree_, surface, samples, poller_);
+    if (is_near(distance)) distance.largest = std::max(distance.largest, vertex_distance(tree_, surface, poller_));
     return distance;
   }
 
@@ -97,8 +97,7 @@ class Simplification {
   /// Moves the vertices of a mesh, and codes it on the coarsest grid found that leaves the target distance.
   [[nodiscard]] std::optional<SimplifiedDetail> on_coarsest_grid(const TriangleMesh& mesh) const {
     const auto faces = static_cast<uint32_t>(mesh.triangles.size());
-    VertexFit fit(tree_, mesh, std::clamp(fit_samples_a_face * faces, least_fit_samples, most_fit_samples),
-                  [this] { poll(); });
+    VertexFit fit(tree_, mesh, std::clamp(fit_samples_a_face * faces, least_fit_samples, most_fit_samples), poller_);
     fit.improve(passes_of_fit);
     SurfaceDistance floor = distance_to(fit.mesh(), many_samples);
     if (floor.rms <= largest_floor * wanted_ && floor.largest > most_) {
@@ -148,6 +147,7 @@ class Simplification {
   }
 
   const SimplifyOptions& options_;
+  Poller poller_;
   const MeshCoder& code_;
   SurfaceTree tree_;  // original
   Box box_;

@@ -16,7 +16,6 @@ constexpr double sliver_thickness = 0.05;
 constexpr double least_cosine_of_wide_face = 0.5;
 /// Upper bound of a move, a share of the mean edge, so that a regular mesh stays unchanged.
 constexpr double most_of_edge = 0.1;
-constexpr uint32_t faces_between_polls = 4096;
 
 struct Face {
   Vec3d a, b, c;
@@ -44,10 +43,10 @@ double mean_edge_length(const Mesh& mesh) {
 
 class SliverRemover {
  public:
-  SliverRemover(Mesh& mesh, double distance, const std::function<void()>& poll)
+  SliverRemover(Mesh& mesh, double distance, const Poller& poller)
       : positions_(mesh.positions),
         distance_(distance),
-        poll_(poll),
+        poller_(poller),
         origin_(mesh.topology.origin),
         twin_(mesh.topology.twin),
         point_(mesh.attributes.empty() ? mesh.topology.origin : mesh.attributes.point),
@@ -57,12 +56,12 @@ class SliverRemover {
   /// Returns whether a face changed.
   bool run() {
     for (auto f = static_cast<uint32_t>(is_alive_.size()); f-- > 0;) {
-      count_step();
+      poller_.step();
       if (is_removable(f)) waiting_.push_back(f);
     }
     bool is_changed = false;
     while (!waiting_.empty()) {
-      count_step();
+      poller_.step();
       const uint32_t f = waiting_.back();
       waiting_.pop_back();
       if (is_alive_[f] && is_removable(f) && remove(f)) is_changed = true;
@@ -88,10 +87,6 @@ class SliverRemover {
     [[nodiscard]] bool has_spare_face() const { return neighbours.size() > (is_closed() ? 3 : 2); }
     [[nodiscard]] bool has(uint32_t v) const { return std::ranges::find(neighbours, v) != neighbours.end(); }
   };
-
-  void count_step() {
-    if (poll_ && ++steps_ % faces_between_polls == 0) poll_();
-  }
 
   [[nodiscard]] static uint32_t next(uint32_t h) { return Topology::next(h); }
   [[nodiscard]] static uint32_t previous(uint32_t h) { return Topology::previous(h); }
@@ -290,7 +285,7 @@ class SliverRemover {
 
   const Buffer<Vec3f>& positions_;
   double distance_;
-  const std::function<void()>& poll_;
+  const Poller& poller_;
   uint32_t steps_ = 0;
   Buffer<uint32_t> origin_;        // [H]
   Buffer<uint32_t> twin_;          // [H]
@@ -302,9 +297,9 @@ class SliverRemover {
 
 }  // namespace
 
-Mesh remove_slivers(Mesh mesh, double distance, const std::function<void()>& poll) {
+Mesh remove_slivers(Mesh mesh, double distance, const Poller& poller) {
   distance = std::min(distance, most_of_edge * mean_edge_length(mesh));
-  SliverRemover remover(mesh, distance, poll);
+  SliverRemover remover(mesh, distance, poller);
   if (!remover.run()) return mesh;
   TriangleMesh made = std::move(mesh).triangles();
   made.triangles = remover.triangles();

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <functional>
-
+#include "base/poller.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -10,8 +9,7 @@ namespace papilio {
 /// whose edges are all at most that long. Collapses short edges, flips long edges of flat slivers, and removes flat
 /// slivers at boundaries. No point of the surface moves by more than `distance`, or by more than a tenth of the mean
 /// edge. Remaining vertices stay in place, and seams of attributes stay seams. Returns the mesh with edges; unchanged
-/// if it has no slivers. O(F), and one operation per sliver. `poll` is called every few thousand faces and may throw to
-/// stop.
-[[nodiscard]] Mesh remove_slivers(Mesh mesh, double distance, const std::function<void()>& poll = {});
+/// if it has no slivers. O(F), and one operation per sliver.
+[[nodiscard]] Mesh remove_slivers(Mesh mesh, double distance, const Poller& poller = {});
 
 }  // namespace papilio

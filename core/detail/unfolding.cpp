@@ -14,7 +14,6 @@ namespace {
 
 /// Lower bound of twice a face's area in the fan, over the sum of its sides' squares.
 constexpr double least_unfolded_thickness = 0.01;
-constexpr size_t unfoldings_between_polls = 4096;
 
 struct Point {
   double x, y;
@@ -83,7 +82,7 @@ void UnfoldingSequence::push(const Unfolding& unfolding) {
 }
 
 void UnfoldingSequence::lift(std::vector<SurfacePlace>& places, size_t count, uint32_t faces,
-                             const std::function<void()>& poll) const {
+                             const Poller& poller) const {
   std::vector<uint32_t> first_on(faces, none);  // [F] first place on each face
   std::vector<uint32_t> next(places.size());    // next place on a place's face
   const auto put = [&](uint32_t place) { next[place] = std::exchange(first_on[places[place].face], place); };
@@ -91,7 +90,7 @@ void UnfoldingSequence::lift(std::vector<SurfacePlace>& places, size_t count, ui
 
   std::vector<uint32_t> moved;
   for (size_t u = count; u-- > 0;) {
-    if (poll && u % unfoldings_between_polls == 0) poll();
+    poller.step();
     const std::span<const Spoke> spokes(spokes_.data() + first_[u], spokes_.data() + first_[u + 1]);
     moved.clear();
     for (size_t i = 1; i + 1 < spokes.size(); ++i) {  // remaining faces, which have the first neighbour as a corner

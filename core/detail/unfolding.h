@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/surface_place.h"
 #include "papilio/mesh.h"
 
@@ -42,9 +42,8 @@ class UnfoldingSequence {
  public:
   void push(const Unfolding& unfolding);
   [[nodiscard]] size_t size() const { return first_.size() - 1; }
-  /// Moves places from the surface after the first `count` collapses to the original, which has `faces` faces. `poll`
-  /// is called every few thousand collapses and may throw to stop.
-  void lift(std::vector<SurfacePlace>& places, size_t count, uint32_t faces, const std::function<void()>& poll) const;
+  /// Moves places from the surface after the first `count` collapses to the original, which has `faces` faces.
+  void lift(std::vector<SurfacePlace>& places, size_t count, uint32_t faces, const Poller& poller) const;
 
  private:
   struct Spoke {

@@ -19,7 +19,6 @@ constexpr double least_cosine_of_turned = 0.3;
 constexpr double least_direction = 1e-8;
 /// Lower bound of the sine of an angle of a triangle that has an area, squared.
 constexpr double least_squared_sine = 1e-14;
-constexpr uint32_t samples_between_polls = 4096;
 /// With fewer, vertices of small faces would follow one sample too far.
 constexpr uint32_t least_samples_a_face = 4;
 /// Halvings of moves that lead too far; the last one undoes them.
@@ -63,12 +62,11 @@ Vec3d VertexFit::Block::solve(Vec3d right, double damping) const {
   return (1 / determinant) * (right.x * minors + right.y * cross(z, x) + right.z * cross(x, y));
 }
 
-VertexFit::VertexFit(const SurfaceTree& original, const TriangleMesh& mesh, uint32_t samples,
-                     std::function<void()> poll)
+VertexFit::VertexFit(const SurfaceTree& original, const TriangleMesh& mesh, uint32_t samples, Poller poller)
     : original_(original),
       diagonal_(bounding_box(original.surface().positions).diagonal()),
       samples_(samples),
-      poll_(std::move(poll)) {
+      poller_(std::move(poller)) {
   faces_.assign(mesh.triangles.begin(), mesh.triangles.end());
   for (const Vec3f& p : mesh.positions) places_.push_back(to_double(p));
   first_places_ = places_;
@@ -103,10 +101,6 @@ void VertexFit::connect() {
   }
 }
 
-void VertexFit::count_sample() const {
-  if (poll_ && ++counted_ % samples_between_polls == 0) poll_();
-}
-
 void VertexFit::measure() {
   if (std::exchange(is_measured_, true)) return;
   own_.assign(places_.size(), {});
@@ -116,7 +110,7 @@ void VertexFit::measure() {
   const double of_original = 1.0 / samples_;
   double sum = 0;
   for_each_sample(original_, samples_, [&](uint32_t, Vec3d point) {
-    count_sample();
+    poller_.step();
     const Nearest near = surface.nearest(point);
     sum += of_original * near.squared_distance;
     add_sample(near.face, near.point, point, surface.unit_normal(near.face), of_original);
@@ -128,7 +122,7 @@ void VertexFit::measure() {
     const double share = total > 0 ? area_of(c) / total : 0;
     const uint32_t count = std::max(least_samples_a_face, static_cast<uint32_t>(share * samples_));
     for (uint32_t i = 0; i < count; ++i) {
-      count_sample();
+      poller_.step();
       const Vec3d point = sample_of(c, i);
       const Nearest near = original_.nearest(point);
       add_sample(f, point, near.point, original_.unit_normal(near.face), share / count);
@@ -181,7 +175,7 @@ void VertexFit::improve_once() {
   is_measured_ = false;
   std::vector<Vec3d> moves(places_.size());
   for (int sweep = 0; sweep < sweeps_of_moves; ++sweep) {
-    if (poll_) poll_();
+    poller_.now();
     for (uint32_t v = 0; v < places_.size(); ++v) {
       moves[v] = own_[v].solve(pull_on(v, moves), hold * own_[v].trace());
       const double size = length(moves[v]);
@@ -202,14 +196,14 @@ std::vector<bool> VertexFit::far_vertices(double most) const {
     for (const uint32_t v : faces_[face]) is_far[v] = true;
   };
   const auto look_from_original = [&](Vec3d point) {
-    count_sample();
+    poller_.step();
     const Nearest near = surface.nearest(point);
     if (near.squared_distance > squared_most) mark(near.face);
   };
   for_each_sample(original_, samples_, [&](uint32_t, Vec3d point) { look_from_original(point); });
   for (const Vec3f& p : original_.surface().positions) look_from_original(to_double(p));
   const auto is_far_from_original = [&](Vec3d point) {
-    count_sample();
+    poller_.step();
     return original_.nearest(point).squared_distance > squared_most;
   };
   for_each_sample(surface, samples_, [&](uint32_t face, Vec3d point) {
@@ -252,7 +246,7 @@ TriangleMesh VertexFit::on_grid(const PositionGrid& grid) {
     moves.push_back(places.back() - p);
   }
   for (int sweep = 0; sweep < sweeps_on_grid; ++sweep) {
-    if (poll_) poll_();
+    poller_.now();
     bool is_changed = false;
     for (uint32_t v = 0; v < places_.size(); ++v) {
       const Vec3d pull = pull_on(v, moves);

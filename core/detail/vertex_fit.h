@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/poller.h"
 #include "detail/surface_tree.h"
 #include "papilio/detail.h"
 
@@ -14,9 +14,8 @@ namespace papilio {
 /// of its triangle's move along the line to the nearest point.
 class VertexFit {
  public:
-  /// `original` must outlive this. About `samples` are taken of each surface. `poll` is called every few thousand
-  /// samples and may throw to stop.
-  VertexFit(const SurfaceTree& original, const TriangleMesh& mesh, uint32_t samples, std::function<void()> poll = {});
+  /// `original` must outlive this. About `samples` are taken of each surface.
+  VertexFit(const SurfaceTree& original, const TriangleMesh& mesh, uint32_t samples, Poller poller = {});
 
   /// Moves the vertices `passes` times to the minimum of the squared distances, by a bounded length. Moves that would
   /// turn a face are left out.
@@ -43,8 +42,6 @@ class VertexFit {
   };
 
   void improve_once();
-  /// Polls once in a few thousand calls.
-  void count_sample() const;
   void connect();
   /// Returns for each vertex whether a face of it is farther than `most` from the original, or the original from it.
   [[nodiscard]] std::vector<bool> far_vertices(double most) const;
@@ -61,8 +58,7 @@ class VertexFit {
   std::vector<Vec3d> places_, first_places_;
   uint32_t samples_;
   double rms_ = 0;  ///< distance from the original's samples
-  std::function<void()> poll_;
-  mutable uint32_t counted_ = 0;      ///< calls of count_sample()
+  Poller poller_;
   std::vector<uint32_t> first_;       ///< [V + 1] first of a vertex's neighbours
   std::vector<uint32_t> neighbours_;  ///< in ascending order for each vertex
   std::vector<uint32_t> first_face_;  ///< [V + 1]

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "core/detail/base_lift.h"
 #include "core/detail/collapse_sequence.h"
 #include "core/detail/detail_level.h"
+#include "core/detail/error_weights.h"
 #include "core/detail/folds.h"
 #include "core/detail/surface_distance.h"
 #include "core/detail/surface_walk.h"
@@ -203,6 +205,20 @@ TEST(CollapseSequence, LidsOfManyFacesAreSimplified) {
   const BaseMesh base = sequence.base();
   EXPECT_LE(base.face.size(), 100U);
   EXPECT_EQ(build_mesh(base.triangles).topology.euler_characteristic(), 2);
+}
+
+TEST(Encoder, LongSearchesCanBeStopped) {
+  struct Stop {};
+  const Poller stop([] { throw Stop(); });
+  const OriginalSurface original(build_mesh(sphere(5)));
+  const SurfaceTree& tree = original.tree();
+  std::vector<float> weights;
+  ASSERT_GT(original.mesh().positions.size(), 10'000U);
+  EXPECT_THROW((void)CollapseSequence(original.mesh(), {}, stop), Stop);
+  EXPECT_THROW((void)surface_distance(tree, tree, 10'000, stop), Stop);
+  EXPECT_THROW((void)vertex_distance(tree, tree, stop), Stop);
+  EXPECT_THROW((void)count_folds(original, tree, 0.1, stop), Stop);
+  EXPECT_THROW(weigh_errors(original, tree.surface(), weights, stop), Stop);
 }
 
 TEST(BaseLift, OtherBaseIsRefused) {

@@ -81,6 +81,13 @@ TEST(LinearStencils, StencilsEqualTheRulesAtCurves) {
   EXPECT_GT(curves, 1000U);
 }
 
+// Explicit rules would have 4 million weights.
+TEST(LinearStencils, VerticesOfManyFacesHaveFewWeights) {
+  const Mesh tube = build_mesh(test::tube(1000, 4, 0.5F, true));
+  const LinearStencils stencils = linear_stencils(tube.topology);
+  EXPECT_LT(stencils.weight.size(), 16U * tube.topology.edge_count());
+}
+
 TEST(SharpCurves, BoxHasItsEdgesAndCorners) {
   Mesh mesh = build_mesh(test::box({6, 6, 6}, {1, 2, 3}));
   mark_sharp_curves(mesh);

@@ -129,7 +129,7 @@ TEST(DistantPoints, CanBeCancelled) {
   const Hierarchy hierarchy(thorny_sphere());
   ResidualFit fit = hierarchy.fit();
   EXPECT_THROW(reach_distant_points(fit, hierarchy.original, {.most = step, .sheet_reach = 2 * step},
-                                    [] { throw Error(Fault::cancelled, "Enough."); }),
+                                    Poller([] { throw Error(Fault::cancelled, "Enough."); })),
                Error);
 }
 

@@ -144,6 +144,13 @@ TEST(OptimalCollapse, VerticesStayWithinTheLargestDistance) {
   EXPECT_LE(farthest(kept[0]), 0.05);
 }
 
+TEST(OptimalCollapse, PointsOfLargeLidsStayWithinTheLargestDistance) {
+  const TriangleMesh tube = test::tube(500, 4, 0.5F, true);
+  const auto made = collapse_to_sizes(tube, std::array<size_t, 1>{200}, Quadrics::memoryless, {}, 0.01);
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_LE(vertex_distance(SurfaceTree(tube), SurfaceTree(made[0])), 0.01);
+}
+
 TEST(OptimalCollapse, NonManifoldMeshIsSplitIntoSheets) {
   // Three squares that share an edge of five segments.
   TriangleMesh wings = grid(5, 5);

@@ -87,7 +87,7 @@ TEST(Slivers, RemovalIsPolledAllAlongAndStops) {
   const Mesh thin = build_mesh(with_slivers(test::bumpy_sphere(4), 1, 1e-4F));
   ASSERT_GT(thin.topology.face_count(), 40'000U);
   int calls = 0;
-  (void)remove_slivers(thin, 1e-3, [&] { ++calls; });
+  (void)remove_slivers(thin, 1e-3, Poller([&] { ++calls; }));
   EXPECT_GT(calls, 12);  // while faces are looked at, and while slivers are removed
   struct Stop {};
   for (int left = 0; left < calls; left += 3) {
@@ -95,7 +95,7 @@ TEST(Slivers, RemovalIsPolledAllAlongAndStops) {
     const auto stop = [&] {
       if (until-- == 0) throw Stop();
     };
-    EXPECT_THROW((void)remove_slivers(thin, 1e-3, stop), Stop) << left;
+    EXPECT_THROW((void)remove_slivers(thin, 1e-3, Poller(stop)), Stop) << left;
   }
 }
 

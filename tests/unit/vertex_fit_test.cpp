@@ -94,7 +94,7 @@ TEST(VertexFit, RetreatEndsWithinTheLargestDistance) {
 TEST(VertexFit, CancellationStops) {
   const SurfaceTree original(test::bumpy_sphere(3));
   struct Stop {};
-  VertexFit fit(original, test::collapse_optimally(original.surface(), 200), fit_samples, [] { throw Stop(); });
+  VertexFit fit(original, test::collapse_optimally(original.surface(), 200), fit_samples, Poller([] { throw Stop(); }));
   EXPECT_THROW(fit.improve(1), Stop);
 }
 
