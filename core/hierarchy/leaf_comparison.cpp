@@ -147,33 +147,51 @@ void LeafComparison::compare_below(uint32_t k, FaceId f, const Patch& patch, con
 }
 
 void LeafComparison::compare(const Face& face, const Points& corner, const Patches& below) {
-  const auto [k, f] = LevelFace{face.level, face.face};
-  rest_ = largest_sum_below(k, f);
-  const double settled = enough() > 0 ? enough() : limit_;
-  rest_ = 0;
+  if (result_.has_children(face.level, face.face))
+    compare_children(face, corner, below);
+  else
+    compare_new_faces(face, corner, below);
+}
+
+/// Returns a face's corners, and its new vertices with pieces within the root of `enough` if there are any. Notes their
+/// distances.
+LeafComparison::SixPoints LeafComparison::points_of(const Face& face, const Points& corner, double enough) {
   SixPoints points{corner[0], corner[1], corner[2]};
   for (uint32_t i = 0; i < 3; ++i) {
-    points[3 + i] = find_near(face.made[i], face.middle[i], settled);
+    points[3 + i] = find_near(face.made[i], face.middle[i], enough);
     note(points[3 + i].squared);
   }
+  return points;
+}
+
+/// Compares the new faces of a face without children.
+void LeafComparison::compare_new_faces(const Face& face, const Points& corner, const Patches& below) {
+  const auto [k, f] = LevelFace{face.level, face.face};
   const std::array<Corners, 4> children = children_of(face.corner, face.made);
-  if (result_.has_children(k, f)) return compare_children(face, children, points, below);
-  const bool is_explored = k + 1 >= level_count_;
-  if (stops_at_limit_ && !is_explored) rest_ = share_of_sum * sums_[k][f];
+  const bool is_finest = k + 1 >= level_count_;
+  const double rest = stops_at_limit_ && !is_finest ? share_of_sum * sums_[k][f] : 0;
+  rest_ = rest;
   unsigned open = 0;  // children, by bits
-  for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
-    const Child child{k, f, children[c]};
-    if (is_surely_near(child, below[c])) continue;
-    open |= 1U << c;
-    compare_patch(child, below[c]);
+  for (uint32_t c = 0; c < 4; ++c)
+    if (!is_surely_near({k, f, children[c]}, below[c])) open |= 1U << c;
+  if (open != 0) {
+    rest_ = 0;
+    SixPoints points = points_of(face, corner, limit_);
+    rest_ = rest;
+    for (uint32_t c = 0; c < 4; ++c)
+      if ((open >> c & 1U) != 0) compare_patch({k, f, children[c]}, below[c]);
+    compare_sides(points, open);
   }
-  compare_sides(points, open);
-  if (!is_explored && !stops_at_limit_) add_rest(face, below);
+  if (!is_finest && !stops_at_limit_) add_rest(face, below);
 }
 
 /// Descends into those children below which a distance may matter.
-void LeafComparison::compare_children(const Face& face, const std::array<Corners, 4>& children, const SixPoints& points,
-                                      const Patches& below) {
+void LeafComparison::compare_children(const Face& face, const Points& corner, const Patches& below) {
+  rest_ = largest_sum_below(face.level, face.face);
+  const double settled = enough() > 0 ? enough() : limit_;
+  rest_ = 0;
+  const SixPoints points = points_of(face, corner, settled);
+  const std::array<Corners, 4> children = children_of(face.corner, face.made);
   const uint32_t level = face.level + 1;
   const uint32_t child = result_.first_child(face.level, face.face);
   for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
@@ -224,9 +242,8 @@ void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
 /// Returns whether the corners of a child are all near one piece of the result.
 bool LeafComparison::is_near_one_piece(const Points& corner) {
   return std::ranges::any_of(corner, [&](const PointNear& point) {
-    const PointNear at = point.has_piece ? point : near_piece(point.point);
-    return !is_far_ &&
-           std::ranges::all_of(corner, [&](const PointNear& other) { return is_near(at.piece, other, enough()); });
+    const uint32_t piece = point.piece != none ? point.piece : near_piece(point.point).piece;
+    return !is_far_ && std::ranges::all_of(corner, [&](const PointNear& other) { return is_near(piece, other); });
   });
 }
 
@@ -244,7 +261,7 @@ void LeafComparison::compare_sides(SixPoints& points, unsigned children) {
       {3, 4, 0b1010}, {4, 5, 0b1100}, {5, 3, 0b1001}}};
   // clang-format on
   const auto at = [&](uint32_t i) -> const PointNear& {
-    if (!points[i].has_piece || matters(points[i].squared)) points[i] = near_piece(points[i].point);
+    if (points[i].piece == none || matters(points[i].squared)) points[i] = near_piece(points[i].point);
     return points[i];
   };
   for (const Side& side : sides)
@@ -254,14 +271,21 @@ void LeafComparison::compare_sides(SixPoints& points, unsigned children) {
 /// Divides a side until each part is near a single piece of the result, or too short to leave it.
 void LeafComparison::compare_side(const PointNear& from, const PointNear& to, int depth) {
   if (is_far_ || depth == most_divisions) return;
-  if (is_near(from.piece, to, enough()) || is_near(to.piece, from, enough())) return;
+  if (is_near(from.piece, to) || is_near(to.piece, from)) return;
   if (squared_norm(to.point - from.point) < squared_length_of_part * enough()) return;
   // Where pieces are nearly in one plane, the side goes from above one to above the next.
-  const double end = depth % 2 == 0 ? end_above(from.piece, from.point, to.point) : 1;
+  const double end = depth % 2 == 0 ? near_.prism(from.piece).end_above(from.point, to.point) : 1;
   const Vec3d point = from.point + (end < 1 ? end : 0.5) * (to.point - from.point);
   const PointNear between = near_piece(point);
   compare_side(from, between, depth + 1);
   compare_side(between, to, depth + 1);
+}
+
+/// Returns whether a piece is near enough to a point.
+bool LeafComparison::is_near(uint32_t piece, const PointNear& point) const {
+  double squared = 0;
+  return (piece == point.piece && point.squared <= enough()) ||
+         near_.prism(piece).is_within(point.point, enough(), squared);
 }
 
 /// Returns a point of the surface with a piece of the result that is near enough, if any, and notes the distance.
@@ -351,7 +375,7 @@ double LeafComparison::largest_sum_below(uint32_t k, FaceId f) const {
 /// Returns a new vertex with its squared distance from the result; where that is at most `enough`, an upper bound which
 /// is at most `enough` too. `place`: of the vertex in the result.
 PointNear LeafComparison::find_near(Vec3d made, Vec3d place, double enough) {
-  if (const PointNear above = near_.above(made, enough); above.has_piece) return above;
+  if (const PointNear beside = near_.beside(made, enough); beside.piece != none) return beside;
   const double apart = squared_norm(made - place);
   return apart <= enough ? PointNear{made, apart} : near_.near(made, enough);
 }

@@ -80,12 +80,14 @@ class LeafComparison {
   [[nodiscard]] unsigned sides_to_compare();
   void compare_below(uint32_t k, FaceId f, const Patch& patch, const Points& corner);
   void compare(const Face& face, const Points& corner, const Patches& below);
-  void compare_children(const Face& face, const std::array<Corners, 4>& children, const SixPoints& points,
-                        const Patches& below);
+  [[nodiscard]] SixPoints points_of(const Face& face, const Points& corner, double enough);
+  void compare_new_faces(const Face& face, const Points& corner, const Patches& below);
+  void compare_children(const Face& face, const Points& corner, const Patches& below);
   void compare_patch(const Child& child, const Patch& patch);
   void compare_sides(SixPoints& points, unsigned children);
   void compare_side(const PointNear& from, const PointNear& to, int depth);
   [[nodiscard]] bool is_near_one_piece(const Points& corner);
+  [[nodiscard]] bool is_near(uint32_t piece, const PointNear& point) const;
   [[nodiscard]] PointNear near_piece(Vec3d point);
   template <class DistanceAt>
   void compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at);

@@ -9,7 +9,7 @@
 namespace papilio {
 namespace {
 
-constexpr size_t most_faces_visited = 64;
+constexpr size_t most_faces_visited = 64, most_new_faces_visited = 8;
 
 double squared_distance_to(const Corners& triangle, Vec3d point) {
   return squared_distance(point, {triangle[0], triangle[1], triangle[2]});
@@ -30,6 +30,8 @@ double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d p
 }
 
 double LevelSurface::squared_distance_to_level(uint32_t k, FaceId f, Vec3d point, double enough) {
+  if (!result_->has_children(k, f))
+    if (const double squared = squared_distance_by_walk(k, f, point); squared <= enough) return squared;
   visited_.assign(1, walk_towards(k, f, point));
   double least = squared_distance_to_children(k, visited_[0], point, enough);
   for (size_t at = 0; at < visited_.size() && least > enough; ++at)
@@ -44,6 +46,28 @@ double LevelSurface::squared_distance_to_level(uint32_t k, FaceId f, Vec3d point
       visited_.push_back(Topology::face(twin));
     }
   return least;
+}
+
+double LevelSurface::squared_distance_by_walk(uint32_t k, FaceId f, Vec3d point) const {
+  std::array<Corners, 4> children = new_faces(k, f);
+  uint32_t c = 3;
+  for (size_t step = 0; step < most_new_faces_visited; ++step) {
+    const std::array<double, 3> inside = weights_in(children[c], point);
+    const auto side = static_cast<uint32_t>(std::ranges::min_element(inside) - inside.begin());
+    if (inside[side] >= 0) break;
+    if (c == 3) {
+      c = (side + 1) % 3;
+    } else if (side == inner_side[c]) {
+      c = 3;
+    } else {  // on the face's side of this number, near corner c
+      const uint32_t twin = twin_in_region(k, 3 * f + side);
+      if (twin == none || result_->has_children(k, Topology::face(twin))) break;
+      f = Topology::face(twin);
+      c = c == side ? (twin + 1) % 3 : twin % 3;
+      children = new_faces(k, f);
+    }
+  }
+  return squared_distance_to(children[c], point);
 }
 
 double LevelSurface::squared_distance_to_children(uint32_t k, FaceId f, Vec3d point, double enough) const {
@@ -64,13 +88,17 @@ double LevelSurface::squared_distance_where_it_slid(uint32_t k, FaceId f, Vec3d 
 }
 
 double LevelSurface::squared_distance_to_new_faces(uint32_t k, FaceId f, Vec3d point, double enough) const {
-  const Corners corner = result_->corners(k, f);
-  const std::array<Corners, 4> children = children_of(corner, result_->new_vertices(k, f, corner));
+  const std::array<Corners, 4> children = new_faces(k, f);
   const uint32_t first = child_below(k, f, point);
   double least = squared_distance_to(children[first], point);
   for (uint32_t c = 0; c < 4 && least > enough; ++c)
     if (c != first) least = lesser(least, squared_distance_to(children[c], point));
   return least;
+}
+
+std::array<Corners, 4> LevelSurface::new_faces(uint32_t k, FaceId f) const {
+  const Corners corner = result_->corners(k, f);
+  return children_of(corner, result_->new_vertices(k, f, corner));
 }
 
 uint32_t LevelSurface::twin_in_region(uint32_t k, HalfEdgeId h) const {
@@ -81,7 +109,7 @@ uint32_t LevelSurface::twin_in_region(uint32_t k, HalfEdgeId h) const {
 FaceId LevelSurface::walk_towards(uint32_t k, FaceId f, Vec3d point) const {
   uint32_t from = none;
   for (size_t step = 0; step < most_faces_visited; ++step) {
-    const std::array<double, 3> inside = weights_in(k, f, point);
+    const std::array<double, 3> inside = weights_in(result_->corners(k, f), point);
     const auto side = static_cast<uint32_t>(std::ranges::min_element(inside) - inside.begin());
     const uint32_t across = inside[side] < 0 ? twin_in_region(k, 3 * f + side) : none;
     if (across == none || Topology::face(across) == from) break;
@@ -91,8 +119,7 @@ FaceId LevelSurface::walk_towards(uint32_t k, FaceId f, Vec3d point) const {
   return f;
 }
 
-std::array<double, 3> LevelSurface::weights_in(uint32_t k, FaceId f, Vec3d point) const {
-  const Corners corner = result_->corners(k, f);
+std::array<double, 3> LevelSurface::weights_in(const Corners& corner, Vec3d point) {
   const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   std::array<double, 3> inside{};
   for (uint32_t i = 0; i < 3; ++i) inside[i] = dot(cross(corner[(i + 1) % 3] - corner[i], point - corner[i]), normal);
@@ -100,7 +127,7 @@ std::array<double, 3> LevelSurface::weights_in(uint32_t k, FaceId f, Vec3d point
 }
 
 uint32_t LevelSurface::child_below(uint32_t k, FaceId f, Vec3d point) const {
-  const std::array<double, 3> inside = weights_in(k, f, point);
+  const std::array<double, 3> inside = weights_in(result_->corners(k, f), point);
   const double half = 0.5 * (inside[0] + inside[1] + inside[2]);
   for (uint32_t i = 0; i < 3; ++i)
     if (inside[i] > half) return (i + 2) % 3;

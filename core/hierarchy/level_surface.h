@@ -25,15 +25,19 @@ class LevelSurface {
 
  private:
   [[nodiscard]] double squared_distance_to_level(uint32_t k, FaceId f, Vec3d point, double enough);
+  /// Returns the distance to the new face that a walk over the new faces ends at: above or below the point, unless the
+  /// walk is long. The walk starts in the middle of a face, which has no children.
+  [[nodiscard]] double squared_distance_by_walk(uint32_t k, FaceId f, Vec3d point) const;
   /// Returns the distance to the deepest descendants of a face below the point.
   [[nodiscard]] double squared_distance_to_children(uint32_t k, FaceId f, Vec3d point, double enough) const;
   /// Returns the distance to descendants found by a walk on each level: children may slide along the face until the
   /// point is above others.
   [[nodiscard]] double squared_distance_where_it_slid(uint32_t k, FaceId f, Vec3d point, double enough) const;
+  [[nodiscard]] std::array<Corners, 4> new_faces(uint32_t k, FaceId f) const;
   /// Returns the half-edge's twin, or none where the face across is not in the region.
   [[nodiscard]] uint32_t twin_in_region(uint32_t k, HalfEdgeId h) const;
-  /// Returns the point's distance inside each side of a face, in one unit: the weight of the opposite corner.
-  [[nodiscard]] std::array<double, 3> weights_in(uint32_t k, FaceId f, Vec3d point) const;
+  /// Returns the point's distance inside each side of a triangle, in one unit: the weight of the opposite corner.
+  [[nodiscard]] static std::array<double, 3> weights_in(const Corners& corner, Vec3d point);
   /// Returns the child of a face below the point: the one at a corner with more than half of the weight, or the middle
   /// one.
   [[nodiscard]] uint32_t child_below(uint32_t k, FaceId f, Vec3d point) const;

@@ -7,38 +7,40 @@ namespace papilio {
 void NearPieces::go_to(const LevelFace& leaf) {
   leaf_ = leaf;
   prisms_.clear();
+  has_beside_ = false;
 }
 
 PointNear NearPieces::near(Vec3d point, double enough) {
-  PointNear found = above(point, enough);
-  if (found.has_piece) return found;
-  found.squared = result_->squared_distance_from(leaf_, point, enough, &found.piece);
-  found.has_piece = true;
+  PointNear found = beside(point, enough);
+  if (found.piece != none) return found;
+  TriangleCorners nearest{};
+  found.squared = result_->squared_distance_from(leaf_, point, enough, &nearest);
+  found.piece = static_cast<uint32_t>(prisms_.size());
+  prisms_.emplace_back(nearest);
   return found;
 }
 
-PointNear NearPieces::above(Vec3d point, double enough) {
-  if (prisms_.empty()) {
-    add_prisms(leaf_);
-    for (uint32_t side = 0; side < 3; ++side) {
-      result_->find_beside(leaf_, side, beside_);
-      for (const LevelFace& beside : beside_) add_prisms(beside);
+PointNear NearPieces::beside(Vec3d point, double enough) {
+  if (prisms_.empty()) add_prisms(leaf_);
+  PointNear found{point, std::numeric_limits<double>::infinity()};
+  for (uint32_t i = 0;; ++i) {
+    if (i == prisms_.size() && !has_beside_) {
+      has_beside_ = true;
+      for (uint32_t side = 0; side < 3; ++side) {
+        result_->find_beside(leaf_, side, beside_);
+        for (const LevelFace& beside : beside_) add_prisms(beside);
+      }
     }
+    if (i == prisms_.size()) return found;
+    if (!prisms_[i].is_within(point, enough, found.squared)) continue;
+    found.piece = i;
+    return found;
   }
-  for (const Prism& prism : prisms_)
-    if (const double squared = prism.squared_height(point); squared <= enough && prism.is_inside(point))
-      return {point, squared, true, prism.triangle()};
-  return {point, std::numeric_limits<double>::infinity()};
 }
 
 void NearPieces::add_prisms(const LevelFace& leaf) {
   result_->find_pieces(leaf, pieces_);
   for (const TriangleCorners& piece : pieces_) prisms_.emplace_back(piece);
-}
-
-bool is_near(const TriangleCorners& piece, const PointNear& point, double enough) {
-  if (point.has_piece && point.squared <= enough && point.piece == piece) return true;
-  return squared_distance(point.point, piece) <= enough;
 }
 
 }  // namespace papilio

@@ -19,22 +19,7 @@ namespace papilio {
   return height * height / dot(normal, normal);
 }
 
-/// Returns at what share of the way from a point above or below a triangle to another the way leaves the prism; 1 if it
-/// does not.
-[[nodiscard]] inline double end_above(const TriangleCorners& triangle, Vec3d from, Vec3d to) {
-  const Corners corner{triangle.a, triangle.b, triangle.c};
-  const Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-  double end = 1;
-  for (uint32_t i = 0; i < 3; ++i) {
-    const Vec3d inward = cross(normal, corner[(i + 1) % 3] - corner[i]);
-    const double first = dot(from - corner[i], inward);
-    const double last = dot(to - corner[i], inward);
-    if (first > 0 && last < 0) end = std::min(end, first / (first - last));
-  }
-  return end;
-}
-
-/// Triangle prepared for tests of whether points are above it.
+/// Triangle prepared for tests of points near it.
 class Prism {
  public:
   explicit Prism(const TriangleCorners& triangle) : corner_{triangle.a, triangle.b, triangle.c} {
@@ -45,19 +30,33 @@ class Prism {
     for (uint32_t i = 0; i < 3; ++i) inward_[i] = cross(normal_, corner_[(i + 1) % 3] - corner_[i]);
   }
 
-  /// Returns the squared distance of a point from the triangle's plane.
-  [[nodiscard]] double squared_height(Vec3d point) const {
-    const double height = dot(point - corner_[0], normal_);
-    return height * height;
+  /// Returns whether a point is within the root of `enough` of the triangle. Then `squared` becomes the squared
+  /// distance.
+  [[nodiscard]] bool is_within(Vec3d point, double enough, double& squared) const {
+    const double above = dot(point - corner_[0], normal_);
+    const double height = above * above;
+    if (height > enough) return false;
+    const double distance = is_inside(point) ? height : squared_distance(point, {corner_[0], corner_[1], corner_[2]});
+    if (distance > enough) return false;
+    squared = distance;
+    return true;
   }
-  /// Returns whether a point is above or below the triangle.
+  /// Returns at what share of the way from a point above or below the triangle to another the way leaves the prism; 1
+  /// if it does not.
+  [[nodiscard]] double end_above(Vec3d from, Vec3d to) const {
+    double end = 1;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const double first = dot(from - corner_[i], inward_[i]);
+      const double last = dot(to - corner_[i], inward_[i]);
+      if (first > 0 && last < 0) end = std::min(end, first / (first - last));
+    }
+    return end;
+  }
+
+ private:
   [[nodiscard]] bool is_inside(Vec3d point) const {
     return is_inside(point, 0) && is_inside(point, 1) && is_inside(point, 2);
   }
-
-  [[nodiscard]] TriangleCorners triangle() const { return {corner_[0], corner_[1], corner_[2]}; }
-
- private:
   [[nodiscard]] bool is_inside(Vec3d point, uint32_t i) const { return dot(point - corner_[i], inward_[i]) > 0; }
 
   Corners corner_;
