@@ -49,8 +49,13 @@ after(async () => {
 });
 
 let drawn = 0;
-const draw = (name, time, frame) =>
-  page.evaluate(([url, at, box]) => window.draw(url, at, box), [`/${name}?${drawn++}`, time, frame]);
+const draw = async (name, time, frame) => {
+  const found = await page.evaluate(
+    ([url, at, box]) => window.draw(url, at, box),
+    [`/${name}?${drawn++}`, time, frame],
+  );
+  return { ...found, pixels: Buffer.from(found.pixels, 'base64') };
+};
 
 const background = (pixels, i) => pixels[i] === 0 && pixels[i + 1] === 0 && pixels[i + 2] === 255;
 
