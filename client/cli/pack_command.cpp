@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -18,6 +19,13 @@ namespace {
 using proto::format_rounded;
 using proto::detail::Packed;
 
+bool has_morph_targets(const proto::gltf::Json& scene) {
+  return std::ranges::any_of(proto::gltf::array_of(scene, "meshes"), [](const auto& mesh) {
+    return std::ranges::any_of(mesh.at("primitives"),
+                               [](const auto& primitive) { return primitive.contains("targets"); });
+  });
+}
+
 /// Warns of data that a packed model does not store.
 void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& model) {
   std::vector<std::string> warnings;
@@ -31,8 +39,14 @@ void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& mode
   for (const std::string& text : model.materials.left_out) warnings.push_back(file.name + ": " + text);
   if (is_scene(file.format)) {
     const proto::gltf::Json json = proto::gltf::read_document(file.bytes).json;
+    const auto warn = [&](const std::string& what) {
+      warnings.push_back(file.name + ": the scene's " + what + " left out.");
+    };
     for (const char* part : {"skins", "animations"})
-      if (json.contains(part)) warnings.push_back(file.name + ": the scene's " + part + " are left out.");
+      if (json.contains(part)) warn(part + std::string(" are"));
+    if (has_morph_targets(json)) warn("morph targets are");
+    if (const auto extensions = json.find("extensions"); extensions != json.end())
+      for (const auto& [name, data] : extensions->items()) warn(name + " is");
   }
   print_warnings(warnings);
 }

@@ -297,6 +297,19 @@ ball() { "$papilio" refine "${BATS_TEST_DIRNAME:?}/../../client/examples/octahed
   run --separate-stderr "$papilio" pack group.obj -o group.glb
   [ "$status" = 0 ]
   [[ $stderr == *"other attributes than texture coordinates, colours and normals are left out"* ]]
+  cat >scene.gltf <<'END'
+{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_variants"],
+ "extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}]}},
+ "buffers": [{"byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 0}]}]}],
+ "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}
+END
+  run --separate-stderr "$papilio" pack scene.gltf -o packed.glb
+  [ "$status" = 0 ]
+  [[ $stderr == *"scene.gltf: the scene's morph targets are left out."* ]]
+  [[ $stderr == *"scene.gltf: the scene's KHR_materials_variants is left out."* ]]
 }
 
 # textured_ball: writes a small surface with a texture whose charts meet at seams.
