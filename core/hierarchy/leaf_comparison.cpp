@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hierarchy/move_bounds.h"
 #include "simd/extremes.h"
@@ -170,10 +169,12 @@ void LeafComparison::compare_new_faces(const Face& face, const Points& corner, c
   const std::array<Corners, 4> children = children_of(face.corner, face.made);
   const bool is_finest = k + 1 >= level_count_;
   const double rest = stops_at_limit_ && !is_finest ? share_of_sum * sums_[k][f] : 0;
-  rest_ = rest;
   unsigned open = 0;  // children, by bits
-  for (uint32_t c = 0; c < 4; ++c)
+  for (uint32_t c = 0; c < 4; ++c) {
+    rest_ = rest;
     if (!is_surely_near({k, f, children[c]}, below[c])) open |= 1U << c;
+  }
+  rest_ = rest;
   if (open != 0) {
     rest_ = 0;
     SixPoints points = points_of(face, corner, limit_);
@@ -187,42 +188,31 @@ void LeafComparison::compare_new_faces(const Face& face, const Points& corner, c
 
 /// Descends into those children below which a distance may matter.
 void LeafComparison::compare_children(const Face& face, const Points& corner, const Patches& below) {
+  const std::array<Corners, 4> children = children_of(face.corner, face.made);
+  const uint32_t level = face.level + 1;
+  const uint32_t child = result_.first_child(face.level, face.face);
+  unsigned open = 0;  // children, by bits
+  for (uint32_t c = 0; c < 4; ++c) {
+    rest_ = sums_[level][child + c];
+    if (enough() == 0 || !is_surely_near({face.level, face.face, children[c]}, below[c])) open |= 1U << c;
+  }
+  if (open == 0) return;
   rest_ = largest_sum_below(face.level, face.face);
   const double settled = enough() > 0 ? enough() : limit_;
   rest_ = 0;
   const SixPoints points = points_of(face, corner, settled);
-  const std::array<Corners, 4> children = children_of(face.corner, face.made);
-  const uint32_t level = face.level + 1;
-  const uint32_t child = result_.first_child(face.level, face.face);
   for (uint32_t c = 0; c < 4 && !is_far_; ++c) {
-    rest_ = sums_[level][child + c];
-    const auto [a, b, d] = corners_of_child[c];
-    const Points corner{points[a], points[b], points[d]};
-    if (!is_settled({face.level, face.face, children[c]}, below[c], corner))
-      compare_below(level, child + c, below[c], corner);
+    const auto [i, j, k] = corners_of_child[c];
+    if ((open >> c & 1U) != 0) compare_below(level, child + c, below[c], {points[i], points[j], points[k]});
   }
-}
-
-/// Returns whether no distance below a child can matter: child and patch are near enough for moves up to `rest_`.
-bool LeafComparison::is_settled(const Child& child, const Patch& patch, const Points& corner) {
-  if (enough() == 0 || std::ranges::any_of(corner, [&](const PointNear& point) { return matters(point.squared); }))
-    return false;
-  is_probe_ = true;
-  if (!is_surely_near(child, patch)) {
-    is_far_ = !is_near_one_piece(corner);
-    compare_patch(child, patch);
-  }
-  is_probe_ = false;
-  return !std::exchange(is_far_, false);
 }
 
 /// Compares a patch with the surface at a child, at points where the distance may be largest.
 void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
   const auto distance_at = [&](Vec3d point) {
-    // In a probe, the moves below the face under the point count, which is not the child if the point is beside it.
-    double squared = is_probe_ ? squared_height_above(child.corner, point)
-                               : squared_distance(point, {child.corner[0], child.corner[1], child.corner[2]});
-    if (matters(squared)) squared = squared_distance_to_surface(child, point);
+    double squared = squared_distance(point, {child.corner[0], child.corner[1], child.corner[2]});
+    if (matters(squared))
+      squared = surface_.squared_distance({child.level, child.parent}, leaf_.level, point, enough());
     note(squared);
     return squared;
   };
@@ -237,14 +227,6 @@ void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
   (void)distance_at(patch.bend);
   (void)distance_at(patch.opposite_bend());
   compare_line(patch.bend, patch.opposite_bend(), distance_at);
-}
-
-/// Returns whether the corners of a child are all near one piece of the result.
-bool LeafComparison::is_near_one_piece(const Points& corner) {
-  return std::ranges::any_of(corner, [&](const PointNear& point) {
-    const uint32_t piece = point.piece != none ? point.piece : near_piece(point.point).piece;
-    return !is_far_ && std::ranges::all_of(corner, [&](const PointNear& other) { return is_near(piece, other); });
-  });
 }
 
 /// Compares the sides of a face's children, those of `children` by bits, with the result; `points` get their pieces.
@@ -312,7 +294,7 @@ void LeafComparison::compare_line(Vec3d from, Vec3d to, const DistanceAt& distan
 
 /// Returns whether a patch is near enough to the surface at a child, without looking for nearest points: its points are
 /// compared with those of the same barycentric coordinates. An offset along the child's plane counts by the largest
-/// turn of the surface there.
+/// turn of the surface there; then what is below the faces beside counts, too, and raises `rest_`.
 bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
   if (!matters(largest_squared_distance(patch, child.corner))) return true;
   const Corners& corner = child.corner;
@@ -337,10 +319,10 @@ bool LeafComparison::is_surely_near(const Child& child, const Patch& patch) {
     if (mesh.kind[e] != EdgeKind::smooth || result_.choice(k).region.has_edge[e] == 0) return false;
     const FaceId beside = Topology::face(mesh.twin[h]);
     squared_turn = larger(squared_turn, squared_norm(to_double(normals[beside]) - normal));
-    if (is_probe_) rest_ = larger(rest_, largest_sum_below(k, beside));
+    rest_ = larger(rest_, largest_sum_below(k, beside));
   }
   const double distance = height + std::sqrt(squared_turn * squared_offset);
-  return !matters(distance * distance);
+  return enough() > 0 && !matters(distance * distance);
 }
 
 /// Adds what levels that were not explored may contribute to the distances at a face.
@@ -380,16 +362,6 @@ PointNear LeafComparison::find_near(Vec3d made, Vec3d place, double enough) {
   return apart <= enough ? PointNear{made, apart} : near_.near(made, enough);
 }
 
-/// Returns the squared distance of a point of the result from the surface; in a probe from the level of the child's
-/// siblings, and raises `rest_` to what is below the nearest one.
-double LeafComparison::squared_distance_to_surface(const Child& child, Vec3d point) {
-  const auto [k, f] = LevelFace{child.level, child.parent};
-  if (!is_probe_) return surface_.squared_distance({k, f}, leaf_.level, point, enough());
-  const FaceId nearest = surface_.walk_towards(k, f, point);
-  rest_ = larger(rest_, largest_sum_below(k, nearest));
-  return surface_.squared_distance_to_new_faces(k, nearest, point, enough());
-}
-
 /// Returns the largest squared distance that does not matter.
 double LeafComparison::enough() const {
   if (rest_ == 0) return limit_;
@@ -399,7 +371,7 @@ double LeafComparison::enough() const {
 
 void LeafComparison::note(double squared) {
   if (!matters(squared)) return;
-  if (stops_at_limit_ || is_probe_) {
+  if (stops_at_limit_) {
     is_far_ = true;
   } else {
     limit_ = squared;

@@ -24,8 +24,7 @@ using NearFaces = std::vector<Buffer<uint8_t>>;
 ///
 /// A distance matters if it exceeds the limit, with `rest_` on top of it: what levels further down may add. What comes
 /// of one that does is the caller's question. far_faces() and exceeds() keep the limit, and the first ends the leaf.
-/// largest_share() raises the limit to it, so that only larger ones matter from then on. In a probe, which asks whether
-/// all below a child is near enough to leave it out, it only leads further down.
+/// largest_share() raises the limit to it, so that only larger ones matter from then on.
 class LeafComparison {
  public:
   /// All references must outlive this. `sums` of moves: see sums_below(). Of
@@ -86,18 +85,15 @@ class LeafComparison {
   void compare_patch(const Child& child, const Patch& patch);
   void compare_sides(SixPoints& points, unsigned children);
   void compare_side(const PointNear& from, const PointNear& to, int depth);
-  [[nodiscard]] bool is_near_one_piece(const Points& corner);
   [[nodiscard]] bool is_near(uint32_t piece, const PointNear& point) const;
   [[nodiscard]] PointNear near_piece(Vec3d point);
   template <class DistanceAt>
   void compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at);
   void add_rest(const Face& face, const Patches& below);
 
-  [[nodiscard]] bool is_settled(const Child& child, const Patch& patch, const Points& corner);
   [[nodiscard]] bool is_surely_near(const Child& child, const Patch& patch);
   [[nodiscard]] double largest_sum_below(uint32_t k, FaceId f) const;
   [[nodiscard]] PointNear find_near(Vec3d made, Vec3d place, double enough);
-  [[nodiscard]] double squared_distance_to_surface(const Child& child, Vec3d point);
 
   /// Returns whether a squared distance, with `rest_` added to its root, exceeds the limit.
   [[nodiscard]] bool matters(double squared) const { return !is_far_ && squared > enough(); }
@@ -118,7 +114,6 @@ class LeafComparison {
   bool has_grown_ = false;       ///< whether a distance raised squared_share_
   double rest_ = 0;              ///< upper bound of what levels further down add at the face at hand
   bool stops_at_limit_ = false;  ///< a distance above the limit ends the comparison of a leaf
-  bool is_probe_ = false;        ///< one above the limit leads further down
   LevelFace leaf_{};             ///< at hand
   bool is_far_ = false;          ///< a distance above the limit was found
   std::vector<LevelFace> beside_;

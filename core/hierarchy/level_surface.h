@@ -18,12 +18,11 @@ class LevelSurface {
   /// the levels above represent it, up to `coarsest`.
   [[nodiscard]] double squared_distance(LevelFace from, uint32_t coarsest, Vec3d point, double enough);
 
+ private:
   /// Walks over the faces of a level, each time across the side that lies most between, until the point is above one.
   [[nodiscard]] FaceId walk_towards(uint32_t k, FaceId f, Vec3d point) const;
   /// Returns the distance, squared, from a point to the nearest child of a face, or one of at most `enough`.
   [[nodiscard]] double squared_distance_to_new_faces(uint32_t k, FaceId f, Vec3d point, double enough) const;
-
- private:
   [[nodiscard]] double squared_distance_to_level(uint32_t k, FaceId f, Vec3d point, double enough);
   /// Returns the distance to the new face that a walk over the new faces ends at: above or below the point, unless the
   /// walk is long. The walk starts in the middle of a face, which has no children.

@@ -1,23 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "hierarchy/result_surface.h"
 
-// Distances of points above triangles, at a fraction of the cost of squared_distance() (papilio/triangle_distance.h).
+// Distances of points near triangles, at a fraction of the cost of squared_distance() (papilio/triangle_distance.h).
 
 namespace papilio {
-
-/// Returns the squared distance of a point above or below a triangle; infinity for other points.
-[[nodiscard]] inline double squared_height_above(const Corners& triangle, Vec3d point) {
-  const Vec3d normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
-  for (uint32_t i = 0; i < 3; ++i)
-    if (!(dot(cross(triangle[(i + 1) % 3] - triangle[i], point - triangle[i]), normal) > 0))
-      return std::numeric_limits<double>::infinity();
-  const double height = dot(point - triangle[0], normal);
-  return height * height / dot(normal, normal);
-}
 
 /// Triangle prepared for tests of points near it.
 class Prism {
