@@ -13,10 +13,9 @@ constexpr double share_of_sum = 0.25;  ///< of a move and its rest: what levels 
 constexpr double share_of_rest = 0.5;  ///< of a move: all further ones add up to a third where the surface is smooth
 constexpr double along_diagonal = 2;  ///< a transition face's diagonal may be further away than the whole face would be
 constexpr uint32_t leaves_between_polls = 1024;
-constexpr int most_divisions = 10;  ///< of a side of the surface's faces
+constexpr int most_divisions = 10;  ///< of a way
 /// Share of the limit. The middle of a part is further away than its ends by at most half of its length.
 constexpr double squared_length_of_part = 0.06 * 0.06;
-constexpr double quiet = 0.36;  ///< share of the squared limit below which a line is sampled no further
 
 /// Corners of each child of a face; the face's new vertices from 3 on.
 constexpr std::array<std::array<uint32_t, 3>, 4> corners_of_child{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
@@ -207,26 +206,26 @@ void LeafComparison::compare_children(const Face& face, const Points& corner, co
   }
 }
 
-/// Compares a patch with the surface at a child, at points where the distance may be largest.
+/// Compares a patch with the surface at a child: its centre, and the lines in which the result may be bent.
 void LeafComparison::compare_patch(const Child& child, const Patch& patch) {
-  const auto distance_at = [&](Vec3d point) {
-    double squared = squared_distance(point, {child.corner[0], child.corner[1], child.corner[2]});
-    if (matters(squared))
-      squared = surface_.squared_distance({child.level, child.parent}, leaf_.level, point, enough());
-    note(squared);
-    return squared;
-  };
   if (is_far_) return;
-  (void)distance_at(1.0 / 3 * (patch.corner[0] + patch.corner[1] + patch.corner[2]));
-  for (uint32_t i = 0; i < 3; ++i) {
-    if ((patch.ridges >> i & 1U) == 0) continue;
-    (void)distance_at(patch.corner[i]);
-    compare_line(patch.corner[i], patch.corner[(i + 1) % 3], distance_at);
-  }
-  if (patch.bent_side == none) return;
-  (void)distance_at(patch.bend);
-  (void)distance_at(patch.opposite_bend());
-  compare_line(patch.bend, patch.opposite_bend(), distance_at);
+  new_faces_.clear();
+  new_faces_.add({child.corner[0], child.corner[1], child.corner[2]});
+  const auto near = [&](Vec3d point) {
+    PointNear found = new_faces_.find(point, enough());
+    if (found.triangle == none) {
+      const auto [squared, face] = surface_.nearest({child.level, child.parent}, leaf_.level, point, enough());
+      found.squared = squared;
+      found.triangle = new_faces_.add({face[0], face[1], face[2]});
+    }
+    note(found.squared);
+    return found;
+  };
+  const auto compare_line = [&](Vec3d from, Vec3d to) { compare_way(near(from), near(to), 0, new_faces_, near); };
+  (void)near(1.0 / 3 * (patch.corner[0] + patch.corner[1] + patch.corner[2]));
+  for (uint32_t i = 0; i < 3; ++i)
+    if ((patch.ridges >> i & 1U) != 0) compare_line(patch.corner[i], patch.corner[(i + 1) % 3]);
+  if (patch.bent_side != none) compare_line(patch.bend, patch.opposite_bend());
 }
 
 /// Compares the sides of a face's children, those of `children` by bits, with the result; `points` get their pieces.
@@ -243,31 +242,27 @@ void LeafComparison::compare_sides(SixPoints& points, unsigned children) {
       {3, 4, 0b1010}, {4, 5, 0b1100}, {5, 3, 0b1001}}};
   // clang-format on
   const auto at = [&](uint32_t i) -> const PointNear& {
-    if (points[i].piece == none || matters(points[i].squared)) points[i] = near_piece(points[i].point);
+    if (points[i].triangle == none || matters(points[i].squared)) points[i] = near_piece(points[i].point);
     return points[i];
   };
+  const auto near = [&](Vec3d point) { return near_piece(point); };
   for (const Side& side : sides)
-    if (!is_far_ && (side.children & children) != 0) compare_side(at(side.from), at(side.to), 0);
+    if (!is_far_ && (side.children & children) != 0) compare_way(at(side.from), at(side.to), 0, near_.prisms(), near);
 }
 
-/// Divides a side until each part is near a single piece of the result, or too short to leave it.
-void LeafComparison::compare_side(const PointNear& from, const PointNear& to, int depth) {
+/// Divides a way on one surface until each part is near a single triangle of the other, or too short to leave it.
+/// `near` returns a point with a triangle of `prisms`, and notes its distance.
+template <class Near>
+void LeafComparison::compare_way(const PointNear& from, const PointNear& to, int depth, const Prisms& prisms,
+                                 const Near& near) {
   if (is_far_ || depth == most_divisions) return;
-  if (is_near(from.piece, to) || is_near(to.piece, from)) return;
+  if (prisms.is_near(from.triangle, to, enough()) || prisms.is_near(to.triangle, from, enough())) return;
   if (squared_norm(to.point - from.point) < squared_length_of_part * enough()) return;
-  // Where pieces are nearly in one plane, the side goes from above one to above the next.
-  const double end = depth % 2 == 0 ? near_.prism(from.piece).end_above(from.point, to.point) : 1;
-  const Vec3d point = from.point + (end < 1 ? end : 0.5) * (to.point - from.point);
-  const PointNear between = near_piece(point);
-  compare_side(from, between, depth + 1);
-  compare_side(between, to, depth + 1);
-}
-
-/// Returns whether a piece is near enough to a point.
-bool LeafComparison::is_near(uint32_t piece, const PointNear& point) const {
-  double squared = 0;
-  return (piece == point.piece && point.squared <= enough()) ||
-         near_.prism(piece).is_within(point.point, enough(), squared);
+  // Where triangles are nearly in one plane, the way goes from above one to above the next.
+  const double end = depth % 2 == 0 ? prisms[from.triangle].end_above(from.point, to.point) : 1;
+  const PointNear between = near(from.point + (end < 1 ? end : 0.5) * (to.point - from.point));
+  compare_way(from, between, depth + 1, prisms, near);
+  compare_way(between, to, depth + 1, prisms, near);
 }
 
 /// Returns a point of the surface with a piece of the result that is near enough, if any, and notes the distance.
@@ -275,21 +270,6 @@ PointNear LeafComparison::near_piece(Vec3d point) {
   const PointNear found = near_.near(point, enough());
   note(found.squared);
   return found;
-}
-
-/// Measures distances at the middle of a line and on both sides of the furthest point so far, ever closer to it.
-template <class DistanceAt>
-void LeafComparison::compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at) {
-  double furthest = 0.5;
-  double most = distance_at(middle_of(from, to));
-  if (most < quiet * enough()) return;
-  for (const double step : {0.25, 0.125, 0.0625})
-    for (const double share : {furthest - step, furthest + step}) {
-      const double squared = distance_at(from + share * (to - from));
-      if (squared <= most) continue;
-      most = squared;
-      furthest = share;
-    }
 }
 
 /// Returns whether a patch is near enough to the surface at a child, without looking for nearest points: its points are
@@ -357,7 +337,7 @@ double LeafComparison::largest_sum_below(uint32_t k, FaceId f) const {
 /// Returns a new vertex with its squared distance from the result; where that is at most `enough`, an upper bound which
 /// is at most `enough` too. `place`: of the vertex in the result.
 PointNear LeafComparison::find_near(Vec3d made, Vec3d place, double enough) {
-  if (const PointNear beside = near_.beside(made, enough); beside.piece != none) return beside;
+  if (const PointNear beside = near_.beside(made, enough); beside.triangle != none) return beside;
   const double apart = squared_norm(made - place);
   return apart <= enough ? PointNear{made, apart} : near_.near(made, enough);
 }

@@ -84,11 +84,9 @@ class LeafComparison {
   void compare_children(const Face& face, const Points& corner, const Patches& below);
   void compare_patch(const Child& child, const Patch& patch);
   void compare_sides(SixPoints& points, unsigned children);
-  void compare_side(const PointNear& from, const PointNear& to, int depth);
-  [[nodiscard]] bool is_near(uint32_t piece, const PointNear& point) const;
   [[nodiscard]] PointNear near_piece(Vec3d point);
-  template <class DistanceAt>
-  void compare_line(Vec3d from, Vec3d to, const DistanceAt& distance_at);
+  template <class Near>
+  void compare_way(const PointNear& from, const PointNear& to, int depth, const Prisms& prisms, const Near& near);
   void add_rest(const Face& face, const Patches& below);
 
   [[nodiscard]] bool is_surely_near(const Child& child, const Patch& patch);
@@ -103,6 +101,7 @@ class LeafComparison {
   ResultSurface result_;
   LevelSurface surface_{result_};
   NearPieces near_{result_};
+  Prisms new_faces_;  ///< of the surface, near the patch at hand
   const std::vector<Buffer<float>>& sums_;
   uint32_t level_count_;
   const AllowedDistance& allowed_;

@@ -1,54 +1,56 @@
 #include "hierarchy/level_surface.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "hierarchy/patch.h"
-#include "simd/extremes.h"
 
 namespace papilio {
 namespace {
 
 constexpr size_t most_faces_visited = 64, most_new_faces_visited = 8;
 
-double squared_distance_to(const Corners& triangle, Vec3d point) {
-  return squared_distance(point, {triangle[0], triangle[1], triangle[2]});
+LevelSurface::Nearest nearest_of(const Corners& face, Vec3d point) {
+  return {squared_distance(point, {face[0], face[1], face[2]}), face};
+}
+
+const LevelSurface::Nearest& nearer(const LevelSurface::Nearest& one, const LevelSurface::Nearest& other) {
+  return other.squared < one.squared ? other : one;
 }
 
 }  // namespace
 
-double LevelSurface::squared_distance(LevelFace from, uint32_t coarsest, Vec3d point, double enough) {
+LevelSurface::Nearest LevelSurface::nearest(LevelFace from, uint32_t coarsest, Vec3d point, double enough) {
   auto [k, f] = from;
-  double least = std::numeric_limits<double>::infinity();
+  Nearest found;
   for (;; --k) {
-    least = lesser(least, squared_distance_to_level(k, f, point, enough));
-    if (least > enough && result_->has_children(k, f))
-      least = lesser(least, squared_distance_where_it_slid(k, f, point, enough));
-    if (least <= enough || k == coarsest) return least;
+    found = nearer(found, nearest_of_level(k, f, point, enough));
+    if (found.squared > enough && result_->has_children(k, f))
+      found = nearer(found, nearest_where_it_slid(k, f, point, enough));
+    if (found.squared <= enough || k == coarsest) return found;
     f = result_->level(k).parent_of(f);
   }
 }
 
-double LevelSurface::squared_distance_to_level(uint32_t k, FaceId f, Vec3d point, double enough) {
+LevelSurface::Nearest LevelSurface::nearest_of_level(uint32_t k, FaceId f, Vec3d point, double enough) {
   if (!result_->has_children(k, f))
-    if (const double squared = squared_distance_by_walk(k, f, point); squared <= enough) return squared;
+    if (const Nearest found = nearest_by_walk(k, f, point); found.squared <= enough) return found;
   visited_.assign(1, walk_towards(k, f, point));
-  double least = squared_distance_to_children(k, visited_[0], point, enough);
-  for (size_t at = 0; at < visited_.size() && least > enough; ++at)
+  Nearest found = nearest_below(k, visited_[0], point, enough);
+  for (size_t at = 0; at < visited_.size() && found.squared > enough; ++at)
     for (uint32_t i = 0; i < 3; ++i) {
       const uint32_t twin = twin_in_region(k, 3 * visited_[at] + i);
       if (twin == none || visited_.size() == most_faces_visited ||
           std::ranges::count(visited_, Topology::face(twin)) > 0)
         continue;
-      const double distance = squared_distance_to_children(k, Topology::face(twin), point, enough);
-      if (distance > least) continue;
-      least = distance;
+      const Nearest across = nearest_below(k, Topology::face(twin), point, enough);
+      if (across.squared > found.squared) continue;
+      found = across;
       visited_.push_back(Topology::face(twin));
     }
-  return least;
+  return found;
 }
 
-double LevelSurface::squared_distance_by_walk(uint32_t k, FaceId f, Vec3d point) const {
+LevelSurface::Nearest LevelSurface::nearest_by_walk(uint32_t k, FaceId f, Vec3d point) const {
   std::array<Corners, 4> children = new_faces(k, f);
   uint32_t c = 3;
   for (size_t step = 0; step < most_new_faces_visited; ++step) {
@@ -67,15 +69,15 @@ double LevelSurface::squared_distance_by_walk(uint32_t k, FaceId f, Vec3d point)
       children = new_faces(k, f);
     }
   }
-  return squared_distance_to(children[c], point);
+  return nearest_of(children[c], point);
 }
 
-double LevelSurface::squared_distance_to_children(uint32_t k, FaceId f, Vec3d point, double enough) const {
+LevelSurface::Nearest LevelSurface::nearest_below(uint32_t k, FaceId f, Vec3d point, double enough) const {
   for (; result_->has_children(k, f); ++k) f = result_->first_child(k, f) + child_below(k, f, point);
-  return squared_distance_to_new_faces(k, f, point, enough);
+  return nearest_new_face(k, f, point, enough);
 }
 
-double LevelSurface::squared_distance_where_it_slid(uint32_t k, FaceId f, Vec3d point, double enough) const {
+LevelSurface::Nearest LevelSurface::nearest_where_it_slid(uint32_t k, FaceId f, Vec3d point, double enough) const {
   f = walk_towards(k, f, point);
   while (result_->has_children(k, f)) {
     f = result_->first_child(k, f) + child_below(k, f, point);
@@ -84,16 +86,16 @@ double LevelSurface::squared_distance_where_it_slid(uint32_t k, FaceId f, Vec3d 
     const uint32_t beside = walk_towards(k, f, point);
     if (result_->has_children(k, beside) || !result_->has_children(k, f)) f = beside;
   }
-  return squared_distance_to_new_faces(k, f, point, enough);
+  return nearest_new_face(k, f, point, enough);
 }
 
-double LevelSurface::squared_distance_to_new_faces(uint32_t k, FaceId f, Vec3d point, double enough) const {
+LevelSurface::Nearest LevelSurface::nearest_new_face(uint32_t k, FaceId f, Vec3d point, double enough) const {
   const std::array<Corners, 4> children = new_faces(k, f);
   const uint32_t first = child_below(k, f, point);
-  double least = squared_distance_to(children[first], point);
-  for (uint32_t c = 0; c < 4 && least > enough; ++c)
-    if (c != first) least = lesser(least, squared_distance_to(children[c], point));
-  return least;
+  Nearest found = nearest_of(children[first], point);
+  for (uint32_t c = 0; c < 4 && found.squared > enough; ++c)
+    if (c != first) found = nearer(found, nearest_of(children[c], point));
+  return found;
 }
 
 std::array<Corners, 4> LevelSurface::new_faces(uint32_t k, FaceId f) const {
