@@ -117,24 +117,7 @@ void LeafComparison::compare(const LevelFace& leaf) {
   for (uint32_t i = 0; i < 3; ++i)
     if ((mask >> i & 1U) != 0) middle[i] = made[i];
   compare({.level = k, .face = f, .corner = corner, .made = made, .middle = middle},
-          {{{corner[0], 0}, {corner[1], 0}, {corner[2], 0}}},
-          patches_over_leaf(result_, leaf, {corner, made, middle}, sides_to_compare()));
-}
-
-/// Returns the leaf's sides to compare, by bits. A side between two leaves belongs to the finer one, below which as
-/// much was explored; to both where the other is not compared.
-unsigned LeafComparison::sides_to_compare() {
-  const auto [k, f] = leaf_;
-  const Topology& mesh = result_.topology(k);
-  unsigned sides = 0;
-  for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
-    result_.find_beside(leaf_, h % 3, beside_);
-    const bool is_own =
-        beside_.empty() || beside_[0].level < k || (beside_[0].level == k && mesh.half_edge[mesh.edge[h]] == h);
-    const auto is_left_out = [&](const LevelFace& beside) { return is_surely_near(beside); };
-    if (is_own || std::ranges::any_of(beside_, is_left_out)) sides |= 1U << h % 3;
-  }
-  return sides;
+          {{{corner[0], 0}, {corner[1], 0}, {corner[2], 0}}}, patches_over_leaf(result_, leaf, {corner, made, middle}));
 }
 
 void LeafComparison::compare_below(uint32_t k, FaceId f, const Patch& patch, const Points& corner) {

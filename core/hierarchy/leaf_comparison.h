@@ -76,7 +76,6 @@ class LeafComparison {
   [[nodiscard]] bool is_surely_near(const LevelFace& leaf) const;
 
   void compare(const LevelFace& leaf);
-  [[nodiscard]] unsigned sides_to_compare();
   void compare_below(uint32_t k, FaceId f, const Patch& patch, const Points& corner);
   void compare(const Face& face, const Points& corner, const Patches& below);
   [[nodiscard]] SixPoints points_of(const Face& face, const Points& corner, double enough);
@@ -115,7 +114,6 @@ class LeafComparison {
   bool stops_at_limit_ = false;  ///< a distance above the limit ends the comparison of a leaf
   LevelFace leaf_{};             ///< at hand
   bool is_far_ = false;          ///< a distance above the limit was found
-  std::vector<LevelFace> beside_;
 };
 
 }  // namespace papilio

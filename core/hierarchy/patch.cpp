@@ -32,11 +32,11 @@ Patches patches_below(const Patch& patch, const Corners& middle) {
   return below;
 }
 
-Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, const LeafCorners& at, unsigned ridges) {
+Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, const LeafCorners& at) {
   const auto [k, f] = leaf;
   const auto& [corner, made, middle] = at;
   const unsigned mask = result.choice(k).split_mask(f);
-  Patches below = patches_over(corner, middle, ridges);
+  Patches below = patches_over(corner, middle, 0b111);
   const auto add_ridge_inside = [&](uint32_t child) { below[child].ridges |= 1U << inner_side[child]; };
   const uint32_t i = first_target[mask];
   const uint32_t opposite = (i + 2) % 3;

@@ -70,9 +70,7 @@ struct LeafCorners {
   const Corners &corner, &made, &middle;
 };
 
-/// Returns the pieces of an undivided face as patches over its children. `ridges`: sides, by bits, at which the result
-/// may be bent.
-[[nodiscard]] Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, const LeafCorners& at,
-                                        unsigned ridges);
+/// Returns the pieces of an undivided face as patches over its children.
+[[nodiscard]] Patches patches_over_leaf(const ResultSurface& result, const LevelFace& leaf, const LeafCorners& at);
 
 }  // namespace papilio
