@@ -21,7 +21,7 @@ using proto::detail::Packed;
 
 bool has_morph_targets(const proto::gltf::Json& scene) {
   return std::ranges::any_of(proto::gltf::array_of(scene, "meshes"), [](const auto& mesh) {
-    return std::ranges::any_of(mesh.at("primitives"),
+    return std::ranges::any_of(proto::gltf::array_of(mesh, "primitives"),
                                [](const auto& primitive) { return primitive.contains("targets"); });
   });
 }

@@ -286,7 +286,6 @@ class SliverRemover {
   const Buffer<Vec3f>& positions_;
   double distance_;
   const Poller& poller_;
-  uint32_t steps_ = 0;
   Buffer<uint32_t> origin_;        // [H]
   Buffer<uint32_t> twin_;          // [H]
   Buffer<uint32_t> point_;         // [H] points, or vertices without attributes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -16,10 +17,12 @@ namespace papilio {
 class Prism {
  public:
   explicit Prism(const TriangleCorners& triangle) : corner_{triangle.a, triangle.b, triangle.c} {
-    const Vec3d area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
-    const double size = length(area);
-    if (!(size > 0)) return;
-    normal_ = 1 / size * area;
+    constexpr double least_sine_squared = 1e-8;  // of less the normal may be mere rounding error
+    const Vec3d ab = triangle.b - triangle.a, ac = triangle.c - triangle.a;
+    const Vec3d area = cross(ab, ac);
+    const double squared_size = dot(area, area);
+    if (!(squared_size > least_sine_squared * dot(ab, ab) * dot(ac, ac))) return;
+    normal_ = 1 / std::sqrt(squared_size) * area;
     for (uint32_t i = 0; i < 3; ++i) {
       const Vec3d side = corner_[(i + 1) % 3] - corner_[i];
       inward_[i] = cross(normal_, side);
@@ -57,7 +60,7 @@ class Prism {
 
  private:
   Corners corner_;
-  Vec3d normal_{};    ///< of length one; zero of a triangle without area
+  Vec3d normal_{};    ///< of length one; zero of a triangle nearly without area
   Corners inward_{};  ///< normals of the sides in the triangle's plane, as long as the sides
   std::array<double, 3> squared_side_{};
 };
