@@ -45,8 +45,7 @@ constexpr uint32_t few_samples = 20'000, many_samples = 60'000;
 class Simplification {
  public:
   Simplification(const TriangleMesh& original, const SimplifyOptions& options, const MeshCoder& code)
-      : options_(options),
-        poller_([&options] {
+      : poller_([&options] {
           if (options.cancelled && options.cancelled()) throw Error(Fault::cancelled, "Simplification was cancelled.");
         }),
         code_(code),
@@ -146,7 +145,6 @@ class Simplification {
         std::move(coded.triangles), {distance.rms / diagonal, distance.largest / diagonal}, coded.bytes, grid};
   }
 
-  const SimplifyOptions& options_;
   Poller poller_;
   const MeshCoder& code_;
   SurfaceTree tree_;  // original
