@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "detail/base_points.h"
 #include "detail/detail_level.h"
 #include "detail/seams.h"
 #include "detail/surface_tree.h"
@@ -34,7 +35,7 @@ std::vector<FaceMatch> match_faces(const Mesh& mesh, const std::vector<uint32_t>
     const uint32_t* v = &mesh.topology.origin[h];
     const auto found = by_corners.find({number[v[0]], number[v[1]], number[v[2]]});
     if (found == by_corners.end() || mesh.topology.face_count() != base.face.size())
-      throw Error(Fault::bad_surface, "Vertices of the base are closer to each other than its coder moves them.");
+      throw Error(Fault::bad_surface, "The coder of the base moved vertices onto others.");
     matches.push_back(found->second);
   }
   return matches;
@@ -57,11 +58,12 @@ void mark_curves(Topology& topology, const std::vector<uint32_t>& number, const 
 
 }  // namespace
 
-LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
+LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const CodedBase& coded,
                      const OriginalSurface& original, int levels, const Poller& poller) {
   LiftedBase lifted;
-  lifted.mesh = build_mesh(decoded);
-  const std::vector<uint32_t> number = nearest_points(lifted.mesh.positions, base.triangles.positions);
+  lifted.mesh = build_mesh(coded.triangles);
+  const std::vector<uint32_t> number =
+      nearest_points(lifted.mesh.positions, moved_vertices(base, original.mesh(), coded));
   lifted.faces = match_faces(lifted.mesh, number, base);
   mark_curves(lifted.mesh.topology, number, lifted.faces, base);
   for (const uint32_t n : number) lifted.vertex.push_back(base.vertex[n]);

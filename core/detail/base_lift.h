@@ -7,6 +7,7 @@
 #include "detail/collapse_sequence.h"
 #include "detail/edge_middles.h"
 #include "detail/original_surface.h"
+#include "papilio/detail.h"
 #include "papilio/mesh.h"
 
 namespace papilio {
@@ -27,8 +28,8 @@ struct LiftedBase {
 };
 
 /// Matches the vertices and faces of the decoded base with those of `base`, and lifts the new vertices of `levels`
-/// levels. Throws `Error` bad_surface if the coder moved vertices too far.
-[[nodiscard]] LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const TriangleMesh& decoded,
+/// levels. Throws `Error` bad_surface if the coder moved vertices onto others.
+[[nodiscard]] LiftedBase lift_base(const CollapseSequence& sequence, const BaseMesh& base, const CodedBase& coded,
                                    const OriginalSurface& original, int levels, const Poller& poller);
 
 }  // namespace papilio

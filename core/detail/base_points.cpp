@@ -30,6 +30,15 @@ TriangleMesh points_of_base(const BaseMesh& base, const Mesh& original) {
   return made;
 }
 
+Buffer<Vec3f> moved_vertices(const BaseMesh& base, const Mesh& original, const CodedBase& coded) {
+  Buffer<Vec3f> places = base.triangles.positions;
+  if (coded.moved.empty()) return places;
+  const TriangleMesh points = points_of_base(base, original);
+  for (size_t f = 0; f < points.triangles.size(); ++f)
+    for (size_t i = 0; i < 3; ++i) places[base.triangles.triangles[f][i]] = coded.moved[points.triangles[f][i]];
+  return places;
+}
+
 std::vector<Vec3d> sliding_normals(const BaseMesh& base, const OriginalSurface& original) {
   std::vector<Vec3d> normals;
   if (!base.point.empty()) return normals;

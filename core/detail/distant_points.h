@@ -9,7 +9,7 @@ namespace papilio {
 /// Bounds of reach_distant_points(), in the mesh's unit.
 struct DistantBounds {
   double most = 0;         ///< distance beyond which a point is distant
-  double sheet_reach = 0;  ///< as of count_folds()
+  double sheet_reach = 0;  ///< as of find_folds()
 };
 
 /// Moves new vertices of the last level onto points of the original that are distant from the surface: vertices and

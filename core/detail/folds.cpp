@@ -14,12 +14,19 @@ bool is_fold(const OriginalSurface& original, const TriangleCorners& face, doubl
          (normal == Vec3d{} || original.tree().nearest(centre, reach, normal).face == none);
 }
 
-uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach, const Poller& poller) {
-  uint32_t folds = 0;
+Folds find_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach, const Poller& poller) {
+  Folds folds;
+  double area = 0;
   for (uint32_t f = 0; f < surface.surface().triangles.size(); ++f) {
     poller.step();
-    if (is_fold(original, surface.corners(f), reach)) ++folds;
+    const TriangleCorners face = surface.corners(f);
+    const double of_face = length(cross(face.b - face.a, face.c - face.a));
+    area += of_face;
+    if (!is_fold(original, face, reach)) continue;
+    ++folds.faces;
+    folds.area += of_face;
   }
+  if (area > 0) folds.area /= area;
   return folds;
 }
 

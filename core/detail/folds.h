@@ -13,8 +13,14 @@ namespace papilio {
 /// within `reach`. O(log F).
 [[nodiscard]] bool is_fold(const OriginalSurface& original, const TriangleCorners& face, double reach);
 
-/// Counts the folds of a surface. O(F log F).
-[[nodiscard]] uint32_t count_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach,
-                                   const Poller& poller = {});
+/// Folds of a surface.
+struct Folds {
+  uint32_t faces = 0;
+  double area = 0;  ///< share of the surface's area
+};
+
+/// Finds the folds of a surface. O(F log F).
+[[nodiscard]] Folds find_folds(const OriginalSurface& original, const SurfaceTree& surface, double reach,
+                               const Poller& poller = {});
 
 }  // namespace papilio

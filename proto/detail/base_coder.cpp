@@ -1,10 +1,11 @@
 #include "proto/detail/base_coder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -29,51 +30,65 @@ struct Grid {
   [[nodiscard]] double step() const { return double{box.range} / last(); }
 };
 
-/// Returns, of the grid points around a position on a surface with a unit normal, the one nearest across the surface:
-/// along it, any serves. Nothing if none is within `most_move` across the surface and `most_slide` in all.
-std::optional<Vec3f> point_on_surface(Vec3f position, Vec3d normal, const Grid& grid, double most_move,
-                                      double most_slide) {
-  const Vec3d origin = to_double(grid.box.origin);
-  const Vec3d from = to_double(position) - origin;
-  const double step = grid.step();
-  // Calls visit(x) for the grid lines around a coordinate.
-  const auto for_each_line = [&](double coordinate, const auto& visit) {
-    const auto nearest = static_cast<int>(std::lround(coordinate / step));
-    const int last = std::min(nearest + cells_around, grid.last());
-    for (int i = std::max(nearest - cells_around, 0); i <= last; ++i) visit(step * i);
-  };
-  double least = std::numeric_limits<double>::infinity();
-  std::optional<Vec3f> best;
-  for_each_line(from.x, [&](double x) {
-    for_each_line(from.y, [&](double y) {
-      for_each_line(from.z, [&](double z) {
-        const Vec3d move = Vec3d{x, y, z} - from;
-        const double far = length(move), across = std::abs(dot(move, normal));
-        const double cost = across + weight_of_slide * far;
-        if (across > most_move || far > most_slide || cost >= least) return;
-        least = cost;
-        best = to_float(origin + Vec3d{x, y, z});
+/// Bounds of the moves of vertices, lengths: across the surface, and in all. A vertex without a normal moves by at most
+/// `across` in all.
+struct MostMove {
+  double across = 0, slide = 0;
+};
+
+/// Places vertices on a grid, each on a point of its own.
+class GridPlaces {
+ public:
+  GridPlaces(const Grid& grid, MostMove most) : grid_(grid), most_(most) {}
+
+  /// Returns, of the free grid points around a position on a surface with a unit normal, the one nearest across the
+  /// surface: along it, any serves. Without a normal (zero), the nearest. Nothing if none is within the bounds.
+  std::optional<Vec3f> take(Vec3f position, Vec3d normal) {
+    const bool slides = normal != Vec3d{};
+    const Vec3d origin = to_double(grid_.box.origin);
+    const Vec3d from = to_double(position) - origin;
+    const double step = grid_.step();
+    // Calls visit(i) for the numbers of the grid lines around a coordinate.
+    const auto for_each_line = [&](double coordinate, const auto& visit) {
+      const auto nearest = static_cast<int>(std::lround(coordinate / step));
+      const int last = std::min(nearest + cells_around, grid_.last());
+      for (int i = std::max(nearest - cells_around, 0); i <= last; ++i) visit(i);
+    };
+    double least = std::numeric_limits<double>::infinity();
+    std::array<int, 3> best{};
+    for_each_line(from.x, [&](int i) {
+      for_each_line(from.y, [&](int j) {
+        for_each_line(from.z, [&](int k) {
+          const Vec3d move = step * Vec3d{double(i), double(j), double(k)} - from;
+          const double far = length(move), across = slides ? std::abs(dot(move, normal)) : far;
+          const double cost = across + weight_of_slide * far;
+          if (across > most_.across || (slides && far > most_.slide) || cost >= least || taken_.contains({i, j, k}))
+            return;
+          least = cost;
+          best = {i, j, k};
+        });
       });
     });
-  });
-  return best;
-}
+    if (!std::isfinite(least)) return std::nullopt;
+    taken_.insert(best);
+    return to_float(origin + step * Vec3d{double(best[0]), double(best[1]), double(best[2])});
+  }
 
-/// Returns the positions, those of vertices with normals moved onto the grid: Draco rounds the others. Nothing if the
-/// grid is too coarse: no vertex may move by more than its `room` [V], nor by more than `most_move` across the surface.
-std::optional<Buffer<Vec3f>> slide_onto(const Grid& grid, Buffer<Vec3f> positions, const std::vector<Vec3d>& normals,
-                                        const std::vector<double>& room, double most_move, double most_slide) {
-  const double rounding = 0.5 * std::sqrt(3.0) * grid.step();
+ private:
+  Grid grid_;
+  MostMove most_;
+  std::set<std::array<int, 3>> taken_;
+};
+
+/// Returns the positions moved onto the grid, each to a point of its own. Nothing if the grid is too coarse for the
+/// bounds.
+std::optional<Buffer<Vec3f>> move_onto(const Grid& grid, Buffer<Vec3f> positions, const std::vector<Vec3d>& normals,
+                                       MostMove most) {
+  GridPlaces places(grid, most);
   for (size_t v = 0; v < positions.size(); ++v) {
-    const double most = std::min(most_move, room[v]);
-    if (dot(normals[v], normals[v]) > 0) {
-      const std::optional<Vec3f> point =
-          point_on_surface(positions[v], normals[v], grid, most, std::min(most_slide, room[v]));
-      if (!point) return std::nullopt;
-      positions[v] = *point;
-    } else if (rounding > most) {
-      return std::nullopt;
-    }
+    const std::optional<Vec3f> place = places.take(positions[v], normals[v]);
+    if (!place) return std::nullopt;
+    positions[v] = *place;
   }
   return positions;
 }
@@ -92,30 +107,6 @@ double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// Returns for each point [V] half the distance to the nearest other one. A point that moves by less is still nearer to
-/// where it was than any other.
-std::vector<double> rooms(const Buffer<Vec3f>& points) {
-  const Box box = bounding_box(points);
-  const Vec3d size = to_double(box.max) - to_double(box.min);
-  const auto along = [&](uint32_t i) {
-    return size.x >= std::max(size.y, size.z) ? points[i].x : size.y >= size.z ? points[i].y : points[i].z;
-  };
-  std::vector<uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, along);
-  std::vector<double> least(points.size(), std::numeric_limits<double>::infinity());
-  for (size_t i = 0; i < order.size(); ++i)
-    for (size_t j = i + 1; j < order.size(); ++j) {
-      const uint32_t a = order[i], b = order[j];
-      if (double{along(b)} - double{along(a)} > least[a]) break;
-      const double distance = length(to_double(points[b]) - to_double(points[a]));
-      least[a] = std::min(least[a], distance);
-      least[b] = std::min(least[b], distance);
-    }
-  for (double& distance : least) distance *= 0.5;
-  return least;
-}
-
 /// Returns whether a decoded base has all vertices and faces of the original base, with distinct positions.
 bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
   if (decoded.triangles.size() != base.topology.face_count()) return false;
@@ -126,8 +117,7 @@ bool keeps_surface(const Mesh& base, const TriangleMesh& decoded) {
     if (error.fault() != Fault::no_faces) throw;
     return false;
   }
-  const uint32_t welded = decoded.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
-  return welded + found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
+  return found.isolated_points + found.degenerate_faces + found.repeated_faces == 0;
 }
 
 }  // namespace
@@ -147,13 +137,11 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> 
   const Mesh mesh = build_mesh(base);
   const std::vector<Vec3d> normal_of = reordered(normals, base, mesh);
   const QuantizationBox box = tight_box(bounding_box(mesh.positions));
-  const std::vector<double> room = rooms(mesh.positions);
   for (int bits = fewest_position_bits;; ++bits) {
-    const std::optional<Buffer<Vec3f>> moved =
-        slide_onto({box, bits}, mesh.positions, normal_of, room, most_move_, most_slide_);
+    std::optional<Buffer<Vec3f>> moved = move_onto({box, bits}, mesh.positions, normal_of, {most_move_, most_slide_});
     if (!moved && bits < most_position_bits) continue;
     Mesh rounded = mesh;
-    if (moved) rounded.positions = *moved;
+    if (moved) rounded.positions = std::move(*moved);
     std::optional<PartStreams> smallest;
     for (const int speed : {0, 3}) {
       PartStreams coded = write_parts(rounded, box, {.position_bits = bits, .speed = speed});
@@ -165,7 +153,10 @@ CodedBase DracoBaseCoder::code(const TriangleMesh& base, std::span<const Vec3d> 
       throw Error(Fault::bad_surface, "Vertices of the base are closer to each other than a grid of " +
                                           std::to_string(most_position_bits) + " bits can part.");
     coded_.push_back(std::move(*smallest));
-    return {coded_.back().decoded, coded_.back().bytes()};
+    CodedBase coded{coded_.back().decoded, coded_.back().bytes(), base.positions};
+    for (uint32_t h = 0; h < mesh.topology.half_edge_count(); ++h)
+      coded.moved[base.triangles[h / 3][h % 3]] = rounded.positions[mesh.topology.origin[h]];
+    return coded;
   }
 }
 

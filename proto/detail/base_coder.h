@@ -21,9 +21,9 @@ inline constexpr int fewest_position_bits = 6, most_position_bits = 20;
 /// Returns the largest distance by which a grid of `position_bits` in the `tight_box` moves a position.
 [[nodiscard]] double tight_grid_distance(const Box& box, int position_bits);
 
-/// Coder of bases by Draco, with the fewest bits of a coordinate that keep every vertex nearer to its place than to any
-/// other and move none by more than `most_move`, a length, or across its surface by that and along it by `most_slide`.
-/// Tries the speeds 0 and 3 and takes the smaller stream: for few vertices often 3, by 2 to 9 %.
+/// Coder of bases by Draco, with the fewest bits of a coordinate that give every vertex a grid point of its own and
+/// move none by more than `most_move`, a length, or across its surface by that and in all by `most_slide`. Tries the
+/// speeds 0 and 3 and takes the smaller stream: for few vertices often 3, by 2 to 9 %.
 class DracoBaseCoder {
  public:
   explicit DracoBaseCoder(double most_move, double most_slide = 0) : most_move_(most_move), most_slide_(most_slide) {}

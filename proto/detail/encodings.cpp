@@ -61,7 +61,8 @@ Encoding Encodings::encode_at(double rms, size_t number) {
   const EncodedDetail encoded = encode_detail(
       surface_, options,
       [&](const TriangleMesh& base, std::span<const Vec3d> normals) { return coder.code(base, normals); });
-  Encoding made{.wanted_rms = rms, .folds = encoded.folds, .parted = encoded.parted};
+  Encoding made{
+      .wanted_rms = rms, .folds = encoded.folds, .parted = encoded.parted, .folded_area = encoded.folded_area};
   made.glb = write_packed(encoded, coder.streams_of(encoded.base.triangles), materials_);
   made.model = read_packed(made.glb, {.limits = {face_count_limit, face_count_limit, face_count_limit}});
   show(number, 1);

@@ -16,6 +16,7 @@ struct Encoding {
   std::string glb{};
   PackedModel model{};             ///< model read back from the file
   uint32_t folds = 0, parted = 0;  ///< `EncodedDetail::folds` and `parted`
+  double folded_area = 0;          ///< `EncodedDetail::folded_area`
 };
 
 /// Encoder of one surface at several distances. Encodings do not depend on each other or on the threads.

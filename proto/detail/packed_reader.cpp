@@ -261,8 +261,7 @@ class PackedReader {
   static uint64_t edges_of(const TriangleMesh& base) {
     BuildReport found;
     const Mesh mesh = translate_errors([&] { return build_mesh(base, &found); });
-    const uint32_t welded = base.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
-    const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+    const uint32_t changed = found.isolated_points + found.degenerate_faces + found.repeated_faces;
     if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
       throw Problem(Code::mesh_unusable, "The base is not a manifold surface. Pack the original again.");
     return mesh.topology.edge_count();

@@ -17,7 +17,7 @@ DetailSource pack_levels(const TriangleMesh& triangles, const PackedLevels& opti
   sequence.collapse_to(options.base_faces);
   const BaseMesh base = sequence.base();
   const LiftedBase lifted =
-      lift_base(sequence, base, points_of_base(base, original.mesh()), original, options.levels, {});
+      lift_base(sequence, base, {.triangles = points_of_base(base, original.mesh())}, original, options.levels, {});
   const ResidualFit fit(original, lifted.mesh.positions,
                         place_on_original(original, lifted, options.levels, {.last = options.step}, {}), {});
   const PieceOrder order(lifted.mesh);

@@ -94,10 +94,12 @@ TEST(Folds, OppositeSheetOfAThinPartIsNoFold) {
   const OriginalSurface original(build_mesh(lower));
   TriangleMesh moved = sheet;  // nearer to the other sheet
   for (Vec3f& p : moved.positions) p.z -= 0.008F;
-  EXPECT_EQ(count_folds(original, SurfaceTree(moved), 0.02), 0U);
-  EXPECT_EQ(count_folds(original, SurfaceTree(moved), 0.005), moved.triangles.size());
+  EXPECT_EQ(find_folds(original, SurfaceTree(moved), 0.02).faces, 0U);
+  EXPECT_EQ(find_folds(original, SurfaceTree(moved), 0.005).faces, moved.triangles.size());
   std::swap(moved.triangles[5][0], moved.triangles[5][1]);
-  EXPECT_EQ(count_folds(OriginalSurface(build_mesh(sheet)), SurfaceTree(moved), 0.02), 1U);
+  const Folds folds = find_folds(OriginalSurface(build_mesh(sheet)), SurfaceTree(moved), 0.02);
+  EXPECT_EQ(folds.faces, 1U);
+  EXPECT_NEAR(folds.area, 1.0 / static_cast<double>(moved.triangles.size()), 1e-6);
 }
 
 TEST(SurfaceWalk, WalkEndsAtTheIntersection) {
@@ -175,7 +177,7 @@ TEST_P(Collapses, LiftIsABijectionThatKeepsVertices) {
   }
   // Dyadic points of the base form a surface on the original that covers it.
   constexpr int levels = 4;
-  const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, levels, {});
+  const LiftedBase lifted = lift_base(sequence, base, {.triangles = base.triangles}, original, levels, {});
   DetailLevel level(lifted.mesh.topology);
   TriangleMesh surface{.positions = lifted.mesh.positions, .triangles = {}};
   for (const auto& places : lifted.places) {
@@ -217,7 +219,7 @@ TEST(Encoder, LongSearchesCanBeStopped) {
   EXPECT_THROW((void)CollapseSequence(original.mesh(), {}, stop), Stop);
   EXPECT_THROW((void)surface_distance(tree, tree, 10'000, stop), Stop);
   EXPECT_THROW((void)vertex_distance(tree, tree, stop), Stop);
-  EXPECT_THROW((void)count_folds(original, tree, 0.1, stop), Stop);
+  EXPECT_THROW((void)find_folds(original, tree, 0.1, stop), Stop);
   EXPECT_THROW(weigh_errors(original, tree.surface(), weights, stop), Stop);
 }
 
@@ -228,7 +230,7 @@ TEST(BaseLift, OtherBaseIsRefused) {
   const BaseMesh base = sequence.base();
   TriangleMesh merged = base.triangles;
   for (Vec3f& p : merged.positions) p = {std::round(p.x), std::round(p.y), std::round(p.z)};
-  EXPECT_THROW((void)lift_base(sequence, base, merged, original, 1, {}), Error);
+  EXPECT_THROW((void)lift_base(sequence, base, {.triangles = merged}, original, 1, {}), Error);
 }
 
 }  // namespace

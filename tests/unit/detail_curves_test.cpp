@@ -249,7 +249,7 @@ TEST_P(CurvedCollapses, LiftMapsCurvesToCurvesAndCoversTheOriginal) {
   sequence.collapse_to(120);
   const BaseMesh base = sequence.base();
   constexpr int levels = 4;
-  const LiftedBase lifted = lift_base(sequence, base, base.triangles, surface, levels, {});
+  const LiftedBase lifted = lift_base(sequence, base, {.triangles = base.triangles}, surface, levels, {});
   const auto same_share = [&](EdgeKind kind) {
     return (count(lifted.mesh.topology, kind) == 0) == (count(surface.mesh().topology, kind) == 0);
   };
@@ -278,7 +278,7 @@ TEST_P(CurvedCollapses, BaseAndCurvesRoundTrip) {
   CollapseSequence sequence(surface.mesh());
   sequence.collapse_to(100);
   const BaseMesh base = sequence.base();
-  const LiftedBase lifted = lift_base(sequence, base, base.triangles, surface, 1, {});
+  const LiftedBase lifted = lift_base(sequence, base, {.triangles = base.triangles}, surface, 1, {});
   const Topology& marked = lifted.mesh.topology;
   Topology plain = build_mesh(base.triangles).topology;
   decode_base_curves(encode_base_curves(marked), plain);

@@ -133,7 +133,7 @@ TEST(Detail, ResidualsOfSmoothSurfacesShrink) {
     CollapseSequence sequence(original.mesh());
     sequence.collapse_to(400);
     const BaseMesh base = sequence.base();
-    const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, 3, {});
+    const LiftedBase lifted = lift_base(sequence, base, {.triangles = base.triangles}, original, 3, {});
     const PlacedLevels placed = place_on_original(original, lifted, 3, {.last = 1e-6F, .ratio = 1}, {});
     double before = 0;
     for (const Residuals& residuals : placed.residuals) {
@@ -154,7 +154,7 @@ TEST(Detail, SavingBitsInvertsAlmostNoFaces) {
   sequence.collapse_to(400);
   const BaseMesh base = sequence.base();
   constexpr int levels = 3;
-  const LiftedBase lifted = lift_base(sequence, base, base.triangles, original, levels, {});
+  const LiftedBase lifted = lift_base(sequence, base, {.triangles = base.triangles}, original, levels, {});
   const StepSchedule steps{.last = static_cast<float>(0.004 * original.diagonal())};
   ResidualFit fit(original, lifted.mesh.positions, place_on_original(original, lifted, levels, steps, {}), {});
   const TriangleMesh placed = fit.surface(levels);

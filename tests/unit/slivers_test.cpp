@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -147,6 +148,37 @@ TEST(Slivers, SeamsAreKept) {
     const auto value = [&](uint32_t at) { return made.attributes.attributes[0].values[made.attributes.point[at]]; };
     EXPECT_EQ(value(h), value(Topology::next(h)));
   }
+}
+
+/// Inserts a tiny triangle of any orientation into every `period`-th face.
+TriangleMesh with_warts(const TriangleMesh& mesh, uint32_t period, double size) {
+  TriangleMesh made = mesh;
+  std::mt19937 random(1);
+  std::normal_distribution<double> part;
+  for (uint32_t f = 0; f < mesh.triangles.size(); f += period) {
+    const auto [a, b, c] = mesh.triangles[f];
+    const Vec3d centre =
+        1 / 3.0 * (to_double(mesh.positions[a]) + to_double(mesh.positions[b]) + to_double(mesh.positions[c]));
+    std::array<uint32_t, 3> inner{};
+    for (uint32_t& v : inner)
+      v = add_point(made, to_float(centre + size * Vec3d{part(random), part(random), part(random)}));
+    const auto [p, q, r] = inner;
+    made.triangles[f] = {p, q, r};
+    for (const Triangle t : {Triangle{a, b, p}, {b, q, p}, {b, c, q}, {c, r, q}, {c, a, r}, {a, p, r}})
+      made.triangles.push_back(t);
+  }
+  return made;
+}
+
+// As of scans whose cells pass through the surface close to their corners.
+TEST(Pack, TinyFacesOfAnyOrientationCostLittle) {
+  const TriangleMesh smooth = test::bumpy_sphere(4);
+  const double wanted = 1e-3 * bounding_box(smooth.positions).diagonal();
+  const auto packed = [](const TriangleMesh& original) { return proto::detail::pack(original, {.rms = 1e-3}); };
+  const proto::detail::Packed warty = packed(with_warts(smooth, 5, 0.06 * wanted));
+  ASSERT_TRUE(warty.model) << warty.reason;
+  EXPECT_LE(proto::detail::reach_of(*warty.model).rms, 1e-3);
+  EXPECT_LT(static_cast<double>(warty.glb.size()), 1.1 * static_cast<double>(packed(smooth).glb.size()));
 }
 
 TEST(Pack, OriginalWithSliversHasLevels) {

@@ -174,11 +174,12 @@ bool add_detail_normals(Mesh& mesh, NormalStyle style);
 /// Decoded base.
 struct CodedBase {
   TriangleMesh triangles;
-  uint64_t bytes = 0;  ///< length of its code
+  uint64_t bytes = 0;     ///< length of its code
+  Buffer<Vec3f> moved{};  ///< [points of the base that was coded] places to which they moved; empty if none did
 };
 /// Function that codes and decodes a base, so that the encoder predicts from the decoder's values. Vertices and faces
-/// may be reordered. A position moves by less than half the distance to the nearest other. `normals` [V] are the
-/// original's at vertices that may slide along its surface, and zero at others; empty if none may.
+/// may be reordered; vertices stay distinct. `normals` [V] are the original's at vertices that may slide along its
+/// surface, and zero at others; empty if none may.
 using BaseCoder = std::function<CodedBase(const TriangleMesh&, std::span<const Vec3d> normals)>;
 
 struct DetailOptions {
@@ -197,6 +198,7 @@ struct EncodedDetail {
   std::vector<DetailStream> levels;
   std::vector<DetailReach> reach;  ///< [levels + 1] distances of the base alone, with the first level, and so on
   uint32_t folds = 0;              ///< faces of the last level that face against the original
+  double folded_area = 0;          ///< their area, a share of the last level's
   uint32_t parted = 0;             ///< vertices at which the original touches itself, which were separated
   uint64_t bytes = 0;              ///< length of base, curves and streams
   uint64_t texcoord_bytes = 0;     ///< length of the streams of texture coordinates
