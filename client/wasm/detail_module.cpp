@@ -127,8 +127,7 @@ PAPILIO_EXPORTED(base_free) void module_base_free(DetailBase* base) { delete bas
 PAPILIO_EXPORTED(base_edges) uint32_t module_base_edges(const DetailBase* base) {
   papilio::BuildReport found;
   const papilio::Mesh mesh = papilio::build_mesh(base->triangles, &found);
-  const uint32_t welded = base->triangles.attributes.empty() ? found.welded_points : 0;  // points on seams are welded
-  const uint32_t changed = welded + found.isolated_points + found.degenerate_faces + found.repeated_faces;
+  const uint32_t changed = found.isolated_points + found.degenerate_faces + found.repeated_faces;
   if (changed + found.non_manifold_edges + found.misoriented_edges + found.pinched_vertices > 0)
     throw Error(Fault::bad_surface, "The base is not a manifold surface. Pack the original again.");
   return mesh.topology.edge_count();

@@ -95,6 +95,19 @@ TEST(PackedModel, BaseAndStreamsRoundTripExactly) {
   }
 }
 
+// Draco cuts the two faces apart, and repeats their points.
+TEST(PackedModel, BaseWithFacesBackToBackIsRead) {
+  TriangleMesh base = test::octahedron();
+  const auto first = static_cast<uint32_t>(base.positions.size());
+  base.positions.insert(base.positions.end(), {{5, 0, 0}, {5, 1, 0}, {5, 0, 1}});
+  base.triangles.push_back({first, first + 1, first + 2});
+  base.triangles.push_back({first, first + 2, first + 1});
+  const PackedFixture made = packed_fixture(base, 1);
+  ASSERT_EQ(made.detail.base.triangles.positions.size(), base.positions.size() + 3);
+  const FormattedMesh fine = decode_packed(read_packed(made.glb));
+  EXPECT_EQ(fine.triangles.size(), 4 * base.triangles.size());
+}
+
 TEST(PackedModel, DistancesAreRoundedUpToFloats) {
   PackedFixture made = packed_fixture(test::octahedron(), 1);
   for (const double distance : {0.0, 1e-9, 0.00123456, 0.1234, 0.99999, 3.3333e-5}) {
