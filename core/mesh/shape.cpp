@@ -20,6 +20,8 @@ constexpr double flat_degrees = 0.5, least_outline_degrees = 3, sharp_degrees = 
 constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;  // shares of the edges
 constexpr double least_sharp_share = 0.1, least_share_of_flats = 0.25;      // shares of the edges, and of the area
 constexpr uint32_t least_faces_of_flat = 4;                                 // quads, common in any model, have two
+constexpr double lid_degrees = 7, least_sharp_share_of_lid = 0.9;           // of angles inside; of the outline's length
+constexpr uint32_t least_sides_of_lid = 12;  // sharp sides; of fewer a curve would be no circle
 constexpr double broader = 1.5;              // factor by which a flat must be broader than its neighbour
 constexpr double flat_share_of_size = 2e-6;  // share of the diagonal or the largest coordinate
 // Of a grid: how far rounding may move an apex from the plane of the other face, and how far it mostly does.
@@ -50,10 +52,11 @@ class ShapeFinder {
       mark_creases(mesh_, options.crease_angle);
     } else {
       if (topology_.shape.is_mechanical) find_creases();
+      if (options.shape == Shape::automatic) find_lids();
       marked_ = mark_group_creases(mesh_);
     }
     topology_.darts = find_darts(topology_);
-    if (topology_.shape.is_mechanical) find_corners();
+    if (topology_.shape.is_mechanical || !is_lid_.empty()) find_corners();
     return report();
   }
 
@@ -201,6 +204,49 @@ class ShapeFinder {
     }
   }
 
+  /// Makes the sharp outlines of organic components' lids creases.
+  void find_lids() {
+    const double lid_cosine = cosine_of_degrees(lid_degrees);
+    const auto is_sharp_outline = [&](EdgeId e) { return has_two_faces(e) && is_sharp(e) && is_hidden_[e] == 0; };
+    DisjointSets lids(topology_.face_count());
+    for (EdgeId e = 0; e < topology_.edge_count(); ++e)
+      if (has_two_faces(e) && cosines_[e] > lid_cosine) lids.join(face_of(e), other_face_of(e));
+    struct Lid {
+      uint32_t sharp_sides = 0;
+      double outline = 0, sharp = 0;  // lengths
+      [[nodiscard]] bool is_lid() const {
+        return sharp_sides >= least_sides_of_lid && sharp >= least_sharp_share_of_lid * outline;
+      }
+    };
+    std::vector<Lid> of(topology_.face_count());  // region that this face represents
+    const auto for_each_outline = [&](FaceId f, const auto& visit) {
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
+        const HalfEdgeId t = topology_.twin[h];
+        if (t == none || lids.find(t.face()) != lids.find(f)) visit(h);
+      }
+    };
+    for (FaceId f = 0; f < topology_.face_count(); ++f) {
+      if (is_mechanical_[f] != 0) continue;
+      Lid& lid = of[lids.find(f)];
+      for_each_outline(f, [&](HalfEdgeId h) {
+        const double side = length(origin_of(h.next()) - origin_of(h));
+        lid.outline += side;
+        if (!is_sharp_outline(topology_.edge[h])) return;
+        ++lid.sharp_sides;
+        lid.sharp += side;
+      });
+    }
+    if (std::ranges::none_of(of, &Lid::is_lid)) return;
+    is_lid_.assign(topology_.face_count(), 0);
+    for (FaceId f = 0; f < topology_.face_count(); ++f) {
+      if (!of[lids.find(f)].is_lid()) continue;
+      is_lid_[f] = 1;
+      for_each_outline(f, [&](HalfEdgeId h) {
+        if (is_sharp_outline(topology_.edge[h])) topology_.kind[topology_.edge[h]] = EdgeKind::crease;
+      });
+    }
+  }
+
   void find_corners() {
     const auto is_curve = [&](EdgeId e) { return topology_.kind[e] != EdgeKind::smooth; };
     const VertexDegrees curves(topology_, is_curve);
@@ -211,9 +257,10 @@ class ShapeFinder {
       last[topology_.origin[h]] = topology_.tip(h);
       last[topology_.tip(h)] = topology_.origin[h];
     }
-    Buffer<uint8_t> is_mechanical(topology_.vertex_count, 0);
+    Buffer<uint8_t> may_be_corner(topology_.vertex_count, 0);
     for (HalfEdgeId h = 0; h < topology_.half_edge_count(); ++h)
-      is_mechanical[topology_.origin[h]] |= is_mechanical_[h.face()];
+      if (is_mechanical_[h.face()] != 0 || (!is_lid_.empty() && is_lid_[h.face()] != 0))
+        may_be_corner[topology_.origin[h]] = 1;
     const auto turns = [&](VertexId v, uint32_t before, uint32_t after) {
       const auto at = [&](VertexId vertex) { return to_double(mesh_.positions[vertex]); };
       const Vec3d u = at(v) - at(before);
@@ -221,7 +268,7 @@ class ShapeFinder {
       return dot(u, w) < sharp_cosine_ * length(u) * length(w);
     };
     for (VertexId v = 0; v < topology_.vertex_count; ++v) {
-      if (is_mechanical[v] == 0 || curves.degree[v] == 0 || is_dart(topology_, v)) continue;
+      if (may_be_corner[v] == 0 || curves.degree[v] == 0 || is_dart(topology_, v)) continue;
       if (curves.degree[v] != 2 || turns(v, curves.neighbours[v] ^ last[v], last[v]))
         topology_.shape.corners.push_back(v);
     }
@@ -250,6 +297,7 @@ class ShapeFinder {
   Buffer<uint8_t> is_hidden_;      ///< [E] whether a grid hides the angle: it may be flat, or not
   double step_ = 0;                ///< of the positions' grid; 0 without one
   Buffer<uint8_t> is_mechanical_;  ///< [F]
+  Buffer<uint8_t> is_lid_;         ///< [F] whether the face lies in a lid; empty without lids
   uint32_t marked_ = 0;            ///< creases of smoothing groups
 };
 

@@ -24,8 +24,12 @@ namespace papilio {
 /// - sharp edges;
 /// - edges of 3 degrees or more between two flats, if one has at least two faces and 1.5 times the other's width.
 ///
-/// Corners of a mechanical component are vertices at which a curve turns by more than 31 degrees, or at which other
-/// than two curve edges meet. An edge is also flat if the apex of its smaller face lies within
+/// A lid is a region of an organic component, as the flat end of an arm: at least eight faces, connected by edges under
+/// 7 degrees, with at least nine tenths of the outline sharp. `Shape::automatic` makes this part of the outline
+/// creases.
+///
+/// Corners of a mechanical component or of a lid are vertices at which a curve turns by more than 31 degrees, or at
+/// which other than two curve edges meet. An edge is also flat if the apex of its smaller face lies within
 /// `ShapeMarks::flat_distance` of the larger face's plane, as angles of slivers are meaningless.
 ///
 /// Positions on a grid (grid_step.h) are rounded, which bends flats. Edges whose apex lies within one and a half steps

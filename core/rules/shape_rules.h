@@ -25,7 +25,7 @@ inline constexpr double mechanical_across_bound = 0.25, organic_across_bound = 0
 [[nodiscard]] inline double room_in_faces(double cosine) { return larger(0.0, 0.3 + 0.6 * cosine); }
 /// Returns the share of the bound out of a face's plane that its sharpest hinge leaves on curves, where the product of
 /// the normals is `cosine`. It is 1 up to 90 degrees: the rims of a drum are round.
-[[nodiscard]] inline double room_on_curves(double cosine) { return lesser(larger(1 + 4 * cosine, 0.2), 1.0); }
+[[nodiscard]] inline double room_on_curves(double cosine) { return lesser(larger(1 + 4 * cosine, 0.05), 1.0); }
 
 /// Per-element values of a level that the shape rules look up.
 struct ShapeField {

@@ -31,30 +31,30 @@ struct Recorded {
 
 /// Hashes of the core's results: corners, positions, attributes, stop reason and errors. To update, paste the lines
 /// that the test prints and raise `algorithm_version`.
-constexpr int recorded_algorithm_version = 13;
+constexpr int recorded_algorithm_version = 14;
 constexpr Recorded core_results[]{
-    {"", "ccac3db57fb768c9190f2ae1b76b57da7033f5a6743dd22d7dddb4e74c29573f"},
-    {"levels=0", "8cb7f54c379ef6dfd444336df47ba422c0987c3ed708022c39b02b23fa8d95a7"},
+    {"", "2982611f9fd72602a258f3620709310a3bdc031c588216a7df6d84259076135a"},
+    {"levels=0", "dd228a0be228fa3c2646311901f4c9ba63df6386fa93c5d343518242fc79607e"},
     {"levels=3&tension=off", "82fcb55558c64c68d2d984c996db25336633b30aec3e9300bf31139535490f0e"},
-    {"tension=sharp", "5b342f425af159b140c0964e8783d682af1f1c14698f8961c66a1e739b2539af"},
+    {"tension=sharp", "0b965d7c574cbd85e4de060a69f793558bab68c736649286aeaed9d20c82480f"},
     {"levels=1&tension=off&w=0.05", "a05f719f70793d235a293efc6c7bc609011c0240766d1e7e3c43060ad99d1a97"},
-    {"levels=3&flatness=0.9,0.95&growth=2", "49a0ce79f92b3de5c31e870d4984f3f9dafa2eaa94b9840efdb7ef8197116ac4"},
+    {"levels=3&flatness=0.9,0.95&growth=2", "3e70c51d70b97ce8bf7e9c02bb2a843af98ba25d3c14e96c5e5584176804d924"},
     {"levels=3&flatness=0.8&crease_angle=40&tension=sharp",
      "2f54486142073141d2db8144f910aab1ee8bc85926478d5277930913b11d1579"},
-    {"levels=3&tolerance=0.002", "9a860b33a5218b4156293e2c1ec0c104e62536de5a9478ea92c0bf0ee0270332"},
-    {"levels=4&max_faces=500", "6f6248bd937eb172fc5dcb7fa0b3cf0fe1a2a0df141db4a32ed8aa097d7fa957"},
-    {"levels=2&scheme=in-place&flatness=0.9", "45a99bc77b2f81f32095d0fab08c5d2760087f14808e13737ef329f6c04fcd5d"},
+    {"levels=3&tolerance=0.002", "b32d00fc6b67e6aa914abbed4652627c5ee696ac78e46c6b13fb731eb6bddfbd"},
+    {"levels=4&max_faces=500", "d90099f94f6d0ea4f34f03c284974919f1a1ed8b0e2b71695da8e54455f85328"},
+    {"levels=2&scheme=in-place&flatness=0.9", "7c48c8380bd3fc678d7ebfc88fb12412c49c7286c9f32cd9f2495c9cd442dba8"},
     {"levels=2&scheme=in-place&tolerance=0.005&tension=off",
      "23e810933fb230f97b57037f73c63b4c8176d0bef1e0284f6aa19640ed2ca15d"},
-    {"levels=3&view.error_pixels=2", "fe1d3c2c8c6ef339266d787ea7b50805560a170a129db7166470c5332372c797"},
+    {"levels=3&view.error_pixels=2", "78f7f89975e3c81f7361e2ef8c01c085b9d58170b81139cf34d7bb407fdba616"},
     {"levels=3&view.error_pixels=2&view.verify=false",
-     "c675dec15e01bc65ab783abef946c68145557702b974a3bef4321875a4e33bcb"},
+     "1f3662b5921eccc2acb00bcaf2afad209bb32273741f151b5a166bb70655cf76"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=40&flatness=0.95",
-     "170f3b73b490b467c8285ab7ba7426c1f9ef722354e2447b385352922ded2acd"},
+     "830502e693ae503080b9cc1ee33a02134e9358d3e25b11799f809c1d3ca68729"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=0&view.error_pixels=1&view.lights=1,2,3,-1,0,1",
-     "977b3dda16c8e560d0dcf3c16cea755aa466968bf3171f5fa45f1f2695ca6de3"},
+     "09bf8e53bd810e07c807a0b50a8f912e00b07e9f2272e61701a5ab0b4d7d4af5"},
     {"levels=3&view.eye=2,3,9&view.edge_pixels=0&view.projection=orthographic&max_faces=400&tolerance=1e-4",
-     "d88f038d709b273b309097346648d978c25c9d6934a0ef3c4622c4b850774764"},
+     "a18b6c5c868df18975ff30a5f801298294e32829472f963f862be817f12943ff"},
 };
 
 /// Hash of the core's results for closed and open fans of 3 to 100 faces.
@@ -69,15 +69,15 @@ constexpr Recorded fan_results[]{
 /// prints and raise `encoding_version`.
 constexpr int recorded_encoding_version = 5;
 constexpr Recorded encoded_results[]{
-    {"", "16363c250f754045d9df617246bab8c37723f4d5521475617a99f0077431cc2a"},
-    {"levels=1&output.speed=0", "fb20fb5f34b5714bd025512590dbf8ac131fccda575ee3df25e56035db23db51"},
-    {"levels=1&output.speed=2", "e6e8a894f3bca29f45af40f5de0220243c865f4d98db995917a1074098c0aa95"},
+    {"", "ac6e1d94078894f7fae9a5eeb3ef1ed5a2f09d2fb79c14fd85c87c6932f40c46"},
+    {"levels=1&output.speed=0", "e315e695ee9105825a1b2bce6eb91e96be90a92bc43fcbfc1cc061f5c93978e2"},
+    {"levels=1&output.speed=2", "83aa2ab2ae914f95b0a863a6306de4a49519db5b70ad38a2a9f6486328971445"},
     {"levels=1&output.speed=5&output.position_bits=8",
-     "a8931549f29ce9708bdf7c6b99a960241437ed8958b0655f4e536ef7b9bbacf4"},
+     "81a8ae270a4ddb648022a1e7754a59012daedb98eb69cf5f40257f81f1fa0b64"},
     {"levels=1&output.speed=10&output.position_bits=16",
-     "24b3cd188779f30233993e64300350dccc2b0373a0663f7440346180f622bd9a"},
-    {"levels=1&output.normals=true", "28de7301a9b7e66605fa12a58adac8c856522b36e26dfe84ef1250ffd2cb4e36"},
-    {"levels=3&flatness=0.9,0.95", "5368822d4f093d6bf66da176079ffb9971108f5d3520ec11d5f30f5b7ae07c9a"},
+     "0f079b5603f211d532ffad43d093eb201e008d0de8241fed2f0847466fba4b3c"},
+    {"levels=1&output.normals=true", "f973529265293627e724a9ceb3ce419dc17ec51a659b83f545279196298aa327"},
+    {"levels=3&flatness=0.9,0.95", "ca173aa5ff86b3c1d524445a4bc1c5fc83809fc77ca98707dc0bac1305b32f19"},
 };
 
 /// Moves coordinates by sums and products of floats: bit-identical on all machines.

@@ -127,8 +127,29 @@ TriangleMesh vase(uint32_t n, uint32_t rings) {
 TEST(Shape, ShareOfFlatAndSharpEdgesMakesMechanical) {
   // A sixth of its edges is flat and a sixth sharp; with more rings a fifteenth each.
   EXPECT_EQ(shape_of(build_mesh(vase(48, 3))), (ShapeReport{1, 1, 96}));
-  EXPECT_EQ(shape_of(build_mesh(vase(48, 9))), (ShapeReport{1, 0, 0}));
+  EXPECT_EQ(shape_of(build_mesh(vase(48, 9))).mechanical, 0U);
   for (Vec3f p : refined(vase(48, 3)).positions) ASSERT_TRUE(p.z >= 0 && p.z <= 0.8F) << p.z;
+}
+
+// The ends of an organic vase stay flat, and their rims become rounder.
+TEST(Shape, RimsOfLidsInOrganicComponentsAreCreases) {
+  constexpr uint32_t sides = 48;
+  const Mesh coarse = build_mesh(vase(sides, 9));
+  EXPECT_EQ(shape_of(coarse), (ShapeReport{1, 0, 2 * sides}));
+  EXPECT_EQ(shape_of(coarse, {.shape = Shape::organic}), (ShapeReport{1, 0, 0}));
+  const Mesh fine = refined(vase(sides, 9));
+  double rim = 0;
+  for (Vec3f p : fine.positions) {
+    ASSERT_TRUE(p.z >= 0 && p.z <= 0.8F) << p.z;
+    if (p.z == 0) rim = std::max(rim, radius(p));
+  }
+  EXPECT_NEAR(rim, 1, 1e-3);
+  EXPECT_EQ(std::ranges::count_if(fine.positions, [](Vec3f p) { return p.z == 0 && radius(p) > 0.99; }), 8 * sides);
+}
+
+TEST(Shape, RegionsWithoutASharpOutlineAreNoLids) {
+  EXPECT_EQ(shape_of(build_mesh(bumpy_sphere(3))).creases, 0U);
+  EXPECT_EQ(shape_of(build_mesh(torus(48, 32))).creases, 0U);
 }
 
 // Sides of a dodecagon meet at 30 degrees and become round; sides of an octagon, at 45 degrees, stay flat.
@@ -143,6 +164,20 @@ TEST(Shape, LidOfAConeStaysInItsPlane) {
   for (Vec3f& p : cone.positions)
     if (p.z > 0) p = {0.99F * p.x, 0.99F * p.y, p.z};
   for (Vec3f p : refined(cone).positions) EXPECT_TRUE(p.z == 0 || p.z > 0.005F) << p.z;
+}
+
+// The wall runs inwards below the upper lid. Its faces fold under the lid if they tilt by few degrees.
+TEST(Shape, RimsOfAlmost120DegreesDoNotFold) {
+  for (uint32_t sides : {12U, 16U, 48U})
+    for (float degrees : {108.0F, 114.0F, 116.0F, 118.0F}) {
+      TriangleMesh bowl = tube(sides, 1, 0.05F, true);
+      const float narrower = 1 - 0.05F * std::tan((degrees - 90) / 57.29578F);
+      for (Vec3f& p : bowl.positions)
+        if (p.z == 0) p = {narrower * p.x, narrower * p.y, 0};
+      const Mesh coarse = build_mesh(bowl);
+      ASSERT_EQ(count_folds(coarse), 0U);
+      EXPECT_EQ(count_folds(refined(bowl)), 0U) << sides << " sides, " << degrees << " degrees";
+    }
 }
 
 TEST(Shape, SliversInAPlaneDoNotFold) {
