@@ -21,7 +21,7 @@ constexpr double least_flat_share = 0.25, least_flat_or_sharp_share = 0.5;  // s
 constexpr double least_sharp_share = 0.1, least_share_of_flats = 0.25;      // shares of the edges, and of the area
 constexpr uint32_t least_faces_of_flat = 4;                                 // quads, common in any model, have two
 constexpr double lid_degrees = 7, least_sharp_share_of_lid = 0.9;           // of angles inside; of the outline's length
-constexpr uint32_t least_sides_of_lid = 12;  // sharp sides; of fewer a curve would be no circle
+constexpr uint32_t least_sides_of_lid = 12;  // sharp ones; patches of coarse organic meshes have fewer
 constexpr double broader = 1.5;              // factor by which a flat must be broader than its neighbour
 constexpr double flat_share_of_size = 2e-6;  // share of the diagonal or the largest coordinate
 // Of a grid: how far rounding may move an apex from the plane of the other face, and how far it mostly does.
@@ -29,13 +29,28 @@ constexpr double most_flat_steps = 1.5, usual_flat_steps = 0.75;
 constexpr double telling_height =
     30;  // of a face whose angle the former distance changes by 2 degrees, in that distance
 
+/// Set of faces connected by nearly flat edges.
+struct FlatRegion {
+  uint32_t faces = 0;
+  double area = 0, outline = 0;  // outline: its length
+  uint32_t sharp_sides = 0;      // of the outline
+  double length_of_sharp_sides = 0;
+
+  /// Compares ratios of area to outline, as products: all of these may be 0.
+  [[nodiscard]] bool is_broader(const FlatRegion& other) const {
+    return faces >= 2 && area * other.outline >= broader * other.area * outline;
+  }
+  [[nodiscard]] bool is_lid() const {
+    return sharp_sides >= least_sides_of_lid && length_of_sharp_sides >= least_sharp_share_of_lid * outline;
+  }
+};
+
 class ShapeFinder {
  public:
   explicit ShapeFinder(Mesh& mesh)
       : mesh_(mesh),
         topology_(mesh.topology),
         components_(topology_.face_count()),
-        flats_(topology_.face_count()),
         cosines_(Buffer<double>::for_overwrite(topology_.edge_count())),
         is_hidden_(topology_.edge_count(), 0) {}
 
@@ -47,6 +62,7 @@ class ShapeFinder {
     choose_mechanical(options.shape);
     topology_.shape.has_rules = true;
     topology_.shape.is_mechanical = std::ranges::find(is_mechanical_, 1) != is_mechanical_.end();
+    has_corners_ = is_mechanical_;
     if (topology_.shape.is_mechanical && step_ > 0) allow_for_grid();
     if (options.crease_angle < 180) {
       mark_creases(mesh_, options.crease_angle);
@@ -56,7 +72,7 @@ class ShapeFinder {
       marked_ = mark_group_creases(mesh_);
     }
     topology_.darts = find_darts(topology_);
-    if (topology_.shape.is_mechanical || !is_lid_.empty()) find_corners();
+    if (std::ranges::find(has_corners_, 1) != has_corners_.end()) find_corners();
     return report();
   }
 
@@ -103,8 +119,6 @@ class ShapeFinder {
     double& flat_distance = topology_.shape.flat_distance;
     find_cosines(std::max(flat_distance, usual_flat_steps * step_));
     flat_distance = std::max(flat_distance, most_flat_steps * step_);
-    flats_ = DisjointSets(topology_.face_count());
-    flat_of_.clear();
   }
 
   void find_components() {
@@ -146,12 +160,12 @@ class ShapeFinder {
       component.sharp += is_sharp(e) ? 1 : 0;
     }
     if (std::ranges::any_of(of, &Component::is_sharp_enough)) {
-      find_flats();
+      Regions flats = find_regions(flat_cosine_);
       for (FaceId f = 0; f < faces; ++f) {
         const double area = area_of(f);
         Component& component = of[components_.find(f)];
         component.area += area;
-        if (flat_of(f).faces >= least_faces_of_flat) component.area_of_flats += area;
+        if (flats.of(f).faces >= least_faces_of_flat) component.area_of_flats += area;
       }
     }
     for (uint32_t f = 0; f < faces; ++f) is_mechanical_[f] = of[components_.find(f)].is_mechanical() ? 1 : 0;
@@ -159,91 +173,65 @@ class ShapeFinder {
 
   [[nodiscard]] bool is_flat(EdgeId e) const { return cosines_[e] > flat_cosine_; }
   [[nodiscard]] bool is_sharp(EdgeId e) const { return cosines_[e] < sharp_cosine_; }
+  [[nodiscard]] bool is_surely_sharp(EdgeId e) const { return has_two_faces(e) && is_sharp(e) && is_hidden_[e] == 0; }
 
   void find_creases() {
-    find_flats();
+    Regions flats = find_regions(flat_cosine_);
     for (EdgeId e = 0; e < topology_.edge_count(); ++e) {
       if (!has_two_faces(e) || is_mechanical_[face_of(e)] == 0) continue;
-      const Flat& one = flat_of(face_of(e));
-      const Flat& other = flat_of(other_face_of(e));
+      const FlatRegion& one = flats.of(face_of(e));
+      const FlatRegion& other = flats.of(other_face_of(e));
       if (is_sharp(e) || (cosines_[e] < outline_cosine_ && (one.is_broader(other) || other.is_broader(one))))
         topology_.kind[e] = EdgeKind::crease;
     }
   }
 
-  struct Flat {
-    uint32_t faces = 0;
-    double area = 0, perimeter = 0;
-    /// Compares ratios of area to perimeter, as products: all of these may be 0.
-    [[nodiscard]] bool is_broader(const Flat& other) const {
-      return faces >= 2 && area * other.perimeter >= broader * other.area * perimeter;
+  /// Regions, found by any of their faces.
+  struct Regions {
+    DisjointSets faces;
+    std::vector<FlatRegion> region;  ///< [F] region that this face represents
+
+    [[nodiscard]] const FlatRegion& of(FaceId f) { return region[faces.find(f)]; }
+    [[nodiscard]] bool is_outline(const Topology& mesh, HalfEdgeId h) {
+      const HalfEdgeId t = mesh.twin[h];
+      return t == none || faces.find(t.face()) != faces.find(h.face());
     }
   };
-
-  [[nodiscard]] const Flat& flat_of(FaceId face) { return flat_of_[flats_.find(face)]; }
 
   [[nodiscard]] Vec3d origin_of(HalfEdgeId h) const { return to_double(mesh_.positions[topology_.origin[h]]); }
 
   [[nodiscard]] double area_of(FaceId f) const { return 0.5 * length(area_normal(mesh_, f)); }
 
-  /// Finds and measures the regions that flat edges join, once.
-  void find_flats() {
-    if (!flat_of_.empty()) return;
+  /// Finds and measures the regions that edges of a larger cosine join.
+  [[nodiscard]] Regions find_regions(double least_cosine) {
+    Regions regions{DisjointSets(topology_.face_count()), std::vector<FlatRegion>(topology_.face_count())};
     for (EdgeId e = 0; e < topology_.edge_count(); ++e)
-      if (has_two_faces(e) && is_flat(e)) flats_.join(face_of(e), other_face_of(e));
-    flat_of_.resize(topology_.face_count());
+      if (has_two_faces(e) && cosines_[e] > least_cosine) regions.faces.join(face_of(e), other_face_of(e));
     for (FaceId f = 0; f < topology_.face_count(); ++f) {
-      Flat& flat = flat_of_[flats_.find(f)];
-      ++flat.faces;
-      flat.area += area_of(f);
+      FlatRegion& region = regions.region[regions.faces.find(f)];
+      ++region.faces;
+      region.area += area_of(f);
       for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
-        const HalfEdgeId t = topology_.twin[h];
-        if (t == none || flats_.find(t.face()) != flats_.find(f))
-          flat.perimeter += length(origin_of(h.next()) - origin_of(h));
+        if (!regions.is_outline(topology_, h)) continue;
+        const double side = length(origin_of(h.next()) - origin_of(h));
+        region.outline += side;
+        if (!is_surely_sharp(topology_.edge[h])) continue;
+        ++region.sharp_sides;
+        region.length_of_sharp_sides += side;
       }
     }
+    return regions;
   }
 
-  /// Makes the sharp outlines of organic components' lids creases.
+  /// Makes the sharp outlines of lids creases.
   void find_lids() {
-    const double lid_cosine = cosine_of_degrees(lid_degrees);
-    const auto is_sharp_outline = [&](EdgeId e) { return has_two_faces(e) && is_sharp(e) && is_hidden_[e] == 0; };
-    DisjointSets lids(topology_.face_count());
-    for (EdgeId e = 0; e < topology_.edge_count(); ++e)
-      if (has_two_faces(e) && cosines_[e] > lid_cosine) lids.join(face_of(e), other_face_of(e));
-    struct Lid {
-      uint32_t sharp_sides = 0;
-      double outline = 0, sharp = 0;  // lengths
-      [[nodiscard]] bool is_lid() const {
-        return sharp_sides >= least_sides_of_lid && sharp >= least_sharp_share_of_lid * outline;
-      }
-    };
-    std::vector<Lid> of(topology_.face_count());  // region that this face represents
-    const auto for_each_outline = [&](FaceId f, const auto& visit) {
-      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h) {
-        const HalfEdgeId t = topology_.twin[h];
-        if (t == none || lids.find(t.face()) != lids.find(f)) visit(h);
-      }
-    };
+    Regions regions = find_regions(cosine_of_degrees(lid_degrees));
     for (FaceId f = 0; f < topology_.face_count(); ++f) {
-      if (is_mechanical_[f] != 0) continue;
-      Lid& lid = of[lids.find(f)];
-      for_each_outline(f, [&](HalfEdgeId h) {
-        const double side = length(origin_of(h.next()) - origin_of(h));
-        lid.outline += side;
-        if (!is_sharp_outline(topology_.edge[h])) return;
-        ++lid.sharp_sides;
-        lid.sharp += side;
-      });
-    }
-    if (std::ranges::none_of(of, &Lid::is_lid)) return;
-    is_lid_.assign(topology_.face_count(), 0);
-    for (FaceId f = 0; f < topology_.face_count(); ++f) {
-      if (!of[lids.find(f)].is_lid()) continue;
-      is_lid_[f] = 1;
-      for_each_outline(f, [&](HalfEdgeId h) {
-        if (is_sharp_outline(topology_.edge[h])) topology_.kind[topology_.edge[h]] = EdgeKind::crease;
-      });
+      if (is_mechanical_[f] != 0 || !regions.of(f).is_lid()) continue;
+      has_corners_[f] = 1;
+      for (HalfEdgeId h = 3 * f; h < 3 * f + 3; ++h)
+        if (regions.is_outline(topology_, h) && is_surely_sharp(topology_.edge[h]))
+          topology_.kind[topology_.edge[h]] = EdgeKind::crease;
     }
   }
 
@@ -259,8 +247,7 @@ class ShapeFinder {
     }
     Buffer<uint8_t> may_be_corner(topology_.vertex_count, 0);
     for (HalfEdgeId h = 0; h < topology_.half_edge_count(); ++h)
-      if (is_mechanical_[h.face()] != 0 || (!is_lid_.empty() && is_lid_[h.face()] != 0))
-        may_be_corner[topology_.origin[h]] = 1;
+      may_be_corner[topology_.origin[h]] |= has_corners_[h.face()];
     const auto turns = [&](VertexId v, uint32_t before, uint32_t after) {
       const auto at = [&](VertexId vertex) { return to_double(mesh_.positions[vertex]); };
       const Vec3d u = at(v) - at(before);
@@ -291,14 +278,13 @@ class ShapeFinder {
   const double sharp_cosine_ = cosine_of_degrees(sharp_degrees);
   Mesh& mesh_;
   Topology& topology_;
-  DisjointSets components_, flats_;
-  std::vector<Flat> flat_of_;      ///< [F] region that this face represents; empty before find_flats()
+  DisjointSets components_;
   Buffer<double> cosines_;         ///< [E] cosine of the angle between the two faces' normals
   Buffer<uint8_t> is_hidden_;      ///< [E] whether a grid hides the angle: it may be flat, or not
   double step_ = 0;                ///< of the positions' grid; 0 without one
   Buffer<uint8_t> is_mechanical_;  ///< [F]
-  Buffer<uint8_t> is_lid_;         ///< [F] whether the face lies in a lid; empty without lids
-  uint32_t marked_ = 0;            ///< creases of smoothing groups
+  Buffer<uint8_t> has_corners_;  ///< [F] whether curves may have corners at the face: in mechanical components and lids
+  uint32_t marked_ = 0;          ///< creases of smoothing groups
 };
 
 }  // namespace

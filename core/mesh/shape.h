@@ -24,9 +24,8 @@ namespace papilio {
 /// - sharp edges;
 /// - edges of 3 degrees or more between two flats, if one has at least two faces and 1.5 times the other's width.
 ///
-/// A lid is a region of an organic component, as the flat end of an arm: at least eight faces, connected by edges under
-/// 7 degrees, with at least nine tenths of the outline sharp. `Shape::automatic` makes this part of the outline
-/// creases.
+/// A lid is a region of an organic component, as the flat end of an arm, connected by edges under 7 degrees. At least
+/// nine tenths of its outline's length are sharp, and at least twelve edges. `Shape::automatic` makes these creases.
 ///
 /// Corners of a mechanical component or of a lid are vertices at which a curve turns by more than 31 degrees, or at
 /// which other than two curve edges meet. An edge is also flat if the apex of its smaller face lies within
