@@ -34,17 +34,15 @@ enum class Format { drc, obj, ply, off, stl, glb, gltf };
 inline constexpr uint64_t kMaxFileBytes = uint64_t{1} << 32;
 
 /// Reads positions, triangles and attributes of a file. Repeated, degenerate and non-manifold faces are kept, and so
-/// are unused positions. Polygons are triangulated (polygon.h); polygons of one or two corners, which OFF and PLY
-/// permit, are dropped. Text may start with the byte order mark of UTF-8. Coordinates may be NaN or infinite.
+/// are unused positions. Polygons are triangulated (polygon.h); those of one or two corners, which OFF, PLY and many
+/// OBJ files have, are dropped. Text may start with the byte order mark of UTF-8. Coordinates may be NaN or infinite.
 /// - OBJ: texture coordinates (`vt`, of 2 or 3 numbers) and normals (`vn`) are attributes. A position becomes one point
-/// for
-///   each pair of them that faces use with it; missing ones are zero. Smoothing groups (`s`) are an attribute named
+///   for each pair of them that faces use with it; missing ones are zero. Smoothing groups (`s`) are an attribute named
 ///   smoothing_group if faces have different ones. Only parse_obj_file() reads materials (obj_file.h).
 /// - PLY: normals, colours and texture coordinates of vertices are attributes.
 /// - OFF: attributes are not read.
 /// - STL: each triangle has three new positions. A binary file may be longer than its count requires, but not by a
-/// whole
-///   number of triangles. Attributes are not read.
+///   whole number of triangles. Attributes are not read.
 ///
 /// Throws `FileError` if the file is unreadable, empty, damaged or recognizably cut; if it has an index out of range, a
 /// coordinate too large for a float, or no triangle. Throws `std::logic_error` for `Format::drc` and scenes, which

@@ -160,7 +160,11 @@ Lists parse_lists(std::string_view bytes) {
         lists.corners.push_back(parse_corner(scanner, word, lists));
         lists.corners.back().group = groups.current();
       }
-      if (face.size() < 3) scanner.fail("a face has fewer than three corners");
+      if (face.size() < 3) {  // a point or a line, as some writers put loose edges
+        if (scanner.remaining() == 0) scanner.fail("the file ends within a face: it is cut short");
+        lists.corners.resize(lists.corners.size() - face.size());
+        continue;
+      }
       lists.faces.add(face);
       lists.material_of_face.push_back(materials.of_face(lists.materials, scanner));
     }

@@ -243,6 +243,15 @@ TEST_F(MeshFileTest, MeshWithInvalidIndicesIsNotWritten) {
   EXPECT_EQ(files(), 0U);
 }
 
+TEST_F(MeshFileTest, ObjFacesOfTwoCornersAreDropped) {
+  const std::string lines = std::string(kThree) + "vt 0 0\nf 1/1 2/1\nf 2\nf 1 2 3\n";
+  const proto::FormattedMesh mesh = read_triangles(put("lines.obj", lines), Format::obj);
+  EXPECT_EQ(mesh.triangles, (Buffer<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(mesh.positions.size(), 3U);
+  EXPECT_TRUE(mesh.attributes.empty());
+  EXPECT_THAT(complaint(Format::obj, std::string(kThree) + "f 1 2 3\nf 1 2"), HasSubstr("cut short"));
+}
+
 TEST_F(MeshFileTest, StlNormalsOfDegenerateFacesAreZero) {
   const std::string bytes = written(Format::stl, {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 1, 2}, {0, 1, 1}}});
   float normals[2][3];
