@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "client/mesh_file/formats.h"
+#include "client/mesh_file/sound_mesh.h"
 
 namespace papilio::client {
 namespace {
@@ -64,28 +65,12 @@ std::string to_bytes(Format format, const TriangleMesh& mesh, const proto::MeshF
   throw format_is_elsewhere();
 }
 
-/// Returns the number of triangles before the first with an index out of range; the number of all if there is none.
-size_t count_sound(const TriangleMesh& mesh) {
-  const auto is_broken = [count = mesh.positions.size()](const Triangle& triangle) {
-    return std::ranges::any_of(triangle, [count](uint32_t vertex) { return vertex >= count; });
-  };
-  return static_cast<size_t>(std::ranges::find_if(mesh.triangles, is_broken) - mesh.triangles.begin());
-}
-
-std::string describe_broken(const TriangleMesh& mesh, size_t index) {
-  return "triangle " + std::to_string(index) + " (the first is 0) names vertex " +
-         std::to_string(std::ranges::max(mesh.triangles[index])) + " (the first is 0), but there are " +
-         std::to_string(mesh.positions.size()) + " vertices";
-}
-
 /// Returns a file's mesh, and the materials of an OBJ file.
 ObjFile parse_sound(const std::string& name, Format format, std::string_view bytes) {
   if (bytes.empty()) throw FileError(name, "is empty; export the mesh again");
   try {
     ObjFile file = parse(format, bytes);
-    if (file.mesh.triangles.empty()) throw ParseError("holds no triangles");
-    if (const size_t sound = count_sound(file.mesh); sound < file.mesh.triangles.size())
-      throw ParseError(describe_broken(file.mesh, sound));
+    if (const std::optional<std::string> fault = find_fault(file.mesh)) throw ParseError(*fault);
     return file;
   } catch (const ParseError& error) {
     throw FileError(name, std::string(error.what()) + "; export the mesh again, or check that its format is " +
@@ -95,8 +80,7 @@ ObjFile parse_sound(const std::string& name, Format format, std::string_view byt
 
 std::string encode(const std::string& name, Format format, const TriangleMesh& mesh,
                    const proto::MeshFormat& mesh_format, const ObjMaterials& materials) {
-  if (const size_t sound = count_sound(mesh); sound < mesh.triangles.size())
-    throw std::invalid_argument(describe_broken(mesh, sound));
+  if (const std::optional<std::string> fault = find_broken(mesh)) throw std::invalid_argument(*fault);
   // PLY's indices are signed in most readers, STL's count has 32 bits.
   constexpr size_t kMost = std::numeric_limits<int32_t>::max();
   if (mesh.positions.size() > kMost || mesh.triangles.size() > kMost)

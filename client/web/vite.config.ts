@@ -40,7 +40,7 @@ const built = process.env.PAPILIO_PACKAGE ?? fileURLToPath(new URL('../../build/
 
 export default defineConfig({
   resolve: {
-    alias: [{ find: /^papilio\/(client|detail|three|wasm)$/, replacement: `${built}/dist/$1.js` }],
+    alias: [{ find: /^papilio\/(client|detail|files|three|wasm)$/, replacement: `${built}/dist/$1.js` }],
     dedupe: ['three'], // the package has none of its own
   },
   base: './', // behind a proxy the page may be anywhere

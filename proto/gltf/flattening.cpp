@@ -24,7 +24,8 @@ struct FlatAttribute {
 };
 constexpr std::array flat_attributes{FlatAttribute{"NORMAL", AttributeKind::normal, 3},
                                      FlatAttribute{"TEXCOORD_0", AttributeKind::tex_coord, 2},
-                                     FlatAttribute{"COLOR_0", AttributeKind::color, 4}};
+                                     FlatAttribute{"COLOR_0", AttributeKind::color, 4},
+                                     FlatAttribute{smoothing_group_semantic, AttributeKind::generic, 1}};
 
 bool is_mirrored(const Affine& map) { return dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0; }
 
@@ -158,16 +159,22 @@ class Flattener {
     out_.attributes.push_back(
         {.components = attribute.components, .unit_length = attribute.kind == AttributeKind::normal, .values = {}});
     const bool is_color = attribute.kind == AttributeKind::color;
+    const bool is_group = attribute.kind == AttributeKind::generic;
+    out_.attributes.back().is_smoothing_group = is_group;
     out_.format.attributes.push_back({.kind = attribute.kind,
-                                      .type = is_color ? ValueType::uint8 : ValueType::float32,
+                                      .type = is_color   ? ValueType::uint8
+                                              : is_group ? ValueType::int32
+                                                         : ValueType::float32,
                                       .normalized = is_color,
-                                      .id = static_cast<uint32_t>(used_.size())});
+                                      .id = static_cast<uint32_t>(used_.size()),
+                                      .name = is_group ? smoothing_group_name : ""});
   }
 
   void append(size_t number, const PlacedSet& from, uint32_t vertex, const TextureMap& texture, Vec3d normal) {
     const FlatAttribute& attribute = used_[number];
     const VertexStream* stream = find_stream(from.set, attribute, texture);
     std::array<double, 4> value{};
+    if (attribute.kind == AttributeKind::generic) value[0] = default_smoothing_group;
     if (attribute.kind == AttributeKind::color) value = {1, 1, 1, 1};  // keeps the material's colour
     if (attribute.kind == AttributeKind::normal) value = {normal.x, normal.y, normal.z, 0};
     const uint32_t given = stream == nullptr ? 0 : std::min(stream->elements.format.components, attribute.components);
@@ -207,6 +214,7 @@ std::string semantic_of(const AttributeFormat& format, uint32_t components, std:
   if (format.kind == AttributeKind::normal && components == 3 && is_float && number++ == 0) return "NORMAL";
   if (format.kind == AttributeKind::tex_coord && components == 2 && is_float) return ++number, "TEXCOORD_" + count;
   if (format.kind == AttributeKind::color && components >= 3) return ++number, "COLOR_" + count;
+  if (is_smoothing_group(format, components)) return smoothing_group_semantic;
   int& others = numbers[3];
   return "_ATTRIBUTE_" + std::to_string(others++);
 }

@@ -62,6 +62,12 @@ Combination combination_of(const Triangle& vertices, double second, double third
   return out;
 }
 
+/// Returns a set's smoothing groups; null if it has none.
+const VertexStream* find_smoothing_groups(const VertexSet& set) {
+  const VertexStream* stream = set.find(smoothing_group_semantic);
+  return stream != nullptr && stream->elements.format.components == 1 ? stream : nullptr;
+}
+
 }  // namespace
 
 uint32_t Combination::nearest() const {
@@ -105,6 +111,9 @@ Surface join_primitives(const MeshGeometry& geometry) {
   Surface out;
   out.has_normals = std::ranges::any_of(sets, [](const SetVertices& set) { return set.normals != nullptr; });
   for (const SetVertices& set : sets) out.target_count = std::max(out.target_count, set.displacements.size());
+  std::vector<const VertexStream*> groups;  // [set]
+  for (const VertexSet& set : geometry.sets) groups.push_back(find_smoothing_groups(set));
+  const bool has_groups = std::ranges::any_of(groups, [](const VertexStream* stream) { return stream != nullptr; });
   TriangleMesh input;
   input.attributes.resize(out.first_displacement() + out.target_count);
   for (size_t a = 0; a < input.attributes.size(); ++a) {
@@ -112,6 +121,7 @@ Surface join_primitives(const MeshGeometry& geometry) {
     input.attributes[a].is_displacement = a >= out.first_displacement();
   }
   if (out.has_normals) input.attributes[1].unit_length = true;
+  if (has_groups) input.attributes.push_back({.values = {}, .is_smoothing_group = true});
   for (uint32_t p = 0; p < geometry.primitives.size(); ++p) {
     const SetVertices& set = sets[geometry.primitives[p].set];
     for (const Triangle& triangle : geometry.primitives[p].triangles) {
@@ -123,6 +133,11 @@ Surface join_primitives(const MeshGeometry& geometry) {
         for (size_t t = 0; t < out.target_count; ++t)
           append_numbers(input.attributes[out.first_displacement() + t].values,
                          vector_at(t < set.displacements.size() ? set.displacements[t] : nullptr, vertex));
+        if (has_groups) {
+          const VertexStream* stream = groups[geometry.primitives[p].set];
+          input.attributes.back().values.push_back(stream == nullptr ? default_smoothing_group
+                                                                     : stream->elements.number(vertex, 0));
+        }
       }
       for (const Vec3d place : {Vec3d{face, 0, 0}, Vec3d{face, 1, 0}, Vec3d{face, 0, 1}})
         append_numbers(input.attributes[provenance].values, place);

@@ -14,6 +14,11 @@
 
 namespace papilio::proto::gltf {
 
+/// Attribute of vertices, of one component, that holds the smoothing groups of the faces at them
+/// (`Attribute::is_smoothing_group`). Sets of vertices without it are of group 1.
+inline constexpr const char* smoothing_group_semantic = "_SMOOTHING_GROUP";
+inline constexpr double default_smoothing_group = 1;
+
 /// Surface to refine.
 struct Surface {
   Mesh mesh;          ///< mesh with the attributes of `Provenance`
@@ -21,7 +26,8 @@ struct Surface {
   std::vector<uint32_t> primitive_of;  ///< [input's triangles] index in MeshGeometry::primitives
   Buffer<Triangle> vertices_of;        ///< [input's triangles] vertices in the primitive's set, with equal ones merged
   bool has_normals = false;            ///< whether any set has normals; they are the second attribute
-  size_t target_count = 0;             ///< number of morph targets, whose displacements are the next attributes
+  size_t target_count = 0;             ///< number of morph targets, whose displacements are the next attributes, before
+                                       ///< smoothing groups, if any set has them
   /// Indices of the last attributes, with the texture coordinates and colours of a packed model's levels.
   std::optional<size_t> texcoords{}, colours{};
   NormalStyle normals{};  ///< style of a packed model's original normals

@@ -168,6 +168,13 @@ END
   ! cmp -s fine.obj smooth.obj
   [ "$(grep -c '^s ' fine.obj)" -ge 2 ]
   [ "$("$papilio" info --json fine.obj | jq '.marked_creases > 15')" = true ]
+  # A scene has them, too, and gives them back.
+  "$papilio" convert groups.obj groups.glb
+  "$papilio" refine groups.glb -o fine.glb --levels 2 --shape organic
+  [ "$("$papilio" compare --json fine.obj fine.glb | jq '.hausdorff < 1e-4')" = true ]
+  [ "$("$papilio" compare --json smooth.obj fine.glb | jq '.hausdorff > 1e-2')" = true ]
+  "$papilio" convert groups.glb back.obj
+  [ "$("$papilio" info --json back.obj | jq .marked_creases)" = 5 ]
 }
 
 @test "concave polygons are triangulated inside, without folds" {

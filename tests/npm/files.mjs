@@ -55,7 +55,7 @@ export const page = (body = '') => `<!doctype html>
 <script type="importmap">
   { "imports": {
     "papilio/client": "/npm/dist/client.js", "papilio/wasm": "/npm/dist/wasm.js", "papilio/three": "/npm/dist/three.js",
-    "papilio/detail": "/npm/dist/detail.js",
+    "papilio/detail": "/npm/dist/detail.js", "papilio/files": "/npm/dist/files.js",
     "three": "/three/build/three.module.js", "three/addons/": "/three/examples/jsm/"
   } }
 </script>

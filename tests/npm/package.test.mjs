@@ -46,6 +46,7 @@ test('Node.js imports the package without a bundler', () => {
      import { createRequire } from 'node:module';
      import { Client } from 'papilio/client';
      import { compileDecoder, DetailDecoder, isPacked } from 'papilio/detail';
+     import { readTriangleFile } from 'papilio/files';
      import { Kernel } from 'papilio/wasm';
      const file = createRequire(import.meta.url).resolve('papilio/papilio.wasm');
      const kernel = new Kernel(await Kernel.compile(readFileSync(file)));
@@ -54,9 +55,12 @@ test('Node.js imports the package without a bundler', () => {
      const module = await compileDecoder(readFileSync(file.replace('papilio.wasm', 'papilio-detail.wasm')));
      const positions = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]);
      const triangle = { positions, triangles: new Uint32Array([0, 1, 2]) };
-     console.log(new DetailDecoder(module, triangle, new Uint8Array()).countEdges(), isPacked(new Uint8Array()));`,
+     console.log(new DetailDecoder(module, triangle, new Uint8Array()).countEdges(), isPacked(new Uint8Array()));
+     const wasm = readFileSync(file.replace('papilio.wasm', 'papilio-files.wasm'));
+     const off = new TextEncoder().encode('OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 0\\n3 0 1 2\\n');
+     console.log((await readTriangleFile('off', off, { wasm })).triangles.length);`,
   );
-  assert.equal(run(process.execPath, 'use.js'), '96 function\n3 false\n');
+  assert.equal(run(process.execPath, 'use.js'), '96 function\n3 false\n3\n');
 });
 
 test('TypeScript finds the types of the package', () => {
@@ -64,6 +68,7 @@ test('TypeScript finds the types of the package', () => {
     path.join(folder, 'use.ts'),
     `import { Client, type Refined } from 'papilio/client';
      import { type LevelInfo, openPacked, type PackedModel } from 'papilio/detail';
+     import { readTriangleFile, type TriangleFile } from 'papilio/files';
      import { PapilioLoader, type RefinedModel } from 'papilio/three';
      import { Refiner } from 'papilio/wasm';
      export const load = (url: string): Promise<RefinedModel> => new PapilioLoader({ server: '/' }).loadAsync(url);
@@ -71,6 +76,7 @@ test('TypeScript finds the types of the package', () => {
        const model: PackedModel = await openPacked(bytes, { decodeDraco: () => Promise.reject(new Error()), mayBeCut: true });
        return [model.levels[0]!, (await model.decode(1, { signal: new AbortController().signal })).positions];
      }
+     export const read = (bytes: Uint8Array): Promise<TriangleFile> => readTriangleFile('ply', bytes);
      export async function use(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
        const fine: Refined = await new Client().refine({ type: 'application/x-draco', bytes }, { view: { eye: [0, 0, 3] } });
        const refiner = await Refiner.start();

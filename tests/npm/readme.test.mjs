@@ -50,7 +50,7 @@ async function run(example, beforeIt, afterIt) {
 test('the README has an example for each part of the package', () => {
   assert.deepEqual(
     examples.map((code) => /from '(.*?)'/.exec(code)[1]),
-    ['papilio/three', 'papilio/wasm', 'papilio/client', 'papilio/detail'],
+    ['papilio/three', 'papilio/wasm', 'papilio/files', 'papilio/client', 'papilio/detail'],
   );
 });
 
@@ -84,9 +84,21 @@ test('papilio/wasm: a geometry is refined in workers', async () => {
   assert.ok(triangles > 3 * 6 && error <= 0.001, `${triangles}, ${error}`);
 });
 
+test('papilio/files: a file of smoothing groups is opened', async () => {
+  const counts = await run(
+    examples[2],
+    `import { Refiner } from 'papilio/wasm';
+     const refiner = await Refiner.start();
+     const lines = ['v 0 0 0', 'v 1 0 0', 'v 1 1 0', 'v 0 1 1', 's 1', 'f 1 2 3', 's 2', 'f 1 3 4', ''];
+     const file = new Blob([lines.join('\\n')]);`,
+    'const said = [mesh.triangles.triangles.length / 3, groups.length];',
+  );
+  assert.deepEqual(counts, [2, 1]);
+});
+
 test('papilio/client: a scene arrives level by level', async () => {
   const faces = await run(
-    examples[2].replace('https://refine.example.com/', server.url),
+    examples[3].replace('https://refine.example.com/', server.url),
     `const file = await (await fetch('/model.glb')).blob();
      const { signal } = new AbortController();
      const said = [];
@@ -99,7 +111,7 @@ test('papilio/client: a scene arrives level by level', async () => {
 
 test('papilio/detail: a packed model returns all its faces', async () => {
   const faces = await run(
-    examples[3],
+    examples[4],
     `import * as THREE from 'three';
      const mesh = new THREE.Mesh();`,
     'const said = mesh.geometry.index.count / 3;',

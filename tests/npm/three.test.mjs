@@ -395,3 +395,41 @@ test('adjacent parts stay closed: a mesh with two materials is refined as one', 
   assert.equal(seen.open, 0);
   assert.deepEqual(faults, []);
 });
+
+test('smoothing groups mark creases, in two geometries as in one', async () => {
+  const { page, faults } = await open();
+  const seen = await page.evaluate(async () => {
+    const corners = [1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0, 0, 0, 0.5];
+    const sides = [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
+    const base = [2, 1, 0, 3, 2, 0];
+    const geometryOf = (indices, groups) => {
+      const geometry = new THREE.BufferGeometry();
+      const positions = indices.flatMap((i) => corners.slice(3 * i, 3 * i + 3));
+      geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
+      if (groups) geometry.setAttribute('_smoothing_group', new THREE.Float32BufferAttribute(groups, 1));
+      return geometry;
+    };
+    const refiner = await Refiner.start();
+    /** Returns the different positions of the result. */
+    const placesOf = async (...geometries) => {
+      const root = new THREE.Group().add(...geometries.map((one) => new THREE.Mesh(one)));
+      const parts = new Parts(root, refiner);
+      const places = new Set();
+      for (const part of parts.all)
+        for (const { attributes } of (await parts.refine(part, 'levels=2&shape=organic', {})).geometries)
+          for (let i = 0; i < attributes.position.count; ++i)
+            places.add(attributes.position.array.slice(3 * i, 3 * i + 3).join());
+      return [...places].sort();
+    };
+    const [one, zero] = [Array(12).fill(1), Array(6).fill(0)];
+    return [
+      await placesOf(geometryOf([...sides, ...base], [...one, ...zero])),
+      await placesOf(geometryOf([...sides, ...base])),
+      await placesOf(geometryOf(sides), geometryOf(base, zero)),
+    ];
+  });
+  assert.equal(seen[0].length, 50);
+  assert.deepEqual(seen[2], seen[0]);
+  assert.notDeepEqual(seen[1], seen[0]);
+  assert.deepEqual(faults, []);
+});

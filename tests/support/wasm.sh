@@ -16,7 +16,7 @@ rm -rf build/npm.new
 mkdir -p build/npm.new build/npm
 cp client/npm/package.json client/npm/README.md LICENSE build/npm.new/
 client/web/node_modules/.bin/tsc -p client/npm --outDir build/npm.new/dist
-cp build/wasm/papilio.wasm build/wasm/papilio-detail.wasm build/npm.new/dist/
+cp build/wasm/papilio.wasm build/wasm/papilio-detail.wasm build/wasm/papilio-files.wasm build/npm.new/dist/
 (cd build/npm && find . -type f) | while read -r file; do
   [[ -f build/npm.new/$file ]] || rm "build/npm/$file"
 done

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "papilio/refine.h"
+#include "proto/gltf/flattening.h"
 #include "proto/gltf/vertices.h"
 #include "proto/problem.h"
 #include "tests/support/gltf_refinement.h"
@@ -48,6 +49,47 @@ TEST(GltfScene, PositionsEqualTheCores) {
   EXPECT_EQ(made.statistics.faces, 16 * shape.triangles.size());
   EXPECT_EQ(made.statistics.vertices, expected.positions.size());
   EXPECT_EQ(made.statistics.level, 2);
+}
+
+TEST(GltfScene, SmoothingGroupsMarkCreasesAsInTheCore) {
+  // A pyramid with smooth sides in group 1 over a base of group 0; each face has its own points.
+  const Buffer<Vec3f> corners{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 0.5F}};
+  TriangleMesh shape;
+  std::vector<float> groups;
+  for (const Triangle& face : Buffer<Triangle>{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {2, 1, 0}, {3, 2, 0}}) {
+    const auto first = static_cast<uint32_t>(shape.positions.size());
+    for (const uint32_t corner : face) shape.positions.push_back(corners[corner]);
+    shape.triangles.push_back({first, first + 1, first + 2});
+    groups.resize(shape.positions.size(), shape.triangles.size() > 4 ? 0.0F : 1.0F);
+  }
+  GltfScene scene;
+  scene.add_mesh(shape);
+  const std::string plain = scene.glb();
+  scene.primitive()["attributes"]["_SMOOTHING_GROUP"] = scene.add_accessor(groups, "SCALAR");
+  const std::string marked = scene.glb();
+  shape.attributes = {{.values = {groups.begin(), groups.end()}, .is_smoothing_group = true}};
+  Options options;
+  options.levels = 2;
+  options.shape = Shape::organic;
+  const Result expected = refine(build_mesh(shape), options);
+  const TriangleMesh mesh = expected.mesh.triangles();
+  std::multiset<Point> found;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const uint32_t v : triangle) found.insert(point_of(mesh.positions[v]));
+  const EncodedLevel made = refined(marked, {{"levels", "2"}, {"shape", "organic"}});
+  EXPECT_EQ(corners_of(geometry_of(made.bytes)), found);
+  EXPECT_NE(corners_of(geometry_of(refined(plain, {{"levels", "2"}, {"shape", "organic"}}).bytes)), found);
+  // The refined scene has the groups of its faces, and a mesh of it, too.
+  const MeshGeometry geometry = geometry_of(made.bytes);
+  const VertexStream* stream = geometry.sets[0].find("_SMOOTHING_GROUP");
+  ASSERT_NE(stream, nullptr);
+  for (uint32_t v = 0; v < geometry.sets[0].count; ++v)
+    EXPECT_TRUE(stream->elements.number(v, 0) == 0 || stream->elements.number(v, 0) == 1);
+  const FormattedMesh flat = flatten_scene(made.bytes, Limits{});
+  ASSERT_EQ(flat.attributes.size(), 1U);
+  EXPECT_TRUE(flat.attributes[0].is_smoothing_group);
+  const MeshGeometry again = geometry_of(scene_of_mesh(flat, {}));
+  EXPECT_NE(again.sets[0].find("_SMOOTHING_GROUP"), nullptr);
 }
 
 TEST(GltfScene, StripsFansAndLooseTrianglesBecomeOneSurface) {

@@ -124,3 +124,49 @@ test('a library or an image that was not dropped with its .obj file is named', a
   await page.locator('#alert').waitFor({ state: 'hidden' });
   assert.deepEqual(faults, []);
 });
+
+/// Sends a file through the page, and returns what the page stores on the server.
+async function storedOf(page, name, text) {
+  const [stored] = await Promise.all([
+    page.waitForRequest((request) => request.url().endsWith('/v1/meshes')),
+    drop(page, name, text),
+  ]);
+  await done(page);
+  return stored.postDataBuffer();
+}
+
+test('polygons and smoothing groups are those of the command line', async () => {
+  const { page, faults } = await openPage(shared.browser, shared.server.url);
+  await done(page);
+  // An L as one face, whose fan around the first corner would leave it, and a pyramid of two smoothing groups.
+  const l = 'v 0 0 0\nv 0 2 0\nv -1 2 0\nv -1 -1 0\nv 2 -1 0\nv 2 0 0\nv 0 0 1\nf 1 2 3 4 5 6\nf 1 2 7\n';
+  const corners = 'v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 0.5\n';
+  const groups = `${corners}s 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\ns off\nf 4 3 2 1\n`;
+  const folder = mkdtempSync(join(tmpdir(), 'papilio-web-'));
+  const papilio = (...words) => execFileSync(join(build, 'papilio'), words, { cwd: folder, encoding: 'utf8' });
+  try {
+    for (const [name, text, sent] of [
+      ['l.obj', l, 'l.drc'],
+      ['groups.obj', groups, 'groups.glb'],
+    ]) {
+      writeFileSync(join(folder, name), text);
+      writeFileSync(join(folder, sent), await storedOf(page, name, text));
+      for (const file of [name, sent])
+        papilio('refine', file, '-o', `${file}.ply`, '--levels', '3', '--shape', 'organic');
+      const { hausdorff, diagonal } = JSON.parse(papilio('compare', '--json', `${name}.ply`, `${sent}.ply`));
+      assert.ok(hausdorff < 2e-4 * diagonal, `${name}: ${hausdorff}`);
+    }
+    // In this browser, too: a base that stays plane has the same faces of any level in one plane.
+    const [download] = await Promise.all([
+      page.waitForEvent('download'),
+      page.locator('.panel[data-mode=uniform] button', { hasText: 'Save' }).click(),
+    ]);
+    await download.saveAs(join(folder, 'uniform.glb'));
+    papilio('refine', 'groups.obj', '-o', 'here.ply', '--levels', '3');
+    const { hausdorff, diagonal } = JSON.parse(papilio('compare', '--json', 'here.ply', 'uniform.glb'));
+    assert.ok(hausdorff < 2e-4 * diagonal, `${hausdorff}`);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+  assert.deepEqual(faults, []);
+});

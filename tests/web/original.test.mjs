@@ -151,7 +151,7 @@ test('a file that is not a mesh is reported, and the measured original stays', a
   await choose(page, { name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('x') });
   await tell.getByText('notes.txt is no mesh file').waitFor();
   await choose(page, { name: 'empty.obj', mimeType: 'text/plain', buffer: Buffer.from('v 0 0 0\n') });
-  await tell.getByText('There are no triangles in empty.obj').waitFor();
+  await tell.getByText('empty.obj: holds no triangles').waitFor();
   await choose(page, { name: 'broken.glb', mimeType: 'model/gltf-binary', buffer: glb.subarray(0, 300) });
   await tell.getByText('broken.glb cannot be read').waitFor();
   assert.equal(await words(page).innerText(), before);

@@ -182,7 +182,7 @@ test('a file that is not a mesh is refused with a message, and the open mesh sta
     ['notes.txt', 'hello', /notes\.txt is no mesh file/],
     ['broken.drc', 'DRACO but not really', /no Draco mesh, or it is damaged/],
     ['empty.obj', '', /empty\.obj is empty/],
-    ['points.obj', 'v 0 0 0\nv 1 0 0\n', /no triangles in points\.obj/],
+    ['points.obj', 'v 0 0 0\nv 1 0 0\n', /points\.obj: holds no triangles; export the mesh again/],
     ['junk.glb', 'hello, no scene', /junk\.glb cannot be read: The bytes do not begin with glTF/],
     ['broken.glb', 'glTF', /broken\.glb cannot be read: The \.glb file has 4 bytes; at least 20 are required/],
     [
@@ -190,7 +190,8 @@ test('a file that is not a mesh is refused with a message, and the open mesh sta
       cubeGlb().subarray(0, 500),
       /cut\.glb cannot be read: The \.glb header declares \d+ bytes, and there are 500\./,
     ],
-    ['broken.ply', 'ply\nformat none\n', /broken\.ply/],
+    ['broken.ply', 'ply\nformat none\n', /broken\.ply: line 2: unknown PLY format/],
+    ['word.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 x\n', /word\.obj: line 4: expected the number of a vertex/],
     ['nowhere.obj', 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n', /nowhere\.obj/],
   ]) {
     await drop(page, name, bytes);
@@ -326,8 +327,8 @@ test('a .gltf file opens with its referenced files, or names the missing ones', 
   const without = await redShare(page, await picture(page, 'uniform'));
   assert.ok(without.drawn > 0.1 && without.red < 0.1 * without.drawn, JSON.stringify(without));
   for (const [text, words] of [
-    ['OFF\n4 1 0\n0 0 0\n', /fewer vertices and faces than it says/],
-    ['OFF\n1 1 0\n0 0 0\n3 0 0 9\n', /names a vertex that is not there/],
+    ['OFF\n4 1 0\n0 0 0\n', /4 vertices are declared, more than the file can hold/],
+    ['OFF\n1 1 0\n0 0 0\n3 0 0 9\n', /line 4: there is no vertex 9/],
   ]) {
     await drop(page, 'broken.off', text);
     await page.locator('#alert-text', { hasText: words }).waitFor();

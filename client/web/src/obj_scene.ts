@@ -1,112 +1,78 @@
-// OBJ files with their material libraries and images, as scenes.
+// OBJ files with their material libraries, images and smoothing groups, as scenes.
 
-import type { BufferGeometry, Material, Mesh, Object3D } from 'three';
+import type { FileAttribute, TriangleFile } from 'papilio/files';
 
 import { glbOf, padded } from './glb';
 import type { Bytes, Encoded } from './model';
 import { type LibraryMaterial, readMtl, undefinedMaterial } from './mtl';
-import { Problem } from './service';
 
 const lastOf = (path: string) => path.replaceAll('\\', '/').split('/').at(-1)!.trim().toLowerCase();
 
-/// Returns the names of the libraries that an OBJ file refers to; a line may have several, and names may have blanks.
-function librariesOf(text: string): string[] {
-  return [...text.matchAll(/^[ \t]*mtllib[ \t]+(.+?)[ \t\r]*$/gm)].flatMap(([, line]) => line.split(/(?<=\.mtl)\s+/i));
-}
-
-/// Reads an OBJ file as a scene, if one of its libraries is among `files`, which were dropped or picked with it. Returns
-/// the names of its libraries otherwise. Rejects with a Problem.
-export async function readObjScene(obj: File, files: readonly File[]): Promise<Encoded | string[]> {
-  const text = await obj.text();
-  const names = librariesOf(text);
+/// Returns a file as a scene, if one of its libraries is among `files`, which were dropped or picked with it, or if it
+/// has smoothing groups; null otherwise.
+export async function sceneOf(read: TriangleFile, files: readonly File[]): Promise<Encoded | null> {
+  // A line may name several libraries, and names may have blanks.
+  const names = read.libraries.flatMap((line) => line.split(/(?<=\.mtl)\s+/i));
   const fileNamed = (path: string) => files.find(({ name }) => lastOf(name) === lastOf(path));
   const libraries = names.map(fileNamed).filter((file) => file !== undefined);
-  if (libraries.length === 0) return names;
+  if (libraries.length === 0 && !read.attributes.some(({ kind }) => kind === 'smoothing-groups')) return null;
   const defined = new Map<string, LibraryMaterial>();
   for (const library of libraries)
     for (const one of readMtl(await library.text())) if (!defined.has(one.name)) defined.set(one.name, one);
-  const { OBJLoader } = await import('three/examples/jsm/loaders/OBJLoader.js');
-  let parsed: Object3D;
-  try {
-    parsed = new OBJLoader().parse(text);
-  } catch (error) {
-    throw new Problem(
-      'damaged',
-      `${obj.name} cannot be read: ${error instanceof Error ? error.message : String(error)}`,
-    );
-  }
-  const surfaces = surfacesOf(parsed, /^[ \t]*vn\s/m.test(text));
-  if (surfaces.size === 0) throw new Problem('empty', `There are no triangles in ${obj.name}.`);
-  const writer = new SceneWriter();
-  for (const [name, surface] of surfaces) {
-    if (!surface.positions.every(Number.isFinite))
-      throw new Problem('mesh_unusable', `${obj.name} has positions that are no numbers.`);
+  const writer = new SceneWriter(read);
+  for (const [name, surface] of surfacesOf(read))
     await writer.add(surface, defined.get(name) ?? undefinedMaterial(name), fileNamed);
-  }
-  return { kind: 'scene', bytes: writer.bytes() };
+  return { kind: 'scene', bytes: writer.bytes(), ...(libraries.length === 0 && { libraries: names }) };
 }
 
-/// Triangles of one material.
+/// Triangles of one material, and their points.
 class Surface {
-  readonly positions: number[] = [];
-  readonly texcoords: number[] = [];
-  readonly normals: number[] = [];
+  readonly points: number[] = [];
   readonly triangles: number[] = [];
-  /// Vertices by their values: OBJLoader repeats them in each triangle.
-  readonly #vertices = new Map<string, number>();
+  readonly #numbers = new Map<number, number>();
 
-  add(geometry: BufferGeometry, from: number, hasTexcoords: boolean, hasNormals: boolean): void {
-    const position = geometry.getAttribute('position');
-    const texcoord = geometry.hasAttribute('uv') ? geometry.getAttribute('uv') : null;
-    const normal = geometry.getAttribute('normal');
-    const corners: number[] = [];
-    const places: string[] = [];
-    for (let i = from; i < from + 3; ++i) {
-      const point = [position.getX(i), position.getY(i), position.getZ(i)];
-      // OBJ has the lower left corner of images at 0, 0, and glTF the upper left.
-      const uv = !hasTexcoords ? [] : texcoord ? [texcoord.getX(i), 1 - texcoord.getY(i)] : [0, 0];
-      const direction = hasNormals ? [normal.getX(i), normal.getY(i), normal.getZ(i)] : [];
-      const key = [point, uv, direction].join(';');
-      let vertex = this.#vertices.get(key);
-      if (vertex === undefined) {
-        vertex = this.#vertices.size;
-        this.#vertices.set(key, vertex);
-        this.positions.push(...point);
-        this.texcoords.push(...uv);
-        this.normals.push(...direction);
-      }
-      corners.push(vertex);
-      places.push(point.join());
+  add(corner: number): void {
+    let number = this.#numbers.get(corner);
+    if (number === undefined) {
+      this.#numbers.set(corner, (number = this.points.length));
+      this.points.push(corner);
     }
-    if (new Set(places).size === 3) this.triangles.push(...corners);
+    this.triangles.push(number);
+  }
+
+  /// Returns the first components of the values of its points.
+  valuesOf(values: Float32Array, components: number, taken = components): Float32Array<ArrayBuffer> {
+    const own = new Float32Array(this.points.length * taken);
+    for (const [i, point] of this.points.entries())
+      own.set(values.subarray(point * components, point * components + taken), i * taken);
+    return own;
   }
 }
 
-/// Returns the triangles by the name of their material. `hasNormals`: whether the file has normals; three makes flat
-/// ones otherwise.
-function surfacesOf(parsed: Object3D, hasNormals: boolean): Map<string, Surface> {
-  const meshes: Mesh[] = [];
-  parsed.traverse((object) => (object as Partial<Mesh>).isMesh === true && meshes.push(object as Mesh));
-  const hasTexcoords = meshes.some(({ geometry }) => geometry.hasAttribute('uv'));
-  const surfaces = new Map<string, Surface>();
-  for (const { geometry, material } of meshes) {
-    const materials = ([] as Material[]).concat(material);
-    const whole = { start: 0, count: geometry.getAttribute('position').count, materialIndex: 0 };
-    for (const { start, count, materialIndex } of geometry.groups.length > 0 ? geometry.groups : [whole]) {
-      const name = materials[materialIndex ?? 0].name;
-      let surface = surfaces.get(name);
-      if (surface === undefined) surfaces.set(name, (surface = new Surface()));
-      for (let i = start; i + 2 < start + count; i += 3) surface.add(geometry, i, hasTexcoords, hasNormals);
-    }
+/// Returns the triangles by the name of their material, in the order of the materials; '' without one.
+function surfacesOf({ triangles, materials, materialOfFace }: TriangleFile): Map<string, Surface> {
+  const surfaces = new Map<string, Surface>(materials.map((name) => [name, new Surface()]));
+  for (let i = 0; i < triangles.length; ++i) {
+    const name = materials[materialOfFace?.[Math.floor(i / 3)] ?? materials.length] ?? '';
+    let surface = surfaces.get(name);
+    if (surface === undefined) surfaces.set(name, (surface = new Surface()));
+    surface.add(triangles[i]);
   }
-  for (const [name, { triangles }] of surfaces) if (triangles.length === 0) surfaces.delete(name);
   return surfaces;
 }
 
 type Json = Record<string, unknown>;
 
+const semantics: Record<FileAttribute['kind'], string> = {
+  normals: 'NORMAL',
+  colours: 'COLOR_0',
+  texcoords: 'TEXCOORD_0',
+  'smoothing-groups': '_SMOOTHING_GROUP',
+};
+
 /// Writer of a .glb file with one mesh, which has a primitive for each material.
 class SceneWriter {
+  readonly #read: TriangleFile;
   readonly #chunks: Bytes[] = [];
   readonly #views: Json[] = [];
   readonly #accessors: Json[] = [];
@@ -117,18 +83,21 @@ class SceneWriter {
   readonly #imageNumbers = new Map<string, number>();
   #length = 0;
 
+  constructor(read: TriangleFile) {
+    this.#read = read;
+  }
+
   async add(surface: Surface, material: LibraryMaterial, fileNamed: (path: string) => File | undefined): Promise<void> {
-    const { positions, texcoords, normals, triangles } = surface;
-    const attributes: Json = { POSITION: this.#accessor(new Float32Array(positions), 3, bounds(positions)) };
-    if (texcoords.length > 0) attributes.TEXCOORD_0 = this.#accessor(new Float32Array(texcoords), 2);
-    if (normals.length > 0) attributes.NORMAL = this.#accessor(new Float32Array(normals), 3);
+    const positions = surface.valuesOf(this.#read.positions, 3);
+    const attributes: Json = { POSITION: this.#accessor(positions, 3, bounds(positions)) };
+    for (const attribute of this.#read.attributes) this.#addAttribute(attributes, surface, attribute);
     this.#primitives.push({
       attributes,
-      indices: this.#accessor(new Uint32Array(triangles), 1),
+      indices: this.#accessor(new Uint32Array(surface.triangles), 1),
       material: this.#materials.length,
     });
     const textures: Record<string, { index: number }> = {};
-    if (texcoords.length > 0)
+    if (attributes.TEXCOORD_0 !== undefined)
       for (const [use, path] of Object.entries(material.images) as [string, string | undefined][])
         if (path !== undefined) textures[use] = { index: await this.#image(path, fileNamed(path)) };
     const { baseColorTexture, metallicRoughnessTexture, ...others } = textures;
@@ -169,6 +138,14 @@ class SceneWriter {
     return glbOf(new TextEncoder().encode(JSON.stringify(document)), this.#chunks, this.#length);
   }
 
+  #addAttribute(to: Json, surface: Surface, { kind, components, values }: FileAttribute): void {
+    const taken = kind === 'texcoords' ? 2 : components;
+    const own = surface.valuesOf(values, components, taken);
+    // OBJ has the lower left corner of images at 0, 0, and glTF the upper left.
+    if (kind === 'texcoords') for (let i = 1; i < own.length; i += 2) own[i] = 1 - own[i];
+    to[semantics[kind]] = this.#accessor(own, taken);
+  }
+
   /// Returns the number of an image; one that is not there stays a reference, which the page reports.
   async #image(path: string, file: File | undefined): Promise<number> {
     const key = lastOf(path);
@@ -197,11 +174,10 @@ class SceneWriter {
   }
 }
 
-function bounds(positions: readonly number[]): Json {
+function bounds(positions: Float32Array): Json {
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
-  for (const [i, number] of positions.entries()) {
-    const x = Math.fround(number);
+  for (const [i, x] of positions.entries()) {
     min[i % 3] = Math.min(min[i % 3], x);
     max[i % 3] = Math.max(max[i % 3], x);
   }

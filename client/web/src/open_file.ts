@@ -1,12 +1,13 @@
 // Files dropped or picked by the user: .drc meshes and .glb scenes as they are, .gltf files with their references and
-// .obj files with their materials as a .glb, other formats by three's loaders as Draco meshes of positions and triangles.
+// .obj files with their materials or smoothing groups as a .glb, other formats as Draco meshes of positions and
+// triangles.
 
 import { encode } from './draco';
 import { packGlb } from './gltf_files';
 import type { Encoded } from './model';
-import { readObjScene } from './obj_scene';
+import { sceneOf } from './obj_scene';
 import { Problem } from './service';
-import { readTriangles, triangleFormats } from './triangle_files';
+import { readFile, triangleFormats, welded } from './triangle_files';
 
 export const extensions = ['.drc', '.obj', '.ply', '.stl', '.off', '.glb', '.gltf'];
 
@@ -25,10 +26,10 @@ export function meshAmong(files: readonly File[]): File {
 export async function readMeshFile(file: File, files: readonly File[], maxBytes: number): Promise<Encoded> {
   const extension = formatOf(file);
   if (triangleFormats.includes(extension)) {
-    const scene = extension === '.obj' ? await readObjScene(file, files) : [];
-    if (!Array.isArray(scene)) return scene;
-    const bytes = await encode(await readTriangles(file.name, extension, await file.arrayBuffer()));
-    return { kind: 'draco', bytes, libraries: scene };
+    const read = await readFile(file.name, extension, await file.arrayBuffer());
+    return (
+      (await sceneOf(read, files)) ?? { kind: 'draco', bytes: await encode(welded(read)), libraries: read.libraries }
+    );
   }
   if (extension !== '.gltf' && file.size > maxBytes)
     throw new Problem('body_too_large', `${file.name} has ${file.size} bytes; this server takes ${maxBytes}.`);

@@ -1,6 +1,6 @@
 // Worker that reads an original and measures distances to it; original.ts starts it.
 
-import { readTriangles } from './triangle_files';
+import { readFile, welded } from './triangle_files';
 import { MeasuredOriginal, type Surface, type TwoSided } from './two_sided';
 
 /// Message; the first is the original, as a file of one of triangleFormats or decoded. Each is answered.
@@ -14,7 +14,7 @@ let original: MeasuredOriginal;
 async function answerTo(message: ToMeasurer): Promise<TwoSided | null> {
   if (message.kind === 'measure') return original.measure(message.surface);
   original = new MeasuredOriginal(
-    'surface' in message ? message.surface : await readTriangles(message.name, message.extension, message.bytes),
+    'surface' in message ? message.surface : welded(await readFile(message.name, message.extension, message.bytes)),
   );
   return null;
 }

@@ -33,8 +33,18 @@ export function isRefinable(geometry: BufferGeometry): boolean {
   return geometry.attributes.position?.itemSize === 3 && geometry.groups.length === 0 && cornersOf(geometry) > 0;
 }
 
+/// Name in three.js of the smoothing groups of a scene (proto/gltf/surface.h), and the group of faces without one.
+const smoothingGroups = '_smoothing_group';
+const defaultGroup = 1;
+
+/// Returns the kind of a geometry's attribute.
+function kindOf(name: string, { itemSize }: Values): Attribute['kind'] {
+  if (name === 'normal') return 'normals';
+  return name === smoothingGroups && itemSize === 1 ? 'smoothing-groups' : 'values';
+}
+
 /// Joins refinable geometries to one mesh; all must have normals, or none. Points of equal position are one vertex, so
-/// that they stay together. Missing values are 0.
+/// that they stay together. Missing values are 0, missing smoothing groups 1.
 export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
   const counts = geometries.map((geometry) => geometry.attributes.position!.count);
   const points = counts.reduce((sum, count) => sum + count, 0);
@@ -45,7 +55,8 @@ export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
   const add = (g: number, place: Place, kind: Attribute['kind'], components: number, values: ArrayLike<number>) => {
     const key = `${place.name} ${place.target}`;
     const known = attributes.get(key);
-    const all = known ?? { place, kind, components, values: new Float64Array(points * components) };
+    const none = kind === 'smoothing-groups' ? defaultGroup : 0;
+    const all = known ?? { place, kind, components, values: new Float64Array(points * components).fill(none) };
     attributes.set(key, all);
     for (let p = 0; p < counts[g]!; ++p)
       for (let c = 0; c < Math.min(components, all.components); ++c)
@@ -56,7 +67,7 @@ export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
     for (let i = 0; i < cornersOf(geometry); ++i) triangles.push(firsts[g]! + (geometry.index?.getX(i) ?? i));
     for (const [name, of] of Object.entries(geometry.attributes) as [string, Values][])
       if (name === 'normal' ? hasNormals(geometry) : name !== 'position')
-        add(g, { name, target: null }, name === 'normal' ? 'normals' : 'values', of.itemSize, valuesOf(of));
+        add(g, { name, target: null }, kindOf(name, of), of.itemSize, valuesOf(of));
     for (const [name, targets] of Object.entries(geometry.morphAttributes) as [string, Values[]][])
       for (const [target, of] of targets.entries()) {
         const values = valuesOf(of);
