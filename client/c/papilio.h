@@ -29,7 +29,7 @@ typedef enum papilio_fault {
 typedef enum papilio_attribute_kind {
   PAPILIO_VALUES = 0,           /* values to interpolate, such as texture coordinates or colours */
   PAPILIO_NORMALS = 1,          /* 3 components: recomputed from the refined surface, and split as in the input */
-  PAPILIO_SMOOTHING_GROUPS = 2, /* 1 component: faces of different groups, or of group 0, meet at creases */
+  PAPILIO_SMOOTHING_GROUPS = 2, /* 1 component: faces of different groups meet at creases */
   PAPILIO_DISPLACEMENTS = 3     /* 3 components: displacements of a morph target, refined as the surface is */
 } papilio_attribute_kind;
 

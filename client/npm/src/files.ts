@@ -14,7 +14,7 @@ export interface FileAttribute {
   kind: (typeof kinds)[number];
   components: number;
   /// [points * components] values; colours are from 0 to 1, texture coordinates upwards as in OBJ, and faces of
-  /// different smoothing groups, or of group 0, meet at creases.
+  /// different smoothing groups meet at creases.
   values: Float32Array<ArrayBuffer>;
 }
 

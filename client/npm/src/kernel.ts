@@ -4,7 +4,7 @@
 import { queryOf, type Parameters } from './parameters.js';
 
 /// Kind of an attribute: `values` are interpolated; `normals` are recomputed from the refined surface, and split as in
-/// the input; faces of different `smoothing-groups`, or of group 0, meet at creases; `displacements` of a morph target
+/// the input; faces of different `smoothing-groups` meet at creases; `displacements` of a morph target
 /// are refined as the surface is.
 export type AttributeKind = 'values' | 'normals' | 'smoothing-groups' | 'displacements';
 

@@ -29,7 +29,7 @@ struct Attribute {
   bool unit_length = false;    ///< whether values are normalized after interpolation, as normals are
   std::vector<double> values;  ///< [points * components], point by point
   /// Whether the values are smoothing groups of faces, one at each point of a face. Edges between faces of different
-  /// groups, or of group 0, are creases (core/mesh/smoothing_groups.h).
+  /// groups are creases (core/mesh/smoothing_groups.h).
   bool is_smoothing_group = false;
   /// Whether the values, of 3 components, displace the points, as morph targets do. Displacements are refined by the
   /// rules of positions, so that the refined surface moves as the coarse mesh does. They are interpolated linearly
