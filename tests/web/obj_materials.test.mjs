@@ -92,6 +92,11 @@ test('an .obj file with its .mtl and images has the materials of the command lin
   await done(page);
   assert.ok(await page.locator('#alert').isHidden());
   await page.getByLabel('Shaded').check();
+  // The parts are named as the file and its materials.
+  assert.deepEqual(
+    await page.locator('#parts label').allInnerTexts(),
+    ['cube', 'image', 'two words'].map((n) => ` ${n}`),
+  );
   for (const mode of ['coarse', 'uniform']) {
     const { red, drawn } = await redShare(page, await picture(page, mode));
     assert.ok(drawn > 0.1 && red > 0.9 * drawn, `${mode}: ${red} of ${drawn} are red`);

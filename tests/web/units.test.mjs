@@ -24,6 +24,7 @@ const { faultOf, rangeOf, queryOf } = await load('parameters');
 const { valuesFor } = await load('requests');
 const { edgesOf } = await load('mesh_edges');
 const { MeasuredOriginal } = await load('two_sided');
+const { mechanicalIn } = await load('strip');
 
 const answer = Buffer.from(
   '--b\r\nContent-Type: a/b\r\nContent-Length: 6\r\n\r\n\r\n--b\r\r\n--b\r\nContent-Type: c/d\r\nContent-Length: 0\r\n\r\n\r\n--b--\r\n',
@@ -266,4 +267,14 @@ test('no edge is missing at boundaries, at non-manifold edges, and between flipp
     assert.deepEqual([...new Set(edges)], edgesByTable(mesh));
     assert.ok(edges.length < mesh.length);
   }
+});
+
+test('the strip tells whether a model is mechanical, or pieces of it', () => {
+  assert.equal(mechanicalIn('organic'), null);
+  for (const whole of ['mechanical', 'mechanical: 1 of 1 component, 40 creases', 'mechanical: 7 of 7 components'])
+    assert.equal(mechanicalIn(whole), 'This looks mechanical: its hard edges stay sharp.');
+  const two = '2 of 14 pieces look mechanical: their hard edges stay sharp.';
+  assert.equal(mechanicalIn('mechanical: 2 of 14 components, 32 creases'), two);
+  const one = '1 of 3 pieces looks mechanical: its hard edges stay sharp.';
+  assert.equal(mechanicalIn('mechanical: 1 of 3 components'), one);
 });

@@ -8,9 +8,9 @@ import { type LibraryMaterial, readMtl, undefinedMaterial } from './mtl';
 
 const lastOf = (path: string) => path.replaceAll('\\', '/').split('/').at(-1)!.trim().toLowerCase();
 
-/// Returns a file as a scene, if one of its libraries is among `files`, which were dropped or picked with it, or if it
+/// Returns a file as a scene of this name, if one of its libraries is among `files`, which were dropped or picked with it, or if it
 /// has smoothing groups; null otherwise.
-export async function sceneOf(read: TriangleFile, files: readonly File[]): Promise<Encoded | null> {
+export async function sceneOf(name: string, read: TriangleFile, files: readonly File[]): Promise<Encoded | null> {
   // A line may name several libraries, and names may have blanks.
   const names = read.libraries.flatMap((line) => line.split(/(?<=\.mtl)\s+/i));
   const fileNamed = (path: string) => files.find(({ name }) => lastOf(name) === lastOf(path));
@@ -19,9 +19,9 @@ export async function sceneOf(read: TriangleFile, files: readonly File[]): Promi
   const defined = new Map<string, LibraryMaterial>();
   for (const library of libraries)
     for (const one of readMtl(await library.text())) if (!defined.has(one.name)) defined.set(one.name, one);
-  const writer = new SceneWriter(read);
-  for (const [name, surface] of surfacesOf(read))
-    await writer.add(surface, defined.get(name) ?? undefinedMaterial(name), fileNamed);
+  const writer = new SceneWriter(name, read);
+  for (const [material, surface] of surfacesOf(read))
+    await writer.add(surface, defined.get(material) ?? undefinedMaterial(material), fileNamed);
   return { kind: 'scene', bytes: writer.bytes(), ...(libraries.length === 0 && { libraries: names }) };
 }
 
@@ -72,6 +72,7 @@ const semantics: Record<FileAttribute['kind'], string> = {
 
 /// Writer of a .glb file with one mesh, which has a primitive for each material.
 class SceneWriter {
+  readonly #name: string;
   readonly #read: TriangleFile;
   readonly #chunks: Bytes[] = [];
   readonly #views: Json[] = [];
@@ -83,7 +84,8 @@ class SceneWriter {
   readonly #imageNumbers = new Map<string, number>();
   #length = 0;
 
-  constructor(read: TriangleFile) {
+  constructor(name: string, read: TriangleFile) {
+    this.#name = name;
     this.#read = read;
   }
 
@@ -126,7 +128,7 @@ class SceneWriter {
       asset: { version: '2.0' },
       scene: 0,
       scenes: [{ nodes: [0] }],
-      nodes: [{ mesh: 0 }],
+      nodes: [{ mesh: 0, name: this.#name }],
       meshes: [{ primitives: this.#primitives }],
       materials: this.#materials,
       ...(hasImages && { images: this.#images, textures: this.#images.map((_, source) => ({ source })) }),

@@ -28,7 +28,11 @@ export async function readMeshFile(file: File, files: readonly File[], maxBytes:
   if (triangleFormats.includes(extension)) {
     const read = await readFile(file.name, extension, await file.arrayBuffer());
     return (
-      (await sceneOf(read, files)) ?? { kind: 'draco', bytes: await encode(welded(read)), libraries: read.libraries }
+      (await sceneOf(file.name.replace(/\.[^.]*$/, ''), read, files)) ?? {
+        kind: 'draco',
+        bytes: await encode(welded(read)),
+        libraries: read.libraries,
+      }
     );
   }
   if (extension !== '.gltf' && file.size > maxBytes)

@@ -19,7 +19,15 @@ export function costOf(shown: Shown, coarseFaces: number): Node[] {
     parts.push(`${nearness} ${Number(summary.error_pixels.toPrecision(2))} px`);
   }
   const nodes: Node[] = parts.map((text) => element('span', '', text));
-  if (summary?.shape?.startsWith('mechanical'))
-    nodes.push(element('span', 'found', 'This looks mechanical: its hard edges stay sharp.'));
+  const found = summary?.shape && mechanicalIn(summary.shape);
+  if (found) nodes.push(element('span', 'found', found));
   return nodes;
+}
+
+/// Returns what is said of mechanical components, from Papilio-Shape: "mechanical: 2 of 14 components"; null of others.
+export function mechanicalIn(shape: string): string | null {
+  if (!shape.startsWith('mechanical')) return null;
+  const [few, all] = (/(\d+) of (\d+)/.exec(shape) ?? ['', '1', '1']).slice(1).map(Number);
+  if (few === all) return 'This looks mechanical: its hard edges stay sharp.';
+  return `${few} of ${all} pieces ${few === 1 ? 'looks mechanical: its' : 'look mechanical: their'} hard edges stay sharp.`;
 }

@@ -1,6 +1,6 @@
 // Tree of a scene's parts by name, in which each can be hidden.
 
-import type { Object3D } from 'three';
+import type { Material, Mesh, Object3D } from 'three';
 
 import { element, find } from './elements';
 import { isMesh } from './scene';
@@ -44,7 +44,7 @@ function treeOf(scene: Object3D, onToggle: (path: Path, isHidden: boolean) => vo
       input.type = 'checkbox';
       input.checked = true;
       input.addEventListener('change', () => onToggle(at, !input.checked));
-      label.append(input, ` ${child.name || (isMesh(child) ? 'Mesh' : 'Group')}`);
+      label.append(input, ` ${nameOf(child)}`);
       const item = element('li');
       item.append(label);
       if (child.children.some(hasMesh)) item.append(listOf(child, at));
@@ -53,6 +53,14 @@ function treeOf(scene: Object3D, onToggle: (path: Path, isHidden: boolean) => vo
     return list;
   };
   return listOf(scene, '');
+}
+
+/// Returns the name of a part; of a mesh that three.js has numbered, its material's.
+function nameOf(part: Object3D): string {
+  if (!isMesh(part)) return part.name || 'Group';
+  const numbered = part.name === '' || /^mesh_\d+(_\d+)?$/.test(part.name);
+  const material = ([] as Material[]).concat((part as Mesh).material)[0]?.name;
+  return (numbered && material) || part.name || 'Mesh';
 }
 
 /// Hides these parts of a scene, or of its refined copy, and shows the others.
