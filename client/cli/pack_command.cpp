@@ -32,7 +32,9 @@ void warn_of_losses(const MeshBytes& file, const proto::gltf::MaterialMesh& mode
   const size_t packed = (proto::detail::texcoords_to_pack(model.mesh) ? 1 : 0) +
                         (proto::detail::colours_to_pack(model.mesh) ? 1 : 0) +
                         (proto::detail::normals_to_pack(model.mesh) ? 1 : 0);
-  if (model.mesh.attributes.size() > packed)
+  const bool has_groups = std::ranges::any_of(model.mesh.attributes, &Attribute::is_smoothing_group);
+  if (has_groups) warnings.push_back(file.name + ": smoothing groups are left out; edges are sharp by their angle.");
+  if (model.mesh.attributes.size() > packed + (has_groups ? 1 : 0))
     warnings.push_back(file.name + ": other attributes than texture coordinates, colours and normals are left out.");
   if (proto::detail::has_opacity(model.mesh))
     warnings.push_back(file.name + ": the opacity of its colours is left out.");
