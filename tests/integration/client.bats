@@ -173,8 +173,11 @@ END
   "$papilio" refine groups.glb -o fine.glb --levels 2 --shape organic
   [ "$("$papilio" compare --json fine.obj fine.glb | jq '.hausdorff < 1e-4')" = true ]
   [ "$("$papilio" compare --json smooth.obj fine.glb | jq '.hausdorff > 1e-2')" = true ]
-  "$papilio" convert groups.glb back.obj
-  [ "$("$papilio" info --json back.obj | jq .marked_creases)" = 4 ]
+  for compression in none draco meshopt; do
+    "$papilio" refine groups.glb -o "$compression.glb" --levels 2 --shape organic --output.compress "$compression"
+    "$papilio" convert "$compression.glb" "$compression.obj"
+    [ "$("$papilio" info --json "$compression.obj" | jq .marked_creases)" = 16 ]
+  done
 }
 
 @test "concave polygons are triangulated inside, without folds" {

@@ -228,7 +228,7 @@ test('damaged files are refused in the words of the command line', async () => {
   }
 });
 
-test('cut and altered files are read or refused, as by the command line', async () => {
+test('cut and altered files are read or refused', async () => {
   let seed = 3;
   const random = (below) => (seed = (seed * 48271) % 2147483647) % below;
   const ply = path.join(folder, 'small.ply');

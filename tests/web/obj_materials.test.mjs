@@ -161,7 +161,7 @@ test('polygons and smoothing groups are those of the command line', async () => 
       const { hausdorff, diagonal } = JSON.parse(papilio('compare', '--json', `${name}.ply`, `${sent}.ply`));
       assert.ok(hausdorff < 2e-4 * diagonal, `${name}: ${hausdorff}`);
     }
-    // In this browser, too: a base that stays plane has the same faces of any level in one plane.
+    // The uniform picture of the page is the command line's, too.
     const [download] = await Promise.all([
       page.waitForEvent('download'),
       page.locator('.panel[data-mode=uniform] button', { hasText: 'Save' }).click(),

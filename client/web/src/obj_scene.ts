@@ -8,8 +8,8 @@ import { type LibraryMaterial, readMtl, undefinedMaterial } from './mtl';
 
 const lastOf = (path: string) => path.replaceAll('\\', '/').split('/').at(-1)!.trim().toLowerCase();
 
-/// Returns a file as a scene of this name, if one of its libraries is among `files`, which were dropped or picked with it, or if it
-/// has smoothing groups; null otherwise.
+/// Returns a file as a scene of this name, if one of its libraries is among `files`, which were dropped or picked with
+/// it, or if it has smoothing groups; null otherwise.
 export async function sceneOf(name: string, read: TriangleFile, files: readonly File[]): Promise<Encoded | null> {
   // A line may name several libraries, and names may have blanks.
   const names = read.libraries.flatMap((line) => line.split(/(?<=\.mtl)\s+/i));

@@ -55,8 +55,8 @@ export function arraysOf(geometries: readonly BufferGeometry[]): Arrays {
   const add = (g: number, place: Place, kind: Attribute['kind'], components: number, values: ArrayLike<number>) => {
     const key = `${place.name} ${place.target}`;
     const known = attributes.get(key);
-    const none = kind === 'smoothing-groups' ? defaultGroup : 0;
-    const all = known ?? { place, kind, components, values: new Float64Array(points * components).fill(none) };
+    const missing = kind === 'smoothing-groups' ? defaultGroup : 0;
+    const all = known ?? { place, kind, components, values: new Float64Array(points * components).fill(missing) };
     attributes.set(key, all);
     for (let p = 0; p < counts[g]!; ++p)
       for (let c = 0; c < Math.min(components, all.components); ++c)
